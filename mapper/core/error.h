@@ -1,0 +1,25 @@
+// The two kinds of failure that are not results (docs/conventions.md, "Errors"): bad input, which
+// is the user's to mend, and a broken precondition, which is a bug. An ordinary algorithmic failure
+// is a field of a result instead.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace depthgrid {
+
+// Bad input of any kind. `what()` is one line, "place: message", where the place is a file, a file
+// and line, or a key, and the message names the value and the rule it breaks. The program prints it
+// and exits with code 2.
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::string& place, const std::string& message)
+      : std::runtime_error(place.empty() ? message : place + ": " + message) {}
+};
+
+// Throws std::logic_error when a precondition of the calling code does not hold.
+inline void Require(bool condition, const char* rule) {
+  if (!condition) throw std::logic_error(std::string("broken precondition: ") + rule);
+}
+
+}  // namespace depthgrid

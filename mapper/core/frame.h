@@ -1,0 +1,44 @@
+// All that crosses from a source (simulation, a recorded folder, a laser log) to the mapper.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
+#include "mapper/core/scan.h"
+#include "mapper/core/slam_output.h"
+
+namespace depthgrid {
+
+// Exactly one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
+// image).
+struct Frame {
+  int index = 0;  // position in the sequence, counted by the source; loop closures refer to it
+  double stamp_s = 0.0;
+  std::shared_ptr<const DepthImage> depth;
+  std::shared_ptr<const Scan> scan;
+  std::optional<Pose3> slam_from_camera;  // empty while SLAM is lost
+  int slam_epoch = 0;
+  std::vector<LoopClosure>
+      loops;  // reported with this frame, to be applied before its pose is used
+};
+
+// A sequence read once from front to back.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  // The next frame, or nothing at the end.
+  virtual std::optional<Frame> Next() = 0;
+  // The camera of the depth images; nothing for sources of ready scans.
+  virtual std::optional<PinholeCamera> Camera() const = 0;
+  // How many frames Next() will give in all, for progress bars.
+  virtual int FrameCount() const = 0;
+  // What was wrong with the input and survived (missing files, bad poses), one line each, complete
+  // at the end.
+  virtual std::vector<std::string> Warnings() const = 0;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,32 @@
+// The planar frame under a camera: `base` is the camera centre dropped to the floor plane, its x
+// axis the horizontal projection of the optical axis (of the image's up direction when the optical
+// axis is within 10 degrees of vertical), z up. Camera axes are optical: x right, y down, z
+// forward.
+#pragma once
+
+#include "mapper/core/pose3.h"
+
+namespace depthgrid {
+
+// Optical axes closer than this to vertical have no useful heading; the image's up direction has
+// one.
+constexpr double kVerticalAxisLimitRad = RadFromDeg(10.0);
+
+// world_from_base of a camera whose world has z up.
+Pose2 BaseOf(const Pose3& world_from_camera);
+
+// The rotation that levels the camera: level_from_camera, where `level` has base's heading, z up
+// and the camera's centre as origin. Multiplying a point in camera axes gives (forward, left, up)
+// in metres from the camera.
+Eigen::Quaterniond LevelFromCamera(const Pose3& world_from_camera);
+
+// A level camera looking along base's x axis from the given height: the inverse of BaseOf for
+// planar sensors.
+Pose3 CameraOf(const Pose2& world_from_base, double height_m);
+
+// A relative camera pose i_from_j projected to SE(2) through both cameras' level rotations:
+// base_i_from_base_j.
+Pose2 ProjectRelative(const Pose3& world_from_camera_i, const Pose3& world_from_camera_j,
+                      const Pose3& camera_i_from_camera_j);
+
+}  // namespace depthgrid

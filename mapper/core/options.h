@@ -1,0 +1,73 @@
+// How a component's options describe themselves. Each component has one plain struct with defaults
+// and a
+//   void Visit(OptionsVisitor& v);
+// that names every field once, with its allowed interval and its meaning. Reading from a file,
+// writing the effective values and listing the keys are visitors; no component knows a file format.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace depthgrid {
+
+struct Interval {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+class OptionsVisitor {
+ public:
+  virtual ~OptionsVisitor() = default;
+
+  virtual void Number(std::string_view key, double& value, Interval allowed,
+                      std::string_view meaning) = 0;
+  virtual void Number(std::string_view key, int& value, Interval allowed,
+                      std::string_view meaning) = 0;
+  virtual void Seed(std::string_view key, std::uint64_t& value, std::string_view meaning) = 0;
+  virtual void Flag(std::string_view key, bool& value, std::string_view meaning) = 0;
+  virtual void Text(std::string_view key, std::string& value, std::string_view meaning) = 0;
+  virtual void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
+                       std::string_view meaning) = 0;
+  // One number for all axes, or [forward, left, yaw].
+  virtual void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
+                       std::string_view meaning) = 0;
+
+  // One of a fixed set of names.
+  template <typename Enum>
+  void Choice(std::string_view key, Enum& value,
+              std::initializer_list<std::pair<Enum, std::string_view>> allowed,
+              std::string_view meaning) {
+    std::vector<std::string_view> names;
+    int index = 0;
+    for (const auto& [candidate, name] : allowed) {
+      if (candidate == value) index = static_cast<int>(names.size());
+      names.push_back(name);
+    }
+    ChoiceIndex(key, index, names, meaning);
+    value = (allowed.begin() + index)->first;
+  }
+
+  // A nested struct with a Visit of its own.
+  template <typename Options>
+  void Group(std::string_view key, Options& options, std::string_view meaning) {
+    if (!Begin(key, meaning)) return;
+    options.Visit(*this);
+    End();
+  }
+
+ protected:
+  virtual void ChoiceIndex(std::string_view key, int& index,
+                           const std::vector<std::string_view>& names,
+                           std::string_view meaning) = 0;
+  // False skips the group: nothing was said about it.
+  virtual bool Begin(std::string_view key, std::string_view meaning) = 0;
+  virtual void End() = 0;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,38 @@
+// A level laser scan in `base` axes (x forward, y left): what every frame becomes before it is
+// mapped.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "mapper/core/pose2.h"
+
+namespace depthgrid {
+
+// One beam. It says three independent things, so that hit, "nothing within range" and "no data"
+// stay apart: `hit`, an obstacle at range_m; the interval [clear_from_m, clear_to_m] along the
+// bearing is free of obstacles through the whole band (empty when clear_to_m <= clear_from_m);
+// everything else is unknown. For a hit clear_to_m <= range_m.
+struct Beam {
+  float bearing_rad = 0.0F;   // from base's x axis, counter-clockwise
+  float range_m = 0.0F;       // horizontal distance of the obstacle; meaningful only when `hit`
+  float clear_from_m = 0.0F;  // horizontal distances
+  float clear_to_m = 0.0F;
+  bool hit = false;
+
+  bool operator==(const Beam&) const = default;
+};
+
+// Beams are ordered by increasing bearing. Their origin is base's origin.
+struct Scan {
+  std::vector<Beam> beams;
+  double max_range_m = 0.0;  // the range limit the scan was made with; no hit lies beyond it
+
+  bool operator==(const Scan&) const = default;
+};
+
+inline Eigen::Vector2d EndPoint(const Beam& beam) {
+  return {beam.range_m * std::cos(beam.bearing_rad), beam.range_m * std::sin(beam.bearing_rad)};
+}
+
+}  // namespace depthgrid

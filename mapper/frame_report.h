@@ -1,0 +1,53 @@
+// What the mapper says of one frame, as it was known at the time.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "mapper/core/pose3.h"
+
+namespace depthgrid {
+
+// A scan matched against what was mapped before. Not finding a match is an ordinary outcome.
+struct MatchResult {
+  bool found = false;
+  Pose2 map_from_base;  // meaningful only when found
+  // Inverse covariance of map_from_base for a small motion (forward m, left m, yaw rad) in base
+  // axes; zero along directions the scan does not see (a corridor's axis).
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  double score = 0.0;  // share of the beams that the map explains, 0..1
+  int iterations = 0;
+};
+
+// CPU time a stage took, microseconds. Never part of the result, only of the timing files.
+struct StageTimes {
+  double scan_us = 0.0;
+  double match_us = 0.0;
+  double fuse_us = 0.0;
+  double insert_us = 0.0;
+  double loops_us = 0.0;
+  double total_us = 0.0;
+};
+
+struct FrameReport {
+  int index = 0;
+  double stamp_s = 0.0;
+  std::optional<Pose3> slam_from_camera;  // the input
+  int slam_epoch = 0;
+  std::optional<Pose3> map_from_camera;  // the online estimate; empty while nothing is known
+  Pose2 map_from_slam;                   // the correction after this frame
+  MatchResult match;
+  std::array<double, 3> innovation = {};  // match against prediction in base axes: m, m, rad
+  std::array<double, 3> gain = {};        // the share of the innovation taken, per base axis
+  Eigen::Matrix3d covariance =
+      Eigen::Matrix3d::Zero();       // of the estimate, base axes; zero if not tracked
+  bool innovation_rejected = false;  // the gate refused the match
+  int beams = 0;                     // beams with a hit
+  int loops_accepted = 0;            // loop events of this frame that entered the graph
+  int loops_rejected = 0;
+  bool inserted = false;
+  StageTimes times;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,93 @@
+// Option structs from YAML and back (mapper/core/options.h). Every key of a file must be known: an
+// unknown one is an error that names the nearest known key, with file and line.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+class Config {
+ public:
+  // An empty tree: everything keeps its default.
+  Config();
+  // Throws InputError for an unreadable, empty or malformed file, or one whose root is not a map.
+  static Config FromFile(const std::string& path);
+  // `place` names the text in errors.
+  static Config FromText(const std::string& text, const std::string& place);
+
+  Config(Config&&) noexcept;
+  Config& operator=(Config&&) noexcept;
+  Config(const Config&);
+  Config& operator=(const Config&);
+  ~Config();
+
+  // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML.
+  void Set(const std::string& assignment);
+  // The same with the key and the YAML value apart, for sweeps.
+  void Set(const std::string& key_path, const std::string& yaml_value);
+  // Removes a top-level key and returns its subtree; an empty tree if absent.
+  Config Take(const std::string& key);
+  // Removes a top-level key whose value is a list of maps and returns them in order; none if
+  // absent.
+  std::vector<Config> TakeMaps(const std::string& key);
+  bool Has(const std::string& key_path) const;
+  // The file (and line) this tree came from, for errors of whoever reads it.
+  std::string Place() const;
+  // Names of the top-level keys in file order.
+  std::vector<std::string> Keys() const;
+  // The YAML texts of a list's elements at a key path; a scalar is a list of one. Throws InputError
+  // if absent.
+  std::vector<std::string> List(const std::string& key_path) const;
+  // The tree as YAML.
+  std::string ToYaml() const;
+
+  // Overwrites the options' fields from the tree; throws InputError for an unknown key, a wrong
+  // type or a value out of range. Keys not in the tree keep the value they have.
+  template <typename Options>
+  void Read(Options& options) const {
+    const std::unique_ptr<OptionsVisitor> reader = Reader();
+    options.Visit(*reader);
+    FinishReading(*reader);
+  }
+
+  struct Tree;
+
+ private:
+  explicit Config(std::unique_ptr<Tree> tree);
+  std::unique_ptr<OptionsVisitor> Reader() const;
+  static void FinishReading(OptionsVisitor& reader);
+
+  std::unique_ptr<Tree> tree_;
+};
+
+namespace internal {
+std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out);
+std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out);
+}  // namespace internal
+
+// Every effective key, in the order the structs declare them; reading it back gives the same
+// values.
+template <typename Options>
+std::string ToYaml(Options options) {
+  std::string out;
+  options.Visit(*internal::MakeYamlWriter(out));
+  return out;
+}
+
+// One line a key: path, default, allowed values, meaning. For --help and docs.
+template <typename Options>
+std::string ListKeys(Options options) {
+  std::string out;
+  options.Visit(*internal::MakeKeyLister(out));
+  return out;
+}
+
+// The candidate closest to `word` in edit distance, or "" when none is near (more than half its
+// letters differ).
+std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace depthgrid

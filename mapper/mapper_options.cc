@@ -1,0 +1,10 @@
+#include "mapper/mapper_options.h"
+
+namespace depthgrid {
+
+void MapperOptions::Visit(OptionsVisitor& v) {
+  v.Choice("method", method, {{MapperMethod::kPaper, "paper"}, {MapperMethod::kSurfel, "surfel"}},
+           "what scans are matched against: the paper's submaps or surfels of everything seen");
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,55 @@
+// What scans are matched against and corrected with. Two users: the paper's chain (submaps of
+// probabilities, Eq. 4, pose graph of Eq. 5-6) and the surfel map (docs/math.md).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/scan.h"
+#include "mapper/frame_report.h"
+
+namespace depthgrid {
+
+// A frame that was inserted, in order of time.
+struct MappedFrame {
+  int frame = 0;  // Frame::index
+  std::shared_ptr<const Scan> scan;
+  Pose2 map_from_base;
+  // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
+  std::optional<Pose2> slam_motion;
+  MatchResult match;
+};
+
+// A loop between two mapped frames, already projected to the plane.
+struct PlanarLoop {
+  int first = 0;  // indices into the vector of MappedFrame
+  int second = 0;
+  Pose2 first_from_second;
+  double sigma_translation_m = 0.02;
+  double sigma_yaw_rad = 0.01;
+};
+
+struct Adjustment {
+  std::vector<Pose2> map_from_base;  // one a mapped frame; the first is unchanged
+  std::vector<bool> loop_accepted;   // one a loop given
+};
+
+class ReferenceMap {
+ public:
+  virtual ~ReferenceMap() = default;
+
+  // Matches around the prediction. Called for every frame once something is mapped.
+  virtual MatchResult Match(const Scan& scan, const Pose2& predicted_map_from_base) = 0;
+  // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
+  // tracked.
+  virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                      const Eigen::Matrix3d& covariance) = 0;
+  // Corrects all poses at once, given loops (possibly none). Does not change the map; see Rebuild.
+  virtual Adjustment Adjust(const std::vector<MappedFrame>& frames,
+                            const std::vector<PlanarLoop>& loops) = 0;
+  // Forgets everything and inserts the frames again at their (corrected) poses.
+  virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,150 @@
+#include "mapper/io/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+enum class Mode { kFixed, kKalman };
+
+struct Inner {
+  Mode mode = Mode::kFixed;
+  std::array<double, 3> gain = {0.5, 0.5, 0.5};
+  void Visit(OptionsVisitor& v) {
+    v.Choice("mode", mode, {{Mode::kFixed, "fixed"}, {Mode::kKalman, "kalman"}},
+             "who sets the gain");
+    v.PerAxis("gain", gain, {0.0, 1.0}, "Kalman gain K");
+  }
+};
+
+struct Outer {
+  std::string scene;
+  int frames = 900;
+  std::uint64_t seed = 1;
+  double step_m = 0.1;
+  bool loops = true;
+  std::vector<double> invalid = {0.0};
+  Inner fusion;
+  void Visit(OptionsVisitor& v) {
+    v.Text("scene", scene, "what to render");
+    v.Number("frames", frames, {1, 1e6}, "length");
+    v.Seed("seed", seed, "random seed");
+    v.Number("step_m", step_m, {0.0, 1.0}, "metres");
+    v.Flag("loops", loops, "use loops");
+    v.Numbers("invalid", invalid, {}, "values that mean no data");
+    v.Group("fusion", fusion, "Eq. 3");
+  }
+};
+
+std::string ErrorOf(const std::string& text) {
+  Outer outer;
+  try {
+    Config::FromText(text, "run.yaml").Read(outer);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Config, ReadsEveryKind) {
+  Outer outer;
+  Config::FromText(
+      "scene: room\nframes: 10\nseed: 18446744073709551615\nstep_m: 0.25\nloops: false\n"
+      "invalid: [0, 65535]\nfusion: {mode: kalman, gain: [0.1, 0.2, 0.3]}\n",
+      "x")
+      .Read(outer);
+  EXPECT_EQ(outer.scene, "room");
+  EXPECT_EQ(outer.frames, 10);
+  EXPECT_EQ(outer.seed, 18446744073709551615U);
+  EXPECT_EQ(outer.step_m, 0.25);
+  EXPECT_FALSE(outer.loops);
+  EXPECT_EQ(outer.invalid, (std::vector<double>{0, 65535}));
+  EXPECT_EQ(outer.fusion.mode, Mode::kKalman);
+  EXPECT_EQ(outer.fusion.gain, (std::array<double, 3>{0.1, 0.2, 0.3}));
+}
+
+TEST(Config, OneNumberServesAllAxes) {
+  Outer outer;
+  Config::FromText("fusion: {gain: 0.25}", "x").Read(outer);
+  EXPECT_EQ(outer.fusion.gain, (std::array<double, 3>{0.25, 0.25, 0.25}));
+}
+
+TEST(Config, WhatIsWrittenReadsBackTheSame) {
+  Outer outer;
+  outer.step_m = 0.1 + 0.2;
+  outer.scene = "yes: [no";
+  outer.fusion.gain = {0.1, 1.0 / 3.0, 0.3};
+  Outer again;
+  Config::FromText(ToYaml(outer), "x").Read(again);
+  EXPECT_EQ(ToYaml(outer), ToYaml(again));
+  EXPECT_EQ(again.step_m, outer.step_m);
+  EXPECT_EQ(again.scene, outer.scene);
+  EXPECT_EQ(again.fusion.gain, outer.fusion.gain);
+}
+
+TEST(Config, SetOverridesAndCreatesPaths) {
+  Outer outer;
+  Config config = Config::FromText("fusion: {gain: 0.25}", "x");
+  config.Set("fusion.gain=0.75");
+  config.Set("fusion.mode=kalman");
+  config.Set("frames=5");
+  config.Read(outer);
+  EXPECT_EQ(outer.fusion.gain[0], 0.75);
+  EXPECT_EQ(outer.fusion.mode, Mode::kKalman);
+  EXPECT_EQ(outer.frames, 5);
+}
+
+TEST(Config, ACopyIsIndependent) {
+  const Config original = Config::FromText("frames: 3", "x");
+  Config copy = original;
+  copy.Set("frames=4");
+  Outer outer;
+  original.Read(outer);
+  EXPECT_EQ(outer.frames, 3);
+}
+
+TEST(Config, ErrorsNameFileLineValueAndRule) {
+  EXPECT_EQ(ErrorOf(""), "run.yaml: is empty");
+  EXPECT_EQ(ErrorOf("- 1"), "run.yaml: must be a map of keys");
+  EXPECT_EQ(ErrorOf("seed: 1\nframs: 3"),
+            "run.yaml:2: unknown key 'frams', did you mean 'frames'?");
+  EXPECT_EQ(ErrorOf("fusion: {gian: 3}"),
+            "run.yaml:1: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
+  EXPECT_EQ(ErrorOf("frames: 0"), "run.yaml:1: frames is '0', must be from 1 to 1000000");
+  EXPECT_EQ(ErrorOf("frames: 1.5"), "run.yaml:1: frames is '1.5', must be a whole number");
+  EXPECT_EQ(ErrorOf("step_m: .nan"), "run.yaml:1: step_m is '.nan', must be from 0 to 1");
+  EXPECT_EQ(ErrorOf("seed: -1"), "run.yaml:1: seed is '-1', must be a whole number, 0 or more");
+  EXPECT_EQ(ErrorOf("seed: 1\nseed: 2"), "run.yaml:2: key 'seed' is given twice");
+  EXPECT_EQ(ErrorOf("fusion: {mode: kalmann}"),
+            "run.yaml:1: fusion.mode is 'kalmann', must be one of fixed, kalman (did you mean "
+            "'kalman'?)");
+  EXPECT_EQ(ErrorOf("fusion: 3"), "run.yaml:1: fusion is '3', must be a map of keys");
+  EXPECT_EQ(ErrorOf("fusion: {gain: [1, 1]}"),
+            "run.yaml:1: fusion.gain is '[1, 1]', must be one number or [forward, left, yaw]");
+  EXPECT_THAT(ErrorOf("a: [1"), HasSubstr("not valid YAML"));
+}
+
+TEST(Config, ListsOfMapsKeepTheirLines) {
+  Config config = Config::FromText("frames: 2\nshapes:\n  - {mode: fixed}\n  - {mode: bad}\n", "x");
+  const auto shapes = config.TakeMaps("shapes");
+  ASSERT_EQ(shapes.size(), 2U);
+  EXPECT_FALSE(config.Has("shapes"));
+  EXPECT_EQ(shapes[1].Place(), "x:4");
+  Inner inner;
+  shapes[0].Read(inner);
+  EXPECT_THROW(shapes[1].Read(inner), InputError);
+  EXPECT_TRUE(config.TakeMaps("absent").empty());
+}
+
+TEST(NearestWord, FindsSmallSlipsOnly) {
+  EXPECT_EQ(NearestWord("gian", {"mode", "gain"}), "gain");
+  EXPECT_EQ(NearestWord("zzz", {"mode", "gain"}), "");
+}
+
+}  // namespace
+}  // namespace depthgrid
