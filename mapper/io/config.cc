@@ -428,12 +428,12 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
     throw InputError(PlaceOf(tree_->place, node), "'" + key + "' must be a list");
   }
   for (const auto& item : node) {
-    if (!item.IsMap()) {
+    if (!YAML::Node(item).IsMap()) {
       throw InputError(PlaceOf(tree_->place, item), "each item of '" + key + "' must be a map");
     }
     auto taken = std::make_unique<Tree>();
     taken->place = tree_->place;
-    taken->root = item;
+    taken->root = YAML::Node(item);
     maps.push_back(Config(std::move(taken)));
   }
   tree_->root.remove(key);
