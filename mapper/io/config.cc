@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "mapper/core/error.h"
+#include "mapper/io/config_text.h"
 
 namespace depthgrid {
 
@@ -79,23 +79,6 @@ YAML::Node Find(const YAML::Node& root, const std::string& key_path) {
     node.reset(child);
   }
   return node;
-}
-
-std::string Shown(double value) { return fmt::format("{}", value); }
-
-std::string Shown(const Interval& interval) {
-  const bool low = std::isfinite(interval.low);
-  const bool high = std::isfinite(interval.high);
-  if (low && high) return fmt::format("from {} to {}", interval.low, interval.high);
-  if (low) return fmt::format("at least {}", interval.low);
-  if (high) return fmt::format("at most {}", interval.high);
-  return "a finite number";
-}
-
-std::string Joined(const std::vector<std::string_view>& names) {
-  std::string out;
-  for (const auto& name : names) out += (out.empty() ? "" : ", ") + std::string(name);
-  return out;
 }
 
 class YamlReader final : public OptionsVisitor {
@@ -238,110 +221,6 @@ class YamlReader final : public OptionsVisitor {
   std::vector<Level> levels_;
 };
 
-// Writes two-space indented YAML; numbers in the shortest form that reads back to the same double.
-class YamlWriter final : public OptionsVisitor {
- public:
-  explicit YamlWriter(std::string& out) : out_(out) {}
-
-  void Number(std::string_view key, double& value, Interval, std::string_view) override {
-    Line(key, Shown(value));
-  }
-  void Number(std::string_view key, int& value, Interval, std::string_view) override {
-    Line(key, fmt::format("{}", value));
-  }
-  void Seed(std::string_view key, std::uint64_t& value, std::string_view) override {
-    Line(key, fmt::format("{}", value));
-  }
-  void Flag(std::string_view key, bool& value, std::string_view) override {
-    Line(key, value ? "true" : "false");
-  }
-  void Text(std::string_view key, std::string& value, std::string_view) override {
-    YAML::Emitter emitter;
-    emitter << YAML::Node(value);
-    Line(key, value.empty() ? "\"\"" : emitter.c_str());
-  }
-  void Numbers(std::string_view key, std::vector<double>& values, Interval,
-               std::string_view) override {
-    Line(key, fmt::format("[{}]", fmt::join(values, ", ")));
-  }
-  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval,
-               std::string_view) override {
-    const bool same = values[0] == values[1] && values[1] == values[2];
-    Line(key, same ? Shown(values[0]) : fmt::format("[{}]", fmt::join(values, ", ")));
-  }
-
- protected:
-  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
-                   std::string_view) override {
-    Line(key, std::string(names[static_cast<std::size_t>(index)]));
-  }
-  bool Begin(std::string_view key, std::string_view) override {
-    out_ += fmt::format("{:{}}{}:\n", "", 2 * depth_, key);
-    ++depth_;
-    return true;
-  }
-  void End() override { --depth_; }
-
- private:
-  void Line(std::string_view key, const std::string& value) {
-    out_ += fmt::format("{:{}}{}: {}\n", "", 2 * depth_, key, value);
-  }
-  std::string& out_;
-  int depth_ = 0;
-};
-
-class KeyLister final : public OptionsVisitor {
- public:
-  explicit KeyLister(std::string& out) : out_(out) {}
-
-  void Number(std::string_view key, double& value, Interval allowed,
-              std::string_view meaning) override {
-    Line(key, Shown(value), Shown(allowed), meaning);
-  }
-  void Number(std::string_view key, int& value, Interval allowed,
-              std::string_view meaning) override {
-    Line(key, fmt::format("{}", value), "whole, " + Shown(allowed), meaning);
-  }
-  void Seed(std::string_view key, std::uint64_t& value, std::string_view meaning) override {
-    Line(key, fmt::format("{}", value), "whole, at least 0", meaning);
-  }
-  void Flag(std::string_view key, bool& value, std::string_view meaning) override {
-    Line(key, value ? "true" : "false", "true or false", meaning);
-  }
-  void Text(std::string_view key, std::string& value, std::string_view meaning) override {
-    Line(key, value.empty() ? "\"\"" : value, "text", meaning);
-  }
-  void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
-               std::string_view meaning) override {
-    Line(key, fmt::format("[{}]", fmt::join(values, ", ")), "list, each " + Shown(allowed),
-         meaning);
-  }
-  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
-               std::string_view meaning) override {
-    Line(key, Shown(values[0]), Shown(allowed) + ", or [forward, left, yaw]", meaning);
-  }
-
- protected:
-  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
-                   std::string_view meaning) override {
-    Line(key, std::string(names[static_cast<std::size_t>(index)]), "one of " + Joined(names),
-         meaning);
-  }
-  bool Begin(std::string_view key, std::string_view) override {
-    path_.push_back(std::string(key) + ".");
-    return true;
-  }
-  void End() override { path_.pop_back(); }
-
- private:
-  void Line(std::string_view key, const std::string& value, const std::string& allowed,
-            std::string_view meaning) {
-    out_ += fmt::format("{}{} = {} ({}): {}\n", fmt::join(path_, ""), key, value, allowed, meaning);
-  }
-  std::string& out_;
-  std::vector<std::string> path_;
-};
-
 }  // namespace
 
 Config::Config() : tree_(std::make_unique<Tree>()) {}
@@ -473,38 +352,6 @@ std::unique_ptr<OptionsVisitor> Config::Reader() const {
 
 void Config::FinishReading(OptionsVisitor& reader) {
   static_cast<YamlReader&>(reader).RequireAllUsed();
-}
-
-namespace internal {
-std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out) {
-  return std::make_unique<YamlWriter>(out);
-}
-std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out) {
-  return std::make_unique<KeyLister>(out);
-}
-}  // namespace internal
-
-std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_distance = word.size() / 2 + 1;
-  for (const auto& candidate : candidates) {
-    std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j <= candidate.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j <= candidate.size(); ++j) {
-        const std::size_t substituted = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace depthgrid

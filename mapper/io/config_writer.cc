@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "mapper/io/config.h"
+#include "mapper/io/config_text.h"
+
+namespace depthgrid {
+namespace {
+
+std::string Shown(double value) { return fmt::format("{}", value); }
+
+// Writes two-space indented YAML; numbers in the shortest form that reads back to the same double.
+class YamlWriter final : public OptionsVisitor {
+ public:
+  explicit YamlWriter(std::string& out) : out_(out) {}
+
+  void Number(std::string_view key, double& value, Interval, std::string_view) override {
+    Line(key, Shown(value));
+  }
+  void Number(std::string_view key, int& value, Interval, std::string_view) override {
+    Line(key, fmt::format("{}", value));
+  }
+  void Seed(std::string_view key, std::uint64_t& value, std::string_view) override {
+    Line(key, fmt::format("{}", value));
+  }
+  void Flag(std::string_view key, bool& value, std::string_view) override {
+    Line(key, value ? "true" : "false");
+  }
+  void Text(std::string_view key, std::string& value, std::string_view) override {
+    YAML::Emitter emitter;
+    emitter << YAML::Node(value);
+    Line(key, value.empty() ? "\"\"" : emitter.c_str());
+  }
+  void Numbers(std::string_view key, std::vector<double>& values, Interval,
+               std::string_view) override {
+    Line(key, fmt::format("[{}]", fmt::join(values, ", ")));
+  }
+  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval,
+               std::string_view) override {
+    const bool same = values[0] == values[1] && values[1] == values[2];
+    Line(key, same ? Shown(values[0]) : fmt::format("[{}]", fmt::join(values, ", ")));
+  }
+
+ protected:
+  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
+                   std::string_view) override {
+    Line(key, std::string(names[static_cast<std::size_t>(index)]));
+  }
+  bool Begin(std::string_view key, std::string_view) override {
+    out_ += fmt::format("{:{}}{}:\n", "", 2 * depth_, key);
+    ++depth_;
+    return true;
+  }
+  void End() override { --depth_; }
+
+ private:
+  void Line(std::string_view key, const std::string& value) {
+    out_ += fmt::format("{:{}}{}: {}\n", "", 2 * depth_, key, value);
+  }
+  std::string& out_;
+  int depth_ = 0;
+};
+
+class KeyLister final : public OptionsVisitor {
+ public:
+  explicit KeyLister(std::string& out) : out_(out) {}
+
+  void Number(std::string_view key, double& value, Interval allowed,
+              std::string_view meaning) override {
+    Line(key, Shown(value), Shown(allowed), meaning);
+  }
+  void Number(std::string_view key, int& value, Interval allowed,
+              std::string_view meaning) override {
+    Line(key, fmt::format("{}", value), "whole, " + Shown(allowed), meaning);
+  }
+  void Seed(std::string_view key, std::uint64_t& value, std::string_view meaning) override {
+    Line(key, fmt::format("{}", value), "whole, at least 0", meaning);
+  }
+  void Flag(std::string_view key, bool& value, std::string_view meaning) override {
+    Line(key, value ? "true" : "false", "true or false", meaning);
+  }
+  void Text(std::string_view key, std::string& value, std::string_view meaning) override {
+    Line(key, value.empty() ? "\"\"" : value, "text", meaning);
+  }
+  void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
+               std::string_view meaning) override {
+    Line(key, fmt::format("[{}]", fmt::join(values, ", ")), "list, each " + Shown(allowed),
+         meaning);
+  }
+  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
+               std::string_view meaning) override {
+    Line(key, Shown(values[0]), Shown(allowed) + ", or [forward, left, yaw]", meaning);
+  }
+
+ protected:
+  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
+                   std::string_view meaning) override {
+    Line(key, std::string(names[static_cast<std::size_t>(index)]), "one of " + Joined(names),
+         meaning);
+  }
+  bool Begin(std::string_view key, std::string_view) override {
+    path_.push_back(std::string(key) + ".");
+    return true;
+  }
+  void End() override { path_.pop_back(); }
+
+ private:
+  void Line(std::string_view key, const std::string& value, const std::string& allowed,
+            std::string_view meaning) {
+    out_ += fmt::format("{}{} = {} ({}): {}\n", fmt::join(path_, ""), key, value, allowed, meaning);
+  }
+  std::string& out_;
+  std::vector<std::string> path_;
+};
+
+}  // namespace
+
+namespace internal {
+std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out) {
+  return std::make_unique<YamlWriter>(out);
+}
+std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out) {
+  return std::make_unique<KeyLister>(out);
+}
+}  // namespace internal
+
+}  // namespace depthgrid

@@ -1,0 +1,131 @@
+// Reads every #include and fails on one that points the wrong way (docs/conventions.md, "Rooms").
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A room's name from a path below the source root: the longest listed prefix.
+std::string RoomOf(const std::string& path) {
+  static const std::vector<std::string> kRooms = {"mapper/core/",  "mapper/io/", "mapper/", "sim/",
+                                                  "eval/metrics/", "eval/cli/",  "eval/"};
+  for (const auto& room : kRooms) {
+    if (path.starts_with(room)) return room;
+  }
+  return "";
+}
+
+const std::map<std::string, std::set<std::string>>& Allowed() {
+  static const std::map<std::string, std::set<std::string>> kAllowed = {
+      {"mapper/core/", {"mapper/core/"}},
+      {"mapper/io/", {"mapper/core/", "mapper/io/"}},
+      {"mapper/", {"mapper/core/", "mapper/"}},
+      {"sim/", {"mapper/core/", "mapper/io/", "sim/"}},
+      {"eval/metrics/", {"mapper/core/", "eval/metrics/"}},
+      {"eval/", {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/"}},
+      {"eval/cli/",
+       {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/", "eval/cli/"}},
+  };
+  return kAllowed;
+}
+
+// Libraries that are wrapped once: their headers may appear in .cc files only.
+const std::vector<std::string>& HiddenLibraries() {
+  static const std::vector<std::string> kHidden = {
+      "embree3/",  "GL/",      "SQLiteCpp/", "sqlite3",    "ceres/", "assimp/",
+      "yaml-cpp/", "opencv2/", "nlohmann/",  "Random123/", "png.h"};
+  return kHidden;
+}
+
+struct Include {
+  std::string path;
+  bool quoted = false;
+};
+
+std::vector<Include> IncludesOf(const fs::path& file) {
+  std::vector<Include> includes;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    const auto hash = line.find("#include");
+    if (hash == std::string::npos || line.find_first_not_of(" \t") != hash) continue;
+    const auto open = line.find_first_of("\"<", hash);
+    const auto close = line.find_first_of("\">", open + 1);
+    if (open == std::string::npos || close == std::string::npos) continue;
+    includes.push_back({line.substr(open + 1, close - open - 1), line[open] == '"'});
+  }
+  return includes;
+}
+
+// What is wrong with one include, or "".
+std::string Fault(const std::string& file, const Include& include) {
+  if (include.quoted) {
+    const std::string room = RoomOf(file);
+    const std::string target = RoomOf(include.path);
+    if (target.empty()) return "includes are written from the source root";
+    if (!Allowed().at(room).contains(target)) return room + " may not include " + target;
+    return "";
+  }
+  if (!file.ends_with(".h")) return "";
+  for (const auto& library : HiddenLibraries()) {
+    if (include.path.starts_with(library)) return "headers may not show " + library;
+  }
+  return "";
+}
+
+TEST(Arrows, EveryIncludePointsTheAllowedWay) {
+  const fs::path root = DEPTHGRID_SOURCE_DIR;
+  int files = 0;
+  int includes = 0;
+  for (const std::string top : {"mapper", "sim", "eval"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cc") continue;
+      ++files;
+      const std::string file = fs::relative(entry.path(), root).string();
+      for (const auto& include : IncludesOf(entry.path())) {
+        ++includes;
+        EXPECT_EQ(Fault(file, include), "") << file << " includes " << include.path;
+      }
+    }
+  }
+  EXPECT_GT(files, 20);
+  EXPECT_GT(includes, 50);
+}
+
+TEST(Arrows, AWrongIncludeIsFound) {
+  EXPECT_NE(Fault("mapper/core/a.h", {"mapper/io/b.h", true}), "");
+  EXPECT_NE(Fault("mapper/io/a.cc", {"mapper/grid/b.h", true}), "");
+  EXPECT_NE(Fault("mapper/grid/a.cc", {"mapper/io/b.h", true}), "");
+  EXPECT_NE(Fault("mapper/match/a.cc", {"sim/b.h", true}), "");
+  EXPECT_NE(Fault("eval/metrics/a.cc", {"mapper/grid/b.h", true}), "");
+  EXPECT_NE(Fault("eval/run.cc", {"eval/cli/b.h", true}), "");
+  EXPECT_NE(Fault("sim/a.h", {"embree3/rtcore.h", false}), "");
+  EXPECT_NE(Fault("mapper/graph/a.h", {"ceres/ceres.h", false}), "");
+  EXPECT_EQ(Fault("sim/a.cc", {"embree3/rtcore.h", false}), "");
+  EXPECT_EQ(Fault("eval/run.cc", {"sim/b.h", true}), "");
+}
+
+TEST(Arrows, NoFileIsLongerThan400Lines) {
+  const fs::path root = DEPTHGRID_SOURCE_DIR;
+  for (const std::string top : {"mapper", "sim", "eval", "tests", "bench"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cc") continue;
+      std::ifstream stream(entry.path());
+      int lines = 0;
+      for (std::string line; std::getline(stream, line);) ++lines;
+      EXPECT_LE(lines, 400) << entry.path() << " is to be divided by concept";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
