@@ -1,0 +1,24 @@
+// A set of cells: those that are observable, or in one state.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mapper/core/grid_geometry.h"
+
+namespace depthgrid {
+
+struct CellMask {
+  GridGeometry geometry;
+  std::vector<std::uint8_t> members;  // geometry.size(); 1 for a cell of the set, else 0
+
+  CellMask() = default;
+  explicit CellMask(const GridGeometry& g) : geometry(g), members(g.size(), 0) {}
+  // False outside the rectangle.
+  bool Has(const Cell& cell) const {
+    return geometry.Contains(cell) && members[geometry.Index(cell)] != 0;
+  }
+  bool operator==(const CellMask&) const = default;
+};
+
+}  // namespace depthgrid
