@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,12 @@ class OptionsVisitor {
   virtual void Text(std::string_view key, std::string& value, std::string_view meaning) = 0;
   virtual void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
                        std::string_view meaning) = 0;
+  // Exactly values.size() numbers, such as a point.
+  virtual void Tuple(std::string_view key, std::span<double> values, Interval allowed,
+                     std::string_view meaning) = 0;
+  // A list of lists of `width` numbers each, such as an outline; stored one behind the other.
+  virtual void Rows(std::string_view key, std::vector<double>& values, std::size_t width,
+                    Interval allowed, std::string_view meaning) = 0;
   // One number for all axes, or [forward, left, yaw].
   virtual void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
                        std::string_view meaning) = 0;

@@ -129,6 +129,22 @@ class YamlReader final : public OptionsVisitor {
     values.clear();
     for (const auto& item : node) values.push_back(NumberIn(item, key, allowed));
   }
+  void Tuple(std::string_view key, std::span<double> values, Interval allowed,
+             std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      TupleIn(node, key, values, allowed);
+    }
+  }
+  void Rows(std::string_view key, std::vector<double>& values, std::size_t width, Interval allowed,
+            std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return;
+    if (!node.IsSequence()) Fail(node, key, fmt::format("a list of lists of {} numbers", width));
+    values.assign(width * node.size(), 0.0);
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      TupleIn(node[i], key, std::span(values).subspan(i * width, width), allowed);
+    }
+  }
   void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
                std::string_view) override {
     const YAML::Node node = Lookup(key);
@@ -196,6 +212,13 @@ class YamlReader final : public OptionsVisitor {
       Fail(node, key, Shown(allowed));
     }
     return number;
+  }
+  void TupleIn(const YAML::Node& node, std::string_view key, std::span<double> values,
+               const Interval& allowed) const {
+    if (!node.IsSequence() || node.size() != values.size()) {
+      Fail(node, key, fmt::format("a list of {} numbers", values.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = NumberIn(node[i], key, allowed);
   }
   [[noreturn]] void Fail(const YAML::Node& node, std::string_view key,
                          const std::string& rule) const {

@@ -35,6 +35,18 @@ class YamlWriter final : public OptionsVisitor {
                std::string_view) override {
     Line(key, fmt::format("[{}]", fmt::join(values, ", ")));
   }
+  void Tuple(std::string_view key, std::span<double> values, Interval, std::string_view) override {
+    Line(key, fmt::format("[{}]", fmt::join(values, ", ")));
+  }
+  void Rows(std::string_view key, std::vector<double>& values, std::size_t width, Interval,
+            std::string_view) override {
+    std::string rows;
+    for (std::size_t i = 0; i < values.size(); i += width) {
+      rows += fmt::format("{}[{}]", i == 0 ? "" : ", ",
+                          fmt::join(std::span(values).subspan(i, width), ", "));
+    }
+    Line(key, "[" + rows + "]");
+  }
   void PerAxis(std::string_view key, std::array<double, 3>& values, Interval,
                std::string_view) override {
     const bool same = values[0] == values[1] && values[1] == values[2];
@@ -85,6 +97,16 @@ class KeyLister final : public OptionsVisitor {
   void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
                std::string_view meaning) override {
     Line(key, fmt::format("[{}]", fmt::join(values, ", ")), "list, each " + Shown(allowed),
+         meaning);
+  }
+  void Tuple(std::string_view key, std::span<double> values, Interval allowed,
+             std::string_view meaning) override {
+    Line(key, fmt::format("[{}]", fmt::join(values, ", ")),
+         fmt::format("{} numbers, each {}", values.size(), Shown(allowed)), meaning);
+  }
+  void Rows(std::string_view key, std::vector<double>&, std::size_t width, Interval allowed,
+            std::string_view meaning) override {
+    Line(key, "[]", fmt::format("list of lists of {} numbers, each {}", width, Shown(allowed)),
          meaning);
   }
   void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,

@@ -141,6 +141,38 @@ TEST(Config, ListsOfMapsKeepTheirLines) {
   EXPECT_TRUE(config.TakeMaps("absent").empty());
 }
 
+struct Geometry {
+  std::array<double, 3> at = {0, 0, 0};
+  std::vector<double> outline = {1, 2};
+  void Visit(OptionsVisitor& v) {
+    v.Tuple("at", at, {-10, 10}, "a point");
+    v.Rows("outline", outline, 2, {}, "corners");
+  }
+};
+
+TEST(Config, ReadsTuplesAndRows) {
+  Geometry geometry;
+  Config::FromText("at: [1, 2, 3]\noutline: [[0, 0.5], [1, 0]]", "x").Read(geometry);
+  EXPECT_EQ(geometry.at, (std::array<double, 3>{1, 2, 3}));
+  EXPECT_EQ(geometry.outline, (std::vector<double>{0, 0.5, 1, 0}));
+  EXPECT_EQ(ToYaml(geometry), "at: [1, 2, 3]\noutline: [[0, 0.5], [1, 0]]\n");
+
+  const auto error_of = [](const std::string& text) -> std::string {
+    Geometry target;
+    try {
+      Config::FromText(text, "x").Read(target);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(error_of("at: [1, 2]"), "x:1: at is '[1, 2]', must be a list of 3 numbers");
+  EXPECT_EQ(error_of("at: [1, 2, 11]"), "x:1: at is '11', must be from -10 to 10");
+  EXPECT_EQ(error_of("outline: [[1, 2], [3]]"),
+            "x:1: outline is '[3]', must be a list of 2 numbers");
+  EXPECT_EQ(error_of("outline: 3"), "x:1: outline is '3', must be a list of lists of 2 numbers");
+}
+
 TEST(NearestWord, FindsSmallSlipsOnly) {
   EXPECT_EQ(NearestWord("gian", {"mode", "gain"}), "gain");
   EXPECT_EQ(NearestWord("zzz", {"mode", "gain"}), "");
