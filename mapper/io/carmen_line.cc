@@ -1,0 +1,179 @@
+#include "mapper/io/carmen_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <optional>
+
+namespace depthgrid {
+namespace {
+
+constexpr int kMaxReadings = 20000;
+constexpr double kMaxCoordinateM = 1e6;  // an odometry beyond this is a damaged number
+constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
+
+class Tokens {
+ public:
+  explicit Tokens(std::string_view text) : rest_(text) {}
+
+  std::string_view Next() {
+    const std::size_t begin = rest_.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) {
+      rest_ = {};
+      return {};
+    }
+    const std::size_t end = std::min(rest_.find_first_of(" \t\r", begin), rest_.size());
+    const std::string_view token = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    return token;
+  }
+
+  std::optional<double> NextNumber() {
+    const std::string_view token = Next();
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (error != std::errc{} || end != token.data() + token.size()) return std::nullopt;
+    return value;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+bool IsMessageName(std::string_view word) {
+  return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+CarmenDamage Damage(std::string_view message, std::string_view what) {
+  return {fmt::format("{} {}", message, what)};
+}
+
+// Reads a count and as many numbers; empty when either is damaged.
+std::optional<std::vector<double>> ReadList(Tokens& tokens, int minimum) {
+  const std::optional<double> count = tokens.NextNumber();
+  if (!count || !(*count >= minimum && *count <= kMaxReadings) || *count != std::floor(*count)) {
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(*count));
+  for (int i = 0; i < static_cast<int>(*count); ++i) {
+    const std::optional<double> value = tokens.NextNumber();
+    if (!value) return std::nullopt;
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::optional<Pose2> ReadPose(Tokens& tokens) {
+  const std::optional<double> x_m = tokens.NextNumber();
+  const std::optional<double> y_m = tokens.NextNumber();
+  const std::optional<double> yaw_rad = tokens.NextNumber();
+  // Negated so that NaN is refused as well.
+  const auto sane = [](const std::optional<double>& v) {
+    return v && std::abs(*v) <= kMaxCoordinateM;
+  };
+  if (!sane(x_m) || !sane(y_m) || !sane(yaw_rad)) return std::nullopt;
+  return Pose2{*x_m, *y_m, WrapAngle(*yaw_rad)};
+}
+
+// The time, which follows `skip` other numbers.
+std::optional<double> ReadStamp(Tokens& tokens, int skip) {
+  for (int i = 0; i < skip; ++i) {
+    if (!tokens.NextNumber()) return std::nullopt;
+  }
+  const std::optional<double> stamp_s = tokens.NextNumber();
+  if (!stamp_s || !std::isfinite(*stamp_s)) return std::nullopt;
+  // Without the host after it, the time's own digits may have been cut.
+  if (tokens.Next().empty()) return std::nullopt;
+  return stamp_s;
+}
+
+// FLASER n ranges.. laser_x y theta robot_x y theta time host logger_time. The format states no
+// angles: it is the SICK's half circle, 1 degree apart for 180 and 181 readings, 0.5 for 360, 361.
+CarmenLine ParseFlaser(Tokens& tokens) {
+  CarmenScan scan;
+  const auto ranges = ReadList(tokens, 2);
+  if (!ranges) return Damage("FLASER", "with damaged readings");
+  scan.range_m = *ranges;
+  const auto n = static_cast<double>(scan.range_m.size());
+  scan.first_bearing_rad = -kPi / 2.0;
+  scan.bearing_step_rad = kPi / (scan.range_m.size() % 2 == 0 ? n : n - 1.0);
+  const auto laser = ReadPose(tokens);
+  const auto robot = ReadPose(tokens);
+  if (!laser || !robot) return Damage("FLASER", "with a damaged pose");
+  scan.odom_from_laser = *laser;
+  const auto stamp_s = ReadStamp(tokens, 0);
+  if (!stamp_s) return Damage("FLASER", "without a time");
+  scan.stamp_s = *stamp_s;
+  return scan;
+}
+
+// ROBOTLASER1 type start fov resolution max accuracy remission_mode n ranges.. m remissions..
+// laser_x y theta robot_x y theta tv rv forward side turn time host logger_time.
+CarmenLine ParseRobotLaser(Tokens& tokens) {
+  constexpr std::string_view kName = "ROBOTLASER1";
+  CarmenScan scan;
+  double header[7];
+  for (double& value : header) {
+    const auto number = tokens.NextNumber();
+    if (!number || !std::isfinite(*number)) return Damage(kName, "with a damaged header");
+    value = *number;
+  }
+  const auto ranges = ReadList(tokens, 2);
+  if (!ranges) return Damage(kName, "with damaged readings");
+  scan.range_m = *ranges;
+  const auto steps = static_cast<double>(scan.range_m.size() - 1);
+  scan.first_bearing_rad = header[1];
+  scan.bearing_step_rad = header[3] > 0.0 ? header[3] : header[2] / steps;
+  if (!(scan.bearing_step_rad > 0.0) || scan.bearing_step_rad * steps > kMaxFieldOfViewRad ||
+      std::abs(scan.first_bearing_rad) > kMaxFieldOfViewRad) {
+    return Damage(kName, "with impossible angles");
+  }
+  scan.max_range_m = std::max(header[4], 0.0);
+  if (!ReadList(tokens, 0)) return Damage(kName, "with damaged remissions");
+  const auto laser = ReadPose(tokens);
+  const auto robot = ReadPose(tokens);
+  if (!laser || !robot) return Damage(kName, "with a damaged pose");
+  scan.odom_from_laser = *laser;
+  const auto stamp_s = ReadStamp(tokens, 5);
+  if (!stamp_s) return Damage(kName, "without a time");
+  scan.stamp_s = *stamp_s;
+  return scan;
+}
+
+}  // namespace
+
+CarmenLine ParseCarmenLine(std::string_view line) {
+  Tokens tokens(line);
+  const std::string_view name = tokens.Next();
+  if (name.empty() || name.front() == '#') return CarmenOther{};
+  if (name == "FLASER") return ParseFlaser(tokens);
+  if (name == "ROBOTLASER1") return ParseRobotLaser(tokens);
+  if (IsMessageName(name)) return CarmenOther{};
+  return CarmenDamage{"a line that begins with no message name"};
+}
+
+std::string RobotLaserLine(const CarmenScan& scan, double accuracy) {
+  const auto steps = static_cast<double>(scan.range_m.size() - 1);
+  std::string line;
+  const auto out = std::back_inserter(line);
+  fmt::format_to(out, "ROBOTLASER1 0 {:.9f} {:.9f} {:.12f} {:.3f} {:g} 0 {}",
+                 scan.first_bearing_rad, scan.bearing_step_rad * steps, scan.bearing_step_rad,
+                 scan.max_range_m, accuracy, scan.range_m.size());
+  for (const double range_m : scan.range_m) fmt::format_to(out, " {:.4f}", range_m);
+  const Pose2& pose = scan.odom_from_laser;
+  fmt::format_to(out, " 0");
+  for (int i = 0; i < 2; ++i) {  // laser and robot coincide
+    fmt::format_to(out, " {:.9f} {:.9f} {:.9f}", pose.x_m, pose.y_m, pose.yaw_rad);
+  }
+  fmt::format_to(out, " 0 0 0 0 0 {0:.6f} sim {0:.6f}", scan.stamp_s);
+  return line;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,36 @@
+// One scan line of a CARMEN log (FLASER or ROBOTLASER1), to and from text.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "mapper/core/pose2.h"
+
+namespace depthgrid {
+
+struct CarmenScan {
+  double stamp_s = 0.0;
+  double first_bearing_rad = 0.0;
+  double bearing_step_rad = 0.0;
+  double max_range_m = 0.0;     // 0 when the line does not state it (FLASER)
+  std::vector<double> range_m;  // as written: 0, the maximum, NaN included
+  Pose2 odom_from_laser;
+};
+
+// A line that is no scan: another message, a comment, an empty line.
+struct CarmenOther {};
+// A damaged line, and what is wrong with it.
+struct CarmenDamage {
+  std::string reason;
+};
+
+using CarmenLine = std::variant<CarmenScan, CarmenOther, CarmenDamage>;
+
+CarmenLine ParseCarmenLine(std::string_view line);
+
+// The scan as a ROBOTLASER1 line without the line end; ranges in 0.1 mm, poses in nanometres.
+std::string RobotLaserLine(const CarmenScan& scan, double accuracy);
+
+}  // namespace depthgrid

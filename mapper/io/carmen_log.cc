@@ -1,0 +1,167 @@
+#include "mapper/io/carmen_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/io/carmen_line.h"
+
+namespace depthgrid {
+namespace {
+
+// 20,000 readings and as many remissions fit; a longer "line" is a binary file.
+constexpr std::size_t kMaxLineBytes = 1U << 20U;
+
+Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
+            const CarmenLogOptions& options) {
+  Beam beam;
+  beam.bearing_rad = static_cast<float>(bearing_rad);
+  if (std::isnan(range_m) || range_m < options.min_range_m) return beam;
+  if (range_m >= max_range_m) {
+    beam.clear_to_m = static_cast<float>(std::min(options.no_return_clear_m, max_range_m));
+    return beam;
+  }
+  beam.hit = true;
+  beam.range_m = static_cast<float>(range_m);
+  beam.clear_to_m = beam.range_m;
+  return beam;
+}
+
+Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  Scan scan;
+  scan.max_range_m = line.max_range_m > 0.0 ? std::min(line.max_range_m, options.max_range_m)
+                                            : options.max_range_m;
+  scan.beams.reserve(line.range_m.size());
+  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
+    const double bearing_rad =
+        line.first_bearing_rad + static_cast<double>(i) * line.bearing_step_rad;
+    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], scan.max_range_m, options));
+  }
+  return scan;
+}
+
+class CarmenLogSource : public FrameSource {
+ public:
+  CarmenLogSource(std::string path, const CarmenLogOptions& options)
+      : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
+    Rewind();
+    while (NextScan()) ++frame_count_;
+    const int lines = line_number_;
+    for (const auto& [reason, seen] : problems_) {
+      warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
+                                          : fmt::format("{}:{}: {} ({} such lines)", path_,
+                                                        seen.first_line, reason, seen.count));
+    }
+    if (frame_count_ == 0) {
+      throw InputError(path_,
+                       fmt::format("no usable FLASER or ROBOTLASER1 line among {} lines{}", lines,
+                                   warnings_.empty() ? "" : "; first: " + warnings_[0]));
+    }
+    Rewind();
+  }
+
+  std::optional<Frame> Next() override {
+    const std::optional<CarmenScan> line = NextScan();
+    if (!line) return std::nullopt;
+    Frame frame;
+    frame.index = next_index_++;
+    frame.stamp_s = line->stamp_s;
+    frame.scan = std::make_shared<const Scan>(ScanOf(*line, options_));
+    frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
+    return frame;
+  }
+  std::optional<PinholeCamera> Camera() const override { return std::nullopt; }
+  int FrameCount() const override { return frame_count_; }
+  std::vector<std::string> Warnings() const override { return warnings_; }
+
+ private:
+  struct Problem {
+    int count = 0;
+    int first_line = 0;
+  };
+
+  void Rewind() {
+    file_ = std::ifstream(path_, std::ios::binary);
+    if (!file_) throw InputError(path_, "cannot be read");
+    line_number_ = 0;
+    next_index_ = 0;
+    last_stamp_s_ = -std::numeric_limits<double>::infinity();
+  }
+
+  void Note(const std::string& reason) {
+    Problem& problem = problems_[reason];
+    if (problem.count++ == 0) problem.first_line = line_number_;
+  }
+
+  // False at the end of the file.
+  bool ReadLine() {
+    file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
+    ++line_number_;
+    if (file_.good() || (file_.eof() && !file_.fail())) {
+      // getline counts the line end it took away; at the end of the file there is none.
+      line_size_ = static_cast<std::size_t>(file_.gcount()) - (file_.eof() ? 0U : 1U);
+      return true;
+    }
+    if (file_.eof() || file_.bad()) {
+      --line_number_;
+      return false;
+    }
+    Note(fmt::format("a line longer than {} bytes", kMaxLineBytes));
+    file_.clear();
+    file_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    line_size_ = 0;
+    return true;
+  }
+
+  std::optional<CarmenScan> NextScan() {
+    while (ReadLine()) {
+      CarmenLine line = ParseCarmenLine({line_.data(), line_size_});
+      if (const auto* damage = std::get_if<CarmenDamage>(&line)) Note(damage->reason);
+      auto* scan = std::get_if<CarmenScan>(&line);
+      if (scan == nullptr) continue;
+      // Also what drops the second of two messages written for one scan.
+      if (scan->stamp_s <= last_stamp_s_) {
+        Note("a scan that is not later than the one before it");
+        continue;
+      }
+      last_stamp_s_ = scan->stamp_s;
+      return std::move(*scan);
+    }
+    return std::nullopt;
+  }
+
+  std::string path_;
+  CarmenLogOptions options_;
+  std::ifstream file_;
+  std::vector<char> line_;
+  std::size_t line_size_ = 0;
+  int line_number_ = 0;
+  int next_index_ = 0;
+  int frame_count_ = 0;
+  double last_stamp_s_ = 0.0;
+  std::map<std::string, Problem> problems_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+void CarmenLogOptions::Visit(OptionsVisitor& v) {
+  v.Number("max_range_m", max_range_m, {0.1, 1000.0}, "readings from here on are no return");
+  v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
+  v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
+           "how far a reading without return is free space");
+}
+
+std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,
+                                           const CarmenLogOptions& options) {
+  return std::make_unique<CarmenLogSource>(path, options);
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,33 @@
+// Laser logs in CARMEN's text format: FLASER and ROBOTLASER1 lines become ready scans, and the
+// laser's odometry pose in the line is the prior (docs/formats.md, "Laser logs"). Other messages of
+// a log (ODOM, PARAM, RAWLASER1, ...) are passed over.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "mapper/core/frame.h"
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+struct CarmenLogOptions {
+  // A ROBOTLASER1 line states its own maximum, which is used when smaller. 80 m is the SICK LMS
+  // that the old FLASER logs were recorded with (they write 81.83 for "no return").
+  double max_range_m = 80.0;
+  // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
+  double min_range_m = 0.1;
+  // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;
+  // so it clears this far only, as Cartographer's missing_data_ray_length (5 m) does.
+  double no_return_clear_m = 5.0;
+
+  void Visit(OptionsVisitor& v);
+};
+
+// Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that
+// are damaged, truncated or out of time order are left out and counted in Warnings(). Throws
+// InputError for a file that cannot be read or holds no scan at all.
+std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,
+                                           const CarmenLogOptions& options = {});
+
+}  // namespace depthgrid

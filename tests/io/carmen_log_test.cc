@@ -1,0 +1,194 @@
+#include "mapper/io/carmen_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/io/carmen_line.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr char kRobotLaser[] =
+    "ROBOTLASER1 0 -0.5 1.0 0.5 6.000 0.01 0 3 2.5 6.0 0 2 7 8 "
+    "1.5 -2 0.25 1.4 -2 0.25 0 0 0 0 0 10.5 host 10.6\n";
+constexpr char kFlaser[] = "FLASER 3 1.0 81.83 2.0 1 2 0.5 0.9 2 0.5 11.5 host 0.2\n";
+
+class TextFile {
+ public:
+  explicit TextFile(const std::string& text)
+      : path_(testing::TempDir() + "carmen_" +
+              testing::UnitTest::GetInstance()->current_test_info()->name() + ".log") {
+    std::ofstream(path_, std::ios::binary) << text;
+  }
+  ~TextFile() { std::filesystem::remove(path_); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::vector<Frame> ReadAll(FrameSource& source) {
+  std::vector<Frame> frames;
+  while (auto frame = source.Next()) frames.push_back(*frame);
+  return frames;
+}
+
+TEST(CarmenLog, ReadsRobotLaserByHand) {
+  const TextFile file(std::string("# comment\nPARAM robot_x 3\nODOM 1 2 3 0 0 0 1 h 1\n\n") +
+                      kRobotLaser);
+  const auto source = OpenCarmenLog(file.path());
+  EXPECT_EQ(source->FrameCount(), 1);
+  EXPECT_TRUE(source->Warnings().empty());
+  EXPECT_FALSE(source->Camera());
+  const auto frame = source->Next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->index, 0);
+  EXPECT_EQ(frame->stamp_s, 10.5);
+  EXPECT_EQ(frame->slam_epoch, 0);
+  const Pose2 base = BaseOf(*frame->slam_from_camera);  // the laser's pose, not the robot's
+  EXPECT_NEAR(base.x_m, 1.5, 1e-15);
+  EXPECT_NEAR(base.y_m, -2.0, 1e-15);
+  EXPECT_NEAR(base.yaw_rad, 0.25, 1e-15);
+  const Scan& scan = *frame->scan;
+  EXPECT_EQ(scan.max_range_m, 6.0);
+  ASSERT_EQ(scan.beams.size(), 3U);
+  EXPECT_EQ(scan.beams[0], (Beam{-0.5F, 2.5F, 0.0F, 2.5F, true}));
+  EXPECT_EQ(scan.beams[1], (Beam{0.0F, 0.0F, 0.0F, 5.0F, false}));  // free, to the set distance
+  EXPECT_EQ(scan.beams[2], (Beam{0.5F, 0.0F, 0.0F, 0.0F, false}));  // no data
+  EXPECT_FALSE(source->Next());
+}
+
+TEST(CarmenLog, ReadsFlaserAsHalfCircle) {
+  const TextFile file(kFlaser);
+  const auto frames = ReadAll(*OpenCarmenLog(file.path()));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].stamp_s, 11.5);
+  EXPECT_NEAR(BaseOf(*frames[0].slam_from_camera).x_m, 1.0, 1e-15);
+  const auto& beams = frames[0].scan->beams;
+  ASSERT_EQ(beams.size(), 3U);
+  EXPECT_FLOAT_EQ(beams[0].bearing_rad, static_cast<float>(-kPi / 2));
+  EXPECT_NEAR(beams[1].bearing_rad, 0.0, 1e-7);
+  EXPECT_FLOAT_EQ(beams[2].bearing_rad, static_cast<float>(kPi / 2));
+  EXPECT_TRUE(beams[0].hit);
+  EXPECT_FALSE(beams[1].hit);
+  EXPECT_GT(beams[1].clear_to_m, 0.0F);
+}
+
+TEST(CarmenLog, EvenFlaserCountsHaveWholeDegrees) {
+  std::string line = "FLASER 180";
+  for (int i = 0; i < 180; ++i) line += " 1.5";
+  const auto scan = ParseCarmenLine(line + " 0 0 0 0 0 0 1 h 1");
+  EXPECT_NEAR(std::get<CarmenScan>(scan).bearing_step_rad, RadFromDeg(1.0), 1e-15);
+}
+
+TEST(CarmenLog, OptionsLimitRanges) {
+  const TextFile file(std::string(kRobotLaser) + kFlaser);
+  CarmenLogOptions options;
+  options.max_range_m = 2.0;
+  options.min_range_m = 1.5;
+  options.no_return_clear_m = 1.0;
+  const auto frames = ReadAll(*OpenCarmenLog(file.path(), options));
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].scan->max_range_m, 2.0);  // the smaller of line and option
+  for (const Frame& frame : frames) {
+    for (const Beam& beam : frame.scan->beams) EXPECT_FALSE(beam.hit);
+  }
+  EXPECT_EQ(frames[1].scan->beams[0].clear_to_m, 0.0F);  // nearer than 1.5: no data
+  EXPECT_EQ(frames[1].scan->beams[2].clear_to_m, 1.0F);  // exactly the maximum: no return
+}
+
+TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
+  const std::string good = kRobotLaser;
+  std::string text = good;
+  text += good;                       // same stamp
+  text += good.substr(0, 40) + "\n";  // cut in the header or readings
+  text += good.substr(0, 60) + "\n";  // cut in the readings
+  text += "ROBOTLASER1 0 -0.5 1 0.5 6 0.01 0 3 2.5 x 3 0 0 0 0 0 0 0 0 0 0 0 0 12 h 12\n";
+  text += "\x01\x02 binary rubbish\n";
+  text += "FLASER 2 1 1 nan 0 0 0 0 0 13 h 13\n";  // a pose that is no number
+  text += "FLASER 99999999 1 1\n";                 // an absurd count
+  text += std::string(2U << 20U, '7') + "\n";      // an endless line
+  text += kFlaser;
+  text += "FLASER 2 1 nan 0 0 0 0 0 0 14 h 14\r\n";  // a reading that is no number: no data
+  text += good.substr(0, good.size() / 2);           // the log ends in the middle of a line
+  const TextFile file(text);
+  const auto source = OpenCarmenLog(file.path());
+  EXPECT_EQ(source->FrameCount(), 3);
+  const auto frames = ReadAll(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[2].scan->beams[1], (Beam{frames[2].scan->beams[1].bearing_rad, 0, 0, 0, false}));
+  using testing::AllOf;
+  using testing::Contains;
+  using testing::HasSubstr;
+  const auto warnings = source->Warnings();
+  EXPECT_THAT(warnings, Contains(HasSubstr("log:2: a scan that is not later")));
+  EXPECT_THAT(warnings,
+              Contains(AllOf(HasSubstr(":3: "), HasSubstr("readings"), HasSubstr("such lines"))));
+  EXPECT_THAT(warnings, Contains(HasSubstr(":6: a line that begins with no message name")));
+  EXPECT_THAT(warnings, Contains(HasSubstr(":7: FLASER with a damaged pose")));
+  EXPECT_THAT(warnings, Contains(HasSubstr(":9: a line longer than")));
+}
+
+TEST(CarmenLog, EveryTruncationOfALineIsSurvived) {
+  const std::string good = kRobotLaser;
+  int cases = 0;
+  for (std::size_t length = 0; length < good.size(); ++length, ++cases) {
+    const auto line = ParseCarmenLine(std::string_view(good).substr(0, length));
+    const auto* scan = std::get_if<CarmenScan>(&line);
+    if (scan == nullptr) continue;
+    EXPECT_EQ(scan->stamp_s, 10.5);  // only what is not used may be missing
+    EXPECT_EQ(scan->odom_from_laser, (Pose2{1.5, -2.0, 0.25}));
+  }
+  EXPECT_EQ(cases, 107);
+}
+
+TEST(CarmenLog, RefusesFilesWithoutScan) {
+  const TextFile file("PARAM a b\nFLASER 3 1 2\n");
+  try {
+    OpenCarmenLog(file.path());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no usable FLASER or ROBOTLASER1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr(":2: FLASER with damaged readings"));
+  }
+  EXPECT_THROW(OpenCarmenLog("/nonexistent/file.log"), InputError);
+  const TextFile empty("");
+  EXPECT_THROW(OpenCarmenLog(empty.path()), InputError);
+}
+
+TEST(CarmenLog, WrittenLinesReadBack) {
+  CarmenScan scan;
+  scan.stamp_s = 3.033333;
+  scan.first_bearing_rad = -0.7;
+  scan.bearing_step_rad = 0.1;
+  scan.max_range_m = 6.0;
+  scan.range_m = {1.2345, 6.0, 0.0};
+  scan.odom_from_laser = {1.25, -3.5, 2.0};
+  const auto line = ParseCarmenLine(RobotLaserLine(scan, 0.01));
+  const auto& read = std::get<CarmenScan>(line);
+  EXPECT_EQ(read.stamp_s, scan.stamp_s);
+  EXPECT_EQ(read.first_bearing_rad, scan.first_bearing_rad);
+  EXPECT_EQ(read.bearing_step_rad, scan.bearing_step_rad);
+  EXPECT_EQ(read.max_range_m, scan.max_range_m);
+  EXPECT_EQ(read.range_m, scan.range_m);
+  EXPECT_EQ(read.odom_from_laser, scan.odom_from_laser);
+}
+
+TEST(CarmenLog, ReadsTheSharedLogs) {
+  const char* data = std::getenv("DEPTHGRID_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
+  const auto source = OpenCarmenLog(std::string(data) + "/laser/living_s1.log");
+  EXPECT_EQ(source->FrameCount(), 900);
+  EXPECT_TRUE(source->Warnings().empty());
+  const auto frame = source->Next();
+  EXPECT_EQ(frame->scan->beams.size(), 640U);
+}
+
+}  // namespace
+}  // namespace depthgrid
