@@ -1,0 +1,28 @@
+// camera.yaml: the depth camera of a sequence folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+// What depth images need besides themselves: the camera, and how many of a PNG's units make a
+// metre.
+struct CameraFile {
+  PinholeCamera camera;
+  double depth_scale_per_m = 5000.0;  // TUM RGB-D's convention; millimetre data has 1000
+
+  bool operator==(const CameraFile&) const = default;
+  void Visit(OptionsVisitor& v);
+};
+
+// Keys width height fx fy cx cy, all required; distortion (k1 k2 p1 p2 k3, four or five numbers)
+// and depth_scale. Throws InputError.
+CameraFile ReadCameraFile(const std::string& path);
+CameraFile ParseCameraFile(const std::string& text, const std::string& place);
+void WriteCameraFile(const std::string& path, const CameraFile& file);
+
+}  // namespace depthgrid

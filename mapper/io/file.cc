@@ -1,0 +1,67 @@
+#include "mapper/io/file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Unique among threads and processes that may write the same file at once.
+std::string TemporaryName(const std::string& path) {
+  static std::atomic<unsigned> counter{0};
+  return fmt::format("{}.{}.{}.tmp", path, ::getpid(), counter.fetch_add(1));
+}
+
+[[noreturn]] void FailWriting(const std::string& path, const std::string& temporary, int error) {
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written: {}", path, error == 0 ? "failed" : std::strerror(error)));
+}
+
+}  // namespace
+
+std::string ReadFile(const std::string& path, std::size_t max_bytes) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path, "no such file");
+  if (!fs::is_regular_file(status)) throw InputError(path, "is not a regular file");
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) throw InputError(path, "cannot be read: " + error.message());
+  if (size > max_bytes) {
+    throw InputError(path, fmt::format("has {} bytes, at most {} are read", size, max_bytes));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string content(static_cast<std::size_t>(size), '\0');
+  if (!stream || !stream.read(content.data(), static_cast<std::streamsize>(size))) {
+    throw InputError(path, "cannot be read");
+  }
+  return content;
+}
+
+void WriteFile(const std::string& path, std::string_view content) {
+  const std::string temporary = TemporaryName(path);
+  errno = 0;
+  {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    stream.close();
+    if (!stream) FailWriting(path, temporary, errno);
+  }
+  std::error_code error;
+  fs::rename(temporary, path, error);
+  if (error) FailWriting(path, temporary, error.value());
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,23 @@
+// Whole files in and out. Readers of formats take the text from here, so that a missing, unreadable
+// or absurdly large file is reported in one way.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace depthgrid {
+
+// Larger than any file the program reads whole (a laser log of hours is about 500 MB).
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U;
+
+// Throws InputError when the file is missing, is no regular file, cannot be read or is larger than
+// `max_bytes`.
+std::string ReadFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
+
+// Writes beside `path` and renames, so that a reader sees the old file or the whole new one, never
+// a part. Throws std::runtime_error (a failure while running, not bad input) and leaves nothing
+// behind.
+void WriteFile(const std::string& path, std::string_view content);
+
+}  // namespace depthgrid

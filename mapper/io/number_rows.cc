@@ -1,0 +1,69 @@
+#include "mapper/io/number_rows.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr std::string_view kSeparators = " \t,\r\v\f";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::vector<std::string_view> Split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(kSeparators);
+    if (begin == std::string_view::npos) return fields;
+    const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
+    fields.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+}  // namespace
+
+std::vector<TextRow> SplitRows(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<TextRow> rows;
+  for (int line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    TextRow row{line, Split(text.substr(0, end))};
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!row.fields.empty() && row.fields.front().front() != '#') rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::optional<double> ParseNumber(std::string_view field) {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (field.empty() || error != std::errc{} || end != field.data() + field.size()) return {};
+  return value;
+}
+
+std::string PlaceOfLine(const std::string& path, int line) {
+  return fmt::format("{}:{}", path, line);
+}
+
+std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path) {
+  if (row.fields.size() != count) {
+    throw InputError(PlaceOfLine(path, row.line),
+                     fmt::format("has {} columns, must have {}", row.fields.size(), count));
+  }
+  std::vector<double> numbers;
+  for (const std::string_view field : row.fields) {
+    const std::optional<double> number = ParseNumber(field);
+    if (!number) {
+      throw InputError(PlaceOfLine(path, row.line),
+                       fmt::format("'{}' is not a number", field.substr(0, 40)));
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,30 @@
+// Text files of number columns (trajectories, matrices): one home for splitting and number syntax.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace depthgrid {
+
+struct TextRow {
+  int line = 0;  // from 1
+  std::vector<std::string_view> fields;
+};
+
+// The lines of `text` that are neither empty nor `#` comments, split at spaces, tabs and commas.
+// Windows line ends and a byte order mark are ignored. The views point into `text`.
+std::vector<TextRow> SplitRows(std::string_view text);
+
+// A decimal number whatever the locale; "nan" and "inf" are numbers. Nothing when the field is not
+// entirely a number.
+std::optional<double> ParseNumber(std::string_view field);
+
+// "file:12", the place of a row in errors.
+std::string PlaceOfLine(const std::string& path, int line);
+
+// All fields of a row as numbers; throws InputError unless there are exactly `count`.
+std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);
+
+}  // namespace depthgrid

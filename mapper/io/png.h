@@ -1,0 +1,66 @@
+// PNG files: depth images (16-bit grey), colour images and 8-bit grey images. The same image gives
+// the same bytes. Reading throws InputError for anything that is not a whole, intact PNG of the
+// wanted kind.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mapper/core/depth_image.h"
+#include "mapper/core/rgb_image.h"
+
+namespace depthgrid {
+
+struct GreyImage {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> grey;  // width_px * height_px, row 0 at the top
+
+  bool operator==(const GreyImage&) const = default;
+};
+
+// How depth is kept in 16 bits.
+struct DepthPngFormat {
+  double scale_per_m = 5000.0;  // units a metre (TUM RGB-D; millimetre data has 1000)
+  // Units that mean "no measurement", besides 0. 65535 is 7-Scenes' mark, and a saturated value in
+  // other data.
+  std::vector<std::uint16_t> invalid_units = {65535};
+};
+
+// Depth in units. A positive depth never becomes 0 (too near is not invalid) and beyond the range
+// it becomes 65534 (too far is not invalid either: 13.1 m at 5000 a metre).
+std::uint16_t DepthUnits(float z_m, double scale_per_m);
+float DepthOfUnits(std::uint16_t units, const DepthPngFormat& format);
+// The image as it will be read back.
+DepthImage QuantiseDepth(const DepthImage& image, const DepthPngFormat& format = {});
+
+std::string EncodeDepthPng(const DepthImage& image, double scale_per_m);
+DepthImage DecodeDepthPng(std::string_view png, const DepthPngFormat& format,
+                          const std::string& place);
+DepthImage ReadDepthPng(const std::string& path, const DepthPngFormat& format = {});
+void WriteDepthPng(const std::string& path, const DepthImage& image, double scale_per_m = 5000.0);
+
+// Colour: grey, palette, 16-bit and transparent images are converted.
+std::string EncodeRgbPng(const RgbImage& image);
+RgbImage DecodeRgbPng(std::string_view png, const std::string& place);
+RgbImage ReadRgbPng(const std::string& path);
+void WriteRgbPng(const std::string& path, const RgbImage& image);
+
+// Grey: colour is not converted but refused.
+std::string EncodeGreyPng(const GreyImage& image);
+GreyImage DecodeGreyPng(std::string_view png, const std::string& place);
+GreyImage ReadGreyPng(const std::string& path);
+void WriteGreyPng(const std::string& path, const GreyImage& image);
+
+// Any PNG as 8-bit red, green, blue, alpha, for files whose transparency says something.
+struct RgbaImage {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> rgba;
+};
+RgbaImage DecodeRgbaPng(std::string_view png, const std::string& place);
+std::string EncodeRgbaPng(const RgbaImage& image);
+
+}  // namespace depthgrid

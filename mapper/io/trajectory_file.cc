@@ -1,0 +1,97 @@
+#include "mapper/io/trajectory_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
+
+namespace depthgrid {
+namespace {
+
+// Files print four to nine digits, so norms are off by up to 1e-4. A larger error is a column
+// mistaken for another.
+constexpr double kMaxNormError = 0.05;
+// Closer than this the quaternion is kept bit for bit (nine printed digits of a float pose), so
+// that a pose that passes through the program unchanged is printed unchanged.
+constexpr double kExactNormError = 1e-6;
+
+std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place) {
+  Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};
+  const double norm = pose.rotation.norm();
+  if (!pose.translation.allFinite() || !std::isfinite(norm) || norm == 0.0) return {};
+  if (std::abs(norm - 1.0) > kMaxNormError) {
+    throw InputError(place, fmt::format("quaternion qx qy qz qw has norm {:.6g}, must be 1", norm));
+  }
+  if (std::abs(norm - 1.0) > kExactNormError) pose.rotation.normalize();
+  return pose;
+}
+
+}  // namespace
+
+std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const {
+  std::vector<std::string> warnings;
+  const auto warn = [&](int count, const char* what) {
+    if (count > 0) warnings.push_back(fmt::format("{}: {} {}", name, count, what));
+  };
+  warn(invalid_poses, "poses with NaN or a zero quaternion ignored");
+  warn(unsorted_stamps, "rows earlier than the row before, sorted");
+  warn(duplicate_stamps, "rows with a stamp already given, ignored");
+  return warnings;
+}
+
+TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place) {
+  constexpr std::size_t kColumns = 8;
+  TrajectoryFile file;
+  for (const TextRow& row : SplitRows(text)) {
+    const std::vector<double> numbers = NumbersIn(row, kColumns, place);
+    const std::string row_place = PlaceOfLine(place, row.line);
+    if (!std::isfinite(numbers[0])) throw InputError(row_place, "the stamp must be finite");
+    const std::optional<Pose3> pose = PoseOf(numbers, row_place);
+    if (!pose) {
+      ++file.invalid_poses;
+      continue;
+    }
+    if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
+    file.poses.push_back({numbers[0], *pose});
+  }
+  const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
+  const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
+  std::stable_sort(file.poses.begin(), file.poses.end(), stamp_less);
+  const auto end = std::unique(file.poses.begin(), file.poses.end(), stamp_equal);
+  file.duplicate_stamps = static_cast<int>(std::distance(end, file.poses.end()));
+  file.poses.erase(end, file.poses.end());
+  return file;
+}
+
+TrajectoryFile ReadTrajectoryFile(const std::string& path) {
+  return ParseTrajectory(ReadFile(path), path);
+}
+
+Trajectory ReadTrajectory(const std::string& path) {
+  TrajectoryFile file = ReadTrajectoryFile(path);
+  if (file.poses.empty()) throw InputError(path, "holds no pose");
+  return std::move(file.poses);
+}
+
+std::string TrajectoryText(const Trajectory& trajectory) {
+  std::string text;
+  for (const auto& [stamp_s, pose] : trajectory) {
+    const auto& t = pose.translation;
+    const auto& q = pose.rotation;
+    fmt::format_to(std::back_inserter(text), "{:.6f} {} {} {} {} {} {} {}\n", stamp_s, t.x(), t.y(),
+                   t.z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return text;
+}
+
+void WriteTrajectory(const std::string& path, const Trajectory& trajectory) {
+  WriteFile(path, TrajectoryText(trajectory));
+}
+
+}  // namespace depthgrid

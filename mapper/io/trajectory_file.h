@@ -1,0 +1,34 @@
+// TUM trajectories: `stamp tx ty tz qx qy qz qw` a line, one space between columns, `#` comments.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mapper/core/trajectory.h"
+
+namespace depthgrid {
+
+// A recorded trajectory as far as it is usable: sorted by strictly increasing stamp. What had to be
+// mended is counted.
+struct TrajectoryFile {
+  Trajectory poses;
+  int invalid_poses = 0;     // NaN, infinite or zero quaternion: dropped
+  int unsorted_stamps = 0;   // rows earlier than their predecessor: sorted
+  int duplicate_stamps = 0;  // all but the first row of one stamp: dropped
+
+  std::vector<std::string> Warnings(const std::string& name) const;
+};
+
+// Throws InputError for an unreadable file, a row without eight numbers, a stamp that is not finite
+// or a quaternion whose norm is not near 1.
+TrajectoryFile ReadTrajectoryFile(const std::string& path);
+// The same from text; `place` names it in errors.
+TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place);
+// Its poses alone; additionally throws InputError when there is none.
+Trajectory ReadTrajectory(const std::string& path);
+
+// Stamps with six decimals, pose values in the shortest form that reads back as the same double.
+std::string TrajectoryText(const Trajectory& trajectory);
+void WriteTrajectory(const std::string& path, const Trajectory& trajectory);
+
+}  // namespace depthgrid

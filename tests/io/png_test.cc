@@ -1,0 +1,124 @@
+#include "mapper/io/png.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/core/rng.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+DepthImage Ramp() {
+  DepthImage image(37, 23);
+  for (std::size_t i = 0; i < image.z_m.size(); ++i) {
+    image.z_m[i] = static_cast<float>(i) * 0.01234F;  // first pixel invalid, 10.5 m at the end
+  }
+  return image;
+}
+
+std::string ErrorOfDepth(std::string_view png) {
+  try {
+    DecodeDepthPng(png, {}, "d.png");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(DepthPng, ReadsBackExactlyTheQuantisedImage) {
+  const DepthImage image = Ramp();
+  for (const double scale : {5000.0, 1000.0, 1234.5}) {
+    const DepthPngFormat format{scale, {}};
+    const DepthImage quantised = QuantiseDepth(image, format);
+    EXPECT_EQ(DecodeDepthPng(EncodeDepthPng(image, scale), format, "x").z_m, quantised.z_m);
+    EXPECT_EQ(DecodeDepthPng(EncodeDepthPng(quantised, scale), format, "x").z_m, quantised.z_m);
+    for (std::size_t i = 0; i < image.z_m.size(); ++i) {
+      EXPECT_NEAR(quantised.z_m[i], image.z_m[i], 0.5 / scale + 1e-6);
+    }
+  }
+}
+
+TEST(DepthPng, KeepsTooNearTooFarAndInvalidApart) {
+  EXPECT_EQ(DepthUnits(0.0F, 5000.0), 0);
+  EXPECT_EQ(DepthUnits(-1.0F, 5000.0), 0);
+  EXPECT_EQ(DepthUnits(std::numeric_limits<float>::quiet_NaN(), 5000.0), 0);
+  EXPECT_EQ(DepthUnits(1e-6F, 5000.0), 1);
+  EXPECT_EQ(DepthUnits(1.0F, 5000.0), 5000);
+  EXPECT_EQ(DepthUnits(20.0F, 5000.0), 65534);
+  EXPECT_EQ(DepthUnits(std::numeric_limits<float>::infinity(), 5000.0), 65534);
+  const DepthPngFormat format{1000.0, {65535, 7}};
+  EXPECT_EQ(DepthOfUnits(0, format), kInvalidDepth);
+  EXPECT_EQ(DepthOfUnits(7, format), kInvalidDepth);
+  EXPECT_EQ(DepthOfUnits(65535, format), kInvalidDepth);
+  EXPECT_EQ(DepthOfUnits(1500, format), 1.5F);
+}
+
+TEST(DepthPng, SameBytesEachTime) {
+  EXPECT_EQ(EncodeDepthPng(Ramp(), 5000.0), EncodeDepthPng(Ramp(), 5000.0));
+}
+
+TEST(DepthPng, EveryTruncationIsOneError) {
+  const std::string png = EncodeDepthPng(Ramp(), 5000.0);
+  int errors = 0;
+  for (std::size_t size = 0; size < png.size(); ++size) {
+    const std::string error = ErrorOfDepth(std::string_view(png).substr(0, size));
+    EXPECT_THAT(error, HasSubstr("d.png: is "));
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+    ++errors;
+  }
+  EXPECT_EQ(errors, static_cast<int>(png.size()));
+  EXPECT_EQ(ErrorOfDepth(""), "d.png: is empty, must be a PNG image");
+  EXPECT_EQ(ErrorOfDepth("P5 1 1 255\n"), "d.png: is not a PNG image");
+}
+
+TEST(DepthPng, DamagedBytesNeverCrash) {
+  const std::string png = EncodeDepthPng(Ramp(), 5000.0);
+  RandomStream random(1, RandomStage::kTest);
+  int refused = 0;
+  constexpr int kCases = 2000;
+  for (int i = 0; i < kCases; ++i) {
+    std::string damaged = png;
+    damaged[random.Below(png.size())] ^= static_cast<char>(1U << random.Below(8));
+    refused += ErrorOfDepth(damaged) != "no error" ? 1 : 0;
+  }
+  EXPECT_GE(refused, kCases * 9 / 10);  // the rest: bits of ancillary fields that nothing reads
+}
+
+TEST(DepthPng, RefusesOtherKinds) {
+  GreyImage grey{2, 1, {1, 2}};
+  EXPECT_EQ(ErrorOfDepth(EncodeGreyPng(grey)),
+            "d.png: is a PNG of 8-bit grey, must be 16-bit grey");
+  RgbImage rgb(2, 1);
+  EXPECT_EQ(ErrorOfDepth(EncodeRgbPng(rgb)),
+            "d.png: is a PNG of 8-bit colour, must be 16-bit grey");
+}
+
+TEST(ColourPng, RoundTrip) {
+  RgbImage rgb(5, 3);
+  for (std::size_t i = 0; i < rgb.rgb.size(); ++i) rgb.rgb[i] = static_cast<std::uint8_t>(17 * i);
+  EXPECT_EQ(DecodeRgbPng(EncodeRgbPng(rgb), "x"), rgb);
+  const GreyImage grey{3, 2, {0, 1, 2, 253, 254, 255}};
+  EXPECT_EQ(DecodeGreyPng(EncodeGreyPng(grey), "x"), grey);
+  const RgbImage converted = DecodeRgbPng(EncodeGreyPng(grey), "x");
+  EXPECT_EQ(converted.At(2, 1)[1], 255);
+  const RgbaImage rgba = DecodeRgbaPng(EncodeGreyPng(grey), "x");
+  EXPECT_THAT(std::vector<int>(rgba.rgba.begin(), rgba.rgba.begin() + 8),
+              testing::ElementsAre(0, 0, 0, 255, 1, 1, 1, 255));
+}
+
+TEST(DepthPng, Files) {
+  const std::string path = testing::TempDir() + "depthgrid_png_test.png";
+  WriteDepthPng(path, Ramp());
+  EXPECT_EQ(ReadDepthPng(path).z_m, QuantiseDepth(Ramp()).z_m);
+  std::filesystem::remove(path);
+  EXPECT_THROW(ReadDepthPng(path), InputError);
+}
+
+}  // namespace
+}  // namespace depthgrid

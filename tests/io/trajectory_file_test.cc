@@ -1,0 +1,83 @@
+#include "mapper/io/trajectory_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::string ErrorOf(const std::string& text) {
+  try {
+    ParseTrajectory(text, "t.txt");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(TrajectoryFile, ReadsCommentsTabsCommasAndWindowsLines) {
+  const TrajectoryFile file = ParseTrajectory(
+      "\xEF\xBB\xBF# stamp tx ...\n\n1.5 1 2 3 0 0 0 1\r\n2.5,\t-1e-3, 2, 3, 0, 0, 0.6, 0.8", "x");
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.poses[0].stamp_s, 1.5);
+  EXPECT_EQ(file.poses[1].world_from_camera.translation, Eigen::Vector3d(-1e-3, 2, 3));
+  EXPECT_EQ(file.poses[1].world_from_camera.rotation.z(), 0.6);
+  EXPECT_THAT(file.Warnings("x"), ElementsAre());
+}
+
+TEST(TrajectoryFile, PrintsShortestNumbersWithOneSpace) {
+  const Trajectory trajectory = {
+      {1305031102.1753039, {Eigen::Quaterniond(0.8, 0, 0, -0.6), {0.1, -2.0, 1e-7}}}};
+  EXPECT_EQ(TrajectoryText(trajectory), "1305031102.175304 0.1 -2 1e-07 0 0 -0.6 0.8\n");
+}
+
+TEST(TrajectoryFile, RoundTripIsExact) {
+  RandomStream random(3, RandomStage::kTest);
+  Trajectory trajectory;
+  for (int i = 0; i < 1000; ++i) {
+    Eigen::Vector4d q(random.Normal(), random.Normal(), random.Normal(), random.Normal());
+    q.normalize();
+    trajectory.push_back(
+        {i / 64.0, {Eigen::Quaterniond(q), {random.Normal(), random.Normal(), 1e-9}}});
+  }
+  EXPECT_EQ(ParseTrajectory(TrajectoryText(trajectory), "x").poses, trajectory);
+}
+
+TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
+  const TrajectoryFile file = ParseTrajectory(
+      "3 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n3 9 0 0 0 0 0 1\n4 nan 0 0 0 0 0 1\n"
+      "5 0 0 0 0 0 0 0\n6 0 0 0 NaN 0 0 1\n7 0 inf 0 0 0 0 1\n",
+      "x");
+  ASSERT_EQ(file.poses.size(), 2U);
+  EXPECT_EQ(file.poses[0].stamp_s, 1.0);
+  EXPECT_EQ(file.poses[1].world_from_camera.translation.x(), 0.0);  // the first of stamp 3
+  EXPECT_THAT(file.Warnings("t"), ElementsAre("t: 4 poses with NaN or a zero quaternion ignored",
+                                              "t: 1 rows earlier than the row before, sorted",
+                                              "t: 1 rows with a stamp already given, ignored"));
+}
+
+TEST(TrajectoryFile, NamesTheBadLine) {
+  EXPECT_EQ(ErrorOf("# c\n1 2 3\n"), "t.txt:2: has 3 columns, must have 8");
+  EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 1\n1 0 x 0 0 0 0 1\n"), "t.txt:2: 'x' is not a number");
+  EXPECT_EQ(ErrorOf("nan 0 0 0 0 0 0 1\n"), "t.txt:1: the stamp must be finite");
+  EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 2\n"), "t.txt:1: quaternion qx qy qz qw has norm 2, must be 1");
+}
+
+TEST(TrajectoryFile, RoundedQuaternionsAreNormalised) {
+  const TrajectoryFile rounded = ParseTrajectory("1 0 0 0 0.7071 0 0 0.7071\n", "x");
+  EXPECT_NEAR(rounded.poses[0].world_from_camera.rotation.norm(), 1.0, 1e-15);
+  const TrajectoryFile exact = ParseTrajectory("1 0 0 0 0 0 0.707106781 0.707106781\n", "x");
+  EXPECT_EQ(exact.poses[0].world_from_camera.rotation.w(), 0.707106781);
+}
+
+TEST(TrajectoryFile, MissingOrEmptyFile) {
+  EXPECT_THROW(ReadTrajectory("/nonexistent/file.txt"), InputError);
+}
+
+}  // namespace
+}  // namespace depthgrid
