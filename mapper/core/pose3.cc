@@ -2,6 +2,23 @@
 
 namespace depthgrid {
 
+Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad) {
+  const double half_angle_rad = 0.5 * rotation_vector_rad.norm();
+  // sin(x)/x, by its series where the quotient is 0/0; the next term is below 1e-17 there.
+  const double sinc = half_angle_rad < 1e-4 ? 1.0 - half_angle_rad * half_angle_rad / 6.0
+                                            : std::sin(half_angle_rad) / half_angle_rad;
+  const Eigen::Vector3d imaginary = 0.5 * sinc * rotation_vector_rad;
+  return Eigen::Quaterniond(std::cos(half_angle_rad), imaginary.x(), imaginary.y(), imaginary.z())
+      .normalized();
+}
+
+Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
+  const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation
+  const double sine = rotation.vec().norm();
+  if (sine < 1e-12) return 2.0 * sign * rotation.vec();
+  return (2.0 * std::atan2(sine, sign * rotation.w()) / sine * sign) * rotation.vec();
+}
+
 Pose3 Lift(const Pose2& a_from_b) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(a_from_b.yaw_rad, Eigen::Vector3d::UnitZ())),
           {a_from_b.x_m, a_from_b.y_m, 0.0}};

@@ -35,6 +35,10 @@ inline Pose3 Between(const Pose3& world_from_i, const Pose3& world_from_j) {
   return Inverse(world_from_i) * world_from_j;
 }
 
+// The rotation by |v| about v, and back: a vector of length in [0, pi].
+Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad);
+Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation);
+
 // A rotation about z and a shift in xy, as the 6-DoF pose that does the same.
 Pose3 Lift(const Pose2& a_from_b);
 

@@ -1,0 +1,188 @@
+#include "sim/camera_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kTableStepS = 0.02;     // of the timing table, in units of u (nominal seconds)
+constexpr int kSmoothingSteps = 20;      // half-width of the timing's smoothing: 0.4 s
+constexpr double kFastestTiming = 0.25;  // no stretch is run through faster than 4 times nominal
+constexpr double kSteepestPitchRad = RadFromDeg(80.0);  // above, yaw has no meaning
+constexpr double kTurnOnTheSpotRad = RadFromDeg(30.0);  // of a planar path within one table step
+// Influence of a natural spline's ends falls by 2 + sqrt(3) a knot: 6 knots leave less than 1e-3.
+constexpr int kClosedPadding = 6;
+
+std::string Shown(const Eigen::Vector3d& p) {
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x(), p.y(), p.z());
+}
+
+PathPose PoseOf(const Waypoint& waypoint, const TrajectoryOptions& options) {
+  PathPose pose;
+  if (options.kind == TrajectoryKind::kPlanar) {
+    pose.position_m = {waypoint.at[0], waypoint.at[1], options.height_m};
+    return pose;
+  }
+  pose.position_m = {waypoint.at[0], waypoint.at[1], waypoint.at[2]};
+  const Eigen::Vector3d axis =
+      Eigen::Vector3d(waypoint.look_at[0], waypoint.look_at[1], waypoint.look_at[2]) -
+      pose.position_m;
+  const double level_m = std::hypot(axis.x(), axis.y());
+  pose.yaw_rad = std::atan2(axis.y(), axis.x());
+  pose.pitch_rad = std::atan2(axis.z(), level_m);
+  if (axis.norm() == 0.0 || std::abs(pose.pitch_rad) > kSteepestPitchRad) {
+    throw InputError(options.place, "the waypoint at " + Shown(pose.position_m) +
+                                        " must look less than 80 degrees up or down");
+  }
+  return pose;
+}
+
+// The waypoints in the order they are passed, a closed path with padding at both ends; yaw always
+// goes the short way from one to the next.
+std::vector<PathPose> Stations(const TrajectoryOptions& options) {
+  const int count = static_cast<int>(options.waypoints.size());
+  const int padding = options.closed ? kClosedPadding : 0;
+  const int last = options.closed ? static_cast<int>(std::ceil(count * options.laps)) : count - 1;
+  std::vector<PathPose> stations;
+  for (int i = -padding; i <= last + padding; ++i) {
+    const int wrapped = ((i % count) + count) % count;
+    PathPose pose = PoseOf(options.waypoints[static_cast<std::size_t>(wrapped)], options);
+    if (!stations.empty()) {
+      const double before_rad = stations.back().yaw_rad;
+      pose.yaw_rad = before_rad + WrapAngle(pose.yaw_rad - before_rad);
+    }
+    stations.push_back(pose);
+  }
+  return stations;
+}
+
+// Seconds from one station to the next at the bounds, were the way straight.
+double NominalTimeS(const PathPose& a, const PathPose& b, const TrajectoryOptions& options) {
+  const double turn_rad = std::hypot(b.yaw_rad - a.yaw_rad, b.pitch_rad - a.pitch_rad);
+  return std::max((b.position_m - a.position_m).norm() / options.speed_mps,
+                  DegFromRad(turn_rad) / options.turn_rate_dps);
+}
+
+// Above the table everywhere and smooth: the maximum within a window, then a Hann mean of the same
+// width, which never falls below the table as each maximum it averages covers the middle.
+std::vector<double> SmoothUpperBound(const std::vector<double>& table) {
+  const int count = static_cast<int>(table.size());
+  const auto clamped = [&](int i) { return static_cast<std::size_t>(std::clamp(i, 0, count - 1)); };
+  std::vector<double> highest(table.size());
+  std::vector<double> smooth(table.size());
+  for (int i = 0; i < count; ++i) {
+    for (int k = -kSmoothingSteps; k <= kSmoothingSteps; ++k) {
+      highest[clamped(i)] = std::max(highest[clamped(i)], table[clamped(i + k)]);
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    double weights = 0.0;
+    for (int k = -kSmoothingSteps; k <= kSmoothingSteps; ++k) {
+      const double weight = 1.0 + std::cos(kPi * k / (kSmoothingSteps + 1.0));
+      smooth[clamped(i)] += weight * highest[clamped(i + k)];
+      weights += weight;
+    }
+    smooth[clamped(i)] /= weights;
+  }
+  return smooth;
+}
+
+}  // namespace
+
+CameraPath::CameraPath(const TrajectoryOptions& options)
+    : planar_(options.kind == TrajectoryKind::kPlanar), pitch_rad_(RadFromDeg(options.pitch_deg)) {
+  BuildCurve(options);
+  BuildTiming(options);
+}
+
+void CameraPath::BuildCurve(const TrajectoryOptions& options) {
+  const std::vector<PathPose> stations = Stations(options);
+  const auto count = static_cast<Eigen::Index>(stations.size());
+  std::vector<double> knots = {0.0};
+  Eigen::MatrixXd values(planar_ ? 3 : 5, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const PathPose& pose = stations[static_cast<std::size_t>(k)];
+    values.col(k).head<3>() = pose.position_m;
+    if (!planar_) values.col(k).tail<2>() << pose.yaw_rad, pose.pitch_rad;
+    if (k == 0) continue;
+    const double time_s = NominalTimeS(stations[static_cast<std::size_t>(k - 1)], pose, options);
+    if (time_s < 1e-6) {
+      throw InputError(options.place,
+                       "two waypoints in a row are the same, at " + Shown(pose.position_m));
+    }
+    knots.push_back(knots.back() + time_s);
+  }
+  const auto padding = static_cast<std::size_t>(options.closed ? kClosedPadding : 0);
+  first_u_ = knots[padding];
+  last_u_ = knots[knots.size() - 1 - padding];
+  if (options.closed) {
+    const double lap_u = knots[padding + options.waypoints.size()] - first_u_;
+    last_u_ = first_u_ + options.laps * lap_u;
+  }
+  curve_.emplace(std::move(knots), std::move(values));
+}
+
+PathPose CameraPath::PoseAt(double u) const {
+  const Eigen::VectorXd value = curve_->Value(u);
+  if (!planar_) return {value.head<3>(), value[3], value[4]};
+  const Eigen::VectorXd slope = curve_->Slope(u);
+  return {value.head<3>(), std::atan2(slope.y(), slope.x()), pitch_rad_};
+}
+
+double CameraPath::SecondsPerUnit(double u, const TrajectoryOptions& options) const {
+  const Eigen::VectorXd slope = curve_->Slope(u);
+  double turn_rad = 0.0;  // a unit of u; yaw and pitch axes are perpendicular
+  if (planar_) {
+    const PathPose before = PoseAt(u - 0.5 * kTableStepS);
+    const PathPose after = PoseAt(u + 0.5 * kTableStepS);
+    turn_rad = std::abs(WrapAngle(after.yaw_rad - before.yaw_rad));
+    if (turn_rad > kTurnOnTheSpotRad) {
+      throw InputError(options.place, "the path turns on the spot near " + Shown(after.position_m) +
+                                          ": move its waypoints apart");
+    }
+    turn_rad /= kTableStepS;
+  } else {
+    turn_rad = slope.tail<2>().norm();
+  }
+  return std::max({slope.head<3>().norm() / options.speed_mps,
+                   DegFromRad(turn_rad) / options.turn_rate_dps, kFastestTiming});
+}
+
+void CameraPath::BuildTiming(const TrajectoryOptions& options) {
+  const int steps = std::max(2, static_cast<int>(std::ceil((last_u_ - first_u_) / kTableStepS)));
+  const double step_u = (last_u_ - first_u_) / steps;
+  std::vector<double> seconds_per_unit;
+  for (int i = 0; i <= steps; ++i) {
+    seconds_per_unit.push_back(SecondsPerUnit(first_u_ + i * step_u, options));
+  }
+  seconds_per_unit = SmoothUpperBound(seconds_per_unit);
+  std::vector<double> times_s = {0.0};
+  Eigen::MatrixXd parameter(1, steps + 1);
+  parameter(0, 0) = first_u_;
+  for (int i = 1; i <= steps; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    times_s.push_back(times_s.back() +
+                      0.5 * (seconds_per_unit[k - 1] + seconds_per_unit[k]) * step_u);
+    parameter(0, i) = first_u_ + i * step_u;
+  }
+  duration_s_ = times_s.back();
+  parameter_.emplace(std::move(times_s), std::move(parameter));
+}
+
+PathPose CameraPath::At(double share) const {
+  return PoseAt(parameter_->Value(share * duration_s_)[0]);
+}
+
+Pose3 CameraPoseOf(const PathPose& pose) {
+  const Pose3 level = CameraOf({pose.position_m.x(), pose.position_m.y(), WrapAngle(pose.yaw_rad)},
+                               pose.position_m.z());
+  return level * Pose3{ExpRotation({pose.pitch_rad, 0.0, 0.0}), Eigen::Vector3d::Zero()};
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,29 @@
+// Natural cubic interpolation: twice continuously differentiable curves through given points.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace depthgrid {
+
+// Passes through column k of `values` at knot k; the second derivative is 0 at both ends. Outside
+// the knots the first and last polynomials go on.
+class CubicSpline {
+ public:
+  // Needs at least two strictly increasing knots and one column a knot.
+  CubicSpline(std::vector<double> knots, Eigen::MatrixXd values);
+
+  Eigen::VectorXd Value(double u) const;
+  Eigen::VectorXd Slope(double u) const;
+  double FirstKnot() const { return knots_.front(); }
+  double LastKnot() const { return knots_.back(); }
+
+ private:
+  Eigen::Index IntervalOf(double u) const;
+
+  std::vector<double> knots_;
+  Eigen::MatrixXd values_;
+  Eigen::MatrixXd second_derivatives_;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,134 @@
+#include "sim/trajectory.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "sim/camera_path.h"
+#include "sim/hand_shake.h"
+
+namespace depthgrid {
+namespace {
+
+void RequireSize(const std::vector<double>& values, std::size_t size, const char* key,
+                 const std::string& place) {
+  if (values.size() != size) {
+    throw InputError(place,
+                     fmt::format("{} has {} numbers, must have {}", key, values.size(), size));
+  }
+}
+
+double RoundedStamp(int frame, double rate_hz) { return std::round(frame / rate_hz * 1e6) / 1e6; }
+
+// Rounding hides a frame's worth of arithmetic noise when the duration is a whole number of frames.
+int FramesFor(double duration_s, double rate_hz) {
+  return static_cast<int>(std::ceil(duration_s * rate_hz - 1e-6)) + 1;
+}
+
+std::string Shown(int frame, const Eigen::Vector3d& position_m) {
+  return fmt::format("frame {} at ({:.2f}, {:.2f}, {:.2f})", frame, position_m.x(), position_m.y(),
+                     position_m.z());
+}
+
+}  // namespace
+
+void Waypoint::Visit(OptionsVisitor& v) {
+  v.Numbers("at", at, {}, "x y z in world, metres; x y for a planar path");
+  v.Numbers("look_at", look_at, {}, "the point the optical axis goes through; hand-held only");
+}
+
+void TrajectoryOptions::Visit(OptionsVisitor& v) {
+  v.Choice("kind", kind,
+           {{TrajectoryKind::kHandheld, "handheld"}, {TrajectoryKind::kPlanar, "planar"}},
+           "6-DoF motion of a hand, or of a robot on the floor");
+  v.Number("speed_mps", speed_mps, {0.001, 10.0}, "upper bound of the speed");
+  v.Number("turn_rate_dps", turn_rate_dps, {0.1, 360.0}, "upper bound of the turn rate, deg/s");
+  v.Number("shake_deg", shake_deg, {0.0, 10.0}, "rms shake about each camera axis, degrees");
+  v.Number("shake_m", shake_m, {0.0, 0.2}, "rms shake along each camera axis, metres");
+  v.Number("height_m", height_m, {0.0, 10.0}, "planar: height of the camera");
+  v.Number("pitch_deg", pitch_deg, {-80.0, 80.0}, "planar: pitch of the camera, up is positive");
+  v.Number("clearance_m", clearance_m, {0.0, 5.0}, "least distance from geometry");
+  v.Flag("closed", closed, "the path returns to its first waypoint");
+  v.Number("laps", laps, {0.1, 100.0}, "closed: how often it goes round");
+}
+
+TrajectoryOptions ReadTrajectoryOptions(Config spec) {
+  TrajectoryOptions options;
+  options.place = spec.Place();
+  const std::vector<Config> waypoints = spec.TakeMaps("waypoints");
+  spec.Read(options);
+  const bool planar = options.kind == TrajectoryKind::kPlanar;
+  for (const Config& entry : waypoints) {
+    Waypoint waypoint;
+    entry.Read(waypoint);
+    RequireSize(waypoint.at, planar ? 2 : 3, "at", entry.Place());
+    RequireSize(waypoint.look_at, planar ? 0 : 3, "look_at", entry.Place());
+    options.waypoints.push_back(waypoint);
+  }
+  if (options.waypoints.size() < 2) {
+    throw InputError(options.place,
+                     fmt::format("a trajectory has {} waypoints, must have at least 2",
+                                 options.waypoints.size()));
+  }
+  if (options.laps != 1.0 && !options.closed) {
+    throw InputError(options.place, "laps needs closed: true");
+  }
+  return options;
+}
+
+int MinimumFrames(const TrajectoryOptions& options, double rate_hz) {
+  return FramesFor(CameraPath(options).DurationS(), rate_hz);
+}
+
+Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
+                          std::uint64_t seed) {
+  const CameraPath path(options);
+  const int least = FramesFor(path.DurationS(), rate_hz);
+  if (frames < least) {
+    throw InputError(
+        options.place,
+        fmt::format("frames is {}, must be at least {} at {} Hz to keep within {} m/s and {} deg/s",
+                    frames, least, rate_hz, options.speed_mps, options.turn_rate_dps));
+  }
+  const HandShake shake({RadFromDeg(options.shake_deg), options.shake_m}, seed);
+  Trajectory trajectory;
+  for (int i = 0; i < frames; ++i) {
+    const double stamp_s = RoundedStamp(i, rate_hz);
+    const PathPose pose = path.At(static_cast<double>(i) / (frames - 1));
+    trajectory.push_back({stamp_s, CameraPoseOf(pose) * shake.At(stamp_s)});
+  }
+  return trajectory;
+}
+
+Trajectory MakeTrajectory(const Config& spec, int frames, double rate_hz, std::uint64_t seed) {
+  return MakeTrajectory(ReadTrajectoryOptions(spec), frames, rate_hz, seed);
+}
+
+void CheckClearance(const Trajectory& trajectory,
+                    const std::function<double(const Eigen::Vector3d&)>& distance_m,
+                    double clearance_m, const std::string& place) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
+    const double distance = distance_m(position_m);
+    if (distance >= clearance_m) continue;
+    throw InputError(place,
+                     fmt::format("{} is {:.3f} m from geometry, must be at least {} m",
+                                 Shown(static_cast<int>(i), position_m), distance, clearance_m));
+  }
+}
+
+void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
+                 const std::string& place) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
+    if (bounds.contains(position_m)) continue;
+    throw InputError(place, fmt::format("{} is outside the scene, which spans ({:.2f}, {:.2f}, "
+                                        "{:.2f}) to ({:.2f}, {:.2f}, {:.2f})",
+                                        Shown(static_cast<int>(i), position_m), bounds.min().x(),
+                                        bounds.min().y(), bounds.min().z(), bounds.max().x(),
+                                        bounds.max().y(), bounds.max().z()));
+  }
+}
+
+}  // namespace depthgrid

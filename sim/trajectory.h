@@ -1,0 +1,67 @@
+// Camera paths: hand-held motion through waypoints and planar robot motion, with bounded speed and
+// turn rate. A path is a C2 curve; it is timed so that no bound is exceeded anywhere, and `frames`
+// poses sample that time from end to end. More frames than the bounds need make the motion slower.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/trajectory.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+
+constexpr double kFrameRateHz = 30.0;  // ICL-NUIM, TUM RGB-D
+
+enum class TrajectoryKind { kHandheld, kPlanar };
+
+struct Waypoint {
+  std::vector<double> at;       // x y z in world; x y for a planar path
+  std::vector<double> look_at;  // the point the optical axis goes through; hand-held only
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct TrajectoryOptions {
+  TrajectoryKind kind = TrajectoryKind::kHandheld;
+  double speed_mps = 0.5;       // a person looking around; ICL-NUIM's paths stay below
+  double turn_rate_dps = 40.0;  // deg/s, where rolling shutter and blur begin to trouble SLAM
+  double shake_deg = 0.0;       // rms about each camera axis, on top of the bounds
+  double shake_m = 0.0;         // rms along each camera axis, on top of the bounds
+  double height_m = 0.6;        // planar: of the camera above z = 0
+  double pitch_deg = 0.0;       // planar: of the optical axis, up is positive
+  double clearance_m = 0.2;     // least distance from geometry
+  bool closed = false;          // the path returns to its first waypoint
+  double laps = 1.0;            // closed: how often it goes round, so that a loop can overlap
+  std::vector<Waypoint> waypoints;
+  std::string place;  // where this was written, for errors
+
+  void Visit(OptionsVisitor& v);
+};
+
+// Reads and checks one entry of Scene::trajectories. Throws InputError.
+TrajectoryOptions ReadTrajectoryOptions(Config spec);
+
+// The least number of frames that keeps within the bounds.
+int MinimumFrames(const TrajectoryOptions& options, double rate_hz = kFrameRateHz);
+
+// Stamps are i / rate_hz rounded to 6 decimals, as files carry them. The seed only shakes. Throws
+// InputError for fewer frames than the bounds need.
+Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
+                          std::uint64_t seed);
+Trajectory MakeTrajectory(const Config& spec, int frames, double rate_hz, std::uint64_t seed);
+
+// Throws InputError naming `place`, the first frame nearer to geometry than clearance_m, its
+// position and its distance.
+void CheckClearance(const Trajectory& trajectory,
+                    const std::function<double(const Eigen::Vector3d&)>& distance_m,
+                    double clearance_m, const std::string& place);
+
+// Throws InputError naming the first frame outside the scene's bounds.
+void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
+                 const std::string& place);
+
+}  // namespace depthgrid

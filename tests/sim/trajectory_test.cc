@@ -1,0 +1,208 @@
+#include "sim/trajectory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kHandheld = R"(
+kind: handheld
+speed_mps: 0.5
+turn_rate_dps: 40
+closed: true
+waypoints:
+  - {at: [1, 1, 1.2], look_at: [4, 2, 0.5]}
+  - {at: [3, 1, 1.1], look_at: [3, 5, 0.8]}
+  - {at: [3, 3, 1.3], look_at: [0, 3, 1.0]}
+  - {at: [1, 3, 1.2], look_at: [1, 0, 0.9]}
+)";
+constexpr const char* kPlanar = R"(
+kind: planar
+height_m: 0.6
+pitch_deg: -10
+waypoints: [{at: [0, 0]}, {at: [3, 0]}, {at: [3, 3]}, {at: [0, 4]}]
+)";
+
+TrajectoryOptions Options(const std::string& text) {
+  return ReadTrajectoryOptions(Config::FromText(text, "scene.yaml"));
+}
+
+Trajectory AtTheBounds(const TrajectoryOptions& options, std::uint64_t seed = 1) {
+  return MakeTrajectory(options, MinimumFrames(options), kFrameRateHz, seed);
+}
+
+std::string ErrorOf(const std::string& text, int frames = 5000) {
+  try {
+    MakeTrajectory(Config::FromText(text, "scene.yaml"), frames, kFrameRateHz, 1);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Trajectory, KeepsWithinItsBoundsAndReachesThem) {
+  for (const char* text : {kHandheld, kPlanar}) {
+    const TrajectoryOptions options = Options(text);
+    const Trajectory trajectory = AtTheBounds(options);
+    double highest_share = 0.0;
+    for (std::size_t i = 1; i < trajectory.size(); ++i) {
+      const Pose3 motion =
+          Between(trajectory[i - 1].world_from_camera, trajectory[i].world_from_camera);
+      const double speed_mps = motion.translation.norm() * kFrameRateHz;
+      const double turn_dps = DegFromRad(LogRotation(motion.rotation).norm()) * kFrameRateHz;
+      EXPECT_LE(speed_mps, options.speed_mps * 1.001) << text << i;
+      EXPECT_LE(turn_dps, options.turn_rate_dps * 1.001) << text << i;
+      highest_share = std::max(
+          {highest_share, speed_mps / options.speed_mps, turn_dps / options.turn_rate_dps});
+    }
+    EXPECT_GT(highest_share, 0.9) << text;
+  }
+}
+
+// Second differences of a C2 curve shrink with the square of the step; those of a curve with a
+// kink in its speed only with the step.
+TEST(Trajectory, IsTwiceDifferentiable) {
+  const TrajectoryOptions options = Options(kHandheld);
+  const auto roughness = [&](int frames) {
+    const Trajectory trajectory = MakeTrajectory(options, frames, kFrameRateHz, 1);
+    double highest = 0.0;
+    for (std::size_t i = 2; i < trajectory.size(); ++i) {
+      const auto position = [&](std::size_t k) {
+        return trajectory[k].world_from_camera.translation;
+      };
+      const auto axis = [&](std::size_t k) -> Eigen::Vector3d {
+        return trajectory[k].world_from_camera.rotation * Eigen::Vector3d::UnitZ();
+      };
+      const Eigen::Vector3d bend = position(i) - 2.0 * position(i - 1) + position(i - 2);
+      const Eigen::Vector3d turn = axis(i) - 2.0 * axis(i - 1) + axis(i - 2);
+      highest = std::max({highest, bend.norm(), turn.norm()});
+    }
+    return highest;
+  };
+  EXPECT_NEAR(roughness(4001) / roughness(8001), 4.0, 0.1);
+  EXPECT_NEAR(roughness(8001) / roughness(16001), 4.0, 0.1);
+}
+
+TEST(Trajectory, PassesItsWaypointsLookingWhereToldAndReturns) {
+  const TrajectoryOptions options = Options(kHandheld);
+  const Trajectory trajectory = AtTheBounds(options);
+  for (const Waypoint& waypoint : options.waypoints) {
+    const Eigen::Vector3d at(waypoint.at[0], waypoint.at[1], waypoint.at[2]);
+    const Eigen::Vector3d target(waypoint.look_at[0], waypoint.look_at[1], waypoint.look_at[2]);
+    double nearest_m = 1e9;
+    double angle_rad = 1e9;
+    for (const StampedPose& pose : trajectory) {
+      const double distance_m = (pose.world_from_camera.translation - at).norm();
+      if (distance_m > nearest_m) continue;
+      nearest_m = distance_m;
+      const Eigen::Vector3d axis = pose.world_from_camera.rotation * Eigen::Vector3d::UnitZ();
+      angle_rad = std::acos(std::min(1.0, axis.dot((target - at).normalized())));
+    }
+    EXPECT_LT(nearest_m, 0.01);
+    EXPECT_LT(DegFromRad(angle_rad), 1.0);
+  }
+  const Pose3 gap =
+      Between(trajectory.front().world_from_camera, trajectory.back().world_from_camera);
+  EXPECT_LT(gap.translation.norm(), 0.005);
+  EXPECT_LT(DegFromRad(LogRotation(gap.rotation).norm()), 0.5);
+}
+
+TEST(Trajectory, APlanarCameraStaysLevelAtItsHeightAndLooksAhead) {
+  const Trajectory trajectory = AtTheBounds(Options(kPlanar));
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Pose3& pose = trajectory[i].world_from_camera;
+    EXPECT_NEAR(pose.translation.z(), 0.6, 1e-12);
+    const Eigen::Vector3d right = pose.rotation * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d axis = pose.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_NEAR(right.z(), 0.0, 1e-12);
+    EXPECT_NEAR(axis.z(), std::sin(RadFromDeg(-10.0)), 1e-12);
+    const Eigen::Vector3d step = pose.translation - trajectory[i - 1].world_from_camera.translation;
+    const Pose2 base = BaseOf(pose);
+    EXPECT_NEAR(WrapAngle(base.yaw_rad - std::atan2(step.y(), step.x())), 0.0, 0.03);
+  }
+}
+
+TEST(Trajectory, ShakesByTheStatedAmountAndOnlyWithTheSeed) {
+  TrajectoryOptions options = Options(kHandheld);
+  const int frames = 3000;
+  const Trajectory still = MakeTrajectory(options, frames, kFrameRateHz, 1);
+  options.shake_deg = 1.0;
+  options.shake_m = 0.01;
+  Eigen::Vector3d rotation_square = Eigen::Vector3d::Zero();
+  Eigen::Vector3d shift_square = Eigen::Vector3d::Zero();
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Trajectory shaken = MakeTrajectory(options, frames, kFrameRateHz, seed);
+    for (std::size_t i = 0; i < shaken.size(); ++i) {
+      const Pose3 offset = Between(still[i].world_from_camera, shaken[i].world_from_camera);
+      rotation_square += LogRotation(offset.rotation).cwiseAbs2() / (8.0 * frames);
+      shift_square += offset.translation.cwiseAbs2() / (8.0 * frames);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(DegFromRad(std::sqrt(rotation_square[axis])), 1.0, 0.05);
+    EXPECT_NEAR(std::sqrt(shift_square[axis]), 0.01, 0.0005);
+  }
+  EXPECT_EQ(MakeTrajectory(options, frames, 30, 5), MakeTrajectory(options, frames, 30, 5));
+  EXPECT_NE(MakeTrajectory(options, frames, 30, 5), MakeTrajectory(options, frames, 30, 6));
+}
+
+TEST(Trajectory, StampsAreWhatFilesCarry) {
+  const Trajectory trajectory = MakeTrajectory(Options(kHandheld), 2000, 30.0, 1);
+  EXPECT_EQ(trajectory[0].stamp_s, 0.0);
+  EXPECT_EQ(trajectory[1].stamp_s, 0.033333);
+  EXPECT_EQ(trajectory[29].stamp_s, 0.966667);
+  EXPECT_EQ(trajectory[30].stamp_s, 1.0);
+}
+
+TEST(Trajectory, LapsOverlap) {
+  const std::string text = std::string(kHandheld) + "laps: 1.25\n";
+  const Trajectory trajectory = AtTheBounds(Options(text));
+  double nearest_m = 1e9;
+  for (std::size_t i = 0; i < trajectory.size() / 3; ++i) {
+    nearest_m = std::min(nearest_m, (trajectory[i].world_from_camera.translation -
+                                     trajectory.back().world_from_camera.translation)
+                                        .norm());
+  }
+  EXPECT_LT(nearest_m, 0.02);
+}
+
+TEST(Trajectory, RefusesWhatItCannotDo) {
+  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml:2: frames is 100, must be at least "));
+  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}]"), HasSubstr("at least 2"));
+  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [0, 0]}]"),
+              HasSubstr("are the same, at (0.00, 0.00, 0.60)"));
+  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints:\n  - {at: [0, 0]}\n  - {at: [0, 0, 1]}"),
+              HasSubstr("scene.yaml:4: at has 3 numbers, must have 2"));
+  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, 0]}, {at: [0, 0]}]"),
+              HasSubstr("turns on the spot near (2"));
+  EXPECT_THAT(ErrorOf("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
+                      "[5, 0, 1]}]"),
+              HasSubstr("must look less than 80 degrees"));
+  EXPECT_THAT(ErrorOf("speed_mp: 3\nwaypoints: []"), HasSubstr("did you mean 'speed_mps'?"));
+}
+
+TEST(CheckClearance, NamesThePlace) {
+  const Trajectory trajectory = AtTheBounds(Options(kPlanar));
+  const auto to_wall = [](const Eigen::Vector3d& p) { return 3.25 - p.x(); };
+  CheckClearance(
+      trajectory, [](const Eigen::Vector3d&) { return 0.2; }, 0.2, "path");
+  try {
+    CheckClearance(trajectory, to_wall, 0.3, "path");
+    FAIL() << "accepted a path too near to the wall";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("path: frame "));
+    EXPECT_THAT(error.what(), HasSubstr(" m from geometry, must be at least 0.3 m"));
+  }
+  EXPECT_THROW(CheckInside(trajectory, {Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(2, 5, 2)}, "p"),
+               InputError);
+  CheckInside(trajectory, {Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(5, 5, 2)}, "p");
+}
+
+}  // namespace
+}  // namespace depthgrid
