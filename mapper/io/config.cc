@@ -28,7 +28,9 @@ std::string FlowText(const YAML::Node& node) {
 }
 
 std::string PlaceOf(const std::string& place, const YAML::Node& node) {
-  return node.Mark().is_null() ? place : fmt::format("{}:{}", place, node.Mark().line + 1);
+  // Nodes of a copied tree have no mark of their own; yaml-cpp gives them that of the first letter.
+  const bool unmarked = node.Mark().pos <= 0;
+  return unmarked ? place : fmt::format("{}:{}", place, node.Mark().line + 1);
 }
 
 void RequireUniqueKeys(const YAML::Node& node, const std::string& place) {

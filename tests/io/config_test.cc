@@ -108,6 +108,17 @@ TEST(Config, ACopyIsIndependent) {
   EXPECT_EQ(outer.frames, 3);
 }
 
+TEST(Config, ErrorsOfACopyDoNotInventALine) {
+  const Config original = Config::FromText("seed: 1\nframes: 0", "x");
+  Outer outer;
+  try {
+    Config(original).Read(outer);
+    FAIL() << "accepted 0 frames";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("x: frames is '0'"));
+  }
+}
+
 TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ErrorOf(""), "run.yaml: is empty");
   EXPECT_EQ(ErrorOf("- 1"), "run.yaml: must be a map of keys");

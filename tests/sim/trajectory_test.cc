@@ -173,12 +173,12 @@ TEST(Trajectory, LapsOverlap) {
 }
 
 TEST(Trajectory, RefusesWhatItCannotDo) {
-  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml:2: frames is 100, must be at least "));
+  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml: frames is 100, must be at least "));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}]"), HasSubstr("at least 2"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [0, 0]}]"),
               HasSubstr("are the same, at (0.00, 0.00, 0.60)"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints:\n  - {at: [0, 0]}\n  - {at: [0, 0, 1]}"),
-              HasSubstr("scene.yaml:4: at has 3 numbers, must have 2"));
+              HasSubstr("scene.yaml: at has 3 numbers, must have 2"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, 0]}, {at: [0, 0]}]"),
               HasSubstr("turns on the spot near (2"));
   EXPECT_THAT(ErrorOf("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
