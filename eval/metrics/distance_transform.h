@@ -1,0 +1,18 @@
+// Exact distances from every cell to the nearest member of a set, and sets grown by whole cells.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/cell_mask.h"
+
+namespace depthgrid {
+
+// Squared Euclidean distance between cell centres, in cells^2, in the mask's cell order; infinite
+// everywhere for an empty set. Felzenszwalb and Huttenlocher 2012, linear in the number of cells.
+std::vector<double> SquaredDistances(const CellMask& mask);
+
+// Every cell of the same rectangle within `radius_cells` of a member, Chebyshev distance (diagonal
+// steps count one).
+CellMask Grown(const CellMask& mask, int radius_cells);
+
+}  // namespace depthgrid

@@ -1,0 +1,166 @@
+#include "eval/metrics/map_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "eval/metrics/distance_transform.h"
+#include "eval/metrics/statistics.h"
+
+namespace depthgrid {
+namespace {
+
+StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry) {
+  StateMap moved(geometry);
+  for (std::size_t i = 0; i < geometry.size(); ++i) moved.states[i] = map.At(geometry.CellAt(i));
+  return moved;
+}
+
+CellMask OnGeometry(const CellMask& mask, const GridGeometry& geometry) {
+  CellMask moved(geometry);
+  for (std::size_t i = 0; i < geometry.size(); ++i) {
+    moved.members[i] = mask.Has(geometry.CellAt(i)) ? 1 : 0;
+  }
+  return moved;
+}
+
+CellMask CellsIn(const StateMap& map, CellState state) {
+  CellMask mask(map.geometry);
+  for (std::size_t i = 0; i < map.states.size(); ++i) mask.members[i] = map.states[i] == state;
+  return mask;
+}
+
+std::optional<double> Ratio(double part, double whole) {
+  if (whole <= 0.0) return std::nullopt;
+  return part / whole;
+}
+
+// Cells that are in both sets.
+int CountBoth(const CellMask& a, const CellMask& b) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.members.size(); ++i) count += a.members[i] & b.members[i];
+  return count;
+}
+
+// Cells of `members` that are scored, and those of them that `near` covers.
+struct Tally {
+  int counted = 0;
+  int matched = 0;
+};
+Tally Count(const CellMask& members, const CellMask& scored, const CellMask& near) {
+  Tally tally;
+  for (std::size_t i = 0; i < members.members.size(); ++i) {
+    const int counts = members.members[i] & scored.members[i];
+    tally.counted += counts;
+    tally.matched += counts & near.members[i];
+  }
+  return tally;
+}
+
+StateScore ScoreState(const CellMask& truth, const CellMask& estimate, const CellMask& scored,
+                      int tolerance_cells) {
+  const Tally right = Count(estimate, scored, Grown(truth, tolerance_cells));
+  const Tally found = Count(truth, scored, Grown(estimate, tolerance_cells));
+  StateScore score;
+  score.estimated_cells = right.counted;
+  score.right_cells = right.matched;
+  score.true_cells = found.counted;
+  score.found_cells = found.matched;
+  score.precision = Ratio(right.matched, right.counted);
+  score.recall = Ratio(found.matched, found.counted);
+  if (score.precision && score.recall) {
+    const double sum = *score.precision + *score.recall;
+    score.f1 = sum > 0.0 ? 2.0 * *score.precision * *score.recall / sum : 0.0;
+    score.iou = *score.f1 / (2.0 - *score.f1);
+  }
+  return score;
+}
+
+// Distances in metres from each scored member of `from` to the nearest member of `to`.
+std::vector<double> DirectedDistances(const CellMask& from, const CellMask& scored,
+                                      const std::vector<double>& squared_to) {
+  std::vector<double> distances_m;
+  for (std::size_t i = 0; i < from.members.size(); ++i) {
+    if ((from.members[i] & scored.members[i]) == 0) continue;
+    distances_m.push_back(std::sqrt(squared_to[i]) * from.geometry.resolution_m);
+  }
+  return distances_m;
+}
+
+bool IsEmpty(const CellMask& mask) {
+  return std::find(mask.members.begin(), mask.members.end(), 1) == mask.members.end();
+}
+
+void ScoreDistances(const CellMask& truth, const CellMask& estimate, const CellMask& scored,
+                    CellScores& scores) {
+  if (IsEmpty(truth) || IsEmpty(estimate)) return;
+  constexpr double kHausdorffFraction = 0.95;
+  const auto forth = DirectedDistances(estimate, scored, SquaredDistances(truth));
+  const auto back = DirectedDistances(truth, scored, SquaredDistances(estimate));
+  if (!forth.empty()) scores.estimate_to_truth_m = Summarise(forth).mean;
+  if (!back.empty()) scores.truth_to_estimate_m = Summarise(back).mean;
+  if (forth.empty() || back.empty()) return;
+  scores.chamfer_m = 0.5 * (*scores.estimate_to_truth_m + *scores.truth_to_estimate_m);
+  scores.hausdorff95_m =
+      std::max(Percentile(forth, kHausdorffFraction), Percentile(back, kHausdorffFraction));
+}
+
+void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellMask& scored,
+                    CellScores& scores) {
+  for (std::size_t i = 0; i < truth.states.size(); ++i) {
+    if (scored.members[i] == 0) continue;
+    const auto row = static_cast<std::size_t>(truth.states[i]);
+    const auto column = static_cast<std::size_t>(estimate.states[i]);
+    ++scores.confusion[row][column];
+    ++scores.scored_cells;
+  }
+}
+
+// All maps on one geometry; `to_cover` are the cells that coverage asks for.
+CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellMask& scored,
+                      const CellMask& to_cover) {
+  CellScores scores;
+  const CellMask true_walls = CellsIn(truth, CellState::kOccupied);
+  const CellMask walls = CellsIn(estimate, CellState::kOccupied);
+  const CellMask true_free = CellsIn(truth, CellState::kFree);
+  const CellMask free = CellsIn(estimate, CellState::kFree);
+  for (int tolerance = 0; tolerance <= kMaxToleranceCells; ++tolerance) {
+    const auto index = static_cast<std::size_t>(tolerance);
+    scores.occupied[index] = ScoreState(true_walls, walls, scored, tolerance);
+    scores.free[index] = ScoreState(true_free, free, scored, tolerance);
+  }
+  ScoreConfusion(truth, estimate, scored, scores);
+  ScoreDistances(true_walls, walls, scored, scores);
+  const int asked = CountBoth(to_cover, to_cover);
+  scores.coverage = Ratio(CountBoth(to_cover, walls) + CountBoth(to_cover, free), asked);
+  return scores;
+}
+
+CellMask KnownCells(const StateMap& map) {
+  CellMask mask(map.geometry);
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    mask.members[i] = map.states[i] != CellState::kUnknown;
+  }
+  return mask;
+}
+
+}  // namespace
+
+MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
+                  const std::optional<CellMask>& observable) {
+  GridGeometry geometry = Union(truth.geometry, estimate.geometry);
+  if (observable) geometry = Union(geometry, observable->geometry);
+  const StateMap truth_here = OnGeometry(truth, geometry);
+  const StateMap estimate_here = OnGeometry(estimate, geometry);
+  CellMask everywhere(geometry);
+  std::fill(everywhere.members.begin(), everywhere.members.end(), 1);
+  MapScore score;
+  score.all = ScoreCells(truth_here, estimate_here, everywhere, KnownCells(truth_here));
+  if (observable) {
+    const CellMask seen = OnGeometry(*observable, geometry);
+    score.observable = ScoreCells(truth_here, estimate_here, seen, seen);
+  }
+  return score;
+}
+
+}  // namespace depthgrid

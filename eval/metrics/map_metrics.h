@@ -1,0 +1,65 @@
+// How well an estimated map agrees with the true one, cell by cell and by distance.
+//
+// Both maps are read in three states on one lattice of cells. Scores come over the observable cells
+// and over all cells of both maps:
+//  - precision counts estimated cells of a state that lie in the scored set; each is right if a
+//  true
+//    cell of that state, anywhere, is within the tolerance;
+//  - recall counts true cells of that state that lie in the scored set; each is found if an
+//    estimated cell of that state, anywhere, is within the tolerance.
+// So an estimated wall in an unobservable cell counts against precision only in the "all" score.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "mapper/core/cell_mask.h"
+#include "mapper/core/occupancy_map.h"
+
+namespace depthgrid {
+
+constexpr int kMaxToleranceCells = 2;
+// The tolerance of the figures without one in their name (docs/conventions.md).
+constexpr int kDefaultToleranceCells = 1;
+
+struct StateScore {
+  int estimated_cells = 0;
+  int right_cells = 0;  // of the estimated
+  int true_cells = 0;
+  int found_cells = 0;  // of the true
+  // Empty when the divisor is zero.
+  std::optional<double> precision;
+  std::optional<double> recall;
+  std::optional<double> f1;
+  // F1 / (2 - F1): at tolerance 0 the intersection over the union of the two sets.
+  std::optional<double> iou;
+};
+
+struct CellScores {
+  std::array<StateScore, kMaxToleranceCells + 1> occupied;  // by tolerance in cells
+  std::array<StateScore, kMaxToleranceCells + 1> free;
+  // [truth][estimate], indexed by CellState.
+  std::array<std::array<int, 3>, 3> confusion = {};
+  // Between occupied cell centres; empty when either map has none. The directed distances are from
+  // the scored estimated cells to all true ones and from the scored true cells to all estimated
+  // ones.
+  std::optional<double> chamfer_m;            // mean of the two directed means
+  std::optional<double> estimate_to_truth_m;  // directed mean
+  std::optional<double> truth_to_estimate_m;  // directed mean
+  std::optional<double> hausdorff95_m;        // larger of the two directed 95th percentiles
+  // Of the scored cells whose truth is known, those known in the estimate; for observable cells of
+  // all observable cells.
+  std::optional<double> coverage;
+  int scored_cells = 0;
+};
+
+struct MapScore {
+  std::optional<CellScores> observable;  // empty when nothing was said about what is observable
+  CellScores all;
+};
+
+// Same resolution required of all three.
+MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
+                  const std::optional<CellMask>& observable);
+
+}  // namespace depthgrid

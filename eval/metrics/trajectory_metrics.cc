@@ -1,0 +1,148 @@
+#include "eval/metrics/trajectory_metrics.h"
+
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// Of a unit quaternion; accurate for small angles, where acos of the trace is not.
+double AngleOf(const Eigen::Quaterniond& rotation) {
+  return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
+}
+
+Eigen::Vector3d ShiftOf(const PosePair& pair) {
+  return pair.estimate.world_from_camera.translation - pair.reference.world_from_camera.translation;
+}
+
+template <typename ErrorOfPair>
+std::vector<double> ErrorOfEach(const std::vector<PosePair>& pairs, ErrorOfPair error_of) {
+  std::vector<double> errors;
+  errors.reserve(pairs.size());
+  for (const PosePair& pair : pairs) errors.push_back(error_of(pair));
+  return errors;
+}
+
+std::optional<Statistics> SummariseIfAny(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return Summarise(values);
+}
+
+double PathLength(const std::vector<PosePair>& pairs) {
+  double path_m = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    path_m += (pairs[i].reference.world_from_camera.translation -
+               pairs[i - 1].reference.world_from_camera.translation)
+                  .norm();
+  }
+  return path_m;
+}
+
+// The first pair always determines it.
+std::vector<PosePair> AlignedAtOrigin(const std::vector<PosePair>& pairs, Alignment alignment) {
+  return Aligned(pairs, *Align(pairs, alignment));
+}
+
+void ScoreAbsolute(const std::vector<PosePair>& pairs, TrajectoryScore& score) {
+  score.xy_unaligned = Summarise(TranslationErrorsXy(pairs));
+  score.xyz_unaligned = Summarise(TranslationErrorsXyz(pairs));
+  score.rotation_unaligned = Summarise(RotationErrors(pairs));
+  score.xy_origin =
+      Summarise(TranslationErrorsXy(AlignedAtOrigin(pairs, Alignment::kPlanarOrigin)));
+  score.xyz_origin = Summarise(TranslationErrorsXyz(AlignedAtOrigin(pairs, Alignment::kOrigin)));
+  if (const auto transform = Align(pairs, Alignment::kSe2)) {
+    score.xy_se2 = Summarise(TranslationErrorsXy(Aligned(pairs, *transform)));
+  }
+  if (const auto transform = Align(pairs, Alignment::kSe3)) {
+    const auto aligned = Aligned(pairs, *transform);
+    score.xyz_se3 = Summarise(TranslationErrorsXyz(aligned));
+    score.rotation_se3 = Summarise(RotationErrors(aligned));
+  }
+  if (const auto transform = Align(pairs, Alignment::kSim3)) {
+    score.xyz_sim3 = Summarise(TranslationErrorsXyz(Aligned(pairs, *transform)));
+    score.sim3_scale = transform->scale;
+  }
+}
+
+void ScoreRelative(const std::vector<PosePair>& pairs, TrajectoryScore& score) {
+  constexpr std::size_t kDeltaFrames = 1;
+  constexpr double kDeltaM = 1.0;
+  const RelativeErrors by_frame = ErrorsOf(pairs, StepsOfFrames(pairs.size(), kDeltaFrames));
+  score.rpe_frame_translation = SummariseIfAny(by_frame.translation_m);
+  score.rpe_frame_rotation = SummariseIfAny(by_frame.rotation_rad);
+  const RelativeErrors by_metre = ErrorsOf(pairs, StepsOfPath(pairs, kDeltaM));
+  score.rpe_metre_translation = SummariseIfAny(by_metre.translation_m);
+  score.rpe_metre_rotation = SummariseIfAny(by_metre.rotation_rad);
+}
+
+}  // namespace
+
+std::vector<double> TranslationErrorsXy(const std::vector<PosePair>& pairs) {
+  return ErrorOfEach(pairs, [](const PosePair& pair) { return ShiftOf(pair).head<2>().norm(); });
+}
+
+std::vector<double> TranslationErrorsXyz(const std::vector<PosePair>& pairs) {
+  return ErrorOfEach(pairs, [](const PosePair& pair) { return ShiftOf(pair).norm(); });
+}
+
+std::vector<double> RotationErrors(const std::vector<PosePair>& pairs) {
+  return ErrorOfEach(pairs, [](const PosePair& pair) {
+    return AngleOf(pair.estimate.world_from_camera.rotation.conjugate() *
+                   pair.reference.world_from_camera.rotation);
+  });
+}
+
+std::vector<RelativeStep> StepsOfFrames(std::size_t pair_count, std::size_t delta_frames) {
+  std::vector<RelativeStep> steps;
+  for (std::size_t to = delta_frames; to < pair_count; to += delta_frames) {
+    steps.push_back({to - delta_frames, to});
+  }
+  return steps;
+}
+
+std::vector<RelativeStep> StepsOfPath(const std::vector<PosePair>& pairs, double delta_m) {
+  std::vector<RelativeStep> steps;
+  std::optional<std::size_t> last_point;
+  double path_m = 0.0;
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    path_m += (pairs[i].estimate.world_from_camera.translation -
+               pairs[i - 1].estimate.world_from_camera.translation)
+                  .norm();
+    if (path_m < delta_m) continue;
+    if (last_point) steps.push_back({*last_point, i});
+    last_point = i;
+    path_m = 0.0;
+  }
+  return steps;
+}
+
+RelativeErrors ErrorsOf(const std::vector<PosePair>& pairs,
+                        const std::vector<RelativeStep>& steps) {
+  RelativeErrors errors;
+  for (const auto& [from, to] : steps) {
+    const Pose3 reference =
+        Between(pairs[from].reference.world_from_camera, pairs[to].reference.world_from_camera);
+    const Pose3 estimate =
+        Between(pairs[from].estimate.world_from_camera, pairs[to].estimate.world_from_camera);
+    const Pose3 error = Between(reference, estimate);
+    errors.translation_m.push_back(error.translation.norm());
+    errors.rotation_rad.push_back(AngleOf(error.rotation));
+  }
+  return errors;
+}
+
+std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
+                                               const Trajectory& estimate,
+                                               double max_difference_s) {
+  const std::vector<PosePair> pairs = Associate(reference, estimate, max_difference_s);
+  if (pairs.empty()) return std::nullopt;
+  TrajectoryScore score;
+  score.reference_poses = static_cast<int>(reference.size());
+  score.estimate_poses = static_cast<int>(estimate.size());
+  score.matched_poses = static_cast<int>(pairs.size());
+  score.reference_path_m = PathLength(pairs);
+  ScoreAbsolute(pairs, score);
+  ScoreRelative(pairs, score);
+  return score;
+}
+
+}  // namespace depthgrid

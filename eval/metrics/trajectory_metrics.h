@@ -1,0 +1,65 @@
+// How far an estimated trajectory is from its reference. Conventions are evo's (1.9.1); what is
+// planar (xy, SE(2)) is ours and named so.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/association.h"
+#include "eval/metrics/statistics.h"
+
+namespace depthgrid {
+
+// Absolute pose errors, one a pair, with the pairs as they are (align them first).
+std::vector<double> TranslationErrorsXy(const std::vector<PosePair>& pairs);   // metres, in xy
+std::vector<double> TranslationErrorsXyz(const std::vector<PosePair>& pairs);  // metres
+std::vector<double> RotationErrors(const std::vector<PosePair>& pairs);        // radians, 0..pi
+
+// Pairs of pairs between which relative motion is compared, consecutive: 0, d, 2d, ...
+struct RelativeStep {
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+std::vector<RelativeStep> StepsOfFrames(std::size_t pair_count, std::size_t delta_frames);
+// By the estimate's path length: a point is set each time the path since the last one reaches the
+// delta, so the first point is not the first pose (evo's rule).
+std::vector<RelativeStep> StepsOfPath(const std::vector<PosePair>& pairs, double delta_m);
+
+// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the reference, P the estimate: length of its shift and angle
+// of its rotation.
+struct RelativeErrors {
+  std::vector<double> translation_m;
+  std::vector<double> rotation_rad;
+};
+RelativeErrors ErrorsOf(const std::vector<PosePair>& pairs, const std::vector<RelativeStep>& steps);
+
+// All of it for one estimate. A part is empty where the positions do not determine the alignment or
+// the trajectory is too short for one step.
+struct TrajectoryScore {
+  int reference_poses = 0;
+  int estimate_poses = 0;
+  int matched_poses = 0;
+  double reference_path_m = 0.0;  // over the matched poses
+  Statistics xy_unaligned;        // metres; its mean is the paper's Table 1 as we read it
+  Statistics xy_origin;           // first bases laid over each other
+  std::optional<Statistics> xy_se2;
+  Statistics xyz_unaligned;
+  Statistics xyz_origin;
+  std::optional<Statistics> xyz_se3;
+  std::optional<Statistics> xyz_sim3;
+  std::optional<double> sim3_scale;
+  Statistics rotation_unaligned;  // radians
+  std::optional<Statistics> rotation_se3;
+  std::optional<Statistics> rpe_frame_translation;  // metres, delta one pose
+  std::optional<Statistics> rpe_frame_rotation;     // radians
+  std::optional<Statistics> rpe_metre_translation;  // metres, delta 1 m of path
+  std::optional<Statistics> rpe_metre_rotation;
+};
+
+// Empty when no stamps are shared.
+std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
+                                               const Trajectory& estimate,
+                                               double max_difference_s = kMaxStampDifferenceS);
+
+}  // namespace depthgrid
