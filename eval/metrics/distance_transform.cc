@@ -95,7 +95,7 @@ void ForColumnsThenRows(const GridGeometry& geometry, std::vector<T>& cells, Tra
 
 }  // namespace
 
-std::vector<double> SquaredDistances(const CellMask& mask) {
+std::vector<double> SquaredDistances(const CellSet& mask) {
   std::vector<double> squared(mask.members.size());
   std::transform(mask.members.begin(), mask.members.end(), squared.begin(),
                  [](std::uint8_t member) { return member != 0 ? 0.0 : kInfinity; });
@@ -106,8 +106,8 @@ std::vector<double> SquaredDistances(const CellMask& mask) {
   return squared;
 }
 
-CellMask Grown(const CellMask& mask, int radius_cells) {
-  CellMask grown = mask;
+CellSet Grown(const CellSet& mask, int radius_cells) {
+  CellSet grown = mask;
   if (radius_cells <= 0) return grown;
   ForColumnsThenRows(mask.geometry, grown.members,
                      [&](std::vector<std::uint8_t>& line) { GrowLine(line, radius_cells); });

@@ -3,16 +3,16 @@
 
 #include <vector>
 
-#include "mapper/core/cell_mask.h"
+#include "mapper/core/cell_set.h"
 
 namespace depthgrid {
 
 // Squared Euclidean distance between cell centres, in cells^2, in the mask's cell order; infinite
 // everywhere for an empty set. Felzenszwalb and Huttenlocher 2012, linear in the number of cells.
-std::vector<double> SquaredDistances(const CellMask& mask);
+std::vector<double> SquaredDistances(const CellSet& mask);
 
 // Every cell of the same rectangle within `radius_cells` of a member, Chebyshev distance (diagonal
 // steps count one).
-CellMask Grown(const CellMask& mask, int radius_cells);
+CellSet Grown(const CellSet& mask, int radius_cells);
 
 }  // namespace depthgrid

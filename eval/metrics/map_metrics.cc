@@ -16,16 +16,16 @@ StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry) {
   return moved;
 }
 
-CellMask OnGeometry(const CellMask& mask, const GridGeometry& geometry) {
-  CellMask moved(geometry);
+CellSet OnGeometry(const CellSet& mask, const GridGeometry& geometry) {
+  CellSet moved(geometry);
   for (std::size_t i = 0; i < geometry.size(); ++i) {
     moved.members[i] = mask.Has(geometry.CellAt(i)) ? 1 : 0;
   }
   return moved;
 }
 
-CellMask CellsIn(const StateMap& map, CellState state) {
-  CellMask mask(map.geometry);
+CellSet CellsIn(const StateMap& map, CellState state) {
+  CellSet mask(map.geometry);
   for (std::size_t i = 0; i < map.states.size(); ++i) mask.members[i] = map.states[i] == state;
   return mask;
 }
@@ -36,7 +36,7 @@ std::optional<double> Ratio(double part, double whole) {
 }
 
 // Cells that are in both sets.
-int CountBoth(const CellMask& a, const CellMask& b) {
+int CountBoth(const CellSet& a, const CellSet& b) {
   int count = 0;
   for (std::size_t i = 0; i < a.members.size(); ++i) count += a.members[i] & b.members[i];
   return count;
@@ -47,7 +47,7 @@ struct Tally {
   int counted = 0;
   int matched = 0;
 };
-Tally Count(const CellMask& members, const CellMask& scored, const CellMask& near) {
+Tally Count(const CellSet& members, const CellSet& scored, const CellSet& near) {
   Tally tally;
   for (std::size_t i = 0; i < members.members.size(); ++i) {
     const int counts = members.members[i] & scored.members[i];
@@ -57,7 +57,7 @@ Tally Count(const CellMask& members, const CellMask& scored, const CellMask& nea
   return tally;
 }
 
-StateScore ScoreState(const CellMask& truth, const CellMask& estimate, const CellMask& scored,
+StateScore ScoreState(const CellSet& truth, const CellSet& estimate, const CellSet& scored,
                       int tolerance_cells) {
   const Tally right = Count(estimate, scored, Grown(truth, tolerance_cells));
   const Tally found = Count(truth, scored, Grown(estimate, tolerance_cells));
@@ -77,7 +77,7 @@ StateScore ScoreState(const CellMask& truth, const CellMask& estimate, const Cel
 }
 
 // Distances in metres from each scored member of `from` to the nearest member of `to`.
-std::vector<double> DirectedDistances(const CellMask& from, const CellMask& scored,
+std::vector<double> DirectedDistances(const CellSet& from, const CellSet& scored,
                                       const std::vector<double>& squared_to) {
   std::vector<double> distances_m;
   for (std::size_t i = 0; i < from.members.size(); ++i) {
@@ -87,11 +87,11 @@ std::vector<double> DirectedDistances(const CellMask& from, const CellMask& scor
   return distances_m;
 }
 
-bool IsEmpty(const CellMask& mask) {
+bool IsEmpty(const CellSet& mask) {
   return std::find(mask.members.begin(), mask.members.end(), 1) == mask.members.end();
 }
 
-void ScoreDistances(const CellMask& truth, const CellMask& estimate, const CellMask& scored,
+void ScoreDistances(const CellSet& truth, const CellSet& estimate, const CellSet& scored,
                     CellScores& scores) {
   if (IsEmpty(truth) || IsEmpty(estimate)) return;
   constexpr double kHausdorffFraction = 0.95;
@@ -105,7 +105,7 @@ void ScoreDistances(const CellMask& truth, const CellMask& estimate, const CellM
       std::max(Percentile(forth, kHausdorffFraction), Percentile(back, kHausdorffFraction));
 }
 
-void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellMask& scored,
+void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
                     CellScores& scores) {
   for (std::size_t i = 0; i < truth.states.size(); ++i) {
     if (scored.members[i] == 0) continue;
@@ -117,13 +117,13 @@ void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellM
 }
 
 // All maps on one geometry; `to_cover` are the cells that coverage asks for.
-CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellMask& scored,
-                      const CellMask& to_cover) {
+CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
+                      const CellSet& to_cover) {
   CellScores scores;
-  const CellMask true_walls = CellsIn(truth, CellState::kOccupied);
-  const CellMask walls = CellsIn(estimate, CellState::kOccupied);
-  const CellMask true_free = CellsIn(truth, CellState::kFree);
-  const CellMask free = CellsIn(estimate, CellState::kFree);
+  const CellSet true_walls = CellsIn(truth, CellState::kOccupied);
+  const CellSet walls = CellsIn(estimate, CellState::kOccupied);
+  const CellSet true_free = CellsIn(truth, CellState::kFree);
+  const CellSet free = CellsIn(estimate, CellState::kFree);
   for (int tolerance = 0; tolerance <= kMaxToleranceCells; ++tolerance) {
     const auto index = static_cast<std::size_t>(tolerance);
     scores.occupied[index] = ScoreState(true_walls, walls, scored, tolerance);
@@ -136,8 +136,8 @@ CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const Cel
   return scores;
 }
 
-CellMask KnownCells(const StateMap& map) {
-  CellMask mask(map.geometry);
+CellSet KnownCells(const StateMap& map) {
+  CellSet mask(map.geometry);
   for (std::size_t i = 0; i < map.states.size(); ++i) {
     mask.members[i] = map.states[i] != CellState::kUnknown;
   }
@@ -147,17 +147,17 @@ CellMask KnownCells(const StateMap& map) {
 }  // namespace
 
 MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
-                  const std::optional<CellMask>& observable) {
+                  const std::optional<CellSet>& observable) {
   GridGeometry geometry = Union(truth.geometry, estimate.geometry);
   if (observable) geometry = Union(geometry, observable->geometry);
   const StateMap truth_here = OnGeometry(truth, geometry);
   const StateMap estimate_here = OnGeometry(estimate, geometry);
-  CellMask everywhere(geometry);
+  CellSet everywhere(geometry);
   std::fill(everywhere.members.begin(), everywhere.members.end(), 1);
   MapScore score;
   score.all = ScoreCells(truth_here, estimate_here, everywhere, KnownCells(truth_here));
   if (observable) {
-    const CellMask seen = OnGeometry(*observable, geometry);
+    const CellSet seen = OnGeometry(*observable, geometry);
     score.observable = ScoreCells(truth_here, estimate_here, seen, seen);
   }
   return score;

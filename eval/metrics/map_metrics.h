@@ -13,7 +13,7 @@
 #include <array>
 #include <optional>
 
-#include "mapper/core/cell_mask.h"
+#include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
 
 namespace depthgrid {
@@ -60,6 +60,6 @@ struct MapScore {
 
 // Same resolution required of all three.
 MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
-                  const std::optional<CellMask>& observable);
+                  const std::optional<CellSet>& observable);
 
 }  // namespace depthgrid

@@ -26,21 +26,21 @@ StateMap Drawn(const std::vector<std::string>& rows, Cell min_cell = {}) {
   return map;
 }
 
-CellMask MaskDrawn(const std::vector<std::string>& rows, Cell min_cell = {}) {
+CellSet MaskDrawn(const std::vector<std::string>& rows, Cell min_cell = {}) {
   const StateMap drawn = Drawn(rows, min_cell);
-  CellMask mask(drawn.geometry);
+  CellSet mask(drawn.geometry);
   for (std::size_t i = 0; i < mask.members.size(); ++i) {
     mask.members[i] = drawn.states[i] == CellState::kOccupied;
   }
   return mask;
 }
 
-CellMask RandomMask(RandomStream& random) {
+CellSet RandomMask(RandomStream& random) {
   const GridGeometry geometry{0.05,
                               {-3, 7},
                               1 + static_cast<int>(random.Below(14)),
                               1 + static_cast<int>(random.Below(14))};
-  CellMask mask(geometry);
+  CellSet mask(geometry);
   const double density = random.Uniform() * random.Uniform();
   for (auto& member : mask.members) member = random.Uniform() < density;
   return mask;
@@ -50,7 +50,7 @@ TEST(SquaredDistances, AgreesWithBruteForce) {
   RandomStream random(7, RandomStage::kTest);
   int compared = 0;
   for (int i = 0; i < 300; ++i) {
-    const CellMask mask = RandomMask(random);
+    const CellSet mask = RandomMask(random);
     const auto fast = SquaredDistances(mask);
     for (std::size_t p = 0; p < mask.members.size(); ++p, ++compared) {
       const Cell a = mask.geometry.CellAt(p);
@@ -70,9 +70,9 @@ TEST(Grown, AgreesWithBruteForce) {
   RandomStream random(8, RandomStage::kTest);
   int compared = 0;
   for (int i = 0; i < 300; ++i) {
-    const CellMask mask = RandomMask(random);
+    const CellSet mask = RandomMask(random);
     const int radius = static_cast<int>(random.Below(4));
-    const CellMask grown = Grown(mask, radius);
+    const CellSet grown = Grown(mask, radius);
     for (std::size_t p = 0; p < mask.members.size(); ++p, ++compared) {
       const Cell a = mask.geometry.CellAt(p);
       bool near = false;

@@ -8,17 +8,17 @@
 
 namespace depthgrid {
 
-struct CellMask {
+struct CellSet {
   GridGeometry geometry;
-  std::vector<std::uint8_t> members;  // geometry.size(); 1 for a cell of the set, else 0
+  std::vector<std::uint8_t> members;  // geometry.size(); 1 for a member, else 0
 
-  CellMask() = default;
-  explicit CellMask(const GridGeometry& g) : geometry(g), members(g.size(), 0) {}
+  CellSet() = default;
+  explicit CellSet(const GridGeometry& g) : geometry(g), members(g.size(), 0) {}
   // False outside the rectangle.
   bool Has(const Cell& cell) const {
     return geometry.Contains(cell) && members[geometry.Index(cell)] != 0;
   }
-  bool operator==(const CellMask&) const = default;
+  bool operator==(const CellSet&) const = default;
 };
 
 }  // namespace depthgrid
