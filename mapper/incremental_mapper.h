@@ -1,6 +1,7 @@
 // The paper's Fig. 1 as a class: frames in, one report each, a corrected map and trajectory out.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,17 +23,23 @@ struct MapperResult {
   OccupancyMap map;
 };
 
+// Microseconds of CPU time. Only FrameReport::times depends on it; without one they stay zero.
+using CpuClock = std::function<double()>;
+
 class IncrementalMapper {
  public:
   // The camera may be absent when every frame brings a ready scan. Throws InputError for options
   // that contradict each other.
-  IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera);
+  IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
+                    CpuClock clock = {});
   ~IncrementalMapper();
   IncrementalMapper(IncrementalMapper&&) noexcept;
 
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses.
-  MapperResult Finish();
+  // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
+  // when SLAM is trusted alone (K = 0); frames without one keep their live pose.
+  MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
   // The map as it is known now.
   OccupancyMap CurrentMap() const;
 

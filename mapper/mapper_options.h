@@ -2,6 +2,8 @@
 #pragma once
 
 #include "mapper/core/options.h"
+#include "mapper/fuse/fusion_options.h"
+#include "mapper/grid/grid_options.h"
 
 namespace depthgrid {
 
@@ -9,6 +11,8 @@ enum class MapperMethod { kPaper, kSurfel };
 
 struct MapperOptions {
   MapperMethod method = MapperMethod::kPaper;
+  GridOptions grid;
+  FusionOptions fusion;
 
   void Visit(OptionsVisitor& v);
 };

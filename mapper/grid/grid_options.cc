@@ -1,0 +1,20 @@
+#include "mapper/grid/grid_options.h"
+
+namespace depthgrid {
+
+void GridOptions::Visit(OptionsVisitor& v) {
+  v.Number("resolution_m", resolution_m, {0.005, 1.0}, "side of a cell of submaps and map, metres");
+  v.Number("hit_prob", hit_prob, {0.5, 0.99}, "what a hit says of its cell");
+  v.Number("miss_prob", miss_prob, {0.01, 0.5}, "what a beam that passes says of a cell");
+  v.Number("min_prob", min_prob, {0.001, 0.49}, "lower clamp of a submap's cells");
+  v.Number("max_prob", max_prob, {0.51, 0.999}, "upper clamp of a submap's cells");
+  v.Choice("raster", raster, {{RasterRule::kLogOdds, "log_odds"}, {RasterRule::kCounts, "counts"}},
+           "how the finished map reads its cells");
+  v.Number("hit_weight", hit_weight, {0.1, 100.0}, "counts: what a hit weighs against a miss");
+  v.Number("min_observations", min_observations, {1, 1000},
+           "counts: cells seen by fewer scans stay unknown");
+  v.Number("clear_margin_cells", clear_margin_cells, {0.0, 10.0},
+           "finished map: clearing stops this many cells before a hit");
+}
+
+}  // namespace depthgrid

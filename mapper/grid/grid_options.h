@@ -1,0 +1,34 @@
+// Settings of the probability grids and of the map drawn at the end.
+#pragma once
+
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+// What the cells of the finished map say.
+enum class RasterRule {
+  kLogOdds,  // the submaps' rule: clamped sum of log-odds
+  kCounts,   // share of scans that ended in the cell, of all that saw it
+};
+
+struct GridOptions {
+  double resolution_m = 0.05;  // of submaps and of the finished map
+  // One update a cell and scan; values, clamps included, are Cartographer's (facts of its 2D
+  // defaults): a hit weighs five misses, and a changed world is relearnt within 22 hits.
+  double hit_prob = 0.55;
+  double miss_prob = 0.49;
+  double min_prob = 0.1;
+  double max_prob = 0.9;
+  RasterRule raster = RasterRule::kCounts;
+  // `counts`: what a hit weighs against a miss. 5 is the ratio of the log-odds above.
+  double hit_weight = 5.0;
+  // `counts`: cells seen by fewer scans stay unknown.
+  int min_observations = 1;
+  // The finished map: a beam stops clearing this many cells before its hit, so that noisy and
+  // grazing beams do not carve walls.
+  double clear_margin_cells = 0.0;
+
+  void Visit(OptionsVisitor& v);
+};
+
+}  // namespace depthgrid

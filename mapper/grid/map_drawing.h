@@ -1,0 +1,49 @@
+// The finished map: every stored scan drawn at its final pose. Storage is by tiles of 64 x 64
+// cells, made when a scan first touches them, so memory grows with the area seen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/grid/grid_options.h"
+#include "mapper/grid/scan_cells.h"
+
+namespace depthgrid {
+
+class MapDrawing {
+ public:
+  explicit MapDrawing(const GridOptions& options);
+
+  void Add(const Scan& scan, const Pose2& map_from_base);
+  // The smallest rectangle around all cells that were seen; empty when none was.
+  OccupancyMap Map() const;
+
+ private:
+  struct CellRecord {
+    std::uint32_t hits = 0;
+    std::uint32_t passes = 0;
+    int log_odds_units = 0;
+  };
+  struct Tile {
+    std::array<CellRecord, kWordCells * kWordCells> cells;  // row by row
+  };
+  using TileIndex = std::pair<int, int>;  // row, column: in units of 64 cells
+
+  Tile& TileAt(const TileIndex& index);
+  void AddMask(const CellMask& mask, bool hit);
+  float Probability(const CellRecord& cell) const;
+  GridGeometry SeenRectangle() const;
+
+  GridOptions options_;
+  int hit_units_;
+  int miss_units_;
+  int min_units_;
+  int max_units_;
+  std::map<TileIndex, std::unique_ptr<Tile>> tiles_;  // ordered: no result depends on addresses
+};
+
+}  // namespace depthgrid
