@@ -21,6 +21,8 @@ enum class RandomStage : std::uint32_t {
   kNavigability = 9,
   kSweep = 10,
   kTest = 11,
+  kLaserRange = 12,
+  kOdometry = 13,
 };
 
 // Four independent 32-bit words for (seed, stage, frame, item).
