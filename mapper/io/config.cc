@@ -350,6 +350,17 @@ bool Config::Has(const std::string& key_path) const {
   return Find(tree_->root, key_path).IsDefined();
 }
 
+Config Config::Only(const std::vector<std::string>& keys) const {
+  auto kept = std::make_unique<Tree>();
+  kept->place = tree_->place;
+  for (const auto& entry : tree_->root) {
+    if (std::find(keys.begin(), keys.end(), entry.first.Scalar()) != keys.end()) {
+      kept->root.force_insert(entry.first, entry.second);
+    }
+  }
+  return Config(std::move(kept));
+}
+
 std::vector<std::string> Config::Keys() const {
   std::vector<std::string> keys;
   for (const auto& entry : tree_->root) keys.push_back(entry.first.Scalar());

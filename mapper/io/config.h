@@ -35,6 +35,9 @@ class Config {
   // absent.
   std::vector<Config> TakeMaps(const std::string& key);
   bool Has(const std::string& key_path) const;
+  // A copy with only these of the top-level keys: for files of other programs, which may hold more
+  // than is read here.
+  Config Only(const std::vector<std::string>& keys) const;
   // The file (and line) this tree came from, for errors of whoever reads it.
   std::string Place() const;
   // Names of the top-level keys in file order.

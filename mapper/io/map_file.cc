@@ -1,0 +1,170 @@
+#include "mapper/io/map_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+#include "mapper/io/map_image.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::ShadeImage;
+using internal::ShadeRule;
+
+// Origins are printed with six decimals or more; a smaller offset from the lattice of cells is
+// rounding.
+constexpr double kOriginRoundingM = 1e-6;
+constexpr double kMaxOriginM = 1e6;
+
+struct MapYaml {
+  std::string image;
+  double resolution_m = 0.0;
+  std::vector<double> origin = {0.0, 0.0, 0.0};
+  std::string negate = "0";
+  ShadeRule rule;
+
+  void Visit(OptionsVisitor& v) {
+    v.Text("image", image, "image file, relative to this one");
+    v.Number("resolution", resolution_m, {1e-6, 1e4}, "metres a pixel");
+    v.Numbers("origin", origin, {-kMaxOriginM, kMaxOriginM},
+              "x, y, yaw of the lower left pixel's corner");
+    v.Text("negate", negate, "white is occupied");
+    v.Number("occupied_thresh", rule.thresholds.occupied_prob, {0.0, 1.0}, "occupied above");
+    v.Number("free_thresh", rule.thresholds.free_prob, {0.0, 1.0}, "free below");
+    v.Choice("mode", rule.mode,
+             {{MapMode::kTrinary, "trinary"}, {MapMode::kScale, "scale"}, {MapMode::kRaw, "raw"}},
+             "meaning of the shades");
+  }
+};
+
+MapYaml ReadYaml(const std::string& path) {
+  // Nav2's files may carry keys for other nodes (map_type).
+  const Config config = Config::FromFile(path).Only(
+      {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"});
+  for (const char* key : {"image", "resolution", "origin"}) {
+    if (!config.Has(key)) throw InputError(path, fmt::format("key '{}' is missing", key));
+  }
+  MapYaml yaml;
+  config.Read(yaml);
+  if (yaml.image.empty()) throw InputError(path, "image is empty, must name a file");
+  if (yaml.origin.size() != 2 && yaml.origin.size() != 3) {
+    throw InputError(path,
+                     fmt::format("origin has {} numbers, must be [x, y, yaw]", yaml.origin.size()));
+  }
+  yaml.origin.resize(3, 0.0);
+  if (yaml.negate != "0" && yaml.negate != "1" && yaml.negate != "true" && yaml.negate != "false") {
+    throw InputError(path, fmt::format("negate is '{}', must be 0 or 1", yaml.negate));
+  }
+  yaml.rule.negate = yaml.negate == "1" || yaml.negate == "true";
+  const auto& [occupied, free] = yaml.rule.thresholds;
+  if (free > occupied) {
+    throw InputError(path,
+                     fmt::format("free_thresh {} is above occupied_thresh {}", free, occupied));
+  }
+  return yaml;
+}
+
+// The lattice cell of the image's lower-left pixel, and how the lattice lies in the world.
+void Place(const MapYaml& yaml, MapFile& file) {
+  const Pose2 world_from_corner{yaml.origin[0], yaml.origin[1], WrapAngle(yaml.origin[2])};
+  const Pose2 level_from_corner = Pose2{0, 0, -world_from_corner.yaw_rad} * world_from_corner;
+  GridGeometry& geometry = file.map.geometry;
+  geometry.resolution_m = yaml.resolution_m;
+  geometry.min_cell = {static_cast<int>(std::lround(level_from_corner.x_m / yaml.resolution_m)),
+                       static_cast<int>(std::lround(level_from_corner.y_m / yaml.resolution_m))};
+  const Eigen::Vector2d corner_in_grid = geometry.OriginM();
+  file.world_from_grid =
+      world_from_corner * Inverse(Pose2{corner_in_grid.x(), corner_in_grid.y(), 0.0});
+  if (world_from_corner.yaw_rad == 0.0 &&
+      file.world_from_grid.translation().cwiseAbs().maxCoeff() < kOriginRoundingM) {
+    file.world_from_grid = Pose2{};
+  }
+}
+
+const char* NameOf(MapMode mode) {
+  if (mode == MapMode::kScale) return "scale";
+  return mode == MapMode::kRaw ? "raw" : "trinary";
+}
+
+}  // namespace
+
+MapFile ReadMap(const std::string& yaml_path) {
+  const MapYaml yaml = ReadYaml(yaml_path);
+  const fs::path image_path = fs::path(yaml_path).parent_path() / yaml.image;
+  const ShadeImage image = internal::ReadShades(image_path.string(), yaml.rule.mode);
+  MapFile file;
+  Place(yaml, file);
+  file.map.geometry.width_cells = image.width_px;
+  file.map.geometry.height_cells = image.height_px;
+  file.map.occupied_prob.reserve(file.map.geometry.size());
+  for (int v = image.height_px - 1; v >= 0; --v) {
+    for (int u = 0; u < image.width_px; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width_px) +
+                            static_cast<std::size_t>(u);
+      file.map.occupied_prob.push_back(
+          internal::OccupiedProb(image.shade[i], image.opaque[i], yaml.rule));
+    }
+  }
+  return file;
+}
+
+OccupancyMap AlignedMap(const MapFile& file) {
+  if (file.world_from_grid == Pose2{}) return file.map;
+  const GridGeometry& source = file.map.geometry;
+  const double r = source.resolution_m;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  for (const int x : {0, source.width_cells}) {
+    for (const int y : {0, source.height_cells}) {
+      const Eigen::Vector2d corner =
+          file.world_from_grid * Eigen::Vector2d(source.OriginM() + r * Eigen::Vector2d(x, y));
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  }
+  const Cell min_cell = CellOf(low, r);
+  const Cell max_cell = CellOf(high, r);
+  OccupancyMap aligned(
+      GridGeometry{r, min_cell, max_cell.x - min_cell.x + 1, max_cell.y - min_cell.y + 1});
+  const Pose2 grid_from_world = Inverse(file.world_from_grid);
+  for (std::size_t i = 0; i < aligned.occupied_prob.size(); ++i) {
+    const Eigen::Vector2d centre = CellCentre(aligned.geometry.CellAt(i), r);
+    aligned.occupied_prob[i] = file.map.At(CellOf(grid_from_world * centre, r));
+  }
+  return aligned;
+}
+
+void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode,
+              const StateThresholds& thresholds) {
+  Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,
+          "a map to write has cells");
+  const fs::path image_path =
+      fs::path(yaml_path).replace_extension(mode == MapMode::kScale ? ".scale.png" : ".pgm");
+  // Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
+  const StateThresholds written = mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : thresholds;
+  const Eigen::Vector2d origin = map.geometry.OriginM();
+  WriteFile(image_path.string(), internal::EncodeMapImage(map, mode, thresholds));
+  WriteFile(yaml_path,
+            fmt::format("image: {}\nmode: {}\nresolution: {:.9g}\norigin: [{:.9g}, {:.9g}, 0]\n"
+                        "negate: 0\noccupied_thresh: {}\nfree_thresh: {}\n",
+                        image_path.filename().string(), NameOf(mode), map.geometry.resolution_m,
+                        origin.x(), origin.y(), written.occupied_prob, written.free_prob));
+}
+
+void WriteMap(const std::string& yaml_path, const StateMap& map) {
+  OccupancyMap certain(map.geometry);
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    if (map.states[i] != CellState::kUnknown) {
+      certain.occupied_prob[i] = map.states[i] == CellState::kOccupied ? 1.0F : 0.0F;
+    }
+  }
+  WriteMap(yaml_path, certain);
+}
+
+}  // namespace depthgrid

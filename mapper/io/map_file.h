@@ -1,0 +1,40 @@
+// Maps as ROS's map_server and Nav2 keep them: a YAML file beside an image (docs/formats.md,
+// "Maps").
+#pragma once
+
+#include <string>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/core/pose2.h"
+
+namespace depthgrid {
+
+// How a pixel's shade is read, with p = (255 - x) / 255, or x / 255 when `negate` is set:
+// trinary: p above occupied_thresh is occupied, below free_thresh free, anything else unknown;
+// scale:   the same, but the shades between the thresholds are probabilities and only transparent
+//          pixels unknown;
+// raw:     x is the occupancy in percent, above 100 unknown.
+enum class MapMode { kTrinary, kScale, kRaw };
+
+// A map as read. The thresholds of the file have been applied: certain cells have probability 0 or
+// 1, unknown ones NaN, so that StatesOf with the default thresholds gives the states Nav2 gives.
+struct MapFile {
+  OccupancyMap map;
+  // From the frame of the map's cells to the world the file speaks of: the identity unless the
+  // origin has a yaw or is no multiple of the resolution.
+  Pose2 world_from_grid;
+};
+
+// Throws InputError for a missing, unreadable or contradictory YAML or image (PGM or PNG).
+MapFile ReadMap(const std::string& yaml_path);
+
+// The map redrawn on world-aligned cells: each takes the value of the cell its centre falls into.
+OccupancyMap AlignedMap(const MapFile& file);
+
+// Writes `yaml_path` and the image beside it: the same name with .pgm, or for `scale`, which needs
+// transparency, .scale.png.
+void WriteMap(const std::string& yaml_path, const OccupancyMap& map,
+              MapMode mode = MapMode::kTrinary, const StateThresholds& thresholds = {});
+void WriteMap(const std::string& yaml_path, const StateMap& map);
+
+}  // namespace depthgrid

@@ -1,0 +1,111 @@
+#include "mapper/io/map_image.h"
+
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/pgm.h"
+#include "mapper/io/png.h"
+
+namespace depthgrid::internal {
+namespace {
+
+constexpr double kWhite = 255.0;
+constexpr double kFullPercent = 100.0;
+// What map_saver writes; 205 lies between the default thresholds.
+constexpr std::uint8_t kOccupiedPixel = 0;
+constexpr std::uint8_t kFreePixel = 254;
+constexpr std::uint8_t kUnknownPixel = 205;
+constexpr std::uint8_t kUnknownRawPixel = 255;
+
+ShadeImage ShadesOfPgm(const PgmImage& pgm) {
+  ShadeImage image{pgm.width_px, pgm.height_px, {}, std::vector<bool>(pgm.values.size(), true)};
+  image.shade.reserve(pgm.values.size());
+  for (const auto value : pgm.values) {
+    image.shade.push_back(static_cast<double>(value) / pgm.max_value);
+  }
+  return image;
+}
+
+ShadeImage ShadesOfPng(const RgbaImage& png, MapMode mode) {
+  const std::size_t pixels = png.rgba.size() / 4;
+  ShadeImage image{png.width_px, png.height_px, {}, {}};
+  bool has_alpha = false;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    image.opaque.push_back(png.rgba[4 * i + 3] == 255);
+    has_alpha = has_alpha || !image.opaque.back();
+  }
+  // Nav2 averages the channels, and in trinary mode opacity as a fourth one.
+  const int channels = has_alpha && mode == MapMode::kTrinary ? 4 : 3;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    int sum = 0;
+    for (int c = 0; c < channels; ++c) sum += png.rgba[4 * i + static_cast<std::size_t>(c)];
+    image.shade.push_back(sum / (channels * kWhite));
+  }
+  return image;
+}
+
+std::uint8_t PixelOf(float occupied_prob, MapMode mode, const StateThresholds& thresholds) {
+  if (mode == MapMode::kRaw) {
+    return std::isnan(occupied_prob)
+               ? kUnknownRawPixel
+               : static_cast<std::uint8_t>(std::lround(occupied_prob * kFullPercent));
+  }
+  if (mode == MapMode::kScale) {
+    return std::isnan(occupied_prob)
+               ? kUnknownPixel
+               : static_cast<std::uint8_t>(std::lround((1.0 - occupied_prob) * kWhite));
+  }
+  switch (StateOf(occupied_prob, thresholds)) {
+    case CellState::kOccupied:
+      return kOccupiedPixel;
+    case CellState::kFree:
+      return kFreePixel;
+    case CellState::kUnknown:
+      break;
+  }
+  return kUnknownPixel;
+}
+
+}  // namespace
+
+ShadeImage ReadShades(const std::string& path, MapMode mode) {
+  const std::string bytes = ReadFile(path);
+  if (bytes.empty()) throw InputError(path, "is empty, must be a PGM or PNG image");
+  if (IsPgm(bytes)) return ShadesOfPgm(DecodePgm(bytes, path));
+  if (bytes.starts_with("\x89PNG")) return ShadesOfPng(DecodeRgbaPng(bytes, path), mode);
+  throw InputError(path, "is neither a PGM nor a PNG image");
+}
+
+float OccupiedProb(double shade, bool opaque, const ShadeRule& rule) {
+  if (rule.mode == MapMode::kRaw) {
+    const double percent = std::round(shade * kWhite);
+    return percent <= kFullPercent ? static_cast<float>(percent / kFullPercent) : kUnknownProb;
+  }
+  const double p = rule.negate ? shade : 1.0 - shade;
+  const auto& [occupied, free] = rule.thresholds;
+  if (rule.mode == MapMode::kScale && !opaque) return kUnknownProb;
+  if (p > occupied) return 1.0F;
+  if (p < free) return 0.0F;
+  if (rule.mode == MapMode::kTrinary) return kUnknownProb;
+  return static_cast<float>((p - free) / (occupied - free));
+}
+
+std::string EncodeMapImage(const OccupancyMap& map, MapMode mode,
+                           const StateThresholds& thresholds) {
+  const auto& [resolution_m, min_cell, width, height] = map.geometry;
+  GreyImage grey{width, height, {}};
+  RgbaImage rgba{width, height, {}};
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const float prob = map.At({min_cell.x + u, min_cell.y + height - 1 - v});
+      const std::uint8_t pixel = PixelOf(prob, mode, thresholds);
+      grey.grey.push_back(pixel);
+      const std::uint8_t alpha = std::isnan(prob) ? 0 : 255;
+      if (mode == MapMode::kScale) rgba.rgba.insert(rgba.rgba.end(), {pixel, pixel, pixel, alpha});
+    }
+  }
+  return mode == MapMode::kScale ? EncodeRgbaPng(rgba) : EncodePgm(grey);
+}
+
+}  // namespace depthgrid::internal
