@@ -2,6 +2,17 @@
 
 namespace depthgrid {
 
+void TriangleMesh::AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (a == b || b == c || c == a) return;
+  triangles.push_back({a, b, c});
+  material_of_triangle.push_back(0);
+}
+
+void TriangleMesh::AddQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  AddTriangle(a, b, c);
+  AddTriangle(a, c, d);
+}
+
 void Append(TriangleMesh& whole, const TriangleMesh& part) {
   const auto offset = static_cast<std::uint32_t>(whole.vertices.size());
   whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());
@@ -11,6 +22,37 @@ void Append(TriangleMesh& whole, const TriangleMesh& part) {
   whole.material_of_triangle.insert(whole.material_of_triangle.end(),
                                     part.material_of_triangle.begin(),
                                     part.material_of_triangle.end());
+}
+
+TriangleMesh Transformed(const TriangleMesh& mesh, const Eigen::Affine3d& to_from_mesh) {
+  TriangleMesh moved = mesh;
+  for (auto& vertex : moved.vertices) {
+    const Eigen::Vector3d point = to_from_mesh * vertex.cast<double>();
+    vertex = point.cast<float>();
+  }
+  return moved;
+}
+
+Eigen::Vector3d ScaledNormal(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
+  const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>();
+  const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>();
+  return (b - a).cross(c - a);
+}
+
+Eigen::AlignedBox3f BoundsOf(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3f bounds;
+  for (const auto& vertex : mesh.vertices) bounds.extend(vertex);
+  return bounds;
+}
+
+double SignedVolume(const TriangleMesh& mesh) {
+  double six_volumes = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    six_volumes += mesh.vertices[mesh.triangles[i][0]].cast<double>().dot(ScaledNormal(mesh, i));
+  }
+  return six_volumes / 6.0;
 }
 
 }  // namespace depthgrid

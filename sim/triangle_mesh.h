@@ -2,7 +2,7 @@
 // the truth grids know. Every primitive and every mesh file becomes this.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -15,9 +15,30 @@ struct TriangleMesh {
       triangles;  // indices into vertices, counter-clockwise from outside
   std::vector<std::uint16_t>
       material_of_triangle;  // index into Scene::materials; same length as triangles
+
+  std::uint32_t AddVertex(const Eigen::Vector3d& point) {
+    vertices.push_back(point.cast<float>());
+    return static_cast<std::uint32_t>(vertices.size() - 1);
+  }
+  // Nothing for a triangle that uses a vertex twice.
+  void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+  // The quadrilateral a b c d, counter-clockwise from outside, cut along a-c.
+  void AddQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 };
 
 // Adds `part` behind `whole`, its vertices shifted to their new indices.
 void Append(TriangleMesh& whole, const TriangleMesh& part);
+
+// The mesh moved by a rotation, shift and positive scale.
+TriangleMesh Transformed(const TriangleMesh& mesh, const Eigen::Affine3d& to_from_mesh);
+
+// Twice the triangle's area times its unit normal.
+Eigen::Vector3d ScaledNormal(const TriangleMesh& mesh, std::size_t triangle);
+
+// The box around all vertices; empty when there are none.
+Eigen::AlignedBox3f BoundsOf(const TriangleMesh& mesh);
+
+// Enclosed volume of a closed mesh, positive when its triangles face outward (divergence theorem).
+double SignedVolume(const TriangleMesh& mesh);
 
 }  // namespace depthgrid

@@ -1,0 +1,27 @@
+// Plane polygons: outlines of prisms and lathes.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace depthgrid {
+
+using Polygon = std::vector<Eigen::Vector2d>;  // corners in order; the last joins the first
+
+// Positive for counter-clockwise corners.
+double SignedArea(const Polygon& polygon);
+
+// True when no two edges touch except neighbours in their common corner, and the area is not zero.
+bool IsSimple(const Polygon& polygon);
+
+// Triangles (corner indices, counter-clockwise) of a simple counter-clockwise polygon, by clipping
+// ears: quadratic, for outlines of up to a few hundred corners.
+std::vector<std::array<std::uint32_t, 3>> Triangulate(const Polygon& polygon);
+
+// Cuts each corner `rounds` times at a quarter of its edges (Chaikin 1974): tends to a quadratic
+// B-spline.
+Polygon CutCorners(const Polygon& polygon, int rounds);
+
+}  // namespace depthgrid

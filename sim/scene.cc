@@ -1,0 +1,93 @@
+#include "sim/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "sim/floor.h"
+#include "sim/mesh_file.h"
+#include "sim/scene_file.h"
+#include "sim/scene_limits.h"
+
+namespace depthgrid {
+namespace {
+
+std::string LowerCaseExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void RequireSaneMesh(const TriangleMesh& mesh, const std::string& path) {
+  if (mesh.triangles.empty()) throw InputError(path, "the scene has no triangles");
+  for (const auto& vertex : mesh.vertices) {
+    if (!vertex.allFinite()) throw InputError(path, "a vertex of the scene is not finite");
+  }
+  const double extent_m = BoundsOf(mesh).sizes().maxCoeff();
+  if (extent_m > kMaxSceneExtentM) {
+    throw InputError(path, fmt::format("the scene is {:.6g} m across, at most {} m; in other units "
+                                       "than metres?",
+                                       extent_m, kMaxSceneExtentM));
+  }
+}
+
+double FloorOf(const TriangleMesh& mesh, const std::optional<double>& stated_z_m,
+               const std::string& path) {
+  if (!stated_z_m) {
+    if (const auto floor_z_m = FindFloor(mesh)) return *floor_z_m;
+    throw InputError(path,
+                     "the scene has no floor: no level surface facing up covers a tenth of it");
+  }
+  if (HasFloorAt(mesh, *stated_z_m)) return *stated_z_m;
+  throw InputError(path, fmt::format("floor_z_m is '{}', but no level surface facing up covers a "
+                                     "tenth of the scene there",
+                                     *stated_z_m));
+}
+
+// A lamp under the middle of the ceiling, or well above an open world.
+PointLight DefaultLight(const Scene& scene) {
+  constexpr float kBelowCeilingM = 0.3F;
+  constexpr float kOpenWorldHeightM = 3.0F;
+  const Eigen::AlignedBox3f bounds = BoundsOf(scene.mesh);
+  PointLight light;
+  light.at = bounds.center();
+  light.at.z() = scene.ceiling_z_m ? static_cast<float>(*scene.ceiling_z_m) - kBelowCeilingM
+                                   : bounds.max().z() + kOpenWorldHeightM;
+  const float reach_m = light.at.z() - static_cast<float>(scene.floor_z_m);
+  light.intensity = Eigen::Vector3f::Constant(0.5F * reach_m * reach_m);
+  return light;
+}
+
+SceneFile ReadAsFile(const std::string& path) {
+  const std::string extension = LowerCaseExtension(path);
+  if (extension == ".yaml" || extension == ".yml") return ReadSceneFile(path);
+  if (!IsMeshFile(path)) {
+    throw InputError(path,
+                     "is neither a scene (.yaml) nor a mesh file (.obj .ply .stl .gltf .glb "
+                     ".dae)");
+  }
+  SceneFile file;
+  MeshFile mesh = ReadMeshFile(path);
+  file.scene.name = std::filesystem::path(path).stem().string();
+  file.scene.mesh = std::move(mesh.mesh);
+  file.scene.materials = std::move(mesh.materials);
+  return file;
+}
+
+}  // namespace
+
+Scene LoadScene(const std::string& path) {
+  SceneFile file = ReadAsFile(path);
+  Scene scene = std::move(file.scene);
+  RequireSaneMesh(scene.mesh, path);
+  scene.floor_z_m = FloorOf(scene.mesh, file.floor_z_m, path);
+  scene.ceiling_z_m = FindCeiling(scene.mesh, scene.floor_z_m);
+  if (scene.lighting.lights.empty()) scene.lighting.lights.push_back(DefaultLight(scene));
+  return scene;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,319 @@
+#include "sim/scene_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "sim/mesh_file.h"
+#include "sim/scene_limits.h"
+#include "sim/shapes.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kMaxGroupDepth = 16;
+// The material of triangles that take the one of the `use` around them.
+constexpr std::uint16_t kInherited = 0xFFFF;
+constexpr std::size_t kMaxMaterials = 0xFFFF;
+
+// Colours are written as colour pickers show them, 0..255.
+Eigen::Vector3f LinearFrom255(const std::array<double, 3>& srgb) {
+  return LinearFromSrgb(Eigen::Vector3d(srgb[0], srgb[1], srgb[2]).cast<float>() / 255.0F);
+}
+
+struct MaterialOptions {
+  std::array<double, 3> colour = {200, 200, 200};
+  std::array<double, 3> second_colour = {-1, -1, -1};
+  TextureKind texture = TextureKind::kPlain;
+  double scale_m = 0.1;
+  Axis grain = Axis::kX;
+  double gloss = 0.0;
+  double glow = 0.0;
+
+  void Visit(OptionsVisitor& v) {
+    v.Tuple("colour", colour, {0, 255}, "sRGB, 0 to 255");
+    v.Tuple("second_colour", second_colour, {0, 255}, "of the pattern; default: colour, darker");
+    v.Choice("texture", texture,
+             {{TextureKind::kPlain, "plain"},
+              {TextureKind::kWood, "wood"},
+              {TextureKind::kChecker, "checker"},
+              {TextureKind::kStripes, "stripes"},
+              {TextureKind::kFabric, "fabric"},
+              {TextureKind::kPlaster, "plaster"},
+              {TextureKind::kTiles, "tiles"},
+              {TextureKind::kPlanks, "planks"},
+              {TextureKind::kCarpet, "carpet"},
+              {TextureKind::kPaper, "paper"},
+              {TextureKind::kPainting, "painting"},
+              {TextureKind::kStone, "stone"}},
+             "pattern");
+    v.Number("scale_m", scale_m, {1e-4, 100.0}, "period of the pattern");
+    v.Choice("grain", grain, {{Axis::kX, "x"}, {Axis::kY, "y"}, {Axis::kZ, "z"}},
+             "world axis of wood, planks and stripes");
+    v.Number("gloss", gloss, {0.0, 1.0}, "share of a highlight");
+    v.Number("glow", glow, {0.0, 100.0}, "light given off, times the colour");
+  }
+  Material Make(const std::string& name) const {
+    constexpr float kDarker = 0.6F;  // of the pattern's second colour when none is given
+    Material m;
+    m.name = name;
+    m.colour = LinearFrom255(colour);
+    m.second_colour =
+        second_colour[0] < 0 ? Eigen::Vector3f(kDarker * m.colour) : LinearFrom255(second_colour);
+    m.texture = texture;
+    m.scale_m = static_cast<float>(scale_m);
+    m.grain = grain;
+    m.gloss = static_cast<float>(gloss);
+    m.glow = static_cast<float>(glow);
+    return m;
+  }
+};
+
+struct LightOptions {
+  std::array<double, 3> at = {0, 0, 0};
+  std::array<double, 3> colour = {255, 255, 255};
+  double strength = 1.0;
+  void Visit(OptionsVisitor& v) {
+    v.Tuple("at", at, {-kMaxSceneExtentM, kMaxSceneExtentM}, "where the lamp is");
+    v.Tuple("colour", colour, {0, 255}, "sRGB, 0 to 255");
+    v.Number("strength", strength, {0.0, 1e6}, "brightness of a white surface 1 m away");
+  }
+};
+
+struct LightingOptions {
+  std::array<double, 3> ambient = {175, 175, 178};
+  std::array<double, 3> sky = {205, 225, 250};
+  void Visit(OptionsVisitor& v) {
+    v.Tuple("ambient", ambient, {0, 255}, "light from all sides, sRGB of a white ceiling");
+    v.Tuple("sky", sky, {0, 255}, "sRGB where there is no surface");
+  }
+};
+
+struct FileOptions {
+  std::string name;
+  double floor_z_m = 0.0;
+  void Visit(OptionsVisitor& v) {
+    v.Text("name", name, "shown in lists; default: the file's name");
+    v.Number("floor_z_m", floor_z_m, {-kMaxSceneExtentM, kMaxSceneExtentM},
+             "height of the floor; default: found");
+  }
+};
+
+struct UseOptions {
+  ItemOptions item;
+  std::string group;
+  void Visit(OptionsVisitor& v) {
+    item.Visit(v);
+    v.Text("group", group, "which group to place");
+  }
+};
+
+struct MeshOptions {
+  ItemOptions item;
+  std::string file;
+  UpAxis up = UpAxis::kAuto;
+  void Visit(OptionsVisitor& v) {
+    item.Visit(v);
+    v.Text("file", file, "mesh file, relative to this file");
+    v.Choice("up", up,
+             {{UpAxis::kAuto, "auto"}, {UpAxis::kX, "x"}, {UpAxis::kY, "y"}, {UpAxis::kZ, "z"}},
+             "the file's axis that points up");
+  }
+};
+
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = NearestWord(word, known);
+  return nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest);
+}
+
+struct Group {
+  std::string name;
+  std::vector<Config> items;
+  std::string place;
+  std::optional<TriangleMesh> mesh;  // once built
+  bool being_built = false;
+};
+
+class SceneReader {
+ public:
+  SceneFile Read(const std::string& path) {
+    path_ = path;
+    Config config = Config::FromFile(path);
+    ReadMaterials(config.Take("materials"));
+    ReadGroups(config.Take("groups"));
+    ReadLighting(config.Take("lighting"));
+    Config trajectories = config.Take("trajectories");
+    for (const auto& name : trajectories.Keys()) {
+      scene_.trajectories.emplace(name, trajectories.Take(name));
+    }
+    scene_.mesh = BuildItems(config.TakeMaps("shapes"), 0);
+    for (auto& material : scene_.mesh.material_of_triangle) {
+      if (material == kInherited) material = 0;
+    }
+    const bool has_floor = config.Has("floor_z_m");
+    FileOptions options;
+    options.name = std::filesystem::path(path).stem().string();
+    config.Read(options);
+    scene_.name = options.name;
+    SceneFile file{std::move(scene_), {}};
+    if (has_floor) file.floor_z_m = options.floor_z_m;
+    return file;
+  }
+
+ private:
+  void ReadMaterials(Config materials) {
+    scene_.materials.push_back(MaterialOptions().Make("default"));
+    for (const auto& name : materials.Keys()) {
+      MaterialOptions options;
+      materials.Take(name).Read(options);
+      AddMaterial(options.Make(name));
+    }
+  }
+
+  void AddMaterial(Material material) {
+    if (scene_.materials.size() >= kMaxMaterials) throw InputError(path_, "too many materials");
+    scene_.materials.push_back(std::move(material));
+  }
+
+  void ReadGroups(Config groups) {
+    for (const auto& name : groups.Keys()) {
+      const std::string place = groups.Place();
+      groups_.push_back({name, groups.TakeMaps(name), place, {}, false});
+    }
+  }
+
+  void ReadLighting(Config lighting) {
+    for (const auto& config : lighting.TakeMaps("lights")) {
+      LightOptions light;
+      config.Read(light);
+      if (scene_.lighting.lights.size() >= kMaxLights) {
+        throw InputError(config.Place(), fmt::format("more than {} lights", kMaxLights));
+      }
+      PointLight point;
+      point.at = Eigen::Vector3d(light.at[0], light.at[1], light.at[2]).cast<float>();
+      point.intensity = static_cast<float>(light.strength) * LinearFrom255(light.colour);
+      scene_.lighting.lights.push_back(point);
+    }
+    LightingOptions options;
+    lighting.Read(options);
+    scene_.lighting.ambient = LinearFrom255(options.ambient);
+    scene_.lighting.sky = LinearFrom255(options.sky);
+  }
+
+  TriangleMesh BuildItems(const std::vector<Config>& items, int depth) {
+    TriangleMesh whole;
+    for (const Config& config : items) {
+      const BuiltItem built = BuildItem(config, depth);
+      const std::size_t total =
+          whole.triangles.size() +
+          built.mesh.triangles.size() * static_cast<std::size_t>(built.item.count);
+      if (total > kMaxSceneTriangles) {
+        throw InputError(config.Place(), fmt::format("more than {} triangles", kMaxSceneTriangles));
+      }
+      for (const auto& placement : PlacementsOf(built.item)) {
+        Append(whole, Transformed(built.mesh, placement));
+      }
+    }
+    return whole;
+  }
+
+  // The item in its own axes, its materials set.
+  BuiltItem BuildItem(const Config& config, int depth) {
+    std::vector<std::string> kinds = ShapeNames();
+    kinds.insert(kinds.end(), {"mesh", "use"});
+    if (!config.Has("shape")) {
+      throw InputError(config.Place(), fmt::format("'shape' is missing, must be one of {}",
+                                                   fmt::join(kinds, ", ")));
+    }
+    const std::string kind = config.List("shape").front();
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+      throw InputError(config.Place(),
+                       fmt::format("shape is '{}', must be one of {}{}", kind,
+                                   fmt::join(kinds, ", "), DidYouMean(kind, kinds)));
+    }
+    if (kind == "use") return BuildUse(config, depth);
+    if (kind == "mesh") return BuildMesh(config);
+    BuiltItem built = BuildShape(kind, config);
+    const std::uint16_t material = MaterialIndex(built.item.material, config.Place());
+    std::fill(built.mesh.material_of_triangle.begin(), built.mesh.material_of_triangle.end(),
+              material);
+    return built;
+  }
+
+  BuiltItem BuildUse(const Config& config, int depth) {
+    UseOptions use;
+    config.Read(use);
+    if (depth >= kMaxGroupDepth) {
+      throw InputError(config.Place(),
+                       fmt::format("groups are nested deeper than {}", kMaxGroupDepth));
+    }
+    BuiltItem built{use.item, GroupMesh(use.group, config.Place(), depth)};
+    if (!use.item.material.empty()) {
+      const std::uint16_t material = MaterialIndex(use.item.material, config.Place());
+      std::replace(built.mesh.material_of_triangle.begin(), built.mesh.material_of_triangle.end(),
+                   kInherited, material);
+    }
+    return built;
+  }
+
+  const TriangleMesh& GroupMesh(const std::string& name, const std::string& place, int depth) {
+    std::vector<std::string> names;
+    for (Group& group : groups_) {
+      names.push_back(group.name);
+      if (group.name != name) continue;
+      if (group.being_built) throw InputError(place, fmt::format("group '{}' uses itself", name));
+      if (!group.mesh) {
+        group.being_built = true;
+        group.mesh = BuildItems(group.items, depth + 1);
+        group.being_built = false;
+      }
+      return *group.mesh;
+    }
+    throw InputError(place,
+                     fmt::format("group '{}' is not in 'groups'{}", name, DidYouMean(name, names)));
+  }
+
+  BuiltItem BuildMesh(const Config& config) {
+    MeshOptions options;
+    config.Read(options);
+    if (options.file.empty()) throw InputError(config.Place(), "'file' is missing");
+    const auto file = std::filesystem::path(path_).parent_path() / options.file;
+    MeshFile read = ReadMeshFile(file.string(), 1.0, options.up);
+    if (!options.item.material.empty()) {
+      const std::uint16_t material = MaterialIndex(options.item.material, config.Place());
+      std::fill(read.mesh.material_of_triangle.begin(), read.mesh.material_of_triangle.end(),
+                material);
+    } else {
+      const auto first = static_cast<std::uint16_t>(scene_.materials.size());
+      for (auto& material : read.materials) AddMaterial(std::move(material));
+      for (auto& material : read.mesh.material_of_triangle) {
+        material = static_cast<std::uint16_t>(material + first);
+      }
+    }
+    return {options.item, std::move(read.mesh)};
+  }
+
+  std::uint16_t MaterialIndex(const std::string& name, const std::string& place) const {
+    if (name.empty()) return kInherited;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+      if (scene_.materials[i].name == name) return static_cast<std::uint16_t>(i);
+      names.push_back(scene_.materials[i].name);
+    }
+    throw InputError(
+        place, fmt::format("material '{}' is not in 'materials'{}", name, DidYouMean(name, names)));
+  }
+
+  std::string path_;
+  Scene scene_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace
+
+SceneFile ReadSceneFile(const std::string& path) { return SceneReader().Read(path); }
+
+}  // namespace depthgrid

@@ -1,0 +1,12 @@
+// What counts as a scene of sane size: beyond these a file is broken or in other units.
+#pragma once
+
+#include <cstddef>
+
+namespace depthgrid {
+
+constexpr double kMaxSceneExtentM = 2000.0;             // the largest buildings and sites
+constexpr std::size_t kMaxSceneTriangles = 20'000'000;  // about 2.5 GB with Embree's tree
+constexpr std::size_t kMaxMeshFileBytes = std::size_t{1} << 30U;
+
+}  // namespace depthgrid
