@@ -1,0 +1,52 @@
+#include "mapper/match/bicubic.h"
+
+#include <array>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// Weights of the four neighbours of a fraction t in [0, 1) between the second and the third.
+struct SplineWeights {
+  std::array<double, 4> value;
+  std::array<double, 4> first;
+  std::array<double, 4> second;
+};
+
+SplineWeights CatmullRom(double t) {
+  const double t2 = t * t;
+  const double t3 = t2 * t;
+  return {{0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0),
+           0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)},
+          {0.5 * (-3.0 * t2 + 4.0 * t - 1.0), 0.5 * (9.0 * t2 - 10.0 * t),
+           0.5 * (-9.0 * t2 + 8.0 * t + 1.0), 0.5 * (3.0 * t2 - 2.0 * t)},
+          {-3.0 * t + 2.0, 9.0 * t - 5.0, -9.0 * t + 4.0, 3.0 * t - 1.0}};
+}
+
+}  // namespace
+
+BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
+  const double r = view.geometry.resolution_m;
+  const double u = point_in_map.x() / r - 0.5;  // values sit at cell centres
+  const double v = point_in_map.y() / r - 0.5;
+  const double u0 = std::floor(u);
+  const double v0 = std::floor(v);
+  const SplineWeights wx = CatmullRom(u - u0);
+  const SplineWeights wy = CatmullRom(v - v0);
+  BicubicSample sample;
+  for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double p = view.At({static_cast<int>(u0) - 1 + static_cast<int>(i),
+                                static_cast<int>(v0) - 1 + static_cast<int>(j)});
+      sample.value += wx.value[i] * wy.value[j] * p;
+      sample.dx += wx.first[i] * wy.value[j] * p / r;
+      sample.dy += wx.value[i] * wy.first[j] * p / r;
+      sample.dxx += wx.second[i] * wy.value[j] * p / (r * r);
+      sample.dxy += wx.first[i] * wy.first[j] * p / (r * r);
+      sample.dyy += wx.value[i] * wy.second[j] * p / (r * r);
+    }
+  }
+  return sample;
+}
+
+}  // namespace depthgrid

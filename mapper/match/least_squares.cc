@@ -1,0 +1,101 @@
+#include "mapper/match/least_squares.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// A step smaller than this ends the iteration: 100 times below the promised 1e-4 m.
+constexpr double kStepTolerance = 1e-6;
+
+// Moving by one unit of a coordinate moves points by this many metres (root mean square): makes
+// metres and radians comparable.
+Eigen::Vector3d CoordinateScale(const MatchPoints& points) {
+  double sum_m2 = 0.0;
+  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
+    sum_m2 += points.x_m[i] * points.x_m[i] + points.y_m[i] * points.y_m[i];
+  }
+  const double arm_m = std::sqrt(sum_m2 / points.size());
+  return {1.0, 1.0, std::max(arm_m, 1e-3)};
+}
+
+// The smallest of a few shifts mu >= 0 for which H + mu I is safely positive definite, and the
+// step it gives.
+Eigen::Vector3d DampedStep(const Eigen::Matrix3d& hessian, const Eigen::Vector3d& gradient,
+                           double damping) {
+  double shift = damping;
+  const double largest = hessian.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0)) return Eigen::Vector3d::Zero();
+  const double least = 1e-4 * largest;
+  while (true) {
+    const Eigen::LLT<Eigen::Matrix3d> llt(hessian + shift * Eigen::Matrix3d::Identity());
+    if (llt.info() == Eigen::Success &&
+        llt.matrixLLT().diagonal().cwiseAbs2().minCoeff() > 0.5 * least) {
+      return -llt.solve(gradient);
+    }
+    shift = std::max(4.0 * shift, least);
+  }
+}
+
+}  // namespace
+
+void LeastSquaresOptions::Visit(OptionsVisitor& v) {
+  v.Choice("method", method, {{SolverMethod::kFast, "fast"}, {SolverMethod::kCeres, "ceres"}},
+           "the solver; both find the same minimum");
+  v.Number("max_iterations", max_iterations, {1, 1000}, "iterations before giving up");
+  v.Number("prior_translation_weight_per_m", prior_translation_weight_per_m, {0.0, 1e4},
+           "pull of the predicted position; 0 is prior-free, Cartographer has 10");
+  v.Number("prior_rotation_weight_per_rad", prior_rotation_weight_per_rad, {0.0, 1e4},
+           "pull of the predicted yaw; 0 is prior-free, Cartographer has 40");
+}
+
+LeastSquares::LeastSquares(const LeastSquaresOptions& options) : options_(options) {}
+
+LeastSquaresMatch LeastSquares::Solve(const MatchPoints& points, const ProbabilityView& view,
+                                      const Pose2& seed_map_from_base,
+                                      const Pose2& predicted_map_from_base) {
+  LeastSquaresMatch match{.map_from_base = seed_map_from_base};
+  if (points.size() == 0) return match;
+  const MatchPrior prior{predicted_map_from_base, options_.prior_translation_weight_per_m,
+                         options_.prior_rotation_weight_per_rad};
+  if (options_.method == SolverMethod::kCeres) {
+    return SolveWithCeres(points, view, seed_map_from_base, prior, options_.max_iterations);
+  }
+  const auto evaluate = [&](const Pose2& pose) {
+    MatchCost cost = EvaluateMatchCost(points, view, pose);
+    prior.AddTo(pose, cost);
+    return cost;
+  };
+  const Eigen::Vector3d scale = CoordinateScale(points);
+  const double max_step_m = view.geometry.resolution_m;
+  MatchCost here = evaluate(match.map_from_base);
+  double damping = 0.0;
+  while (match.iterations < options_.max_iterations) {
+    ++match.iterations;
+    const Eigen::Vector3d unscale = scale.cwiseInverse();
+    const Eigen::Matrix3d hessian = unscale.asDiagonal() * here.hessian * unscale.asDiagonal();
+    Eigen::Vector3d step = DampedStep(hessian, unscale.cwiseProduct(here.gradient), damping);
+    const double length_m = step.norm();
+    if (length_m > max_step_m) step *= max_step_m / length_m;
+    const Pose2 candidate =
+        Pose2::FromVector(match.map_from_base.vector() + unscale.cwiseProduct(step));
+    if (length_m < kStepTolerance) {
+      match.converged = true;
+      break;
+    }
+    const MatchCost there = evaluate(candidate);
+    if (there.value <= here.value) {
+      match.map_from_base = candidate;
+      here = there;
+      damping *= 0.1;
+    } else {
+      damping = std::max(10.0 * damping, 1e-2 * hessian.cwiseAbs().maxCoeff());
+    }
+  }
+  match.cost = here.value;
+  return match;
+}
+
+}  // namespace depthgrid

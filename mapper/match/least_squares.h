@@ -1,0 +1,47 @@
+// Bicubic least squares (Eq. 4): argmin_T sum_k (1 - M_s(T h_k))^2, to a local minimum near the
+// seed (docs/math.md, "Scan matching").
+#pragma once
+
+#include "mapper/core/options.h"
+#include "mapper/match/match_cost.h"
+
+namespace depthgrid {
+
+enum class SolverMethod { kCeres, kFast };
+
+struct LeastSquaresOptions {
+  // Same minimum to 1e-4 m; `ceres` is the paper's solver and the reference.
+  SolverMethod method = SolverMethod::kFast;
+  int max_iterations = 30;  // Newton needs 4-8, Gauss-Newton (Ceres) 10-40
+  // Weights of the prediction's pull as in Cartographer (10 and 40 there, against a scan weight of
+  // 1 as here). 0, the default, is prior-free: fusion (Eq. 3) must not count the prediction twice.
+  double prior_translation_weight_per_m = 0.0;
+  double prior_rotation_weight_per_rad = 0.0;
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct LeastSquaresMatch {
+  bool converged = false;  // false without points and when the iterations ran out
+  Pose2 map_from_base;
+  double cost = 0.0;  // F of match_cost.h there, prior included
+  int iterations = 0;
+};
+
+class LeastSquares {
+ public:
+  explicit LeastSquares(const LeastSquaresOptions& options);
+
+  LeastSquaresMatch Solve(const MatchPoints& points, const ProbabilityView& view,
+                          const Pose2& seed_map_from_base, const Pose2& predicted_map_from_base);
+
+ private:
+  LeastSquaresOptions options_;
+};
+
+// The reference: Ceres' BiCubicInterpolator and Levenberg-Marquardt.
+LeastSquaresMatch SolveWithCeres(const MatchPoints& points, const ProbabilityView& view,
+                                 const Pose2& seed_map_from_base, const MatchPrior& prior,
+                                 int max_iterations);
+
+}  // namespace depthgrid

@@ -1,0 +1,47 @@
+// Scan to submap: correlative search, then bicubic least squares (Eq. 4), then how well the scan
+// determines the pose.
+#pragma once
+
+#include "mapper/core/options.h"
+#include "mapper/frame_report.h"
+#include "mapper/match/correlative_search.h"
+#include "mapper/match/least_squares.h"
+#include "mapper/match/match_information.h"
+
+namespace depthgrid {
+
+enum class MatchStages { kBoth, kSearch, kLeastSquares };
+
+struct ScanMatcherOptions {
+  MatchStages stages = MatchStages::kBoth;
+  // What never-seen cells count. 0.5 is indifferent.
+  double unknown_prob = 0.5;
+  // Fewer hits than this are no scan to match.
+  int min_points = 20;
+  // A match is found when at least this share of its points lies where the map is occupied. Low on
+  // purpose: a gate that refuses doubtful matches locks onto a wrong prediction.
+  double min_score = 0.2;
+  CorrelativeOptions search;
+  LeastSquaresOptions least_squares;
+  MatchInformationOptions information;
+
+  void Visit(OptionsVisitor& v);
+};
+
+class ScanMatcher {
+ public:
+  explicit ScanMatcher(const ScanMatcherOptions& options);
+
+  // Never throws for any scan or prediction; without a match `found` is false and the pose is the
+  // prediction.
+  MatchResult Match(const Scan& scan, const ProbabilityView& view,
+                    const Pose2& predicted_map_from_base);
+
+ private:
+  ScanMatcherOptions options_;
+  CorrelativeSearch search_;
+  LeastSquares least_squares_;
+  MatchPoints points_;  // kept for its memory
+};
+
+}  // namespace depthgrid
