@@ -10,6 +10,7 @@
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
 #include "mapper/io/pgm.h"
+#include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
 namespace {
@@ -17,16 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-class MapFileTest : public testing::Test {
+class MapFileTest : public TemporaryFolderTest {
  protected:
-  void SetUp() override {
-    folder_ = testing::TempDir() + "depthgrid_map_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name() + "/";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return folder_ + name; }
   MapFile Read(const std::string& image, const std::string& yaml) const {
     WriteFile(Path("m.pgm"), image);
     WriteFile(Path("m.yaml"), "image: m.pgm\n" + yaml);
@@ -36,12 +29,10 @@ class MapFileTest : public testing::Test {
     try {
       Read(image, yaml);
     } catch (const InputError& error) {
-      return std::string(error.what()).substr(folder_.size());
+      return Short(error.what()).substr(2);
     }
     return "no error";
   }
-
-  std::string folder_;
 };
 
 constexpr const char* kYaml =

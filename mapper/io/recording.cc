@@ -1,0 +1,196 @@
+#include "mapper/io/recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// How many images may be unreadable at the start before the folder is refused.
+constexpr std::size_t kProbedImages = 10;
+
+// Names the first case of a kind of damage and counts the rest.
+struct Tally {
+  int count = 0;
+  std::string first;
+
+  void Add(const std::string& what) {
+    if (count++ == 0) first = what;
+  }
+  void AppendTo(std::vector<std::string>& warnings, const std::string& name,
+                const char* kind) const {
+    if (count > 0)
+      warnings.push_back(fmt::format("{}: {} {} (first: {})", name, count, kind, first));
+  }
+};
+
+// Loops name entries of the SLAM output; frames are counted by the source.
+std::vector<LoopClosure> LoopsByFrame(const std::vector<LoopClosure>& loops,
+                                      const std::vector<PoseTrack::Found>& poses, int& lost_loops) {
+  std::vector<LoopClosure> mapped;
+  const auto frame_of = [&](int entry) {
+    const auto found = std::find_if(poses.begin(), poses.end(), [&](const auto& pose) {
+      return pose.entry && *pose.entry == static_cast<std::size_t>(entry);
+    });
+    return static_cast<int>(found - poses.begin());
+  };
+  // An event of a frame without an image arrives with the next frame that has one.
+  const auto frame_from = [&](int entry) {
+    const auto found = std::find_if(poses.begin(), poses.end(), [&](const auto& pose) {
+      return pose.entry && *pose.entry >= static_cast<std::size_t>(entry);
+    });
+    return static_cast<int>(found - poses.begin());
+  };
+  for (LoopClosure loop : loops) {
+    loop.first_frame = frame_of(loop.first_frame);
+    loop.second_frame = frame_of(loop.second_frame);
+    loop.reported_at_frame = frame_from(loop.reported_at_frame);
+    const int end = static_cast<int>(poses.size());
+    if (std::max({loop.first_frame, loop.second_frame, loop.reported_at_frame}) < end) {
+      mapped.push_back(loop);
+    } else {
+      ++lost_loops;
+    }
+  }
+  return mapped;
+}
+
+class RecordingSource final : public FrameSource {
+ public:
+  RecordingSource(Recording recording, const SlamOutput& slam, const RecordingOptions& options,
+                  DepthReader reader)
+      : recording_(std::move(recording)), reader_(std::move(reader)) {
+    if (recording_.images.empty()) throw InputError(recording_.name, "holds no depth image");
+    FindPoses(slam, options);
+    Probe();
+  }
+
+  std::optional<Frame> Next() override {
+    if (next_ == recording_.images.size()) return {};
+    const RecordedImage& image = recording_.images[next_];
+    Frame frame;
+    frame.index = static_cast<int>(next_);
+    frame.stamp_s = image.stamp_s;
+    frame.slam_from_camera = poses_[next_].slam_from_camera;
+    frame.slam_epoch = poses_[next_].epoch;
+    for (const LoopClosure& loop : loops_) {
+      if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
+    }
+    frame.depth = Read(image);
+    ++next_;
+    return frame;
+  }
+  std::optional<PinholeCamera> Camera() const override { return recording_.camera.camera; }
+  int FrameCount() const override { return static_cast<int>(recording_.images.size()); }
+  std::vector<std::string> Warnings() const override {
+    std::vector<std::string> warnings = recording_.warnings;
+    unreadable_.AppendTo(warnings, recording_.name, "depth images missing or damaged");
+    wrong_size_.AppendTo(warnings, recording_.name, "depth images of another size than the camera");
+    return warnings;
+  }
+
+ private:
+  void FindPoses(const SlamOutput& slam, const RecordingOptions& options) {
+    const PoseTrack track(slam.live, options);
+    int without = 0;
+    for (const RecordedImage& image : recording_.images) {
+      poses_.push_back(track.At(image.stamp_s));
+      if (!poses_.back().slam_from_camera) ++without;
+    }
+    const std::size_t frames = recording_.images.size();
+    if (without == static_cast<int>(frames)) throw NoSharedStamps(slam, options);
+    if (without > 0) {
+      recording_.warnings.push_back(
+          fmt::format("{}: {} of {} frames have no pose", recording_.name, without, frames));
+    }
+    int lost_loops = 0;
+    loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);
+    if (lost_loops > 0) {
+      recording_.warnings.push_back(fmt::format(
+          "{}: {} loop closures join frames that have no image", recording_.name, lost_loops));
+    }
+  }
+
+  InputError NoSharedStamps(const SlamOutput& slam, const RecordingOptions& options) const {
+    if (slam.live.empty()) return {recording_.name, "the trajectory for it holds no pose"};
+    return {recording_.name,
+            fmt::format("no pose within {} s of any image: images from {:.3f} to {:.3f} s, poses "
+                        "from {:.3f} to {:.3f} s",
+                        options.max_stamp_difference_s, recording_.images.front().stamp_s,
+                        recording_.images.back().stamp_s, slam.live.front().stamp_s,
+                        slam.live.back().stamp_s)};
+  }
+
+  // A folder whose images cannot be read at all, or do not belong to the camera, is bad input; a
+  // damaged image among many is not.
+  void Probe() const {
+    std::exception_ptr first_error;
+    for (std::size_t i = 0; i < std::min(kProbedImages, recording_.images.size()); ++i) {
+      try {
+        RequireCameraSize(reader_(recording_.images[i].depth_path), recording_.images[i]);
+        return;
+      } catch (const SizeError&) {
+        throw;
+      } catch (const InputError&) {
+        if (!first_error) first_error = std::current_exception();
+      }
+    }
+    std::rethrow_exception(first_error);
+  }
+
+  struct SizeError : InputError {
+    using InputError::InputError;
+  };
+  void RequireCameraSize(const DepthImage& depth, const RecordedImage& image) const {
+    const PinholeCamera& camera = recording_.camera.camera;
+    if (depth.width_px == camera.width_px && depth.height_px == camera.height_px) return;
+    throw SizeError(image.depth_path,
+                    fmt::format("is {}x{} pixels, the camera {}x{}", depth.width_px,
+                                depth.height_px, camera.width_px, camera.height_px));
+  }
+
+  std::shared_ptr<const DepthImage> Read(const RecordedImage& image) {
+    try {
+      auto depth = std::make_shared<DepthImage>(reader_(image.depth_path));
+      RequireCameraSize(*depth, image);
+      return depth;
+    } catch (const SizeError& error) {
+      wrong_size_.Add(error.what());
+    } catch (const InputError& error) {
+      unreadable_.Add(error.what());
+    }
+    return nullptr;
+  }
+
+  Recording recording_;
+  DepthReader reader_;
+  std::vector<PoseTrack::Found> poses_;
+  std::vector<LoopClosure> loops_;
+  std::size_t next_ = 0;
+  Tally unreadable_;
+  Tally wrong_size_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
+                                           const RecordingOptions& options, DepthReader reader) {
+  return std::make_unique<RecordingSource>(std::move(recording), slam, options, std::move(reader));
+}
+
+DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options) {
+  DepthPngFormat format;
+  format.scale_per_m =
+      options.depth_scale_per_m > 0.0 ? options.depth_scale_per_m : camera.depth_scale_per_m;
+  format.invalid_units.clear();
+  for (const double units : options.invalid_units) {
+    format.invalid_units.push_back(static_cast<std::uint16_t>(units));
+  }
+  return format;
+}
+
+}  // namespace depthgrid

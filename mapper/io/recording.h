@@ -1,0 +1,44 @@
+// A recorded depth sequence as a frame source, whatever its folder looked like: a list of image
+// files with stamps, a camera and poses. The layouts (TUM folder, frame-by-frame folder, ICL-NUIM)
+// only make the list.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/core/frame.h"
+#include "mapper/io/camera_file.h"
+#include "mapper/io/png.h"
+#include "mapper/io/pose_track.h"
+#include "mapper/io/recording_options.h"
+
+namespace depthgrid {
+
+struct RecordedImage {
+  double stamp_s = 0.0;     // of the frame, and of its pose
+  std::string depth_path;   // empty: the frame is known to have no image
+  std::string colour_path;  // empty when there is none
+};
+
+struct Recording {
+  std::string name;  // the folder, for warnings
+  std::vector<RecordedImage> images;
+  CameraFile camera;
+  std::vector<std::string> warnings;  // found while listing
+};
+
+// Reads one depth image; throws InputError.
+using DepthReader = std::function<DepthImage(const std::string& path)>;
+
+// How a recording's PNGs keep depth.
+DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
+
+// Frames in the recording's order. Images that are missing, damaged or of the wrong size become
+// frames with a pose only and are counted. Throws InputError when there is no image, when none of
+// the first images can be read, when their size is not the camera's, or when no image finds a pose.
+std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
+                                           const RecordingOptions& options, DepthReader reader);
+
+}  // namespace depthgrid

@@ -1,0 +1,22 @@
+#include "mapper/io/recording_options.h"
+
+namespace depthgrid {
+
+void RecordingOptions::Visit(OptionsVisitor& v) {
+  v.Number("max_stamp_difference_s", max_stamp_difference_s, {0.0, 10.0},
+           "stamps closer than this belong together");
+  v.Choice("pose_stamp", pose_stamp, {{PoseStamp::kColour, "colour"}, {PoseStamp::kDepth, "depth"}},
+           "the stamp of a frame by which its pose is looked up");
+  v.Number("time_offset_s", time_offset_s, {-1e6, 1e6},
+           "added to an image's stamp before its pose is looked up");
+  v.Flag("interpolate_poses", interpolate_poses,
+         "interpolate between neighbouring poses instead of taking the nearest");
+  v.Number("max_interpolation_gap_s", max_interpolation_gap_s, {0.0, 1e3},
+           "poses further apart than this are not interpolated");
+  v.Numbers("invalid_units", invalid_units, {0, 65535},
+            "depth image units that mean no measurement, besides 0");
+  v.Number("depth_scale", depth_scale_per_m, {0.0, 1e6},
+           "depth image units a metre; 0 takes the camera file's");
+}
+
+}  // namespace depthgrid

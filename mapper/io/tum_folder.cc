@@ -1,0 +1,175 @@
+#include "mapper/io/tum_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
+#include "mapper/io/png.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Joined(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+// vision.in.tum.de/data/datasets/rgbd-dataset/file_formats, "Intrinsic Camera Calibration of the
+// Kinect": the colour cameras, to which the depth images are registered.
+std::optional<CameraFile> TumCamera(const std::string& folder) {
+  const auto named = [&](const char* name) { return folder.find(name) != std::string::npos; };
+  CameraFile file;
+  PinholeCamera& camera = file.camera;
+  if (named("freiburg1")) {
+    camera = {640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}};
+  } else if (named("freiburg2")) {
+    camera = {640, 480, 520.9, 521.0, 325.1, 249.7, {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}};
+  } else if (named("freiburg3")) {
+    camera = {640, 480, 535.4, 539.2, 320.1, 247.6, {}};
+  } else {
+    return {};
+  }
+  return file;
+}
+
+CameraFile CameraOf(const std::string& folder, std::vector<std::string>& warnings) {
+  const std::string path = Joined(folder, "camera.yaml");
+  if (fs::exists(path)) return ReadCameraFile(path);
+  const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
+  if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");
+  warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");
+  return *known;
+}
+
+StampedFileList ReadFileList(const std::string& path) {
+  return ParseFileList(ReadFile(path), path);
+}
+
+// Depth images with the colour image nearest in time; a frame's stamp is that of its pose.
+void PairWithColour(const std::string& folder, const RecordingOptions& options,
+                    Recording& recording) {
+  const std::string path = Joined(folder, "rgb.txt");
+  if (!fs::exists(path)) return;
+  const StampedFileList colour = ReadFileList(path);
+  recording.warnings.insert(recording.warnings.end(), colour.warnings.begin(),
+                            colour.warnings.end());
+  std::vector<double> stamps_s;
+  for (const StampedFile& file : colour.files) stamps_s.push_back(file.stamp_s);
+  int unpaired = 0;
+  for (RecordedImage& image : recording.images) {
+    const auto nearest = NearestStamp(stamps_s, image.stamp_s, options.max_stamp_difference_s);
+    if (!nearest) {
+      ++unpaired;
+      continue;
+    }
+    image.colour_path = Joined(folder, colour.files[*nearest].path);
+    if (options.pose_stamp == PoseStamp::kColour) image.stamp_s = stamps_s[*nearest];
+  }
+  if (unpaired > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} depth images have no colour image within {} s and keep their own stamp",
+                    folder, unpaired, options.max_stamp_difference_s));
+  }
+}
+
+// Two depth images may pair with one colour image; the frame nearer to it keeps the stamp.
+void DropRepeatedStamps(const std::string& folder, Recording& recording) {
+  auto& images = recording.images;
+  const auto same = [](const auto& a, const auto& b) { return a.stamp_s >= b.stamp_s; };
+  const auto end = std::unique(images.begin(), images.end(), same);
+  const auto dropped = static_cast<int>(images.end() - end);
+  images.erase(end, images.end());
+  if (dropped > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} depth images share their colour image with the one before, ignored",
+                    folder, dropped));
+  }
+}
+
+}  // namespace
+
+StampedFileList ParseFileList(const std::string& text, const std::string& place) {
+  StampedFileList list;
+  int unsorted = 0;
+  for (const TextRow& row : SplitRows(text)) {
+    const auto stamp_s = ParseNumber(row.fields.front());
+    if (row.fields.size() != 2 || !stamp_s || !std::isfinite(*stamp_s)) {
+      throw InputError(PlaceOfLine(place, row.line), "must be a stamp and a file name");
+    }
+    if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
+    list.files.push_back({*stamp_s, std::string(row.fields[1])});
+  }
+  const auto less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
+  const auto equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
+  std::stable_sort(list.files.begin(), list.files.end(), less);
+  const auto end = std::unique(list.files.begin(), list.files.end(), equal);
+  const auto repeated = static_cast<int>(list.files.end() - end);
+  list.files.erase(end, list.files.end());
+  const auto warn = [&](int count, const char* what) {
+    if (count > 0) list.warnings.push_back(fmt::format("{}: {} {}", place, count, what));
+  };
+  warn(unsorted, "rows earlier than the row before, sorted");
+  warn(repeated, "rows with a stamp already given, ignored");
+  return list;
+}
+
+Recording ListTumFolder(const std::string& folder, const RecordingOptions& options) {
+  Recording recording;
+  recording.name = folder;
+  StampedFileList depth = ReadFileList(Joined(folder, "depth.txt"));
+  recording.warnings = std::move(depth.warnings);
+  for (const StampedFile& file : depth.files) {
+    recording.images.push_back({file.stamp_s, Joined(folder, file.path), ""});
+  }
+  PairWithColour(folder, options, recording);
+  DropRepeatedStamps(folder, recording);
+  return recording;
+}
+
+std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const SlamOutput& slam,
+                                           const RecordingOptions& options,
+                                           const std::optional<CameraFile>& camera) {
+  Recording recording = ListTumFolder(folder, options);
+  recording.camera = camera ? *camera : CameraOf(folder, recording.warnings);
+  const DepthPngFormat format = DepthFormatOf(recording.camera, options);
+  return OpenRecording(std::move(recording), slam, options,
+                       [format](const std::string& path) { return ReadDepthPng(path, format); });
+}
+
+TumFolderWriter::TumFolderWriter(std::string folder, const CameraFile& camera)
+    : folder_(std::move(folder)), camera_(camera) {
+  fs::create_directories(fs::path(folder_) / "depth");
+}
+
+void TumFolderWriter::WriteFrame(double stamp_s, const DepthImage& depth,
+                                 const RgbImage* rgb) const {
+  const std::string name = fmt::format("{:.6f}.png", stamp_s);
+  WriteDepthPng(Joined(folder_, "depth/" + name), depth, camera_.depth_scale_per_m);
+  if (rgb == nullptr) return;
+  fs::create_directories(fs::path(folder_) / "rgb");
+  WriteRgbPng(Joined(folder_, "rgb/" + name), *rgb);
+}
+
+void TumFolderWriter::Finish(const std::vector<double>& stamps_s, bool with_colour,
+                             const Trajectory& truth) const {
+  const auto write_list = [&](const std::string& kind, const char* title) {
+    std::string text = fmt::format("# {}\n# timestamp filename\n", title);
+    for (const double stamp_s : stamps_s) {
+      fmt::format_to(std::back_inserter(text), "{:.6f} {}/{:.6f}.png\n", stamp_s, kind, stamp_s);
+    }
+    WriteFile(Joined(folder_, kind + ".txt"), text);
+  };
+  write_list("depth", "depth maps");
+  if (with_colour) write_list("rgb", "color images");
+  WriteTrajectory(Joined(folder_, "groundtruth.txt"), truth);
+  WriteCameraFile(Joined(folder_, "camera.yaml"), camera_);
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,58 @@
+// TUM RGB-D folders: depth/ and rgb/ with PNG images, depth.txt and rgb.txt listing `stamp file`,
+// groundtruth.txt, and our camera.yaml (docs/formats.md, "TUM folder").
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/core/depth_image.h"
+#include "mapper/core/frame.h"
+#include "mapper/core/rgb_image.h"
+#include "mapper/io/camera_file.h"
+#include "mapper/io/recording.h"
+#include "mapper/io/recording_options.h"
+
+namespace depthgrid {
+
+// A row of depth.txt or rgb.txt.
+struct StampedFile {
+  double stamp_s = 0.0;
+  std::string path;
+};
+
+struct StampedFileList {
+  std::vector<StampedFile> files;  // sorted by strictly increasing stamp
+  std::vector<std::string> warnings;
+};
+
+// Throws InputError for a row that is not a finite stamp and a file name.
+StampedFileList ParseFileList(const std::string& text, const std::string& place);
+
+// Without camera.yaml, a folder named as TUM names its sequences (freiburg1, 2, 3) gets that
+// camera, with a warning. Throws InputError for a missing depth.txt or camera.
+Recording ListTumFolder(const std::string& folder, const RecordingOptions& options = {});
+
+// The frames of the folder with these poses. `camera`, when given, replaces the folder's own.
+std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const SlamOutput& slam,
+                                           const RecordingOptions& options = {},
+                                           const std::optional<CameraFile>& camera = {});
+
+// Writes such a folder. Frames may be written in any order and from several threads at once; Finish
+// writes the lists.
+class TumFolderWriter {
+ public:
+  // Creates the folder.
+  TumFolderWriter(std::string folder, const CameraFile& camera);
+
+  // The colour image may be absent.
+  void WriteFrame(double stamp_s, const DepthImage& depth, const RgbImage* rgb) const;
+  // depth.txt (and rgb.txt) for these stamps, groundtruth.txt and camera.yaml.
+  void Finish(const std::vector<double>& stamps_s, bool with_colour, const Trajectory& truth) const;
+
+ private:
+  std::string folder_;
+  CameraFile camera_;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,180 @@
+#include "mapper/io/tum_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/trajectory_file.h"
+#include "tests/io/temporary_folder.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class TumFolderTest : public TemporaryFolderTest {
+ protected:
+  static CameraFile SmallCamera() { return {{4, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0}; }
+  static DepthImage Image(int k) {
+    DepthImage image(4, 3);
+    for (std::size_t i = 0; i < image.z_m.size(); ++i) {
+      image.z_m[i] = 0.37F * static_cast<float>(i) + 0.1F * static_cast<float>(k);
+    }
+    return image;
+  }
+  static StampedPose PoseAt(double stamp_s, double x_m) {
+    return {stamp_s, {Eigen::Quaterniond::Identity(), {x_m, 0, 0}}};
+  }
+  // Four frames at 8 Hz with their poses.
+  Trajectory WriteSequence() const {
+    const TumFolderWriter writer(folder_, SmallCamera());
+    Trajectory truth;
+    std::vector<double> stamps_s;
+    const RgbImage rgb(4, 3);
+    for (int k = 0; k < 4; ++k) {
+      stamps_s.push_back(0.125 * k);
+      truth.push_back(PoseAt(0.125 * k, k));
+      writer.WriteFrame(0.125 * k, Image(k), &rgb);
+    }
+    writer.Finish(stamps_s, true, truth);
+    return truth;
+  }
+  static std::vector<Frame> All(FrameSource& source) {
+    std::vector<Frame> frames;
+    while (auto frame = source.Next()) frames.push_back(std::move(*frame));
+    return frames;
+  }
+  template <typename Action>
+  std::string ErrorOf(Action action) const {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return Short(error.what());
+    }
+    return "no error";
+  }
+  std::string OpenError(const Trajectory& poses) const {
+    return ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(poses)); });
+  }
+};
+
+TEST_F(TumFolderTest, ReadsBackWhatWasWritten) {
+  const Trajectory truth = WriteSequence();
+  EXPECT_EQ(ReadTrajectory(Path("groundtruth.txt")), truth);
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  EXPECT_EQ(source->FrameCount(), 4);
+  EXPECT_EQ(source->Camera(), SmallCamera().camera);
+  const std::vector<Frame> frames = All(*source);
+  ASSERT_EQ(frames.size(), 4U);
+  for (int k = 0; k < 4; ++k) {
+    const Frame& frame = frames[static_cast<std::size_t>(k)];
+    EXPECT_EQ(frame.index, k);
+    EXPECT_DOUBLE_EQ(frame.stamp_s, 0.125 * k);
+    EXPECT_EQ(frame.slam_from_camera->translation.x(), k);
+    EXPECT_EQ(frame.depth->z_m, QuantiseDepth(Image(k)).z_m);
+  }
+  EXPECT_THAT(source->Warnings(), ElementsAre());
+}
+
+TEST_F(TumFolderTest, PoseBelongsToTheColourStamp) {
+  WriteSequence();
+  // Colour 15 ms after depth; poses on either side of its stamp.
+  Write("rgb.txt", "0.015 rgb/a.png\n0.140 rgb/b.png\n0.265 rgb/c.png\n0.390 rgb/d.png\n");
+  RecordingOptions options;
+  options.max_stamp_difference_s = 0.016;
+  const Trajectory poses = {PoseAt(0.127, 1), PoseAt(0.155, 2)};
+  auto frames = All(*OpenTumFolder(folder_, SlamOutputOf(poses), options));
+  EXPECT_DOUBLE_EQ(frames[1].stamp_s, 0.140);
+  EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1);
+  options.pose_stamp = PoseStamp::kDepth;
+  options.time_offset_s = 0.03;
+  frames = All(*OpenTumFolder(folder_, SlamOutputOf(poses), options));
+  EXPECT_DOUBLE_EQ(frames[1].stamp_s, 0.125);
+  EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 2);
+}
+
+TEST_F(TumFolderTest, InterpolatesPosesWhenAsked) {
+  WriteSequence();
+  RecordingOptions options;
+  options.interpolate_poses = true;
+  const Trajectory poses = {PoseAt(0.1, 0), PoseAt(0.15, 10), PoseAt(0.40, 20)};
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(poses), options);
+  const auto frames = All(*source);
+  EXPECT_FALSE(frames[0].slam_from_camera);
+  EXPECT_NEAR(frames[1].slam_from_camera->translation.x(), 5.0, 1e-9);
+  EXPECT_FALSE(frames[2].slam_from_camera);  // the gap is too long
+  EXPECT_THAT(source->Warnings(), ElementsAre(HasSubstr("3 of 4 frames have no pose")));
+}
+
+TEST_F(TumFolderTest, LoopsAndEpochsFollowTheirFrames) {
+  SlamOutput slam = SlamOutputOf(WriteSequence());
+  slam.live.erase(slam.live.begin());  // entries are now one behind frames
+  slam.live[2].epoch = 1;
+  slam.live[1].slam_from_camera.reset();
+  LoopClosure loop;
+  loop.first_frame = 0;
+  loop.second_frame = 2;
+  loop.reported_at_frame = 2;
+  slam.loops.push_back(loop);
+  const auto frames = All(*OpenTumFolder(folder_, slam));
+  EXPECT_FALSE(frames[0].slam_from_camera);
+  EXPECT_FALSE(frames[2].slam_from_camera);
+  EXPECT_EQ(frames[3].slam_epoch, 1);
+  ASSERT_EQ(frames[3].loops.size(), 1U);
+  EXPECT_EQ(frames[3].loops[0].first_frame, 1);
+  EXPECT_EQ(frames[3].loops[0].second_frame, 3);
+}
+
+TEST_F(TumFolderTest, DamagedFramesAreCountedAndSurvived) {
+  const Trajectory truth = WriteSequence();
+  std::filesystem::remove(Path("depth/0.125000.png"));
+  Write("depth/0.250000.png", "no image");
+  WriteDepthPng(Path("depth/0.375000.png"), DepthImage(5, 3));
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  const auto frames = All(*source);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_TRUE(frames[0].depth);
+  for (int k = 1; k < 4; ++k) EXPECT_FALSE(frames[static_cast<std::size_t>(k)].depth);
+  std::vector<std::string> warnings;
+  for (const auto& warning : source->Warnings()) warnings.push_back(Short(warning));
+  EXPECT_THAT(warnings,
+              ElementsAre("~: 2 depth images missing or damaged (first: ~/depth/0.125000.png: no "
+                          "such file)",
+                          "~: 1 depth images of another size than the camera (first: "
+                          "~/depth/0.375000.png: is 5x3 pixels, the camera 4x3)"));
+}
+
+TEST_F(TumFolderTest, UnsortedAndRepeatedRowsAreCounted) {
+  const StampedFileList list =
+      ParseFileList("# c\n2 depth/b.png\n1 depth/a.png\n2 depth/c.png\n", "depth.txt");
+  ASSERT_EQ(list.files.size(), 2U);
+  EXPECT_EQ(list.files[1].path, "depth/b.png");
+  EXPECT_THAT(list.warnings, ElementsAre("depth.txt: 1 rows earlier than the row before, sorted",
+                                         "depth.txt: 1 rows with a stamp already given, ignored"));
+}
+
+TEST_F(TumFolderTest, OneClearLineForEachFault) {
+  EXPECT_EQ(OpenError({PoseAt(0, 0)}), "~/depth.txt: no such file");
+  const Trajectory truth = WriteSequence();
+  EXPECT_EQ(OpenError({PoseAt(7, 0)}),
+            "~: no pose within 0.02 s of any image: images from 0.000 to 0.375 s, poses from 7.000 "
+            "to 7.000 s");
+  EXPECT_EQ(OpenError({}), "~: the trajectory for it holds no pose");
+  WriteCameraFile(Path("camera.yaml"), {{8, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0});
+  EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: is 4x3 pixels, the camera 8x3");
+  std::filesystem::remove(Path("camera.yaml"));
+  EXPECT_EQ(OpenError(truth), "~/camera.yaml: no such file; it states the camera's intrinsics");
+  WriteCameraFile(Path("camera.yaml"), SmallCamera());
+  std::filesystem::remove_all(Path("depth"));
+  EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: no such file");
+  Write("depth.txt", "0.1 a b\n");
+  EXPECT_EQ(OpenError(truth), "~/depth.txt:1: must be a stamp and a file name");
+  Write("depth.txt", "# nothing\n");
+  EXPECT_EQ(OpenError(truth), "~: holds no depth image");
+}
+
+}  // namespace
+}  // namespace depthgrid
