@@ -1,6 +1,8 @@
 #include "mapper/match/correlative_search.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace depthgrid {
 namespace {
@@ -60,7 +62,51 @@ CorrelativeMatch CorrelativeSearch::Search(const MatchPoints& points, const Prob
   const SearchLattice lattice =
       MakeLattice(predicted_map_from_base, options_.window_m, RadFromDeg(options_.window_deg),
                   view.geometry.resolution_m, points.farthest_m);
-  return SearchExhaustively(options_, lattice, points, view);
+  return options_.method == SearchMethod::kFast
+             ? SearchFast(lattice, points, view)
+             : SearchExhaustively(options_, lattice, points, view);
+}
+
+CorrelativeMatch CorrelativeSearch::SearchFast(const SearchLattice& lattice,
+                                               const MatchPoints& points,
+                                               const ProbabilityView& view) {
+  scorer_.Prepare(lattice, points, view);
+  OrderTranslations(lattice.half_cells);
+  const bool has_prior =
+      options_.translation_cost_per_m > 0.0 || options_.rotation_cost_per_rad > 0.0;
+  CorrelativeMatch best;
+  double best_score = -1.0;
+  std::uint32_t best_sum = 0;
+  // From the predicted yaw outwards, -n before n: an equal score later on never wins.
+  for (int i = 0; i <= 2 * lattice.half_yaw_steps; ++i) {
+    const int yaw = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
+    // A prior's weight is at most 1.
+    if (!scorer_.ScoreRotation(yaw, static_cast<std::int64_t>(std::floor(best_score)))) continue;
+    for (const LatticeStep& translation : translations_) {
+      const LatticeStep step{translation.x_cells, translation.y_cells, yaw};
+      const std::uint32_t sum = scorer_.Score(step.x_cells, step.y_cells);
+      if (sum <= best_score) continue;
+      const double score = has_prior ? sum * PriorWeight(options_, lattice, step) : sum;
+      if (score <= best_score) continue;
+      best_score = score;
+      best_sum = sum;
+      best.step = step;
+    }
+  }
+  best.found = true;
+  best.map_from_base = lattice.PoseOf(best.step);
+  best.score = best_sum / (static_cast<double>(kMatchProbScale) * points.size());
+  return best;
+}
+
+void CorrelativeSearch::OrderTranslations(int half_cells) {
+  if (ordered_half_cells_ == half_cells) return;
+  ordered_half_cells_ = half_cells;
+  translations_.clear();
+  for (int y = -half_cells; y <= half_cells; ++y) {
+    for (int x = -half_cells; x <= half_cells; ++x) translations_.push_back({x, y, 0});
+  }
+  std::sort(translations_.begin(), translations_.end(), PrecedesInLattice);
 }
 
 }  // namespace depthgrid

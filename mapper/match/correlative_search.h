@@ -3,11 +3,10 @@
 // fall in (docs/math.md, "Scan matching").
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "mapper/core/options.h"
-#include "mapper/match/search_lattice.h"
+#include "mapper/match/lattice_scorer.h"
 
 namespace depthgrid {
 
@@ -44,7 +43,14 @@ class CorrelativeSearch {
                           const Pose2& predicted_map_from_base);
 
  private:
+  CorrelativeMatch SearchFast(const SearchLattice& lattice, const MatchPoints& points,
+                              const ProbabilityView& view);
+  void OrderTranslations(int half_cells);
+
   CorrelativeOptions options_;
+  LatticeScorer scorer_;
+  std::vector<LatticeStep> translations_;  // of one rotation, in the order in which ties are won
+  int ordered_half_cells_ = -1;
 };
 
 }  // namespace depthgrid
