@@ -1,101 +1,303 @@
 #include "mapper/incremental_mapper.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/frame_history.h"
+#include "mapper/fuse/correction_filter.h"
 #include "mapper/grid/map_drawing.h"
+#include "mapper/loop_closing.h"
+#include "mapper/reference_factory.h"
 
 namespace depthgrid {
 namespace {
 
-// Adds the time from construction to destruction to one field of StageTimes.
-class StageTimer {
- public:
-  StageTimer(const CpuClock& clock, double& sum_us)
-      : clock_(clock), sum_us_(sum_us), start_us_(clock ? clock() : 0.0) {}
-  ~StageTimer() {
-    if (clock_) sum_us_ += clock_() - start_us_;
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  const CpuClock& clock_;
-  double& sum_us_;
-  double start_us_;
-};
-
 int HitCount(const Scan& scan) {
-  int hits = 0;
-  for (const Beam& beam : scan.beams) hits += beam.hit ? 1 : 0;
-  return hits;
+  return static_cast<int>(std::count_if(scan.beams.begin(), scan.beams.end(),
+                                        [](const Beam& beam) { return beam.hit; }));
 }
+
+// The last motion goes on for this long at most; after a longer gap it says nothing.
+constexpr double kLongestExtrapolationS = 0.5;
 
 }  // namespace
 
 struct IncrementalMapper::State {
   MapperOptions options;
   CpuClock clock;
-  std::vector<std::optional<Pose3>> slam_from_camera;  // of every input frame
+  GainOracle oracle;
+  std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
+  FrameHistory history;
+  CorrectionFilter filter;
+  std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
+  LoopCloser loop_closer;
   std::vector<MappedFrame> mapped;
-  std::vector<int> input_of_mapped;  // position of a mapped frame among the input frames
 
-  OccupancyMap Draw(const std::vector<MappedFrame>& frames) const {
-    MapDrawing drawing(options.grid);
-    for (const MappedFrame& frame : frames) drawing.Add(*frame.scan, frame.map_from_base);
-    return drawing.Map();
+  State(const MapperOptions& opts, CpuClock clk, GainOracle orc)
+      : options(opts),
+        clock(std::move(clk)),
+        oracle(std::move(orc)),
+        filter(opts.fusion),
+        loop_closer(opts.loops) {
+    if (!options.fusion.TrustsSlamAlone()) reference = MakeReference(options);
   }
+
+  FrameReport Begin(const Frame& frame);
+  std::shared_ptr<const Scan> ScanOf(const Frame& frame, FrameReport& report);
+  void CloseLoops(const Frame& frame, const std::shared_ptr<const Scan>& scan, FrameReport& report);
+  Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
+  void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
+             FrameReport& report);
+  FusedPose Fuse(const Prediction& prediction, FrameReport& report);
+  void Insert(const std::shared_ptr<const Scan>& scan, const FusedPose& fused, FrameReport& report);
+
+  bool SameEpoch() const;
+  Pose2 CarriedOn() const;
+  Pose2 Extrapolated() const;
+  void Anchor(const Pose2& map_from_base);
+  MappedFrame AsMapped(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base) const;
+  void FinishByAdjusting(MapperResult& result) const;
+  void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
+                      MapperResult& result) const;
+  OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
 };
 
 IncrementalMapper::IncrementalMapper(const MapperOptions& options,
-                                     const std::optional<PinholeCamera>&, CpuClock clock)
-    : state_(std::make_unique<State>()) {
-  state_->options = options;
-  state_->clock = std::move(clock);
-  if (!options.fusion.TrustsSlamAlone()) {
-    throw InputError("mapper.fusion.gain", "only 0 is available: there is no matching yet");
+                                     const std::optional<PinholeCamera>&, CpuClock clock,
+                                     GainOracle oracle)
+    : state_(std::make_unique<State>(options, std::move(clock), std::move(oracle))) {
+  if (options.fusion.mode == FusionMode::kOracle && !state_->oracle) {
+    throw InputError("mapper.fusion.mode", "oracle needs an experiment that knows the truth");
   }
 }
 IncrementalMapper::~IncrementalMapper() = default;
 IncrementalMapper::IncrementalMapper(IncrementalMapper&&) noexcept = default;
 
+// The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
-  FrameReport report;
+  FrameReport report = state_->Begin(frame);
   const StageTimer total(state_->clock, report.times.total_us);
+  const std::shared_ptr<const Scan> scan = state_->ScanOf(frame, report);
+  state_->CloseLoops(frame, scan, report);
+  if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
+  const Prediction prediction = state_->Predict(scan, report);
+  state_->Match(scan, prediction, report);
+  const FusedPose fused = state_->Fuse(prediction, report);
+  state_->Insert(scan, fused, report);
+  return report;
+}
+
+FrameReport IncrementalMapper::State::Begin(const Frame& frame) {
+  history.Start(frame);
+  FrameReport report;
   report.index = frame.index;
   report.stamp_s = frame.stamp_s;
   report.slam_from_camera = frame.slam_from_camera;
   report.slam_epoch = frame.slam_epoch;
-  report.map_from_camera = frame.slam_from_camera;
-  state_->slam_from_camera.push_back(frame.slam_from_camera);
-  if (!frame.slam_from_camera || !frame.scan) return report;
-  report.beams = HitCount(*frame.scan);
-  MappedFrame mapped;
-  mapped.frame = frame.index;
-  mapped.scan = frame.scan;
-  mapped.map_from_base = BaseOf(*frame.slam_from_camera);
-  state_->mapped.push_back(mapped);
-  state_->input_of_mapped.push_back(static_cast<int>(state_->slam_from_camera.size()) - 1);
-  report.inserted = true;
+  report.map_from_slam = filter.map_from_slam();
   return report;
 }
 
+std::shared_ptr<const Scan> IncrementalMapper::State::ScanOf(const Frame& frame,
+                                                             FrameReport& report) {
+  if (!frame.scan) return nullptr;
+  report.beams = HitCount(*frame.scan);
+  return frame.scan;
+}
+
+// Loop events come before the frame's pose is used. How SLAM corrected itself (a new epoch) is not
+// followed: the loops correct the map, and the frame is placed in it by its own loop or, failing
+// that, stays where the motion before leads.
+void IncrementalMapper::State::CloseLoops(const Frame& frame,
+                                          const std::shared_ptr<const Scan>& scan,
+                                          FrameReport& report) {
+  const StageTimer timer(clock, report.times.loops_us);
+  if (!reference || frame.loops.empty() || mapped.empty()) return;
+  std::vector<MappedFrame> frames = mapped;
+  const bool provisional = scan && frame.slam_from_camera;
+  if (provisional) {
+    frames.push_back(AsMapped(scan, SameEpoch() ? CarriedOn() : Extrapolated()));
+  }
+  const LoopCloser::Outcome outcome =
+      loop_closer.Close(frame.loops, history, frames, provisional, *reference);
+  report.loops_accepted = outcome.accepted;
+  report.loops_rejected = outcome.rejected;
+  if (!outcome.adjusted) return;
+  for (std::size_t i = 0; i < mapped.size(); ++i) {
+    mapped[i].map_from_base = outcome.map_from_base[i];
+  }
+  reference->Rebuild(mapped);
+  if (provisional) {
+    Anchor(outcome.map_from_base.back());
+  } else {
+    const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
+    filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
+  }
+}
+
+// Within an epoch SLAM's motion carries the correction on. Across one there are two guesses: the
+// camera went on as it did, or SLAM's new pose means the same place of the map as its old poses did
+// (a relocalisation). The one that matches better is taken.
+Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& scan,
+                                             FrameReport& report) {
+  const StageTimer timer(clock, report.times.match_us);
+  const FrameRecord& record = history.newest();
+  const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
+  if (reference && !SameEpoch()) {
+    const Pose2 extrapolated = Extrapolated();
+    const Pose2 carried_on = CarriedOn();
+    Pose2 better = extrapolated;
+    if (scan && !mapped.empty()) {
+      const MatchResult at_extrapolated = reference->Match(*scan, extrapolated);
+      const MatchResult at_carried_on = reference->Match(*scan, carried_on);
+      const auto worth = [](const MatchResult& match) { return match.found ? match.score : 0.0; };
+      if (worth(at_carried_on) > worth(at_extrapolated)) better = carried_on;
+    }
+    Anchor(better);
+  }
+  filter_epoch = record.epoch;
+  return filter.Predict(slam_from_base, record.stamp_s);
+}
+
+void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
+                                     const Prediction& prediction, FrameReport& report) {
+  const StageTimer timer(clock, report.times.match_us);
+  if (!reference || !scan || mapped.empty()) return;
+  report.match = reference->Match(*scan, prediction.map_from_base);
+}
+
+// Eq. 3.
+FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameReport& report) {
+  const StageTimer timer(clock, report.times.fuse_us);
+  FrameRecord& record = history.newest();
+  Eigen::Vector3d outside_gain = Eigen::Vector3d::Zero();
+  if (oracle && report.match.found) {
+    outside_gain = oracle(record.index, prediction.map_from_base, report.match.map_from_base);
+  }
+  const FusedPose fused = filter.Fuse(prediction, report.match, outside_gain);
+  filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, fused.map_from_base,
+                fused.covariance);
+  record.map_from_slam = filter.map_from_slam();
+  report.map_from_slam = filter.map_from_slam();
+  report.map_from_camera = ApplyPlanar(filter.map_from_slam(), *record.slam_from_camera);
+  for (int axis = 0; axis < 3; ++axis) {
+    report.innovation[static_cast<std::size_t>(axis)] = fused.innovation[axis];
+    report.gain[static_cast<std::size_t>(axis)] = fused.gain(axis, axis);
+  }
+  report.covariance = fused.covariance;
+  report.innovation_rejected = fused.rejected;
+  return fused;
+}
+
+void IncrementalMapper::State::Insert(const std::shared_ptr<const Scan>& scan,
+                                      const FusedPose& fused, FrameReport& report) {
+  const StageTimer timer(clock, report.times.insert_us);
+  if (!scan) return;
+  MappedFrame frame = AsMapped(scan, fused.map_from_base);
+  frame.match = report.match;
+  history.newest().mapped = static_cast<int>(mapped.size());
+  mapped.push_back(std::move(frame));
+  if (reference) reference->Insert(scan, fused.map_from_base, fused.covariance);
+  report.inserted = true;
+}
+
+bool IncrementalMapper::State::SameEpoch() const {
+  return !filter_epoch || *filter_epoch == history.newest().epoch;
+}
+
+// SLAM's pose with the correction that stood before it.
+Pose2 IncrementalMapper::State::CarriedOn() const {
+  return filter.Predict(BaseOf(*history.newest().slam_from_camera), history.newest().stamp_s)
+      .map_from_base;
+}
+
+// Where the last motion leads if it goes on.
+Pose2 IncrementalMapper::State::Extrapolated() const {
+  const FrameRecord* last = history.PosedBefore(history.newest());
+  if (last == nullptr) return BaseOf(*history.newest().slam_from_camera);
+  const Pose2 slam_from_last = BaseOf(*last->slam_from_camera);
+  const Pose2 map_from_last = filter.map_from_slam() * slam_from_last;
+  const FrameRecord* before = history.PosedBefore(*last);
+  const double gap_s = history.newest().stamp_s - last->stamp_s;
+  if (before == nullptr || before->epoch != last->epoch || gap_s > kLongestExtrapolationS) {
+    return map_from_last;
+  }
+  const double share = gap_s / (last->stamp_s - before->stamp_s);
+  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), slam_from_last);
+  return map_from_last * Pose2::FromVector(share * motion.vector());
+}
+
+// The correction is chosen so that SLAM's newest pose lies there.
+void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
+  const FrameRecord& record = history.newest();
+  filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, map_from_base,
+                filter.covariance());
+  filter_epoch = record.epoch;
+}
+
+MappedFrame IncrementalMapper::State::AsMapped(const std::shared_ptr<const Scan>& scan,
+                                               const Pose2& map_from_base) const {
+  const FrameRecord& record = history.newest();
+  MappedFrame frame;
+  frame.frame = record.index;
+  frame.stamp_s = record.stamp_s;
+  frame.scan = scan;
+  frame.map_from_base = map_from_base;
+  if (!mapped.empty()) {
+    const FrameRecord& before = *history.Find(mapped.back().frame);
+    if (before.epoch == record.epoch) {
+      frame.slam_motion =
+          Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
+    }
+  }
+  return frame;
+}
+
+OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
+  MapDrawing drawing(options.grid);
+  for (const MappedFrame& frame : frames) drawing.Add(*frame.scan, frame.map_from_base);
+  return drawing.Map();
+}
+
 MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
-  Require(slam_final.empty() || slam_final.size() == state_->slam_from_camera.size(),
+  const std::vector<FrameRecord>& records = state_->history.records();
+  Require(slam_final.empty() || slam_final.size() == records.size(),
           "SLAM's final trajectory has one entry a frame");
   MapperResult result;
-  result.map_from_camera = state_->slam_from_camera;
   result.mapped = state_->mapped;
-  for (std::size_t i = 0; i < slam_final.size(); ++i) {
-    if (slam_final[i]) result.map_from_camera[i] = slam_final[i];
-  }
-  for (std::size_t i = 0; i < result.mapped.size(); ++i) {
-    const auto input = static_cast<std::size_t>(state_->input_of_mapped[i]);
-    result.mapped[i].map_from_base = BaseOf(*result.map_from_camera[input]);
+  if (state_->reference) {
+    state_->FinishByAdjusting(result);
+  } else {
+    state_->FinishWithSlam(slam_final, result);
   }
   result.map = state_->Draw(result.mapped);
   return result;
+}
+
+void IncrementalMapper::State::FinishByAdjusting(MapperResult& result) const {
+  const Adjustment adjustment = loop_closer.AdjustAll(result.mapped, *reference);
+  for (std::size_t i = 0; i < result.mapped.size(); ++i) {
+    result.mapped[i].map_from_base = adjustment.map_from_base[i];
+  }
+  for (std::size_t i = 0; i < loop_closer.loops().size(); ++i) {
+    if (adjustment.loop_accepted[i]) result.loops.push_back(loop_closer.loops()[i]);
+  }
+  result.map_from_camera = FinalPoses(history, adjustment.map_from_base);
+}
+
+void IncrementalMapper::State::FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
+                                              MapperResult& result) const {
+  for (std::size_t i = 0; i < history.records().size(); ++i) {
+    const FrameRecord& record = history.records()[i];
+    const bool corrected = i < slam_final.size() && slam_final[i].has_value();
+    result.map_from_camera.push_back(corrected ? slam_final[i] : record.slam_from_camera);
+    if (record.mapped >= 0) {
+      result.mapped[static_cast<std::size_t>(record.mapped)].map_from_base =
+          BaseOf(*result.map_from_camera.back());
+    }
+  }
 }
 
 OccupancyMap IncrementalMapper::CurrentMap() const { return state_->Draw(state_->mapped); }

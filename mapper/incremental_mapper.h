@@ -11,6 +11,7 @@
 #include "mapper/frame_report.h"
 #include "mapper/mapper_options.h"
 #include "mapper/reference_map.h"
+#include "mapper/stage_timer.h"
 
 namespace depthgrid {
 
@@ -23,15 +24,17 @@ struct MapperResult {
   OccupancyMap map;
 };
 
-// Microseconds of CPU time. Only FrameReport::times depends on it; without one they stay zero.
-using CpuClock = std::function<double()>;
+// For fusion.mode `oracle`: the gain per base axis (forward, left, yaw) that an experiment which
+// knows the truth wants for a frame.
+using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predicted_map_from_base,
+                                                 const Pose2& matched_map_from_base)>;
 
 class IncrementalMapper {
  public:
   // The camera may be absent when every frame brings a ready scan. Throws InputError for options
   // that contradict each other.
   IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
-                    CpuClock clock = {});
+                    CpuClock clock = {}, GainOracle oracle = {});
   ~IncrementalMapper();
   IncrementalMapper(IncrementalMapper&&) noexcept;
 

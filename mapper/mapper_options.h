@@ -3,7 +3,11 @@
 
 #include "mapper/core/options.h"
 #include "mapper/fuse/fusion_options.h"
+#include "mapper/graph/scan_submap_graph.h"
 #include "mapper/grid/grid_options.h"
+#include "mapper/grid/submap.h"
+#include "mapper/loop_closing.h"
+#include "mapper/match/scan_matcher.h"
 
 namespace depthgrid {
 
@@ -12,7 +16,11 @@ enum class MapperMethod { kPaper, kSurfel };
 struct MapperOptions {
   MapperMethod method = MapperMethod::kPaper;
   GridOptions grid;
+  SubmapOptions submap;
+  ScanMatcherOptions match;
   FusionOptions fusion;
+  LoopOptions loops;
+  GraphOptions graph;
 
   void Visit(OptionsVisitor& v);
 };

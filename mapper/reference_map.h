@@ -14,6 +14,7 @@ namespace depthgrid {
 // A frame that was inserted, in order of time.
 struct MappedFrame {
   int frame = 0;  // Frame::index
+  double stamp_s = 0.0;
   std::shared_ptr<const Scan> scan;
   Pose2 map_from_base;
   // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.

@@ -2,8 +2,31 @@
 
 namespace depthgrid {
 
+void SlamNoiseOptions::Visit(OptionsVisitor& v) {
+  v.Number("jitter_m", jitter_m, {0.0, 1.0}, "white error of each pose, metres");
+  v.Number("jitter_rad", jitter_rad, {0.0, 1.0}, "white error of each heading, radians");
+  v.Number("walk_m_per_sqrt_s", walk_m_per_sqrt_s, {0.0, 1.0}, "random walk of the position");
+  v.Number("walk_rad_per_sqrt_s", walk_rad_per_sqrt_s, {0.0, 1.0}, "random walk of the heading");
+  v.Number("path_share", path_share, {0.0, 1.0}, "metres of error per metre travelled");
+  v.Number("turn_share", turn_share, {0.0, 1.0}, "radians of error per radian turned");
+}
+
 void FusionOptions::Visit(OptionsVisitor& v) {
+  v.Choice("prior", prior, {{PriorMode::kRelative, "relative"}, {PriorMode::kAbsolute, "absolute"}},
+           "whether the last correction of SLAM's poses is carried on to the next frame");
+  v.Choice("mode", mode,
+           {{FusionMode::kFixed, "fixed"},
+            {FusionMode::kKalman, "kalman"},
+            {FusionMode::kAdaptive, "adaptive"},
+            {FusionMode::kOracle, "oracle"}},
+           "who sets the gain");
   v.PerAxis("gain", gain, {0.0, 1.0}, "K of Eq. 3: 0 takes SLAM's poses, 1 the matched ones");
+  v.Group("slam_noise", slam_noise, "kalman: how the error of SLAM's motion grows");
+  v.Number("match_overconfidence", match_overconfidence, {0.01, 1e4},
+           "kalman: the match's information is divided by this");
+  v.Number("gate_chi2", gate_chi2, {0.0, 1e6},
+           "innovations with a larger chi-square are not taken; 0 takes all");
+  v.Number("adaptive_rate", adaptive_rate, {1e-4, 0.5}, "adaptive: how fast the gain follows");
 }
 
 }  // namespace depthgrid

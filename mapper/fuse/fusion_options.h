@@ -1,4 +1,4 @@
-// Settings of Eq. 3.
+// Settings of Eq. 3 (docs/math.md, "Fusion").
 #pragma once
 
 #include <array>
@@ -7,12 +7,51 @@
 
 namespace depthgrid {
 
-struct FusionOptions {
-  // K of Eq. 3: the share of the innovation taken, per base axis (forward, left, yaw). All zero:
-  // SLAM's poses are taken as they are and nothing is matched. All one: the matched pose whole.
-  std::array<double, 3> gain = {0.0, 0.0, 0.0};
+enum class PriorMode {
+  kRelative,  // the last correction of SLAM's poses is carried on
+  kAbsolute,  // every frame starts from SLAM's pose itself
+};
 
-  bool TrustsSlamAlone() const { return gain == std::array<double, 3>{}; }
+enum class FusionMode {
+  kFixed,     // K is a setting
+  kKalman,    // K from SLAM's covariance (a setting) and the match's (from the matcher)
+  kAdaptive,  // K per axis such that the innovations become white
+  kOracle,    // K given from outside, for experiments that know the truth
+};
+
+// How the error of SLAM's motion grows from one frame to the next. Jitter is white noise of each
+// pose, the rest grows with time, path and turning. Defaults: ORB-SLAM2 on TUM fr2/desk, error of
+// relative motion over 0.03-60 s (docs/math.md).
+struct SlamNoiseOptions {
+  double jitter_m = 0.0024;
+  double jitter_rad = 0.0035;
+  double walk_m_per_sqrt_s = 0.007;
+  double walk_rad_per_sqrt_s = 0.0035;
+  double path_share = 0.0;  // metres of error per metre travelled
+  double turn_share = 0.0;  // radians of error per radian turned
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct FusionOptions {
+  PriorMode prior = PriorMode::kRelative;
+  FusionMode mode = FusionMode::kFixed;
+  // K of Eq. 3: the share of the innovation taken, per base axis (forward, left, yaw). With
+  // `fixed`, all zero takes SLAM's poses as they are and matches nothing, and all one takes the
+  // matched pose whole. `adaptive` starts from it.
+  std::array<double, 3> gain = {0.5, 0.5, 0.5};
+  SlamNoiseOptions slam_noise;
+  // `kalman`: the match's information is divided by this, for errors its beams have in common.
+  double match_overconfidence = 1.0;
+  // Innovations with a larger chi-square (3 degrees of freedom) are not taken; 0 takes all. Off:
+  // gates at 9-16 lock onto the prior and diverge (docs/math.md).
+  double gate_chi2 = 0.0;
+  // `adaptive`: how fast the gain follows; about 1/rate frames.
+  double adaptive_rate = 0.02;
+
+  bool TrustsSlamAlone() const {
+    return mode == FusionMode::kFixed && gain == std::array<double, 3>{};
+  }
   void Visit(OptionsVisitor& v);
 };
 

@@ -26,7 +26,14 @@ std::vector<Frame> FramesOf(const PlanarWorld& world, int count, const PlanarLas
   return frames;
 }
 
-MapperResult Mapped(const std::vector<Frame>& frames, const MapperOptions& options = {}) {
+MapperOptions SlamAloneOptions() {
+  MapperOptions options;
+  options.fusion.mode = FusionMode::kFixed;
+  options.fusion.gain = {0.0, 0.0, 0.0};
+  return options;
+}
+
+MapperResult Mapped(const std::vector<Frame>& frames, const MapperOptions& options) {
   IncrementalMapper mapper(options, std::nullopt);
   for (const Frame& frame : frames) mapper.AddFrame(frame);
   return mapper.Finish();
@@ -45,7 +52,7 @@ int NearestWithin1(const StateMap& states, const Cell& cell, CellState wanted) {
 
 TEST(TruthPoses, TheRoomsOutlineIsFoundAndItsInsideIsFree) {
   const PlanarWorld room = RectangleWorld(-2.45, -2.5, 2.45, 2.5);
-  const MapperResult result = Mapped(FramesOf(room, 300, {}));
+  const MapperResult result = Mapped(FramesOf(room, 300, {}), SlamAloneOptions());
   const StateMap states = StatesOf(result.map);
   // Every wall cell has an occupied neighbour, and every occupied cell a wall within one cell.
   int walls = 0, found = 0, occupied = 0, at_a_wall = 0, inside = 0, free = 0;
@@ -79,7 +86,7 @@ TEST(SlamAlone, GivesSlamsPosesBackBitForBit) {
   frames[20].slam_from_camera.reset();  // lost
   frames[21].scan.reset();              // no image
   for (std::size_t i = 30; i < frames.size(); ++i) frames[i].slam_epoch = 1;
-  IncrementalMapper mapper({}, std::nullopt);
+  IncrementalMapper mapper(SlamAloneOptions(), std::nullopt);
   for (const Frame& frame : frames) {
     const FrameReport report = mapper.AddFrame(frame);
     EXPECT_EQ(report.map_from_camera, frame.slam_from_camera);
@@ -97,7 +104,7 @@ TEST(SlamAlone, GivesSlamsPosesBackBitForBit) {
 TEST(SlamAlone, TheFinalEstimateIsSlamsFinalTrajectory) {
   const PlanarWorld room = RectangleWorld(-2.45, -2.5, 2.45, 2.5);
   const std::vector<Frame> frames = FramesOf(room, 20, {.beams = 60});
-  IncrementalMapper mapper({}, std::nullopt);
+  IncrementalMapper mapper(SlamAloneOptions(), std::nullopt);
   std::vector<std::optional<Pose3>> slam_final;
   for (const Frame& frame : frames) {
     mapper.AddFrame(frame);

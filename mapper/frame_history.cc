@@ -1,0 +1,124 @@
+#include "mapper/frame_history.h"
+
+#include <cstdlib>
+#include <string>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// A second at 30 Hz: SLAM's own motion over it is good to millimetres.
+constexpr int kLoopReachFrames = 30;
+
+// Ten seconds: farther away no correction is better than the one known at the time.
+constexpr int kFinalReachFrames = 300;
+
+}  // namespace
+
+void FrameHistory::Start(const Frame& frame) {
+  const bool is_new = position_of_index_.emplace(frame.index, records_.size()).second;
+  if (!is_new) {
+    throw InputError("frame " + std::to_string(frame.index), "was given before");
+  }
+  FrameRecord record;
+  record.index = frame.index;
+  record.stamp_s = frame.stamp_s;
+  record.slam_from_camera = frame.slam_from_camera;
+  record.epoch = frame.slam_epoch;
+  records_.push_back(record);
+}
+
+const FrameRecord* FrameHistory::Find(int frame_index) const {
+  const auto found = position_of_index_.find(frame_index);
+  return found == position_of_index_.end() ? nullptr : &records_[found->second];
+}
+
+const FrameRecord* FrameHistory::PosedBefore(const FrameRecord& record) const {
+  for (std::size_t i = position_of_index_.at(record.index); i-- > 0;) {
+    if (records_[i].slam_from_camera) return &records_[i];
+  }
+  return nullptr;
+}
+
+const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {
+  const int position = static_cast<int>(position_of_index_.at(record.index));
+  const int count = static_cast<int>(records_.size());
+  for (int step = 0; step <= reach; ++step) {
+    for (const int candidate : {position - step, position + step}) {
+      if (candidate < 0 || candidate >= count) continue;
+      const FrameRecord& other = records_[static_cast<std::size_t>(candidate)];
+      if (other.mapped >= 0 && other.epoch == record.epoch) return &other;
+    }
+  }
+  return nullptr;
+}
+
+namespace {
+
+// A mapped frame that stands for one of the loop's, and how they lie to each other.
+struct Anchor {
+  int mapped = 0;
+  Pose2 anchor_from_frame;
+};
+
+std::optional<Anchor> AnchorOf(const FrameRecord& record, const FrameHistory& history,
+                               int newest_mapped) {
+  if (newest_mapped >= 0 && record.index == history.newest().index) {
+    return Anchor{newest_mapped, {}};
+  }
+  const FrameRecord* mapped = history.NearestMapped(record, kLoopReachFrames);
+  if (mapped == nullptr) return std::nullopt;
+  if (mapped->index == record.index) return Anchor{mapped->mapped, {}};
+  return Anchor{mapped->mapped,
+                Between(BaseOf(*mapped->slam_from_camera), BaseOf(*record.slam_from_camera))};
+}
+
+}  // namespace
+
+std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
+                                      int newest_mapped) {
+  const FrameRecord* first = history.Find(loop.first_frame);
+  const FrameRecord* second = history.Find(loop.second_frame);
+  if (first == nullptr || second == nullptr) return std::nullopt;
+  if (!first->slam_from_camera || !second->slam_from_camera) return std::nullopt;
+  const std::optional<Anchor> first_anchor = AnchorOf(*first, history, newest_mapped);
+  const std::optional<Anchor> second_anchor = AnchorOf(*second, history, newest_mapped);
+  if (!first_anchor || !second_anchor || first_anchor->mapped == second_anchor->mapped) {
+    return std::nullopt;
+  }
+  PlanarLoop planar;
+  planar.first = first_anchor->mapped;
+  planar.second = second_anchor->mapped;
+  planar.first_from_second =
+      first_anchor->anchor_from_frame *
+      ProjectRelative(*first->slam_from_camera, *second->slam_from_camera, loop.first_from_second) *
+      Inverse(second_anchor->anchor_from_frame);
+  planar.sigma_translation_m = loop.sigma_translation_m;
+  planar.sigma_yaw_rad = loop.sigma_rotation_rad;
+  return planar;
+}
+
+std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
+                                             const std::vector<Pose2>& map_from_base_of_mapped) {
+  std::vector<std::optional<Pose3>> poses;
+  for (const FrameRecord& record : history.records()) {
+    poses.emplace_back();
+    if (!record.slam_from_camera) continue;
+    Pose2 map_from_slam = record.map_from_slam;
+    if (const FrameRecord* mapped = history.NearestMapped(record, kFinalReachFrames)) {
+      const Pose2& base = map_from_base_of_mapped[static_cast<std::size_t>(mapped->mapped)];
+      const Pose2 slam_from_base = BaseOf(*mapped->slam_from_camera);
+      // Left as it was, bit for bit, where nothing moved.
+      if (!(mapped->map_from_slam * slam_from_base == base)) {
+        map_from_slam = base * Inverse(slam_from_base);
+      } else {
+        map_from_slam = mapped->map_from_slam;
+      }
+    }
+    poses.back() = ApplyPlanar(map_from_slam, *record.slam_from_camera);
+  }
+  return poses;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,56 @@
+// What the mapper remembers of its input frames, and how it finds their poses again after the map
+// was corrected.
+#pragma once
+
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "mapper/core/frame.h"
+#include "mapper/core/level.h"
+#include "mapper/reference_map.h"
+
+namespace depthgrid {
+
+struct FrameRecord {
+  int index = 0;  // Frame::index
+  double stamp_s = 0.0;
+  std::optional<Pose3> slam_from_camera;
+  int epoch = 0;
+  int mapped = -1;      // position among the mapped frames, -1 if not inserted
+  Pose2 map_from_slam;  // the correction as it was known at the time
+};
+
+class FrameHistory {
+ public:
+  // Starts the record of a frame. Throws InputError for an index that came before.
+  void Start(const Frame& frame);
+
+  const std::vector<FrameRecord>& records() const { return records_; }
+  const FrameRecord& newest() const { return records_.back(); }
+  FrameRecord& newest() { return records_.back(); }
+  // Null for an index that was never given.
+  const FrameRecord* Find(int frame_index) const;
+  // The last frame before one that has a pose; null if there is none.
+  const FrameRecord* PosedBefore(const FrameRecord& record) const;
+  // The mapped frame closest in order to a frame, itself if it is mapped, of the same epoch and at
+  // most `reach` input frames away; null if there is none.
+  const FrameRecord* NearestMapped(const FrameRecord& record, int reach) const;
+
+ private:
+  std::vector<FrameRecord> records_;
+  std::unordered_map<int, std::size_t> position_of_index_;  // looked up, never walked
+};
+
+// A loop between two frames as one between two mapped frames, by SLAM's own motion within an epoch.
+// Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped` is the
+// position the newest frame will have, or -1.
+std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
+                                      int newest_mapped);
+
+// Each frame's camera pose in the map, given those of the mapped frames: a frame that was not
+// mapped takes the correction of the nearest mapped one of its epoch, else the one it had online.
+std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
+                                             const std::vector<Pose2>& map_from_base_of_mapped);
+
+}  // namespace depthgrid

@@ -1,0 +1,83 @@
+#include "mapper/fuse/correction_filter.h"
+
+#include <algorithm>
+
+namespace depthgrid {
+namespace {
+
+// `adaptive` never stops listening to the match: without it there are no innovations to learn from.
+constexpr double kLeastAdaptiveGain = 0.02;
+
+Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace
+
+Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s) const {
+  const bool relative = options_.prior == PriorMode::kRelative;
+  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_};
+  if (!last_) return prediction;
+  const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
+  prediction.covariance = Transported(covariance_, motion) +
+                          SlamStepCovariance(options_.slam_noise, motion, stamp_s - last_->stamp_s);
+  return prediction;
+}
+
+FusedPose CorrectionFilter::Fuse(const Prediction& prediction, const MatchResult& match,
+                                 const Eigen::Vector3d& outside_gain) {
+  FusedPose unmatched;
+  unmatched.map_from_base = prediction.map_from_base;
+  unmatched.covariance = prediction.covariance;
+  if (!match.found) return unmatched;
+  MatchResult humble = match;
+  humble.information /= options_.match_overconfidence;
+  const Eigen::Vector3d innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
+  if (options_.gate_chi2 > 0.0 &&
+      InnovationChi2(prediction, humble.information, innovation) > options_.gate_chi2) {
+    unmatched.innovation = innovation;
+    unmatched.rejected = true;
+    return unmatched;
+  }
+  switch (options_.mode) {
+    case FusionMode::kKalman:
+      return FuseKalman(prediction, humble);
+    case FusionMode::kAdaptive:
+      return FuseWithGain(prediction, humble, AdaptedGain(innovation));
+    case FusionMode::kOracle:
+      return FuseWithGain(prediction, humble, outside_gain);
+    case FusionMode::kFixed:
+      break;
+  }
+  return FuseWithGain(prediction, humble, AsVector(options_.gain));
+}
+
+// With the best constant gain the innovations are white (Mehra 1970): two in a row of one sign say
+// that too little was taken, of opposite sign too much. A step of Robbins and Monro on their
+// normalised product finds that gain.
+Eigen::Vector3d CorrectionFilter::AdaptedGain(const Eigen::Vector3d& innovation) {
+  const double rate = options_.adaptive_rate;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double square = innovation[axis] * innovation[axis];
+    double& power = innovation_power_[axis];
+    power = power == 0.0 ? square : power + rate * (square - power);
+    if (!last_innovation_ || power == 0.0) continue;
+    const double correlation =
+        std::clamp((*last_innovation_)[axis] * innovation[axis] / power, -1.0, 1.0);
+    double& gain = gain_[static_cast<std::size_t>(axis)];
+    gain = std::clamp(gain + rate * correlation, kLeastAdaptiveGain, 1.0);
+  }
+  last_innovation_ = innovation;
+  return AsVector(gain_);
+}
+
+void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
+                              const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
+  if (!(map_from_slam_ * slam_from_base == map_from_base)) {
+    map_from_slam_ = map_from_base * Inverse(slam_from_base);
+  }
+  covariance_ = covariance;
+  last_ = Last{slam_from_base, stamp_s};
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,54 @@
+// The mapper's state: the planar correction map_from_slam, carried from frame to frame and moved
+// towards what matching observes (Eq. 3).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "mapper/fuse/fusion.h"
+
+namespace depthgrid {
+
+class CorrectionFilter {
+ public:
+  explicit CorrectionFilter(const FusionOptions& options)
+      : options_(options), gain_(options.gain) {}
+
+  // Where SLAM's pose is in the map before matching. The pose must be of the epoch of the last one
+  // committed: the difference of the two is taken as a motion.
+  Prediction Predict(const Pose2& slam_from_base, double stamp_s) const;
+
+  // Eq. 3. Without a match, the prediction. `outside_gain` is what mode `oracle` takes.
+  FusedPose Fuse(const Prediction& prediction, const MatchResult& match,
+                 const Eigen::Vector3d& outside_gain);
+
+  // Makes the fused pose the state: correction := map_from_base * slam_from_base^-1. The correction
+  // is left as it is, bit for bit, when the pose is where it already puts SLAM's.
+  void Commit(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
+              const Eigen::Matrix3d& covariance);
+
+  // The map was corrected: the last pose is now where this correction puts it.
+  void SetCorrection(const Pose2& map_from_slam) { map_from_slam_ = map_from_slam; }
+
+  const Pose2& map_from_slam() const { return map_from_slam_; }
+  const Eigen::Matrix3d& covariance() const { return covariance_; }
+
+ private:
+  struct Last {
+    Pose2 slam_from_base;
+    double stamp_s = 0.0;
+  };
+
+  Eigen::Vector3d AdaptedGain(const Eigen::Vector3d& innovation);
+
+  FusionOptions options_;
+  Pose2 map_from_slam_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the last pose, its base axes
+  std::optional<Last> last_;
+  // `adaptive`
+  std::array<double, 3> gain_;
+  std::optional<Eigen::Vector3d> last_innovation_;
+  Eigen::Vector3d innovation_power_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,103 @@
+#include "mapper/fuse/fusion.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// Of a symmetric positive semidefinite matrix: directions with (nearly) nothing stay at zero.
+Eigen::Matrix3d PseudoInverse(const Eigen::Matrix3d& matrix) {
+  constexpr double kNegligible = 1e-9;  // of the largest eigenvalue
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
+  Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double value = solver.eigenvalues()[i];
+    if (value > kNegligible * solver.eigenvalues()[2]) inverse[i] = 1.0 / value;
+  }
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {
+  return Between(predicted_map_from_base, map_from_base).vector();
+}
+
+Pose2 Moved(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
+            const Eigen::Matrix3d& gain) {
+  if (gain == Eigen::Matrix3d::Zero()) return predicted_map_from_base;
+  if (gain == Eigen::Matrix3d::Identity()) return matched_map_from_base;
+  const Eigen::Vector3d step = gain * InnovationOf(predicted_map_from_base, matched_map_from_base);
+  return predicted_map_from_base * Pose2::FromVector(step);
+}
+
+FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
+                       const Eigen::Vector3d& gain) {
+  FusedPose fused;
+  fused.innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
+  fused.gain = gain.asDiagonal();
+  fused.map_from_base = Moved(prediction.map_from_base, match.map_from_base, fused.gain);
+  // Joseph's form, right for any gain. R is taken as zero where the match sees nothing.
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - fused.gain;
+  fused.covariance = kept * prediction.covariance * kept.transpose() +
+                     fused.gain * PseudoInverse(match.information) * fused.gain.transpose();
+  return fused;
+}
+
+FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match) {
+  FusedPose fused;
+  fused.innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
+  const Eigen::Matrix3d product = prediction.covariance * match.information;
+  const Eigen::Matrix3d inverse = (Eigen::Matrix3d::Identity() + product).inverse();
+  fused.gain = inverse * product;
+  fused.map_from_base = Moved(prediction.map_from_base, match.map_from_base, fused.gain);
+  const Eigen::Matrix3d covariance = inverse * prediction.covariance;
+  fused.covariance = 0.5 * (covariance + covariance.transpose());
+  return fused;
+}
+
+double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,
+                      const Eigen::Vector3d& innovation) {
+  const Eigen::Matrix3d weight =
+      (Eigen::Matrix3d::Identity() + information * prediction.covariance).inverse() * information;
+  return innovation.dot(weight * innovation);
+}
+
+Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion) {
+  // A small motion d before is Ad(motion^-1) d after.
+  const Pose2 inverse = Inverse(motion);
+  const double c = std::cos(inverse.yaw_rad);
+  const double s = std::sin(inverse.yaw_rad);
+  Eigen::Matrix3d adjoint;
+  adjoint << c, -s, inverse.y_m,  //
+      s, c, -inverse.x_m,         //
+      0, 0, 1;
+  return adjoint * covariance * adjoint.transpose();
+}
+
+Eigen::Matrix3d SlamStepCovariance(const SlamNoiseOptions& noise, const Pose2& motion,
+                                   double duration_s) {
+  const auto square = [](double value) { return value * value; };
+  const double time_s = std::max(duration_s, 0.0);
+  const double position_m2 = square(noise.jitter_m) + square(noise.walk_m_per_sqrt_s) * time_s +
+                             square(noise.path_share * motion.translation().norm());
+  const double yaw_rad2 = square(noise.jitter_rad) + square(noise.walk_rad_per_sqrt_s) * time_s +
+                          square(noise.turn_share * motion.yaw_rad);
+  return Eigen::Vector3d(position_m2, position_m2, yaw_rad2).asDiagonal();
+}
+
+Eigen::Vector3d OracleGain(const Pose2& true_map_from_base, const Pose2& predicted_map_from_base,
+                           const Pose2& matched_map_from_base) {
+  const Eigen::Vector3d wanted = InnovationOf(predicted_map_from_base, true_map_from_base);
+  const Eigen::Vector3d offered = InnovationOf(predicted_map_from_base, matched_map_from_base);
+  Eigen::Vector3d gain;
+  for (int axis = 0; axis < 3; ++axis) {
+    gain[axis] = offered[axis] == 0.0 ? 0.0 : std::clamp(wanted[axis] / offered[axis], 0.0, 1.0);
+  }
+  return gain;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,57 @@
+// Eq. 3 for one frame: a predicted pose and a matched one become one (docs/math.md, "Fusion").
+// Everything small - innovation, gain, covariance - is in base axes of the predicted pose: forward
+// (m), left (m), yaw (rad).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mapper/frame_report.h"
+#include "mapper/fuse/fusion_options.h"
+
+namespace depthgrid {
+
+struct Prediction {
+  Pose2 map_from_base;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+struct FusedPose {
+  Pose2 map_from_base;
+  Eigen::Vector3d innovation = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  bool rejected = false;  // by the gate
+};
+
+// The matched pose seen from the predicted one; the angle wraps.
+Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base);
+
+// The pose moved by gain * innovation. A zero gain returns `predicted` and a unit gain `matched`
+// bit for bit.
+Pose2 Moved(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
+            const Eigen::Matrix3d& gain);
+
+// A gain per axis that somebody chose. The covariance is that of a filter with this gain.
+FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
+                       const Eigen::Vector3d& gain);
+
+// The Kalman gain K = (I + P L)^-1 P L with the match's information L: the information filter's
+// update without inverting P or L, either of which may be singular.
+FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
+
+// nu^T (P + L^-1)^-1 nu = nu^T (I + L P)^-1 L nu.
+double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,
+                      const Eigen::Vector3d& innovation);
+
+// The covariance of a pose in the base axes it has after `motion` (base_before_from_base_after).
+Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion);
+
+// What one step of SLAM adds.
+Eigen::Matrix3d SlamStepCovariance(const SlamNoiseOptions& noise, const Pose2& motion,
+                                   double duration_s);
+
+// The gain per axis that brings the estimate closest to the truth, in [0, 1]: what `oracle` takes.
+Eigen::Vector3d OracleGain(const Pose2& true_map_from_base, const Pose2& predicted_map_from_base,
+                           const Pose2& matched_map_from_base);
+
+}  // namespace depthgrid

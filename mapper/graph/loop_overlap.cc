@@ -1,0 +1,91 @@
+#include "mapper/graph/loop_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/grid/probability_grid.h"
+
+namespace depthgrid {
+namespace {
+
+// One place: its scans relative to the frame in its middle, and the grid they draw.
+struct Place {
+  std::vector<Eigen::Vector2d> points;  // obstacles, in the middle frame's base axes
+  ProbabilityGrid grid;
+};
+
+GridOptions PlaceGrid(const OverlapOptions& options) {
+  GridOptions grid;
+  grid.resolution_m = options.resolution_m;
+  return grid;
+}
+
+Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
+                  const OverlapOptions& options) {
+  Place place{.points = {}, .grid = ProbabilityGrid(PlaceGrid(options))};
+  const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
+  const int steps = options.window_frames / options.stride;
+  for (int step = -steps; step <= steps; ++step) {
+    const int index = middle + step * options.stride;
+    if (index < 0 || index >= static_cast<int>(frames.size())) continue;
+    const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
+    const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
+    place.grid.Insert(
+        CellsOfScanPlain(SegmentsOf(*frame.scan, middle_from_base, options.resolution_m)));
+    for (const Beam& beam : frame.scan->beams) {
+      if (beam.hit) place.points.push_back(middle_from_base * EndPoint(beam));
+    }
+  }
+  return place;
+}
+
+enum class Finding { kUnseen, kFree, kWall };
+
+Finding Look(const OccupancyMap& map, const Eigen::Vector2d& point, int reach_cells) {
+  const Cell centre = CellOf(point, map.geometry.resolution_m);
+  const float here = map.At(centre);
+  for (int dy = -reach_cells; dy <= reach_cells; ++dy) {
+    for (int dx = -reach_cells; dx <= reach_cells; ++dx) {
+      if (map.At({centre.x + dx, centre.y + dy}) > 0.5F) return Finding::kWall;
+    }
+  }
+  return std::isnan(here) ? Finding::kUnseen : Finding::kFree;
+}
+
+void Compare(const Place& place, const Place& other, const Pose2& place_from_other,
+             const OverlapOptions& options, Overlap& overlap) {
+  const int reach_cells = static_cast<int>(std::lround(options.tolerance_m / options.resolution_m));
+  for (const Eigen::Vector2d& point : other.points) {
+    const Finding finding = Look(place.grid.map(), place_from_other * point, reach_cells);
+    overlap.compared += finding == Finding::kUnseen ? 0 : 1;
+    overlap.agreeing += finding == Finding::kWall ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+void OverlapOptions::Visit(OptionsVisitor& v) {
+  v.Number("window_frames", window_frames, {0, 1000}, "frames around one that stand for its place");
+  v.Number("stride", stride, {1, 1000}, "every so many of them");
+  v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cells of the places' grids, metres");
+  v.Number("tolerance_m", tolerance_m, {0.0, 1.0}, "a point this near to a wall agrees, metres");
+  v.Number("min_points", min_points, {1, 1e9}, "points that both saw, at least");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of them that must lie on walls");
+}
+
+Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
+                  const OverlapOptions& options) {
+  const Place first = PlaceAround(frames, loop.first, options);
+  const Place second = PlaceAround(frames, loop.second, options);
+  Overlap overlap;
+  Compare(first, second, loop.first_from_second, options, overlap);
+  Compare(second, first, Inverse(loop.first_from_second), options, overlap);
+  return overlap;
+}
+
+bool Agrees(const Overlap& overlap, const OverlapOptions& options) {
+  return overlap.compared >= options.min_points && overlap.agreement() >= options.min_agreement;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,48 @@
+// From SLAM's loop events to corrected poses: project to the plane, test against what was seen,
+// adjust.
+#pragma once
+
+#include <vector>
+
+#include "mapper/frame_history.h"
+#include "mapper/graph/loop_overlap.h"
+
+namespace depthgrid {
+
+struct LoopOptions {
+  bool use = true;
+  // Whether a loop must lay what its two places saw over each other.
+  bool verify = true;
+  OverlapOptions overlap;
+
+  void Visit(OptionsVisitor& v);
+};
+
+// The loops known so far that passed the test, and the adjustments they led to.
+class LoopCloser {
+ public:
+  explicit LoopCloser(const LoopOptions& options) : options_(options) {}
+
+  struct Outcome {
+    bool adjusted = false;
+    std::vector<Pose2> map_from_base;  // of all frames given, when adjusted
+    int accepted = 0;                  // of the new events
+    int rejected = 0;
+  };
+  // `frames` are the mapped frames; the newest input frame may be the last of them, provisionally,
+  // to be placed by its loops.
+  Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
+                const std::vector<MappedFrame>& frames, bool newest_is_last,
+                ReferenceMap& reference);
+  // Everything once more, at the end.
+  Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference) const {
+    return reference.Adjust(frames, loops_);
+  }
+  const std::vector<PlanarLoop>& loops() const { return loops_; }
+
+ private:
+  LoopOptions options_;
+  std::vector<PlanarLoop> loops_;
+};
+
+}  // namespace depthgrid

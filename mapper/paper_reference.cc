@@ -1,0 +1,65 @@
+#include "mapper/paper_reference.h"
+
+#include <algorithm>
+
+#include "mapper/core/error.h"
+#include "mapper/grid/scan_cells.h"
+
+namespace depthgrid {
+
+PaperReference::PaperReference(const GridOptions& grid, const SubmapOptions& submap,
+                               const ScanMatcherOptions& match, const GraphOptions& graph)
+    : resolution_m_(grid.resolution_m),
+      scans_per_submap_(submap.scans),
+      graph_options_(graph),
+      matcher_(match),
+      submaps_(submap, grid) {}
+
+MatchResult PaperReference::Match(const Scan& scan, const Pose2& predicted_map_from_base) {
+  const ProbabilityGrid* grid = submaps_.matching();
+  if (grid == nullptr) return {};
+  return matcher_.Match(scan, ViewOf(grid->map()), predicted_map_from_base);
+}
+
+void PaperReference::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                            const Eigen::Matrix3d&) {
+  map_from_base_.push_back(map_from_base);
+  measurements_.push_back(MeasurementOf(map_from_base_, static_cast<int>(map_from_base_.size()) - 1,
+                                        scans_per_submap_));
+  Draw(*scan, map_from_base);
+}
+
+void PaperReference::Draw(const Scan& scan, const Pose2& map_from_base) {
+  submaps_.Insert(CellsOfScanPlain(SegmentsOf(scan, map_from_base, resolution_m_)));
+}
+
+Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,
+                                  const std::vector<PlanarLoop>& loops) {
+  std::vector<ScanMeasurement> measurements = measurements_;
+  std::vector<Pose2> poses;
+  for (const MappedFrame& frame : frames) poses.push_back(frame.map_from_base);
+  // A provisional frame at the end was not inserted; its pose is all that is known of it.
+  while (measurements.size() < frames.size()) {
+    measurements.push_back(
+        MeasurementOf(poses, static_cast<int>(measurements.size()), scans_per_submap_));
+  }
+  return AdjustScansAndSubmaps(frames, measurements, loops, scans_per_submap_, graph_options_);
+}
+
+void PaperReference::Rebuild(const std::vector<MappedFrame>& frames) {
+  Require(frames.size() == map_from_base_.size(), "the map is drawn again from what was inserted");
+  const int count = static_cast<int>(frames.size());
+  for (int i = 0; i < count; ++i) {
+    map_from_base_[static_cast<std::size_t>(i)] = frames[static_cast<std::size_t>(i)].map_from_base;
+  }
+  // Only the active submaps are ever read again: the last one and the one before it.
+  const int last_submap = std::max(count - 1, 0) / scans_per_submap_;
+  const int first_frame = std::max(last_submap - 1, 0) * scans_per_submap_;
+  submaps_.RestartAt(first_frame);
+  for (int i = first_frame; i < count; ++i) {
+    const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
+    Draw(*frame.scan, frame.map_from_base);
+  }
+}
+
+}  // namespace depthgrid

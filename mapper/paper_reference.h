@@ -1,0 +1,36 @@
+// The paper's chain: scans are matched against the older active submap (Eq. 4), and loops are
+// closed in a graph of scan and submap poses (Eq. 5-6).
+#pragma once
+
+#include "mapper/graph/scan_submap_graph.h"
+#include "mapper/grid/submap.h"
+#include "mapper/match/scan_matcher.h"
+#include "mapper/reference_map.h"
+
+namespace depthgrid {
+
+class PaperReference : public ReferenceMap {
+ public:
+  PaperReference(const GridOptions& grid, const SubmapOptions& submap,
+                 const ScanMatcherOptions& match, const GraphOptions& graph);
+
+  MatchResult Match(const Scan& scan, const Pose2& predicted_map_from_base) override;
+  void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+              const Eigen::Matrix3d& covariance) override;
+  Adjustment Adjust(const std::vector<MappedFrame>& frames,
+                    const std::vector<PlanarLoop>& loops) override;
+  void Rebuild(const std::vector<MappedFrame>& frames) override;
+
+ private:
+  void Draw(const Scan& scan, const Pose2& map_from_base);
+
+  double resolution_m_;
+  int scans_per_submap_;
+  GraphOptions graph_options_;
+  ScanMatcher matcher_;
+  ActiveSubmaps submaps_;
+  std::vector<Pose2> map_from_base_;  // of all scans inserted, as the map has them now
+  std::vector<ScanMeasurement> measurements_;
+};
+
+}  // namespace depthgrid
