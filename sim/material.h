@@ -38,5 +38,6 @@ struct Material {
 
 // Display colour, 0..1, to linear light (IEC 61966-2-1).
 Eigen::Vector3f LinearFromSrgb(const Eigen::Vector3f& srgb);
+Eigen::Vector3f SrgbFromLinear(const Eigen::Vector3f& linear);
 
 }  // namespace depthgrid

@@ -1,0 +1,259 @@
+#include "sim/colour_camera.h"
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+
+#include "mapper/core/error.h"
+#include "sim/colour_shaders.h"
+#include "sim/gl_context.h"
+#include "sim/shading_mesh.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr float kNearM = 0.01F;
+constexpr int kSamples = 4;            // all that llvmpipe has
+constexpr int kMaxImageSidePx = 8192;  // llvmpipe's limit is 16384; this is 1 GB already
+
+// Uniform and storage locations of sim/colour_shaders.cc.
+constexpr GLint kCameraFromWorld = 0;
+constexpr GLint kClipFromCamera = 1;
+constexpr GLint kEye = 2;
+constexpr GLint kAmbient = 3;
+constexpr GLint kLightCount = 4;
+constexpr GLint kLightAt = 5;
+constexpr GLint kLightIntensity = kLightAt + kMaxLights;
+constexpr GLuint kMaterialBinding = 0;
+
+struct GpuMaterial {
+  std::array<float, 4> colour;         // and scale_m
+  std::array<float, 4> second_colour;  // and gloss
+  std::array<float, 4> other;          // glow, grain axis
+};
+
+// Pixel (u, v) to the centre of GL's pixel (u, v): the image's row 0 is GL's row 0, so what is read
+// back is the image. Depth is near / z: reversed and without a far plane.
+Eigen::Matrix4f ClipFromCamera(const PinholeCamera& camera) {
+  const double width = camera.width_px;
+  const double height = camera.height_px;
+  Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
+  clip(0, 0) = 2.0 * camera.fx_px / width;
+  clip(0, 2) = 2.0 * (camera.cx_px + 0.5) / width - 1.0;
+  clip(1, 1) = 2.0 * camera.fy_px / height;
+  clip(1, 2) = 2.0 * (camera.cy_px + 0.5) / height - 1.0;
+  clip(2, 3) = kNearM;
+  clip(3, 2) = 1.0;
+  return clip.cast<float>();
+}
+
+Eigen::Matrix4f CameraFromWorld(const Pose3& world_from_camera) {
+  const Pose3 camera_from_world = Inverse(world_from_camera);
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = camera_from_world.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = camera_from_world.translation;
+  return matrix.cast<float>();
+}
+
+// A framebuffer with one colour target and a depth buffer of 32 bits.
+class Target {
+ public:
+  Target(const PinholeCamera& camera, GLenum format, int samples) {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(2, buffers_.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    const std::array<GLenum, 2> formats = {format, GL_DEPTH_COMPONENT32F};
+    const std::array<GLenum, 2> places = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+    for (std::size_t i = 0; i < 2; ++i) {
+      glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+      glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, formats[i], camera.width_px,
+                                       camera.height_px);
+      glFramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers_[i]);
+    }
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw InputError("camera", fmt::format("images of {} x {} pixels cannot be drawn",
+                                             camera.width_px, camera.height_px));
+    }
+  }
+  GLuint framebuffer() const { return framebuffer_; }
+
+  // Ready to draw, all pixels of this colour and infinitely far.
+  void BindAndClear(const std::array<float, 4>& colour) const {
+    constexpr float kInfinitelyFar = 0.0F;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glClearBufferfv(GL_COLOR, 0, colour.data());
+    glClearBufferfv(GL_DEPTH, 0, &kInfinitelyFar);
+  }
+
+ private:
+  GLuint framebuffer_ = 0;
+  std::array<GLuint, 2> buffers_{};
+};
+
+}  // namespace
+
+// GL's objects die with the context, which is the first member and goes last.
+struct ColourCamera::Renderer {
+  Renderer(const Scene& scene, const PinholeCamera& pinhole)
+      : camera(pinhole),
+        depth_target(camera, GL_R32F, 0),
+        sampled_target(camera, GL_RGBA8, kSamples),
+        colour_target(camera, GL_RGBA8, 0),
+        sky(SrgbFromLinear(scene.lighting.sky)) {
+    context.UseZeroToOneDepth();
+    glViewport(0, 0, camera.width_px, camera.height_px);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    UploadCorners(scene);
+    UploadMaterials(scene);
+    depth_program = CompileProgram(VertexShader(), DepthFragmentShader());
+    for (const auto& batch : batches) {
+      const GLuint program = CompileProgram(VertexShader(), ColourFragmentShader(batch.texture));
+      colour_programs.push_back(program);
+      SetLights(program, scene.lighting);
+    }
+    SetProjection();
+    RequireNoGlError("setting up the colour camera");
+  }
+
+  void UploadCorners(const Scene& scene) {
+    const ShadingMesh shading = MakeShadingMesh(scene);
+    batches = shading.batches;
+    corner_count = static_cast<GLsizei>(shading.corners.size());
+    GLuint array = 0;
+    GLuint buffer = 0;
+    glGenVertexArrays(1, &array);
+    glBindVertexArray(array);
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(shading.corners.size() * sizeof(ShadingCorner)),
+                 shading.corners.data(), GL_STATIC_DRAW);
+    const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
+    constexpr GLsizei kStride = sizeof(ShadingCorner);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride,
+                          offset(offsetof(ShadingCorner, position)));
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride,
+                          offset(offsetof(ShadingCorner, normal)));
+    glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, kStride,
+                           offset(offsetof(ShadingCorner, material)));
+    for (GLuint i = 0; i < 3; ++i) glEnableVertexAttribArray(i);
+  }
+
+  void UploadMaterials(const Scene& scene) {
+    std::vector<GpuMaterial> packed;
+    for (const Material& m : scene.materials) {
+      packed.push_back({{m.colour.x(), m.colour.y(), m.colour.z(), m.scale_m},
+                        {m.second_colour.x(), m.second_colour.y(), m.second_colour.z(), m.gloss},
+                        {m.glow, static_cast<float>(m.grain), 0.0F, 0.0F}});
+    }
+    GLuint buffer = 0;
+    glGenBuffers(1, &buffer);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaterialBinding, buffer);
+    glBufferData(GL_SHADER_STORAGE_BUFFER,
+                 static_cast<GLsizeiptr>(packed.size() * sizeof(GpuMaterial)), packed.data(),
+                 GL_STATIC_DRAW);
+  }
+
+  static void SetLights(GLuint program, const Lighting& lighting) {
+    glProgramUniform3fv(program, kAmbient, 1, lighting.ambient.data());
+    const int count = std::min(static_cast<int>(lighting.lights.size()), kMaxLights);
+    glProgramUniform1i(program, kLightCount, count);
+    for (int i = 0; i < count; ++i) {
+      const PointLight& light = lighting.lights[static_cast<std::size_t>(i)];
+      glProgramUniform3fv(program, kLightAt + i, 1, light.at.data());
+      glProgramUniform3fv(program, kLightIntensity + i, 1, light.intensity.data());
+    }
+  }
+
+  template <typename Function>
+  void ForEachProgram(Function function) const {
+    function(depth_program);
+    for (const GLuint program : colour_programs) function(program);
+  }
+
+  void SetProjection() const {
+    const Eigen::Matrix4f clip = ClipFromCamera(camera);
+    ForEachProgram([&](GLuint program) {
+      glProgramUniformMatrix4fv(program, kClipFromCamera, 1, GL_FALSE, clip.data());
+    });
+  }
+
+  void SetPose(const Pose3& world_from_camera) const {
+    const Eigen::Matrix4f pose = CameraFromWorld(world_from_camera);
+    const Eigen::Vector3f eye = world_from_camera.translation.cast<float>();
+    ForEachProgram([&](GLuint program) {
+      glProgramUniformMatrix4fv(program, kCameraFromWorld, 1, GL_FALSE, pose.data());
+    });
+    for (const GLuint program : colour_programs) glProgramUniform3fv(program, kEye, 1, eye.data());
+  }
+
+  DepthImage DrawDepth() const {
+    depth_target.BindAndClear({kInvalidDepth, 0, 0, 0});
+    glUseProgram(depth_program);
+    glDrawArrays(GL_TRIANGLES, 0, corner_count);
+    DepthImage depth(camera.width_px, camera.height_px);
+    glReadPixels(0, 0, camera.width_px, camera.height_px, GL_RED, GL_FLOAT, depth.z_m.data());
+    return depth;
+  }
+
+  RgbImage DrawColour() const {
+    sampled_target.BindAndClear({sky.x(), sky.y(), sky.z(), 1.0F});
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+      glUseProgram(colour_programs[i]);
+      glDrawArrays(GL_TRIANGLES, batches[i].first_corner, batches[i].corner_count);
+    }
+    const int width = camera.width_px;
+    const int height = camera.height_px;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, sampled_target.framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, colour_target.framebuffer());
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, colour_target.framebuffer());
+    RgbImage image(width, height);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+    return image;
+  }
+
+  GlContext context;
+  PinholeCamera camera;
+  Target depth_target;
+  Target sampled_target;
+  Target colour_target;
+  Eigen::Vector3f sky;
+  std::vector<TextureBatch> batches;
+  GLsizei corner_count = 0;
+  GLuint depth_program = 0;
+  std::vector<GLuint> colour_programs;  // one a batch
+};
+
+ColourCamera::ColourCamera(const Scene& scene, const PinholeCamera& camera) {
+  Validate(camera, "camera");
+  if (camera.HasDistortion()) throw InputError("camera", "distortion cannot be drawn");
+  if (std::max(camera.width_px, camera.height_px) > kMaxImageSidePx) {
+    throw InputError("camera", fmt::format("images of {} x {} pixels cannot be drawn",
+                                           camera.width_px, camera.height_px));
+  }
+  renderer_ = std::make_unique<Renderer>(scene, camera);
+}
+
+ColourCamera::ColourCamera(ColourCamera&&) noexcept = default;
+ColourCamera& ColourCamera::operator=(ColourCamera&&) noexcept = default;
+ColourCamera::~ColourCamera() = default;
+
+ColourFrame ColourCamera::Render(const Pose3& world_from_camera) {
+  renderer_->context.MakeCurrent();
+  renderer_->SetPose(world_from_camera);
+  ColourFrame frame;
+  frame.depth = renderer_->DrawDepth();
+  frame.rgb = renderer_->DrawColour();
+  RequireNoGlError("drawing a frame");
+  return frame;
+}
+
+}  // namespace depthgrid
