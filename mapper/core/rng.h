@@ -23,6 +23,7 @@ enum class RandomStage : std::uint32_t {
   kTest = 11,
   kLaserRange = 12,
   kOdometry = 13,
+  kSlamJumps = 14,
 };
 
 // Four independent 32-bit words for (seed, stage, frame, item).
