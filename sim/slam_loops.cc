@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "mapper/core/rng.h"
@@ -19,50 +18,60 @@ constexpr int kFalseAttempts = 50;
 // Graph solvers divide by sigma; a noise-free loop still states one.
 constexpr double kLeastSigma = 1e-4;
 
+// How far apart views are, in units of what counts as a revisit: at most 1 is the same view.
 class Views {
  public:
   Views(const Trajectory& truth, const SlamLoopOptions& options)
-      : max_distance_m_(options.max_distance_m), max_angle_rad_(RadFromDeg(options.max_angle_deg)) {
-    for (const StampedPose& pose : truth) {
-      positions_m_.push_back(pose.world_from_camera.translation);
-      rotations_.push_back(pose.world_from_camera.rotation);
+      : truth_(truth),
+        positions_(static_cast<Eigen::Index>(truth.size()), 3),
+        max_angle_rad_(RadFromDeg(options.max_angle_deg)) {
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      positions_.row(static_cast<Eigen::Index>(i)) =
+          truth[i].world_from_camera.translation / options.max_distance_m;
     }
   }
 
-  bool Near(int a, int b) const {
-    const Eigen::Vector3d apart =
-        positions_m_[static_cast<std::size_t>(a)] - positions_m_[static_cast<std::size_t>(b)];
-    return apart.squaredNorm() <= max_distance_m_ * max_distance_m_;
+  // Squared distances of all earlier views to this one; column by column, as that vectorises.
+  Eigen::ArrayXd SquaredDistancesBefore(int second) const {
+    const auto column = [&](Eigen::Index axis) {
+      return (positions_.col(axis).head(second).array() - positions_(second, axis)).square();
+    };
+    return column(0) + column(1) + column(2);
   }
-  // Distance and angle in units of what counts as a revisit; at most 1 is the same view.
-  double Separation(int a, int b) const {
-    const auto i = static_cast<std::size_t>(a);
-    const auto k = static_cast<std::size_t>(b);
-    return std::max((positions_m_[i] - positions_m_[k]).norm() / max_distance_m_,
-                    rotations_[i].angularDistance(rotations_[k]) / max_angle_rad_);
+  double Distance(int a, int b) const { return (positions_.row(a) - positions_.row(b)).norm(); }
+  double Angle(int a, int b) const {
+    return RotationOf(a).angularDistance(RotationOf(b)) / max_angle_rad_;
   }
 
  private:
-  std::vector<Eigen::Vector3d> positions_m_;
-  std::vector<Eigen::Quaterniond> rotations_;
-  double max_distance_m_;
+  const Eigen::Quaterniond& RotationOf(int frame) const {
+    return truth_[static_cast<std::size_t>(frame)].world_from_camera.rotation;
+  }
+  const Trajectory& truth_;
+  Eigen::MatrixX3d positions_;  // in units of max_distance_m
   double max_angle_rad_;
 };
 
 // The most similar old view of frame `second`, if the camera has been elsewhere since.
 std::optional<int> OldView(const Trajectory& truth, const std::vector<bool>& tracked,
                            const Views& views, int second, double min_gap_s) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const Eigen::ArrayXd squared_distance = views.SquaredDistancesBefore(second);
+  const double latest_s = truth[static_cast<std::size_t>(second)].stamp_s - min_gap_s;
   bool was_elsewhere = false;
   double nearest = 1.0;
   std::optional<int> found;
   for (int first = second - 1; first >= 0; --first) {
-    // Angles are dear, and most pairs are far apart.
-    const double separation = views.Near(first, second) ? views.Separation(first, second) : kFar;
+    const double enough = was_elsewhere ? nearest : 1.0;
+    if (squared_distance[first] > enough * enough) {  // no need for the angle, which is dear
+      was_elsewhere = was_elsewhere || squared_distance[first] > 1.0;
+      continue;
+    }
+    const double separation =
+        std::max(std::sqrt(squared_distance[first]), views.Angle(first, second));
     was_elsewhere = was_elsewhere || separation > 1.0;
     const auto i = static_cast<std::size_t>(first);
-    if (!was_elsewhere || !tracked[i] || separation > nearest) continue;
-    if (truth[static_cast<std::size_t>(second)].stamp_s - truth[i].stamp_s < min_gap_s) continue;
+    if (!was_elsewhere || !tracked[i] || separation > nearest || truth[i].stamp_s > latest_s)
+      continue;
     nearest = separation;
     found = first;
   }
@@ -107,7 +116,8 @@ std::optional<LoopClosure> DrawFalse(const Trajectory& truth, const std::vector<
     const auto second = static_cast<std::size_t>(frames.second);
     if (truth[second].stamp_s - truth[first].stamp_s < options.min_gap_s) continue;
     if (!tracked[first] || !tracked[second]) continue;
-    if (views.Separation(frames.first, frames.second) < kFalseSeparation) continue;
+    if (views.Separation(frames.first, frames.second, kFalseSeparation) < kFalseSeparation)
+      continue;
     return Closure(
         options, frames,
         DrawMotion(random, options.max_distance_m / 2.0, RadFromDeg(options.max_angle_deg) / 2.0));

@@ -391,11 +391,11 @@ TEST(SimulateLoops, WaitForTracking) {
   ASSERT_EQ(plain.size(), 1U);
   options.delay_frames = 20;
   const auto lost_from = static_cast<std::size_t>(plain[0].closure.second_frame) + 10;
-  for (std::size_t i = lost_from; i < lost_from + 50; ++i) tracked[i] = false;
+  for (std::size_t i = lost_from; i < lost_from + 25; ++i) tracked[i] = false;
   const auto waited = SimulateLoops(truth, tracked, options, 1);
   ASSERT_EQ(waited.size(), 1U);
   EXPECT_EQ(waited[0].closure.second_frame, plain[0].closure.second_frame);
-  EXPECT_EQ(waited[0].closure.reported_at_frame, static_cast<int>(lost_from) + 50);
+  EXPECT_EQ(waited[0].closure.reported_at_frame, static_cast<int>(lost_from) + 25);
 }
 
 TEST(SlamOptions, AProfileIsOverriddenByKeysBesideIt) {
