@@ -27,16 +27,17 @@ class Views {
         max_angle_rad_(RadFromDeg(options.max_angle_deg)) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
       positions_.row(static_cast<Eigen::Index>(i)) =
-          truth[i].world_from_camera.translation / options.max_distance_m;
+          truth[i].world_from_camera.translation.transpose() / options.max_distance_m;
     }
   }
 
   // Squared distances of all earlier views to this one; column by column, as that vectorises.
   Eigen::ArrayXd SquaredDistancesBefore(int second) const {
-    const auto column = [&](Eigen::Index axis) {
-      return (positions_.col(axis).head(second).array() - positions_(second, axis)).square();
-    };
-    return column(0) + column(1) + column(2);
+    Eigen::ArrayXd squared = Eigen::ArrayXd::Zero(second);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      squared += (positions_.col(axis).head(second).array() - positions_(second, axis)).square();
+    }
+    return squared;
   }
   double Distance(int a, int b) const { return (positions_.row(a) - positions_.row(b)).norm(); }
   double Angle(int a, int b) const {
@@ -116,8 +117,7 @@ std::optional<LoopClosure> DrawFalse(const Trajectory& truth, const std::vector<
     const auto second = static_cast<std::size_t>(frames.second);
     if (truth[second].stamp_s - truth[first].stamp_s < options.min_gap_s) continue;
     if (!tracked[first] || !tracked[second]) continue;
-    if (views.Separation(frames.first, frames.second, kFalseSeparation) < kFalseSeparation)
-      continue;
+    if (std::max(views.Distance(a, b), views.Angle(a, b)) < kFalseSeparation) continue;
     return Closure(
         options, frames,
         DrawMotion(random, options.max_distance_m / 2.0, RadFromDeg(options.max_angle_deg) / 2.0));
