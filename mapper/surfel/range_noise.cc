@@ -1,0 +1,101 @@
+#include "mapper/surfel/range_noise.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+constexpr double kFirstRangeM = 0.25;
+constexpr int kRangeBinsPerOctave = 2;
+// Before anything is known: a cheap scanner's data sheet.
+constexpr double kDefaultRelativeSigma = 0.01;
+// The median of |x| of a normal variable is 0.6745 sigma; a second difference has sqrt(6) sigma.
+constexpr double kSigmaOfMedian = 1.0 / (0.674489750196 * 2.449489742783);
+// A range bin with fewer samples borrows from its neighbours.
+constexpr std::uint32_t kMinSamples = 200;
+// Three beams count as evenly spaced when their gaps agree within this share.
+constexpr float kSpacingTolerance = 0.05F;
+// Counting every scan is not needed once the histograms are full.
+constexpr std::int64_t kScansInFull = 50;
+constexpr std::int64_t kThinning = 8;
+constexpr int kValueBinOffset = (127 - 19) * 8;  // exponent bias of a float, eight bins an octave
+
+int RangeBin(double range_m) {
+  const double octave = std::log2(range_m / kFirstRangeM);
+  return static_cast<int>(octave * kRangeBinsPerOctave);
+}
+
+// Exponent and three bits of the mantissa: eight bins an octave, linear within it.
+int ValueBin(float value) {
+  return static_cast<int>(std::bit_cast<std::uint32_t>(value) >> 20) - kValueBinOffset;
+}
+
+double ValueBinLow(int bin) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(bin + kValueBinOffset) << 20);
+}
+
+}  // namespace
+
+RangeNoise::RangeNoise() { relative_sigma_.fill(kDefaultRelativeSigma); }
+
+void RangeNoise::Add(const Scan& scan) {
+  if (scans_++ >= kScansInFull && scans_ % kThinning != 0) return;
+  const auto& beams = scan.beams;
+  for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
+    const Beam& left = beams[i - 1];
+    const Beam& middle = beams[i];
+    const Beam& right = beams[i + 1];
+    if (!left.hit || !middle.hit || !right.hit) continue;
+    const float gap = middle.bearing_rad - left.bearing_rad;
+    const float next_gap = right.bearing_rad - middle.bearing_rad;
+    if (std::abs(gap - next_gap) > kSpacingTolerance * gap) continue;
+    // (u- - 2 cos(step) u + u+) / u; the cosine matters for coarse scanners.
+    const float twice_cosine = 2.0F - gap * gap;
+    const float difference =
+        middle.range_m / left.range_m - twice_cosine + middle.range_m / right.range_m;
+    const int range_bin = std::clamp(RangeBin(middle.range_m), 0, kRangeBins - 1);
+    const int value_bin = std::clamp(ValueBin(std::abs(difference)), 0, kValueBins - 1);
+    ++histogram_[static_cast<std::size_t>(range_bin)][static_cast<std::size_t>(value_bin)];
+    ++count_[static_cast<std::size_t>(range_bin)];
+  }
+  Refresh();
+}
+
+void RangeNoise::Refresh() {
+  std::array<bool, kRangeBins> known{};
+  for (std::size_t r = 0; r < kRangeBins; ++r) {
+    if (count_[r] < kMinSamples) continue;
+    const double half = 0.5 * count_[r];
+    double below = 0.0;
+    std::size_t bin = 0;
+    while (below + histogram_[r][bin] < half) below += histogram_[r][bin++];
+    const double low = ValueBinLow(static_cast<int>(bin));
+    const double high = ValueBinLow(static_cast<int>(bin) + 1);
+    const double median = low + (high - low) * (half - below) / histogram_[r][bin];
+    relative_sigma_[r] = kSigmaOfMedian * median;
+    known[r] = true;
+  }
+  if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;
+  for (int r = 0; r < kRangeBins; ++r) {  // unknown bins take the nearest known one's, nearer first
+    for (int d = 0; !known[static_cast<std::size_t>(r)] && d < kRangeBins; ++d) {
+      const int from = r - d >= 0 && known[static_cast<std::size_t>(r - d)] ? r - d : r + d;
+      if (from >= kRangeBins || !known[static_cast<std::size_t>(from)]) continue;
+      relative_sigma_[static_cast<std::size_t>(r)] =
+          relative_sigma_[static_cast<std::size_t>(from)];
+      break;
+    }
+  }
+}
+
+double RangeNoise::RelativeSigma(double range_m) const {
+  // Linear between the bins' centres on the logarithm of the range.
+  const double place = std::log2(range_m / kFirstRangeM) * kRangeBinsPerOctave - 0.5;
+  const double clamped = std::clamp(place, 0.0, kRangeBins - 1.0);
+  const auto low = std::min(static_cast<std::size_t>(clamped), std::size_t{kRangeBins - 2});
+  const double share = clamped - static_cast<double>(low);
+  return (1.0 - share) * relative_sigma_[low] + share * relative_sigma_[low + 1];
+}
+
+}  // namespace depthgrid
