@@ -9,6 +9,12 @@
 
 namespace depthgrid {
 
+// Where a frame is before matching: SLAM's pose carried into the map, and how sure that is.
+struct Prediction {
+  Pose2 map_from_base;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // base axes: forward m, left m, yaw rad
+};
+
 // A scan matched against what was mapped before. Not finding a match is an ordinary outcome.
 struct MatchResult {
   bool found = false;

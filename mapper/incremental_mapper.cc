@@ -150,8 +150,9 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
     const Pose2 carried_on = CarriedOn();
     Pose2 better = extrapolated;
     if (scan && !mapped.empty()) {
-      const MatchResult at_extrapolated = reference->Match(*scan, extrapolated);
-      const MatchResult at_carried_on = reference->Match(*scan, carried_on);
+      const MatchResult at_extrapolated =
+          reference->Match(scan, {extrapolated, filter.covariance()});
+      const MatchResult at_carried_on = reference->Match(scan, {carried_on, filter.covariance()});
       const auto worth = [](const MatchResult& match) { return match.found ? match.score : 0.0; };
       if (worth(at_carried_on) > worth(at_extrapolated)) better = carried_on;
     }
@@ -165,7 +166,7 @@ void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
                                      const Prediction& prediction, FrameReport& report) {
   const StageTimer timer(clock, report.times.match_us);
   if (!reference || !scan || mapped.empty()) return;
-  report.match = reference->Match(*scan, prediction.map_from_base);
+  report.match = reference->Match(scan, prediction);
 }
 
 // Eq. 3.

@@ -15,10 +15,11 @@ PaperReference::PaperReference(const GridOptions& grid, const SubmapOptions& sub
       matcher_(match),
       submaps_(submap, grid) {}
 
-MatchResult PaperReference::Match(const Scan& scan, const Pose2& predicted_map_from_base) {
+MatchResult PaperReference::Match(const std::shared_ptr<const Scan>& scan,
+                                  const Prediction& prediction) {
   const ProbabilityGrid* grid = submaps_.matching();
   if (grid == nullptr) return {};
-  return matcher_.Match(scan, ViewOf(grid->map()), predicted_map_from_base);
+  return matcher_.Match(*scan, ViewOf(grid->map()), prediction.map_from_base);
 }
 
 void PaperReference::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -14,7 +14,7 @@ class PaperReference : public ReferenceMap {
   PaperReference(const GridOptions& grid, const SubmapOptions& submap,
                  const ScanMatcherOptions& match, const GraphOptions& graph);
 
-  MatchResult Match(const Scan& scan, const Pose2& predicted_map_from_base) override;
+  MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
   Adjustment Adjust(const std::vector<MappedFrame>& frames,

@@ -40,8 +40,10 @@ class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
 
-  // Matches around the prediction. Called for every frame once something is mapped.
-  virtual MatchResult Match(const Scan& scan, const Pose2& predicted_map_from_base) = 0;
+  // Matches around the prediction. Called for every frame once something is mapped. The covariance
+  // may bound or steady the search; the result must not contain it.
+  virtual MatchResult Match(const std::shared_ptr<const Scan>& scan,
+                            const Prediction& prediction) = 0;
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -10,11 +10,6 @@
 
 namespace depthgrid {
 
-struct Prediction {
-  Pose2 map_from_base;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
 struct FusedPose {
   Pose2 map_from_base;
   Eigen::Vector3d innovation = Eigen::Vector3d::Zero();
