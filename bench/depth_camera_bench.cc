@@ -106,7 +106,7 @@ constexpr auto kAvx512 = static_cast<int64_t>(RayIsa::kAvx512);
 
 BENCHMARK(RenderDepth)
     ->ArgNames({"triangles", "isa", "threads"})
-    ->ArgsProduct({{10'000, 100'000, 1'000'000}, {kAvx2, kAvx512}, {1, 2}})
+    ->ArgsProduct({{12, 10'000, 100'000, 1'000'000}, {kAvx2, kAvx512}, {1, 2}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->MeasureProcessCPUTime();

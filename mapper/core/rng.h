@@ -24,6 +24,7 @@ enum class RandomStage : std::uint32_t {
   kLaserRange = 12,
   kOdometry = 13,
   kSlamJumps = 14,
+  kFlyingPixels = 15,
 };
 
 // Four independent 32-bit words for (seed, stage, frame, item).

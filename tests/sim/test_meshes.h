@@ -85,6 +85,7 @@ inline TriangleMesh ClutteredRoom(int triangles) {
   const int rings =
       std::max(3, static_cast<int>(std::sqrt((triangles - 12 * n * n) / (4.0 * kBalls))));
   TriangleMesh mesh = Box({0, 0, 0}, {4.9F, 5.0F, 2.5F}, n);
+  if (triangles <= 12) return mesh;
   for (int k = 0; k < kBalls; ++k) {
     const double turn = 2.0 * kPi * k / kBalls;
     const Eigen::Vector3d centre(2.45 + 1.9 * std::cos(turn), 2.5 + 1.9 * std::sin(turn),

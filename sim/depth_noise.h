@@ -1,0 +1,35 @@
+// Turns a clean rendered depth frame into what a real sensor would have measured (docs/sensors.md).
+#pragma once
+
+#include <cstdint>
+
+#include "mapper/core/camera.h"
+#include "sim/depth_camera.h"
+#include "sim/sensor_options.h"
+
+namespace depthgrid {
+
+class DepthNoise {
+ public:
+  // Noise for images of SensorCamera(options). `threads` only changes the speed. Throws InputError
+  // for a range limit that leaves nothing.
+  explicit DepthNoise(const SensorOptions& options, int threads = 1);
+
+  // The measured image. Draws depend on (seed, frame, pixel) alone: neither threads nor the order
+  // of frames changes them.
+  DepthImage Apply(const DepthFrame& clean, std::uint64_t seed, std::uint32_t frame) const;
+
+  // Whether Apply reads the frame's cosines; if not, they may be left out.
+  bool NeedsIncidence() const;
+  double min_range_m() const { return min_range_m_; }
+  double max_range_m() const { return max_range_m_; }
+
+ private:
+  SensorOptions options_;
+  PinholeCamera camera_;
+  int threads_;
+  double min_range_m_;
+  double max_range_m_;
+};
+
+}  // namespace depthgrid

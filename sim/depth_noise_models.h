@@ -1,0 +1,88 @@
+// The noise models' formulas as published; z in metres, angles in radians, lengths in pixels where
+// said. docs/sensors.md has them in print. Single precision and plain arithmetic only: loops over
+// them vectorise and give the same bits everywhere.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid::noise {
+
+constexpr float kRightAngle = 1.57079632679F;
+
+// acos on [0, 1] to 2e-7 rad (Abramowitz and Stegun, 4.4.46).
+inline float Acos(float x) {
+  float p = -0.0012624911F;
+  p = p * x + 0.0066700901F;
+  p = p * x - 0.0170881256F;
+  p = p * x + 0.0308918810F;
+  p = p * x - 0.0501743046F;
+  p = p * x + 0.0889789874F;
+  p = p * x - 0.2145988016F;
+  p = p * x + 1.5707963050F;
+  return std::sqrt(1.0F - x) * p;
+}
+
+// theta / (pi/2 - theta), bounded: no model means anything in the last half degree.
+inline float ObliqueRatio(float theta) {
+  constexpr float kLeastRest = 0.01F;
+  return theta / std::max(kRightAngle - theta, kLeastRest);
+}
+
+// Nguyen, Izadi, Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and
+// tracking", 3DIMPVT 2012: equations for the axial and lateral standard deviation of a Kinect v1.
+inline float NguyenSigma(float z, float theta) {
+  constexpr float kOblique = 1.04719755120F;  // 60 degrees
+  const float frontal = 0.0012F + 0.0019F * (z - 0.4F) * (z - 0.4F);
+  const float rest = std::max(kRightAngle - theta, 0.01F);
+  const float oblique = 0.0001F / std::sqrt(z) * (theta * theta) / (rest * rest);
+  return frontal + (theta > kOblique ? oblique : 0.0F);
+}
+
+inline float NguyenLateralSigma_px(float theta) { return 0.8F + 0.035F * ObliqueRatio(theta); }
+
+// Handa et al., "A benchmark for RGB-D visual odometry, 3D reconstruction and SLAM", ICRA 2014,
+// after Barron and Malik, CVPR 2013. Z in cm: 35130 / floor(35130 / Z + N(0, 1/6^2) + 0.5), steps
+// of an eighth of a pixel of disparity, 35130 = 8 f b. A widely copied port rounds where this takes
+// the floor, and so measures short by 1.4 mm at 1 m and 22.6 mm at 4 m.
+constexpr float kHandaSteps_m = 351.30F;
+constexpr float kHandaShift_px = 0.5F;
+constexpr float kHandaDisparitySigma_steps = 1.0F / 6.0F;
+
+inline float HandaDepth(float inverse_z, float noise_steps) {
+  const float steps = std::floor(kHandaSteps_m * inverse_z + noise_steps + 0.5F);
+  return steps >= 1.0F ? kHandaSteps_m / std::max(steps, 1.0F) : 0.0F;
+}
+
+// Stereo: z = f B / disparity, whose subpixel error is 0.08 px (Intel, "Best known methods for
+// tuning RealSense D400 depth cameras", RMS error formula), B = 50 mm.
+inline float D435Sigma(float z, float focal_px) {
+  constexpr float kSubpixel_px = 0.08F;
+  constexpr float kBaseline_m = 0.050F;
+  return z * z * (kSubpixel_px / (focal_px * kBaseline_m));
+}
+
+// Fankhauser et al., "Kinect v2 for mobile robot navigation: evaluation and modeling", ICAR 2015.
+inline float KinectV2Sigma(float z, float theta) {
+  const float ratio = ObliqueRatio(theta);
+  const float sigma_mm =
+      1.5F - 0.5F * z + 0.3F * z * z + 0.1F * (z * std::sqrt(z)) * (ratio * ratio);
+  return 0.001F * sigma_mm;
+}
+
+// An Azure Kinect-like time-of-flight camera.
+constexpr float kAzureShift_px = 0.25F;
+constexpr float kAzureEdgeStep_m = 0.8F;  // pixels whose 3x3 neighbours differ by more are lost
+
+inline float AzureSigma(float z) { return 0.0005F + 0.001F * std::max(z - 0.5F, 0.0F); }
+
+// Whether a depth `z_other`, `pixels` away in the image, cannot lie on the plane through a pixel of
+// depth z met at the given incidence. On a plane 1/z is linear in the pixel, with a relative slope
+// of at most 1 / (f cos) a pixel; 1 % on top leaves curved surfaces whole.
+inline bool IsBreak(float z, float z_other, float pixels, float cosine, float focal_px) {
+  constexpr float kSlack = 0.01F;
+  const float bound = pixels / (focal_px * std::max(cosine, 0.02F)) + kSlack;
+  return std::abs(z - z_other) > z_other * bound;
+}
+
+}  // namespace depthgrid::noise

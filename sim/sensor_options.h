@@ -1,0 +1,65 @@
+// The simulated depth sensor: which camera, which noise, which of a real sensor's weaknesses.
+#pragma once
+
+#include "mapper/core/camera.h"
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+// Real cameras, by their published intrinsics (docs/sensors.md has the table with its sources).
+enum class CameraPreset {
+  kIclNuim,
+  kTumFr1,
+  kTumFr2,
+  kTumFr3,
+  kTumDefault,
+  kKinectV1,
+  kD435,
+  kKinectV2,
+  kAzure,
+  kTof540x360,
+};
+
+enum class DepthNoiseModel {
+  kNone,      // exact depth
+  kNguyen,    // Kinect v1: Nguyen, Izadi, Lovell 2012
+  kHanda,     // ICL-NUIM's: Handa, Whelan, McDonald, Davison 2014, after Barron and Malik 2013
+  kD435,      // RealSense D435: subpixel error of stereo disparity
+  kKinectV2,  // time of flight: Fankhauser et al. 2015
+  kAzure,     // time of flight, Azure Kinect-like
+};
+
+struct SensorOptions {
+  CameraPreset camera = CameraPreset::kIclNuim;  // the paper's data set
+  // Overrides of the preset; 0 keeps it. A new size alone scales the intrinsics, so that the field
+  // of view stays; `hfov_deg` sets both focal lengths (square pixels).
+  int width_px = 0;
+  int height_px = 0;
+  double fx_px = 0.0;
+  double fy_px = 0.0;
+  double cx_px = -1.0;  // -1 keeps the preset: 0 is a possible centre
+  double cy_px = -1.0;
+  double hfov_deg = 0.0;
+
+  DepthNoiseModel noise = DepthNoiseModel::kNone;
+  double noise_scale = 1.0;  // times every standard deviation; a model's own quantisation stays
+  // Measured depths outside become invalid; 0 takes the model's own limit (docs/sensors.md).
+  double min_range_m = 0.0;
+  double max_range_m = 0.0;
+  // Pixels meeting the surface more obliquely are lost: Handa's 82 degrees, which no other model's
+  // source contradicts. With softness the limit is drawn for each pixel, normal about the first.
+  double grazing_limit_deg = 82.0;
+  double grazing_softness_deg = 0.0;
+  // Share of the pixels at a depth edge that measure a mix of both sides, as time of flight does.
+  double flying_pixels = 0.0;
+  // Distance of the pattern projector to the camera's right: what it does not light is lost. 0 off;
+  // a Kinect v1 has 0.075.
+  double shadow_baseline_m = 0.0;
+
+  void Visit(OptionsVisitor& v);
+};
+
+// The preset's camera with the overrides. Throws InputError for a camera nobody can build.
+PinholeCamera SensorCamera(const SensorOptions& options);
+
+}  // namespace depthgrid

@@ -1,0 +1,407 @@
+#include "sim/depth_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "tests/sim/test_meshes.h"
+
+namespace depthgrid {
+namespace {
+
+SensorOptions Options(DepthNoiseModel model) {
+  SensorOptions options;
+  options.noise = model;
+  return options;
+}
+
+// Every pixel at one depth, met at one incidence.
+DepthFrame Constant(double z_m, double incidence_deg) {
+  DepthFrame frame{DepthImage(640, 480), {}};
+  frame.depth.z_m.assign(frame.depth.z_m.size(), static_cast<float>(z_m));
+  frame.incidence_cos.assign(frame.depth.z_m.size(),
+                             static_cast<float>(std::cos(RadFromDeg(incidence_deg))));
+  return frame;
+}
+
+struct Moments {
+  double mean = 0.0;
+  double sigma = 0.0;
+  double count = 0.0;
+};
+
+// Of measured minus clean, over the pixels that were measured.
+Moments ErrorsOf(const DepthImage& measured, const DepthImage& clean) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < measured.z_m.size(); ++i) {
+    if (measured.z_m[i] <= 0.0F) continue;
+    const double error = double{measured.z_m[i]} - double{clean.z_m[i]};
+    sum += error;
+    squares += error * error;
+    ++count;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(squares / count - mean * mean), count};
+}
+
+void ExpectNormalErrors(const Moments& seen, double sigma) {
+  EXPECT_GE(seen.count, 1e5);
+  EXPECT_NEAR(seen.mean, 0.0, 4.0 * sigma / std::sqrt(seen.count));
+  EXPECT_NEAR(seen.sigma, sigma, 4.0 * sigma / std::sqrt(2.0 * seen.count));
+}
+
+TEST(DepthNoise, SigmasAreTheDeclaredOnes) {
+  // Formulas as in docs/sensors.md, written out once more.
+  struct Case {
+    DepthNoiseModel model;
+    double (*sigma)(double z, double theta);
+    double far_m;
+  };
+  const Case models[] = {
+      {DepthNoiseModel::kNguyen,
+       [](double z, double theta) {
+         const double frontal = 0.0012 + 0.0019 * std::pow(z - 0.4, 2);
+         const double oblique =
+             0.0001 / std::sqrt(z) * theta * theta / std::pow(kPi / 2 - theta, 2);
+         return theta > RadFromDeg(60.0) ? frontal + oblique : frontal;
+       },
+       4.0},
+      {DepthNoiseModel::kD435, [](double z, double) { return z * z * 0.08 / (481.20 * 0.05); },
+       4.0},
+      {DepthNoiseModel::kKinectV2,
+       [](double z, double theta) {
+         return 1e-3 * (1.5 - 0.5 * z + 0.3 * z * z +
+                        0.1 * std::pow(z, 1.5) * std::pow(theta / (kPi / 2 - theta), 2));
+       },
+       4.0},
+      {DepthNoiseModel::kAzure,
+       [](double z, double) { return 0.0005 + 0.001 * std::max(z - 0.5, 0.0); }, 3.5},
+  };
+  int cases = 0;
+  for (const Case& c : models) {
+    const DepthNoise noise(Options(c.model));
+    for (const double z : {0.8, 1.0, 2.0, c.far_m}) {
+      for (const double incidence_deg : {0.0, 30.0, 65.0, 80.0}) {
+        SCOPED_TRACE(testing::Message() << "model " << static_cast<int>(c.model) << " z " << z
+                                        << " incidence " << incidence_deg);
+        const DepthFrame clean = Constant(z, incidence_deg);
+        ExpectNormalErrors(ErrorsOf(noise.Apply(clean, 5, 7), clean.depth),
+                           c.sigma(z, RadFromDeg(incidence_deg)));
+        ++cases;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 64);
+}
+
+TEST(DepthNoise, SigmasAgreeWithThePublishedFigures) {
+  // Millimetres at 1, 2 and 4 m, frontal.
+  struct Row {
+    DepthNoiseModel model;
+    double mm[3];
+  };
+  for (const Row& row : {Row{DepthNoiseModel::kNguyen, {1.9, 6.1, 25.8}},
+                         Row{DepthNoiseModel::kD435, {3.8, 15.1, 60.4}},
+                         Row{DepthNoiseModel::kKinectV2, {1.3, 1.7, 4.3}}}) {
+    SensorOptions options = Options(row.model);
+    if (row.model == DepthNoiseModel::kD435)
+      options.hfov_deg = DegFromRad(2 * std::atan(320. / 424));
+    const DepthNoise noise(options);
+    for (int k = 0; k < 3; ++k) {
+      const DepthFrame clean = Constant(1 << k, 0.0);
+      EXPECT_NEAR(1e3 * ErrorsOf(noise.Apply(clean, 1, 1), clean.depth).sigma, row.mm[k],
+                  0.05 + 0.01 * row.mm[k]);
+    }
+  }
+}
+
+TEST(DepthNoise, NoiseScaleMultipliesSigma) {
+  SensorOptions options = Options(DepthNoiseModel::kD435);
+  options.noise_scale = 3.0;
+  const DepthFrame clean = Constant(2.0, 0.0);
+  ExpectNormalErrors(ErrorsOf(DepthNoise(options).Apply(clean, 1, 1), clean.depth),
+                     3.0 * 4.0 * 0.08 / (481.20 * 0.05));
+}
+
+TEST(HandaNoise, FollowsItsFormulaStepByStep) {
+  // At one depth the outcome is a few disparity steps, with probabilities from the normal integral.
+  const DepthNoise noise(Options(DepthNoiseModel::kHanda));
+  const auto below = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
+  for (const double z : {0.83, 1.0, 2.1, 3.3, 4.0}) {
+    const DepthFrame clean = Constant(z, 0.0);
+    const DepthImage measured = noise.Apply(clean, 3, 0);
+    const double disparity = 351.30 / static_cast<double>(static_cast<float>(z));
+    double covered = 0.0;
+    for (int k = static_cast<int>(disparity) - 1; k <= static_cast<int>(disparity) + 2; ++k) {
+      const double expected = below(6 * (k + 0.5 - disparity)) - below(6 * (k - 0.5 - disparity));
+      const double step_m = 351.30 / k;
+      const auto seen =
+          static_cast<double>(std::count_if(measured.z_m.begin(), measured.z_m.end(),
+                                            [&](float m) { return std::abs(m - step_m) < 1e-5; }));
+      const double n = 640 * 480;
+      EXPECT_NEAR(seen / n, expected, 4 * std::sqrt(expected / n) + 1e-5) << z << " step " << k;
+      covered += seen;
+    }
+    EXPECT_EQ(covered, 640 * 480);
+  }
+}
+
+// A plane that fills the view, its normal turned by `turn_deg` about the vertical, `distance_m`
+// from the camera along the optical axis.
+DepthFrame PlaneFrame(double distance_m, double turn_deg) {
+  const double turn = RadFromDeg(turn_deg);
+  const Eigen::Vector3f along(static_cast<float>(40 * std::sin(turn)),
+                              static_cast<float>(40 * std::cos(turn)), 0);
+  const Eigen::Vector3f middle(static_cast<float>(distance_m), 0, 0), up(0, 0, 40);
+  TriangleMesh mesh;
+  test::AddQuad(mesh, middle - along - up, middle + along - up, middle + along + up,
+                middle - along + up);
+  return DepthCamera(RayScene(mesh), PinholeCamera{}).RenderWithIncidence(CameraOf({0, 0, 0}, 0));
+}
+
+TEST(HandaNoise, HasNoBias) {
+  // Slightly turned planes pass through many disparity steps. The port that rounds where the paper
+  // takes the floor would measure short by 1.4, 5.8, 12.7 and 22.6 mm.
+  const DepthNoise noise(Options(DepthNoiseModel::kHanda));
+  for (const double z : {1.0, 2.0, 3.0, 4.0}) {
+    const DepthFrame clean = PlaneFrame(z, 20.0);
+    const Moments errors = ErrorsOf(noise.Apply(clean, 3, 0), clean.depth);
+    EXPECT_GE(errors.count, 3e5);
+    // What is left is the curvature of 1/x: mean of sigma^2/z, 0.1 mm at 4 m.
+    EXPECT_NEAR(errors.mean, 0.0, 1e-4 + 1e-5 * z * z) << z;
+  }
+}
+
+TEST(HandaNoise, SpreadsAsItsThreeSourcesTogether) {
+  // Disparity: N(0, (1/6)^2), rounding 1/12, and the shift of half a pixel along the plane's slope.
+  const DepthNoise noise(Options(DepthNoiseModel::kHanda));
+  int cases = 0;
+  for (const double z : {1.0, 2.5, 4.0}) {
+    for (const double turn_deg : {15.0, 40.0, 60.0}) {
+      const DepthFrame clean = PlaneFrame(z, turn_deg);
+      const DepthImage measured = noise.Apply(clean, 4, 1);
+      // 1/z = (1 + tan(turn) x) / distance: in steps of disparity, so many a pixel.
+      const double slope = 351.30 / z * std::tan(RadFromDeg(turn_deg)) / 481.20;
+      const double sigma = std::sqrt(1.0 / 36 + 1.0 / 12 + 0.25 * slope * slope);
+      double sum = 0.0, squares = 0.0, count = 0.0;
+      for (int v = 10; v < 470; ++v) {  // at the border shifted samples are clamped
+        for (int u = 10; u < 630; ++u) {
+          const float m = measured.At(u, v);
+          if (m <= 0.0F) continue;
+          const double error = 351.30 / m - 351.30 / clean.depth.At(u, v);
+          sum += error;
+          squares += error * error;
+          ++count;
+        }
+      }
+      EXPECT_GE(count, 1e5);
+      EXPECT_NEAR(std::sqrt(squares / count), sigma, 0.01 * sigma) << z << " " << turn_deg;
+      EXPECT_NEAR(sum / count, 0.0, 5 * sigma / std::sqrt(count)) << z << " " << turn_deg;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 9);
+}
+
+// Near on the left half, far on the right.
+DepthFrame Step(float near_m, float far_m, int width_px = 640) {
+  DepthFrame frame{DepthImage(width_px, 480), {}};
+  frame.depth.z_m.assign(frame.depth.z_m.size(), far_m);
+  frame.incidence_cos.assign(frame.depth.z_m.size(), 1.0F);
+  for (int v = 0; v < 480; ++v) std::fill_n(frame.depth.Row(v), width_px / 2, near_m);
+  return frame;
+}
+
+TEST(DepthNoise, LateralNoiseMovesSilhouettes) {
+  // A pixel takes the other side when its shift exceeds the way to the edge, which lies half a
+  // pixel before the first far column.
+  constexpr int kWidth = 16, kFrames = 200;
+  const auto below = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
+  for (const auto& [model, sigma_px] :
+       {std::pair{DepthNoiseModel::kNguyen, 0.8}, std::pair{DepthNoiseModel::kHanda, 0.5},
+        std::pair{DepthNoiseModel::kAzure, 0.25}}) {
+    SCOPED_TRACE(static_cast<int>(model));
+    const DepthFrame clean = Step(2.0F, 2.6F, kWidth);  // Azure would lose steps above 0.8 m
+    SensorOptions options = Options(model);
+    options.width_px = kWidth;
+    options.hfov_deg = 2.0;
+    const DepthNoise noise(options);
+    std::array<double, kWidth> crossed{};
+    for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+      const DepthImage measured = noise.Apply(clean, 1, frame);
+      for (int v = 0; v < 480; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+          const bool is_far = measured.At(u, v) > 2.3F;
+          crossed[static_cast<std::size_t>(u)] += is_far != (u >= kWidth / 2) ? 1.0 : 0.0;
+        }
+      }
+    }
+    for (int u = 5; u < 11; ++u) {
+      const double expected = below(-std::abs(u - (kWidth / 2 - 0.5)) / sigma_px);
+      const double total = 480.0 * kFrames;
+      EXPECT_NEAR(crossed[static_cast<std::size_t>(u)] / total, expected,
+                  5 * std::sqrt(expected / total) + 1e-4)
+          << u;
+    }
+  }
+}
+
+TEST(DepthNoise, NoDepthLiesBetweenTwoSurfacesUnlessAsked) {
+  const DepthFrame clean = Step(1.0F, 3.0F);
+  const auto between = [](const DepthImage& image) {
+    return std::count_if(image.z_m.begin(), image.z_m.end(),
+                         [](float z) { return z > 1.2F && z < 2.7F; });
+  };
+  for (const DepthNoiseModel model :
+       {DepthNoiseModel::kNguyen, DepthNoiseModel::kHanda, DepthNoiseModel::kKinectV2}) {
+    SensorOptions options = Options(model);
+    EXPECT_EQ(between(DepthNoise(options).Apply(clean, 1, 0)), 0);
+    options.flying_pixels = 0.5;
+    // Two columns of 480 pixels, half of them flying, uniform over 2 m.
+    EXPECT_NEAR(static_cast<double>(between(DepthNoise(options).Apply(clean, 1, 0))),
+                2 * 480 * 0.5 * 0.75, 80.0);
+  }
+}
+
+TEST(DepthNoise, RangeLimitsInvalidate) {
+  SensorOptions options = Options(DepthNoiseModel::kNone);
+  options.min_range_m = 1.0;
+  options.max_range_m = 3.0;
+  for (const auto& [z, kept] : {std::pair{0.99, false}, {1.0, true}, {3.0, true}, {3.01, false}}) {
+    const DepthImage image = DepthNoise(options).Apply(Constant(z, 0.0), 1, 0);
+    EXPECT_EQ(image.z_m[1234] > 0.0F, kept) << z;
+  }
+  // Models bring their own limits; measured depths decide.
+  const DepthImage far =
+      DepthNoise(Options(DepthNoiseModel::kKinectV2)).Apply(Constant(4.5, 0), 1, 0);
+  const auto valid = std::count_if(far.z_m.begin(), far.z_m.end(), [](float z) { return z > 0; });
+  EXPECT_NEAR(static_cast<double>(valid), 640 * 480 / 2, 2000);
+  options.min_range_m = 4.0;
+  EXPECT_THROW(DepthNoise{options}, InputError);
+}
+
+TEST(DepthNoise, GrazingPixelsAreLost) {
+  SensorOptions options = Options(DepthNoiseModel::kHanda);
+  const auto kept_share = [&](double incidence_deg) {
+    const DepthImage image = DepthNoise(options).Apply(Constant(2.0, incidence_deg), 1, 0);
+    return static_cast<double>(std::count_if(image.z_m.begin(), image.z_m.end(),
+                                             [](float z) { return z > 0.0F; })) /
+           static_cast<double>(image.z_m.size());
+  };
+  EXPECT_EQ(kept_share(81.9), 1.0);
+  EXPECT_EQ(kept_share(82.1), 0.0);
+  options.grazing_limit_deg = 70.0;
+  options.grazing_softness_deg = 5.0;
+  EXPECT_NEAR(kept_share(70.0), 0.5, 0.005);
+  EXPECT_NEAR(kept_share(65.0), 0.8413, 0.005);
+  EXPECT_NEAR(kept_share(80.0), 0.0228, 0.005);
+}
+
+TEST(DepthNoise, WhatWasNotSeenStaysUnseen) {
+  const DepthFrame nothing = Constant(0.0, 90.0);
+  for (const DepthNoiseModel model :
+       {DepthNoiseModel::kNone, DepthNoiseModel::kNguyen, DepthNoiseModel::kHanda,
+        DepthNoiseModel::kD435, DepthNoiseModel::kKinectV2, DepthNoiseModel::kAzure}) {
+    const DepthImage image = DepthNoise(Options(model)).Apply(nothing, 1, 0);
+    for (const float z : image.z_m) ASSERT_EQ(z, kInvalidDepth);
+  }
+}
+
+TEST(DepthNoise, DependsOnSeedFrameAndPixelAlone) {
+  const DepthFrame clean = DepthCamera(RayScene(test::ClutteredRoom(5000)), PinholeCamera{})
+                               .RenderWithIncidence(CameraOf({2.0, 2.0, 0.4}, 1.15));
+  for (const DepthNoiseModel model :
+       {DepthNoiseModel::kNguyen, DepthNoiseModel::kHanda, DepthNoiseModel::kD435,
+        DepthNoiseModel::kKinectV2, DepthNoiseModel::kAzure}) {
+    const DepthImage once = DepthNoise(Options(model)).Apply(clean, 1, 2);
+    EXPECT_EQ(DepthNoise(Options(model)).Apply(clean, 1, 2).z_m, once.z_m);
+    EXPECT_EQ(DepthNoise(Options(model), 2).Apply(clean, 1, 2).z_m, once.z_m);
+    EXPECT_EQ(DepthNoise(Options(model), 3).Apply(clean, 1, 2).z_m, once.z_m);
+    EXPECT_NE(DepthNoise(Options(model)).Apply(clean, 1, 3).z_m, once.z_m);
+    EXPECT_NE(DepthNoise(Options(model)).Apply(clean, 2, 2).z_m, once.z_m);
+  }
+}
+
+TEST(DepthNoise, WorksAtAnySize) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {541, 361}, {3, 200}}) {
+    for (const DepthNoiseModel model :
+         {DepthNoiseModel::kNguyen, DepthNoiseModel::kHanda, DepthNoiseModel::kAzure}) {
+      SensorOptions options = Options(model);
+      options.width_px = width;
+      options.height_px = height;
+      DepthFrame clean{DepthImage(width, height), {}};
+      clean.depth.z_m.assign(clean.depth.z_m.size(), 2.0F);
+      clean.incidence_cos.assign(clean.depth.z_m.size(), 1.0F);
+      const DepthImage measured = DepthNoise(options).Apply(clean, 1, 0);
+      ASSERT_EQ(measured.z_m.size(), clean.depth.z_m.size());
+      for (const float z : measured.z_m) ASSERT_NEAR(z, 2.0F, 0.1F);
+    }
+  }
+}
+
+TEST(DepthNoise, AzureLosesDeepEdges) {
+  const DepthNoise noise(Options(DepthNoiseModel::kAzure));
+  const DepthImage deep = noise.Apply(Step(1.0F, 1.9F), 1, 0);
+  const DepthImage shallow = noise.Apply(Step(1.0F, 1.7F), 1, 0);
+  for (int v = 0; v < 480; ++v) {
+    for (int u = 316; u < 324; ++u) {
+      ASSERT_EQ(deep.At(u, v) > 0.0F, u != 319 && u != 320) << u;
+      ASSERT_GT(shallow.At(u, v), 0.0F);
+    }
+  }
+}
+
+TEST(ProjectorShadow, IsAsWideAsTheDifferenceOfDisparities) {
+  // A near strip before a wall: what the projector, to the right, does not reach lies to its left.
+  SensorOptions options = Options(DepthNoiseModel::kNone);
+  options.shadow_baseline_m = 0.075;
+  DepthFrame clean = Constant(3.0, 0.0);
+  for (int v = 0; v < 480; ++v) std::fill_n(clean.depth.Row(v) + 300, 100, 1.0F);
+  const double band_px = 481.20 * 0.075 * (1.0 / 1.0 - 1.0 / 3.0);  // 24.06
+  const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
+  const auto dark_from = [&](int u) {
+    int count = 0;
+    while (u >= 0 && seen.At(u, 100) == kInvalidDepth) {
+      ++count;
+      --u;
+    }
+    return count;
+  };
+  EXPECT_NEAR(dark_from(299), band_px, 1.0);
+  EXPECT_EQ(std::count(seen.Row(100), seen.Row(100) + 640, kInvalidDepth), dark_from(299));
+  // The other way round the shadow falls to the right.
+  options.shadow_baseline_m = -0.075;
+  const DepthImage mirrored = DepthNoise(options).Apply(clean, 1, 0);
+  EXPECT_EQ(mirrored.At(400, 100), kInvalidDepth);
+  EXPECT_NE(mirrored.At(299, 100), kInvalidDepth);
+}
+
+TEST(ProjectorShadow, OfAThinPoleStandsApartFromIt) {
+  SensorOptions options = Options(DepthNoiseModel::kNone);
+  options.shadow_baseline_m = 0.075;
+  DepthFrame clean = Constant(3.0, 0.0);
+  for (int v = 0; v < 480; ++v) std::fill_n(clean.depth.Row(v) + 300, 6, 1.0F);
+  const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
+  EXPECT_NE(seen.At(299, 100), kInvalidDepth);  // lit past the pole
+  EXPECT_EQ(seen.At(279, 100), kInvalidDepth);
+  EXPECT_NEAR(static_cast<double>(std::count(seen.Row(100), seen.Row(100) + 640, kInvalidDepth)),
+              6.0, 1.0);
+}
+
+TEST(ProjectorShadow, LeavesSlantedSurfacesLit) {
+  SensorOptions options = Options(DepthNoiseModel::kNone);
+  options.shadow_baseline_m = 0.075;
+  for (const double turn_deg : {-60.0, 0.0, 60.0}) {
+    const DepthFrame clean = PlaneFrame(2.0, turn_deg);
+    const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
+    EXPECT_EQ(seen.z_m, clean.depth.z_m) << turn_deg;
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
