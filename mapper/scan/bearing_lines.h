@@ -1,0 +1,39 @@
+// Eq. 2 turned round: for each bearing of the level scan, the line of the image whose rays have
+// that bearing. The vertical plane through the camera at a bearing cuts the image in a straight
+// line, whatever the tilt, and along it range and height are z times a linear function of the row.
+// So a tilted image is read bearing by bearing, and no beam inside the field of view stays empty.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mapper/core/camera.h"
+
+namespace depthgrid {
+
+// At row v of the line: column u0 + u1 v; horizontal range z (h0 + h1 v); height above the camera
+// z (g0 + g1 v), z the depth there.
+struct BearingLine {
+  float u0 = 0.0F, u1 = 0.0F;
+  float h0 = 0.0F, h1 = 0.0F;
+  float g0 = 0.0F, g1 = 0.0F;
+  // Rows at which the line is inside the image and ahead of the camera; first > last when none.
+  int first_row = 0;
+  int last_row = -1;
+};
+
+// Whether lines run along image rows rather than columns (roll beyond 45 degrees): such an image is
+// transposed first.
+bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_camera);
+
+// Bearings of `beams` bins of equal angle over the field of view the camera would have if it were
+// level (rolled to the nearest quarter turn), increasing (counter-clockwise).
+std::vector<double> ScanBearings(const PinholeCamera& camera,
+                                 const Eigen::Quaterniond& level_from_camera, int beams);
+
+// `transposed`: rows and columns of the image are exchanged; `camera` is still the original one.
+std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
+                                      const Eigen::Quaterniond& level_from_camera,
+                                      const std::vector<double>& bearings_rad, bool transposed);
+
+}  // namespace depthgrid

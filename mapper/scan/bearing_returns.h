@@ -1,0 +1,69 @@
+// What the image says along the lines of the bearings: the nearest surface in the obstacle band and
+// which rays were seen at all.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "mapper/core/depth_image.h"
+#include "mapper/scan/bearing_lines.h"
+#include "mapper/scan/noise_window.h"
+
+namespace depthgrid {
+
+struct ReturnLimits {
+  float min_depth_m = 0.0F;
+  float max_range_m = 0.0F;
+  float low_m = 0.0F;  // the obstacle band, relative to the camera
+  float high_m = 0.0F;
+  int min_returns = 1;
+  int first_row = 0;  // rows that take part
+  int last_row = 0;
+};
+
+// Rows are counted as in the image; first > last stands for none.
+struct RowRange {
+  int first = 0;
+  int last = -1;
+  bool operator==(const RowRange&) const = default;
+};
+
+struct BearingReturns {
+  bool hit = false;
+  float range_m = 0.0F;  // of the nearest surface; meaningful only when `hit`
+  RowRange seen;         // first and last row with a usable depth
+  RowRange gap_below;    // rows around the largest run of unusable depth below the horizon ...
+  RowRange gap_above;    // ... and above: both rows are usable, those between them are not
+  bool operator==(const BearingReturns&) const = default;
+};
+
+// A sample of a line is a range when it lies in the band, or one of these.
+constexpr float kPassing = 1e9F;   // usable, but marks nothing: floor, ceiling, too far
+constexpr float kUnusable = 2e9F;  // invalid or too near
+
+// Neighbouring pixels belong to one surface when their depths differ by less than this share: 3 %
+// is a wall at an incidence of 86 degrees.
+constexpr float kSameSurfaceShare = 0.03F;
+
+// Depth between the pixel centres of a row. z is interpolated linearly within a surface (1/z would
+// be exact; the difference is 20 um at 5 m and 60 degrees); across an edge the nearer pixel counts.
+inline float DepthBetween(float z0, float z1, float share_of_1) {
+  const float difference = z1 - z0;
+  if (std::abs(difference) <= kSameSurfaceShare * std::min(z0, z1)) {
+    return z0 + share_of_1 * difference;
+  }
+  const float nearer = share_of_1 < 0.5F ? z0 : z1;
+  const float other = share_of_1 < 0.5F ? z1 : z0;
+  return nearer > 0.0F ? nearer : other;
+}
+
+std::vector<BearingReturns> FindReturns(const DepthImage& image,
+                                        const std::vector<BearingLine>& lines,
+                                        const ReturnLimits& limits, const NoiseWindow& window);
+
+// The samples of one line, rows first_row to last_row of the line and the limits.
+std::vector<float> SamplesOf(const DepthImage& image, const BearingLine& line,
+                             const ReturnLimits& limits, RowRange& rows);
+
+}  // namespace depthgrid

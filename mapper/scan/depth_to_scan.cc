@@ -1,0 +1,163 @@
+#include "mapper/scan/depth_to_scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/scan/bearing_returns.h"
+#include "mapper/scan/clear_interval.h"
+#include "mapper/scan/floor_height.h"
+
+namespace depthgrid {
+namespace {
+
+DepthImage Transposed(const DepthImage& image) {
+  DepthImage transposed(image.height_px, image.width_px);
+  for (int v = 0; v < transposed.height_px; ++v) {
+    for (int u = 0; u < transposed.width_px; ++u) transposed.Row(v)[u] = image.At(v, u);
+  }
+  return transposed;
+}
+
+// The geometry of one conversion: which image is read along which lines.
+struct Reading {
+  bool transposed = false;
+  DepthImage transposed_image;
+  const DepthImage* image = nullptr;
+  std::vector<double> bearings_rad;
+  std::vector<BearingLine> lines;
+};
+
+Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera,
+                  const Pose3& slam_from_camera, int beams) {
+  const Eigen::Quaterniond level_from_camera = LevelFromCamera(slam_from_camera);
+  Reading reading;
+  reading.transposed = LinesRunAlongRows(camera, level_from_camera);
+  if (reading.transposed) reading.transposed_image = Transposed(depth);
+  reading.image = reading.transposed ? &reading.transposed_image : &depth;
+  reading.bearings_rad = ScanBearings(camera, level_from_camera, beams);
+  reading.lines = BearingLines(camera, level_from_camera, reading.bearings_rad, reading.transposed);
+  return reading;
+}
+
+ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, bool transposed,
+                      double camera_height_m) {
+  ReturnLimits limits;
+  limits.min_depth_m = static_cast<float>(options.min_range_m);
+  limits.max_range_m = static_cast<float>(options.max_range_m);
+  limits.low_m = static_cast<float>(options.band_low_m - camera_height_m);
+  limits.high_m = static_cast<float>(options.band_high_m - camera_height_m);
+  const int rows = transposed ? camera.width_px : camera.height_px;
+  const double centre = transposed ? camera.cx_px : camera.cy_px;
+  int used = rows;
+  if (options.mode == ScanMode::kCentreRow) used = 1;
+  if (options.mode == ScanMode::kRowBand) used = std::min(rows, options.band_rows);
+  limits.first_row = 0;
+  if (used < rows) {
+    limits.first_row =
+        std::clamp(static_cast<int>(std::lround(centre - 0.5 * (used - 1))), 0, rows - used);
+  }
+  limits.last_row = limits.first_row + used - 1;
+  limits.min_returns = std::min(options.min_returns, used);
+  return limits;
+}
+
+float SlopeAt(const BearingLine& line, int v) {
+  const auto row = static_cast<float>(v);
+  return (line.g0 + line.g1 * row) / (line.h0 + line.h1 * row);
+}
+
+std::optional<SlopeRange> SlopesOf(const BearingLine& line, const RowRange& rows) {
+  if (rows.first > rows.last) return {};
+  const float a = SlopeAt(line, rows.first);
+  const float b = SlopeAt(line, rows.last);
+  return SlopeRange{std::min(a, b), std::max(a, b)};
+}
+
+Beam BeamOf(double bearing_rad, const BearingLine& line, const BearingReturns& returns,
+            double camera_height_m, const ScanOptions& options) {
+  Beam beam;
+  beam.bearing_rad = static_cast<float>(bearing_rad);
+  beam.hit = returns.hit;
+  beam.range_m = returns.range_m;
+  const BearingView view{SlopesOf(line, returns.seen), SlopesOf(line, returns.gap_below),
+                         SlopesOf(line, returns.gap_above)};
+  const double limit_m = beam.hit ? beam.range_m : options.max_range_m;
+  const Distances clear = options.mode == ScanMode::kFull
+                              ? ClearInterval(view, camera_height_m, limit_m, options)
+                              : LaserClearInterval(view, camera_height_m, limit_m, options);
+  beam.clear_from_m = static_cast<float>(clear.from_m);
+  beam.clear_to_m = static_cast<float>(clear.to_m);
+  return beam;
+}
+
+}  // namespace
+
+DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options)
+    : camera_(camera), options_(options) {
+  Require(!camera.HasDistortion(), "depth images come undistorted");
+  Require(camera.width_px >= 2 && camera.height_px >= 2, "depth images have 2x2 pixels or more");
+  if (options.band_low_m >= options.band_high_m) {
+    throw InputError("mapper.scan.band_low_m", "must be below band_high_m");
+  }
+  if (options.min_range_m >= options.max_range_m) {
+    throw InputError("mapper.scan.min_range_m", "must be below max_range_m");
+  }
+}
+
+double DepthToScan::CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const {
+  if (options_.floor == FloorSource::kImage) {
+    const auto seen = CameraHeightFromFloor(depth, camera_, LevelFromCamera(slam_from_camera));
+    if (seen) return *seen;
+  }
+  return slam_from_camera.translation.z() - options_.floor_z_m;
+}
+
+Scan DepthToScan::Convert(const DepthImage& depth, const Pose3& slam_from_camera) const {
+  return ConvertAtHeight(depth, slam_from_camera, CameraHeightM(depth, slam_from_camera));
+}
+
+Scan DepthToScan::ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
+                                  double camera_height_m) const {
+  Require(depth.width_px == camera_.width_px && depth.height_px == camera_.height_px,
+          "depth images have the camera's size");
+  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, camera_height_m);
+  const std::vector<BearingReturns> returns =
+      FindReturns(*reading.image, reading.lines, limits, NoiseWindow(depth));
+  Scan scan;
+  scan.max_range_m = options_.max_range_m;
+  scan.beams.reserve(returns.size());
+  for (std::size_t k = 0; k < returns.size(); ++k) {
+    scan.beams.push_back(
+        BeamOf(reading.bearings_rad[k], reading.lines[k], returns[k], camera_height_m, options_));
+  }
+  return scan;
+}
+
+std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
+                                                    const Pose3& slam_from_camera,
+                                                    const Scan& scan) const {
+  const Reading reading =
+      ReadingOf(depth, camera_, slam_from_camera, static_cast<int>(scan.beams.size()));
+  const ReturnLimits limits =
+      LimitsOf(options_, camera_, reading.transposed, CameraHeightM(depth, slam_from_camera));
+  std::vector<Eigen::Vector2d> pixels(scan.beams.size(), {-1.0, -1.0});
+  for (std::size_t k = 0; k < scan.beams.size(); ++k) {
+    if (!scan.beams[k].hit) continue;
+    const BearingLine& line = reading.lines[k];
+    RowRange rows;
+    const std::vector<float> samples = SamplesOf(*reading.image, line, limits, rows);
+    const auto nearest = std::min_element(samples.begin(), samples.end(), [&](float a, float b) {
+      return std::abs(a - scan.beams[k].range_m) < std::abs(b - scan.beams[k].range_m);
+    });
+    if (nearest == samples.end()) continue;
+    const double v = rows.first + static_cast<double>(nearest - samples.begin());
+    pixels[k] = {line.u0 + line.u1 * v, v};
+    if (reading.transposed) std::swap(pixels[k].x(), pixels[k].y());
+  }
+  return pixels;
+}
+
+}  // namespace depthgrid

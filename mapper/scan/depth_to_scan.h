@@ -1,0 +1,40 @@
+// A depth image becomes a level scan (Eq. 1-2, docs/math.md "Depth to scan"): levelled by roll and
+// pitch only, the nearest surface of each bearing inside the obstacle band, and the stretch of each
+// bearing that the image shows to be free.
+#pragma once
+
+#include <memory>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
+#include "mapper/core/pose3.h"
+#include "mapper/core/scan.h"
+#include "mapper/scan/scan_options.h"
+
+namespace depthgrid {
+
+class DepthToScan {
+ public:
+  // Throws InputError for options that contradict each other. The camera must be free of distortion
+  // (frame sources undo it).
+  DepthToScan(const PinholeCamera& camera, const ScanOptions& options);
+
+  // The scan in base axes. The pose gives roll, pitch and, for FloorSource::kPose, the height.
+  Scan Convert(const DepthImage& depth, const Pose3& slam_from_camera) const;
+  // With the camera's height above the floor from elsewhere.
+  Scan ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
+                       double camera_height_m) const;
+  // The height Convert uses: of the pose, or of the floor seen in the image.
+  double CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const;
+
+  // For drawing the scan over the image it came from: the pixel (u, v) of each beam's hit, (-1, -1)
+  // for beams without.
+  std::vector<Eigen::Vector2d> HitPixels(const DepthImage& depth, const Pose3& slam_from_camera,
+                                         const Scan& scan) const;
+
+ private:
+  PinholeCamera camera_;
+  ScanOptions options_;
+};
+
+}  // namespace depthgrid

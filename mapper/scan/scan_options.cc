@@ -1,0 +1,24 @@
+#include "mapper/scan/scan_options.h"
+
+namespace depthgrid {
+
+void ScanOptions::Visit(OptionsVisitor& v) {
+  v.Choice("mode", mode,
+           {{ScanMode::kFull, "full"},
+            {ScanMode::kRowBand, "row_band"},
+            {ScanMode::kCentreRow, "centre_row"}},
+           "rows that make the scan: all, a band around the centre, or the paper's centre row");
+  v.Number("beams", beams, {8, 16384}, "bearings over the field of view");
+  v.Number("band_low_m", band_low_m, {-10.0, 10.0}, "lower edge of the obstacle band, over floor");
+  v.Number("band_high_m", band_high_m, {-10.0, 100.0}, "upper edge of the obstacle band");
+  v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer depth is not trusted");
+  v.Number("max_range_m", max_range_m, {0.1, 1000.0}, "farther returns only clear");
+  v.Number("band_rows", band_rows, {1, 16384}, "rows of mode row_band");
+  v.Number("min_returns", min_returns, {1, 1000}, "rows that must agree on an obstacle");
+  v.Number("max_gap_m", max_gap_m, {0.0, 10.0}, "largest unseen height in free space");
+  v.Choice("floor", floor, {{FloorSource::kPose, "pose"}, {FloorSource::kImage, "image"}},
+           "camera height above the floor: from the pose or from the floor seen in the image");
+  v.Number("floor_z_m", floor_z_m, {-1e6, 1e6}, "z of the floor in the frame of the poses");
+}
+
+}  // namespace depthgrid

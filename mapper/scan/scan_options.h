@@ -1,0 +1,45 @@
+// Settings of the conversion of depth images to scans.
+#pragma once
+
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+// Which rows of the image make the scan.
+enum class ScanMode {
+  kFull,       // all of them: the whole obstacle band, and free space where the band is covered
+  kRowBand,    // `band_rows` around the optical axis, read like a thick laser
+  kCentreRow,  // the paper's: one row, read like a laser
+};
+
+// Where the camera's height above the floor comes from.
+enum class FloorSource {
+  kPose,   // the pose's z less floor_z_m
+  kImage,  // the floor plane seen in the image; the pose where none is seen
+};
+
+struct ScanOptions {
+  ScanMode mode = ScanMode::kFull;
+  int beams = 640;  // over the camera's horizontal field of view, uniform in angle
+  // The obstacle band above the floor. The lower edge is above the noise of the floor at 6 m
+  // (Kinect: sigma 50 mm in depth at 10 degrees is 9 mm in height) and what wheels roll over; the
+  // upper edge is above a person's shoulders and below door lintels.
+  double band_low_m = 0.1;
+  double band_high_m = 1.8;
+  double min_range_m =
+      0.4;  // depth nearer than this is not trusted (Kinect's and ICL-NUIM's limit)
+  double max_range_m = 6.0;  // horizontal; farther returns only clear
+  int band_rows = 10;        // of mode row_band
+  // A return counts when this many of its bearing agree: 3 rows are 25 mm of height at 4 m, and no
+  // single wrong pixel makes an obstacle.
+  int min_returns = 3;
+  // Free space must be seen without a vertical gap larger than this: what could hide in a smaller
+  // one is as low as what lies below the band.
+  double max_gap_m = 0.1;
+  FloorSource floor = FloorSource::kPose;
+  double floor_z_m = 0.0;  // the floor in the frame of the poses
+
+  void Visit(OptionsVisitor& v);
+};
+
+}  // namespace depthgrid
