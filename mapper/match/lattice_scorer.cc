@@ -1,8 +1,8 @@
 #include "mapper/match/lattice_scorer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace depthgrid {
 namespace {
@@ -47,13 +47,60 @@ constexpr AddSquaresFunction kAddSquares[kMaxPairs + 1] = {
 
 int RoundUp(int value, int step) { return (value + step - 1) / step * step; }
 
+// Quantises one row and returns its largest value. Its own function so that the compiler knows
+// that nothing else changes meanwhile.
+std::uint32_t QuantiseRow(const float* probs, int count, float unknown_prob,
+                          std::uint32_t* quantised) {
+  std::uint32_t largest = 0;
+  for (int i = 0; i < count; ++i) {
+    const float prob = probs[i] == probs[i] ? probs[i] : unknown_prob;
+    quantised[i] = static_cast<std::uint32_t>(QuantisedProb(prob));
+    largest = std::max(largest, quantised[i]);
+  }
+  return largest;
+}
+
+// Puts the row above into the high halves.
+void PairRows(const std::uint32_t* above, std::size_t count, std::uint32_t* row) {
+  for (std::size_t i = 0; i < count; ++i) row[i] |= above[i] << 16;
+}
+
+struct CellRange {
+  int low = std::numeric_limits<int>::max();
+  int high = std::numeric_limits<int>::min();
+};
+
+template <typename CellOfPoint>
+CellRange RangeOf(const MatchPoints& points, CellOfPoint cell_of_point) {
+  CellRange range;
+  const float* x_m = points.x_m.data();
+  const float* y_m = points.y_m.data();
+  for (int i = 0; i < points.size(); ++i) {
+    const int cell = static_cast<int>(cell_of_point(x_m[i], y_m[i]));
+    range.low = std::min(range.low, cell);
+    range.high = std::max(range.high, cell);
+  }
+  return range;
+}
+
+// The part of `needed` that has to be copied of a map's cells: beyond the map and one square
+// around it everything is unknown and need not be told apart. At least one square.
+CellRange ClippedTo(int map_first, int map_cells, int half_square, CellRange needed) {
+  const int low = map_first - 2 * half_square - 1;
+  const int high = map_first + map_cells + 2 * half_square;
+  CellRange clipped{std::clamp(needed.low, low, high), std::clamp(needed.high, low, high)};
+  clipped.high = std::max(clipped.high, clipped.low + 2 * half_square);
+  return clipped;
+}
+
 }  // namespace
 
 void LatticeScorer::Prepare(const SearchLattice& lattice, const MatchPoints& points,
                             const ProbabilityView& view) {
   lattice_ = lattice;
   CopyPoints(points);
-  CopyMap(points, view);
+  PlaceRectangle(points, view.geometry);
+  CopyMap(view);
   const int side = 2 * lattice.half_cells + 1;
   row_of_sums_ = static_cast<std::size_t>(RoundUp(side, kColumns));
   sums_.resize(row_of_sums_ * static_cast<std::size_t>(side + 1));
@@ -77,81 +124,51 @@ void LatticeScorer::CopyPoints(const MatchPoints& points) {
   }
 }
 
-void LatticeScorer::CopyMap(const MatchPoints& points, const ProbabilityView& view) {
+void LatticeScorer::PlaceRectangle(const MatchPoints& points, const GridGeometry& map) {
   // Where points can come to lie: their box at the predicted yaw, wider by what a rotation within
-  // the window moves the farthest of them (a chord is shorter than its arc), plus rounding.
+  // the window moves the farthest of them (a chord is shorter than its arc) and by the square.
   const LatticeRotation middle(lattice_, 0);
-  const auto cells_of = [&](const std::vector<float>& along_x, const std::vector<float>& along_y,
-                            auto cell_of) {
-    float low = std::numeric_limits<float>::max();
-    float high = std::numeric_limits<float>::lowest();
-    for (std::size_t i = 0; i < along_x.size(); ++i) {
-      const float cell = cell_of(along_x[i], along_y[i]);
-      low = std::min(low, cell);
-      high = std::max(high, cell);
-    }
-    return std::pair<float, float>(low, high);
-  };
-  const auto [x_low, x_high] =
-      cells_of(points.x_m, points.y_m, [&](float x, float y) { return middle.XCells(x, y); });
-  const auto [y_low, y_high] =
-      cells_of(points.x_m, points.y_m, [&](float x, float y) { return middle.YCells(x, y); });
+  CellRange x = RangeOf(points, [=](float x_m, float y_m) { return middle.XCells(x_m, y_m); });
+  CellRange y = RangeOf(points, [=](float x_m, float y_m) { return middle.YCells(x_m, y_m); });
   const double turn_rad = std::min(2.0, lattice_.half_yaw_steps * lattice_.yaw_step_rad);
-  const double turn_cells = turn_rad * points.farthest_m / lattice_.resolution_m + 2.0;
-
-  // Nothing beyond the map plus one square needs to be told apart: it is all unknown.
   const int half = lattice_.half_cells;
-  const GridGeometry& map = view.geometry;
-  const auto clip = [&](double low, double high, int whole, int map_first, int map_cells) {
-    const double map_low = map_first - 2.0 * half - 1.0;
-    const double map_high = map_first + map_cells + 2.0 * half;
-    const double first = std::clamp(low - turn_cells - half + whole, map_low, map_high);
-    const double last = std::clamp(high + turn_cells + half + whole, map_low, map_high);
-    return std::pair<int, int>(static_cast<int>(std::floor(first)),
-                               static_cast<int>(std::ceil(last)));
-  };
-  const auto [x_first, x_last] =
-      clip(x_low, x_high, middle.whole_cells.x, map.min_cell.x, map.width_cells);
-  const auto [y_first, y_last] =
-      clip(y_low, y_high, middle.whole_cells.y, map.min_cell.y, map.height_cells);
-  first_cell_ = {x_first, y_first};
-  width_cells_ = std::max(x_last - x_first + 1, 2 * half + 1);
-  height_cells_ = std::max(y_last - y_first + 1, 2 * half + 1);
+  constexpr int kRoundingCells = 2;
+  const int reach = kRoundingCells + half +
+                    static_cast<int>(turn_rad * points.farthest_m / lattice_.resolution_m);
+  const Cell whole = middle.whole_cells;
+  x = ClippedTo(map.min_cell.x, map.width_cells, half,
+                {x.low + whole.x - reach, x.high + whole.x + reach});
+  y = ClippedTo(map.min_cell.y, map.height_cells, half,
+                {y.low + whole.y - reach, y.high + whole.y + reach});
+  first_cell_ = {x.low, y.low};
+  width_cells_ = x.high - x.low + 1;
+  height_cells_ = y.high - y.low + 1;
   row_of_map_ = RoundUp(width_cells_ + kColumns, kColumns);
+}
 
+void LatticeScorer::CopyMap(const ProbabilityView& view) {
+  const GridGeometry& map = view.geometry;
   const auto row_size = static_cast<std::size_t>(row_of_map_);
+  const int rows = height_cells_ + 2;  // a pair of rows may begin in the last one
+  row_pairs_.resize(row_size * static_cast<std::size_t>(rows));
   const std::uint32_t unknown = QuantisedProb(view.unknown_prob);
-  row_pairs_.resize(row_size * static_cast<std::size_t>(height_cells_ + 2));
-  row_.resize(row_size);
-  // Columns of the rectangle that the map has.
-  const int from_x = std::clamp(map.min_cell.x - x_first, 0, width_cells_);
-  const int to_x = std::clamp(map.min_cell.x + map.width_cells - x_first, from_x, width_cells_);
-  std::fill(row_.begin(), row_.end(), unknown);
   largest_ = unknown;
-  for (int y = 0; y < height_cells_ + 2; ++y) {
-    const int map_y = first_cell_.y + y;
-    const bool inside = map_y >= map.min_cell.y && map_y < map.min_cell.y + map.height_cells;
-    if (inside && to_x > from_x) {
-      const float* source = view.occupied_prob + map.Index({x_first + from_x, map_y});
-      std::uint32_t* target = row_.data() + from_x;
-      std::uint32_t largest = largest_;
-      for (int x = 0; x < to_x - from_x; ++x) {
-        const float prob = source[x] == source[x] ? source[x] : view.unknown_prob;
-        const auto value = static_cast<std::uint32_t>(
-            static_cast<int>(prob * static_cast<float>(kMatchProbScale) + 0.5F));
-        target[x] = value;
-        largest = std::max(largest, value);
-      }
-      largest_ = largest;
+  // Columns of the rectangle that the map has.
+  const int from_x = std::clamp(map.min_cell.x - first_cell_.x, 0, width_cells_);
+  const int to_x =
+      std::clamp(map.min_cell.x + map.width_cells - first_cell_.x, from_x, width_cells_);
+  for (int y = 0; y < rows; ++y) {
+    std::uint32_t* row = row_pairs_.data() + row_size * static_cast<std::size_t>(y);
+    const Cell first{first_cell_.x + from_x, first_cell_.y + y};
+    if (to_x > from_x && map.Contains(first)) {
+      std::fill(row, row + from_x, unknown);
+      largest_ = std::max(largest_, QuantiseRow(view.occupied_prob + map.Index(first),
+                                                to_x - from_x, view.unknown_prob, row + from_x));
+      std::fill(row + to_x, row + row_size, unknown);
     } else {
-      std::fill(row_.begin(), row_.end(), unknown);
+      std::fill(row, row + row_size, unknown);
     }
-    std::uint32_t* here = row_pairs_.data() + row_size * static_cast<std::size_t>(y);
-    std::uint32_t* below = y > 0 ? here - row_size : nullptr;
-    for (std::size_t x = 0; x < row_size; ++x) here[x] = row_[x];
-    if (below != nullptr) {
-      for (std::size_t x = 0; x < row_size; ++x) below[x] |= row_[x] << 16;
-    }
+    if (y > 0) PairRows(row, row_size, row - row_size);
   }
 }
 

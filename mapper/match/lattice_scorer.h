@@ -32,7 +32,8 @@ class LatticeScorer {
            static_cast<std::size_t>(x_cells + lattice_.half_cells);
   }
   void CopyPoints(const MatchPoints& points);
-  void CopyMap(const MatchPoints& points, const ProbabilityView& view);
+  void PlaceRectangle(const MatchPoints& points, const GridGeometry& map);
+  void CopyMap(const ProbabilityView& view);
   void FindCells(const LatticeRotation& rotation, int first, int count);
   void AddBlock(int count);
 

@@ -16,7 +16,9 @@ namespace depthgrid {
 constexpr int kMatchProbScale = 1023;
 
 inline std::uint16_t QuantisedProb(float prob) {
-  return static_cast<std::uint16_t>(prob * static_cast<float>(kMatchProbScale) + 0.5F);
+  // Through int: a vector instruction.
+  return static_cast<std::uint16_t>(
+      static_cast<int>(prob * static_cast<float>(kMatchProbScale) + 0.5F));
 }
 
 // One candidate, as steps from the predicted pose.
