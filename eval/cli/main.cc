@@ -1,1 +1,172 @@
-int main() { return 0; }
+// The `depthgrid` program: arguments in, exit code out. CLI11 is slow to compile and is included
+// here only.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid::cli {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+void AddSet(CLI::App& app, CommonArguments& common) {
+  app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void AddOutput(CLI::App& app, CommonArguments& common) {
+  app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
+  app.add_flag("--force", common.force,
+               "Write into a folder that is not empty; files of other names stay");
+}
+
+void AddThreads(CLI::App& app, CommonArguments& common) {
+  app.add_option("--threads", common.threads, "Threads; 0 is one a core. Never changes a result")
+      ->check(CLI::Range(0, 1024));
+}
+
+void AddCache(CLI::App& app, CommonArguments& common) {
+  app.add_option("--cache", common.cache, "Folder of rendered depth to reuse")->type_name("DIR");
+  app.add_flag("--no-cache", common.no_cache, "Render everything anew");
+}
+
+struct Program {
+  CLI::App app{"depthgrid: 2D navigation maps from RGB-D cameras, simulated and recorded",
+               "depthgrid"};
+  std::function<void()> chosen;
+
+  // A subcommand whose arguments live as long as the program.
+  template <typename Arguments>
+  std::pair<CLI::App*, std::shared_ptr<Arguments>> Add(CLI::App& parent, const std::string& name,
+                                                       const std::string& what,
+                                                       const std::string& example,
+                                                       void (*run)(const Arguments&)) {
+    CLI::App* command = parent.add_subcommand(name, what);
+    command->footer("Example:\n  " + example);
+    auto arguments = std::make_shared<Arguments>();
+    command->callback([this, arguments, run] { chosen = [arguments, run] { run(*arguments); }; });
+    return {command, arguments};
+  }
+};
+
+void AddScenes(Program& program) {
+  const auto [app, arguments] =
+      program.Add<ScenesArguments>(program.app, "scenes", "List the shipped scenes and experiments",
+                                   "depthgrid scenes", &ListScenes);
+}
+
+void AddRender(Program& program) {
+  const auto [app, arguments] = program.Add<RenderArguments>(
+      program.app, "render",
+      "Render a scene to a TUM RGB-D folder, with the true map and what of it can be seen",
+      "depthgrid render living_room -o /tmp/living_room", &Render);
+  app->add_option("scene", arguments->scene, "Shipped scene or experiment, or a file")->required();
+  app->add_flag("--no-colour", arguments->no_colour, "Depth images only");
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+  AddThreads(*app, arguments->common);
+  AddCache(*app, arguments->common);
+}
+
+void AddMap(Program& program) {
+  const auto [app, arguments] = program.Add<MapArguments>(
+      program.app, "map", "Map a recorded or rendered sequence",
+      "depthgrid map /tmp/living_room --poses /tmp/living_room/groundtruth.txt -o /tmp/out", &Map);
+  app->add_option("input", arguments->input, "A TUM folder or a CARMEN laser log")->required();
+  app->add_option("--poses", arguments->poses, "SLAM's live poses, TUM format")->type_name("FILE");
+  app->add_option("--final-poses", arguments->final_poses, "SLAM's poses after all corrections")
+      ->type_name("FILE");
+  app->add_option("--loops", arguments->loops, "SLAM's events, as `depthgrid slam` writes them")
+      ->type_name("FILE");
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+}
+
+void AddRun(Program& program) {
+  const auto [app, arguments] = program.Add<RunArguments>(
+      program.app, "run", "Render, disturb, map and score one experiment, in memory",
+      "depthgrid run living_room --set mapper.fusion.gain=0.25 -o /tmp/out", &Run);
+  app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
+      ->required();
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+  AddThreads(*app, arguments->common);
+  AddCache(*app, arguments->common);
+}
+
+void AddEval(Program& program) {
+  CLI::App* eval = program.app.add_subcommand("eval", "Score a trajectory or a map");
+  eval->require_subcommand(1);
+  const auto [trajectory, t] = program.Add<EvalTrajectoryArguments>(
+      *eval, "trajectory", "Errors of a trajectory, TUM files, evo's conventions",
+      "depthgrid eval trajectory groundtruth.txt trajectory_est.txt", &EvalTrajectory);
+  trajectory->add_option("reference", t->reference, "True trajectory")->required();
+  trajectory->add_option("estimate", t->estimate, "Estimated trajectory")->required();
+  trajectory
+      ->add_option("--max-difference", t->max_difference_s,
+                   "Stamps nearer than this belong together, seconds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  trajectory->add_flag("--json", t->json, "Print JSON instead of a table");
+  const auto [map, m] = program.Add<EvalMapArguments>(
+      *eval, "map", "Agreement of a map with the true one, Nav2 YAML files",
+      "depthgrid eval map OUT/truth_map.yaml OUT/map.yaml", &EvalMap);
+  map->add_option("reference", m->reference, "True map")->required();
+  map->add_option("estimate", m->estimate, "Estimated map")->required();
+  map->add_option(
+         "--observable", m->observable,
+         "Map whose free cells could be seen; default: observable.yaml beside the true map")
+      ->type_name("FILE");
+  map->add_flag("--json", m->json, "Print JSON instead of a table");
+}
+
+// One line, whatever the message holds.
+int Complain(const std::string& message, int exit_code) {
+  std::string line = message;
+  for (char& c : line) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  fmt::print(stderr, "depthgrid: {}\n", line);
+  return exit_code;
+}
+
+int Main(int argc, char** argv) {
+  Program program;
+  program.app.require_subcommand(1);
+  program.app.set_version_flag("--version", DEPTHGRID_VERSION);
+  AddScenes(program);
+  AddRender(program);
+  AddMap(program);
+  AddRun(program);
+  AddEval(program);
+  try {
+    program.app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return program.app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return Complain(std::string(error.what()) + " (see --help)", kBadInput);
+  }
+  CatchInterrupts();
+  try {
+    program.chosen();
+    return kDone;
+  } catch (const InputError& error) {
+    return Complain(error.what(), kBadInput);
+  } catch (const std::exception& error) {
+    return Complain(error.what(), kFailed);
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid::cli
+
+int main(int argc, char** argv) { return depthgrid::cli::Main(argc, argv); }

@@ -1,0 +1,64 @@
+// What each subcommand of `depthgrid` takes and does. main.cc parses; these throw InputError for
+// what the user can mend (exit code 2) and anything else for a run that failed (exit code 1).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace depthgrid::cli {
+
+// Arguments of several commands; none of them but `set` ever changes a result.
+struct CommonArguments {
+  std::string output;
+  std::vector<std::string> set;  // key.path=value
+  int threads = 0;               // 0: as many as there are cores
+  std::string cache;             // empty: the default folder
+  bool no_cache = false;
+  bool force = false;
+};
+
+struct ScenesArguments {
+  bool quick = false;
+};
+void ListScenes(const ScenesArguments& arguments);
+
+struct RenderArguments {
+  std::string scene;
+  bool no_colour = false;
+  CommonArguments common;
+};
+void Render(const RenderArguments& arguments);
+
+struct RunArguments {
+  std::string experiment;
+  CommonArguments common;
+};
+void Run(const RunArguments& arguments);
+
+struct MapArguments {
+  std::string input;
+  std::string poses;
+  std::string final_poses;
+  std::string loops;
+  CommonArguments common;
+};
+void Map(const MapArguments& arguments);
+
+struct EvalTrajectoryArguments {
+  std::string reference;
+  std::string estimate;
+  double max_difference_s = 0.01;
+  bool json = false;
+};
+void EvalTrajectory(const EvalTrajectoryArguments& arguments);
+
+struct EvalMapArguments {
+  std::string reference;
+  std::string estimate;
+  std::string observable;
+  bool json = false;
+};
+void EvalMap(const EvalMapArguments& arguments);
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,96 @@
+#include "eval/cli/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+namespace depthgrid::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+std::string TimeText(double seconds) {
+  const auto whole = static_cast<int>(seconds + 0.5);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string label)
+    : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::Show(int done, int total) {
+  ThrowIfInterrupted();
+  if (!on_terminal_ || total <= 0) return;
+  constexpr std::chrono::milliseconds kRedraw{100};
+  const auto now = Clock::now();
+  if (drawn_ && now - last_drawn_ < kRedraw && done < total) return;
+  constexpr int kBarWidth = 30;
+  const int filled = static_cast<int>(static_cast<long long>(kBarWidth) * done / total);
+  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  const double rate_hz = elapsed_s > 0.0 ? done / elapsed_s : 0.0;
+  const std::string left = rate_hz > 0.0 ? TimeText((total - done) / rate_hz) + " left" : "";
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {:.1f}/s  {}", label_, "", filled, "",
+             kBarWidth - filled, done, total, rate_hz, left);
+  std::fflush(stderr);
+  drawn_ = true;
+  last_drawn_ = now;
+}
+
+Progress ProgressBar::AsProgress() {
+  return [this](int done, int total) { Show(done, total); };
+}
+
+void Warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    fmt::print(stderr, "depthgrid: warning: {}\n", warning);
+  }
+}
+
+void CatchInterrupts() {
+  const auto remember = [](int) { interrupted = 1; };
+  std::signal(SIGINT, remember);
+  std::signal(SIGTERM, remember);
+}
+
+void ThrowIfInterrupted() {
+  if (interrupted != 0) throw std::runtime_error("interrupted");
+}
+
+std::string Table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i == 0) {
+        fmt::format_to(std::back_inserter(line), "{:<{}}", row[i], widths[i]);
+      } else {
+        fmt::format_to(std::back_inserter(line), "  {:>{}}", row[i], widths[i]);
+      }
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+int ThreadsOr(int requested) {
+  return requested > 0 ? requested
+                       : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+}  // namespace depthgrid::cli

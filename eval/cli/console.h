@@ -1,0 +1,44 @@
+// What the program says to a person at a terminal. Results go to standard output, everything else
+// to standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "eval/mapping_run.h"
+
+namespace depthgrid::cli {
+
+// A bar with rate and time left; draws nothing unless standard error is a terminal.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string label);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void Show(int done, int total);
+  Progress AsProgress();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  bool on_terminal_;
+  bool drawn_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_drawn_;
+};
+
+void Warn(const std::vector<std::string>& warnings);
+
+// Ctrl-C makes the next progress report throw, so that half-written output is removed.
+void CatchInterrupts();
+void ThrowIfInterrupted();
+
+// Columns as wide as their widest cell; the first is left-aligned, the others right-aligned.
+std::string Table(const std::vector<std::vector<std::string>>& rows);
+
+int ThreadsOr(int requested);
+
+}  // namespace depthgrid::cli

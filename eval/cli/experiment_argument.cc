@@ -1,0 +1,41 @@
+#include "eval/cli/experiment_argument.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "eval/shipped.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+ExperimentOptions Read(Config config, const std::vector<std::string>& set,
+                       const std::string& base_folder) {
+  for (const std::string& assignment : set) config.Set(assignment);
+  return ReadExperiment(config, base_folder);
+}
+
+}  // namespace
+
+ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set) {
+  const std::string path = ResolveName(name, ShippedKind::kExperiment);
+  return Read(Config::FromFile(path), set, fs::path(path).parent_path().string());
+}
+
+ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set) {
+  const auto shipped = ShippedNames(ShippedKind::kExperiment);
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) {
+    return ExperimentNamed(name, set);
+  }
+  const std::string path = ResolveName(name, ShippedKind::kScene);
+  if (path.ends_with(".yaml") && Config::FromFile(path).Has("scene")) {
+    return ExperimentNamed(path, set);
+  }
+  Config config;
+  config.Set("scene", name);
+  return Read(std::move(config), set, "");
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,17 @@
+// An experiment as named on the command line, with its overrides.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/experiment_options.h"
+
+namespace depthgrid::cli {
+
+ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
+
+// The experiment of that name, or else everything at its default in the scene of that name (or
+// scene or mesh file).
+ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set);
+
+}  // namespace depthgrid::cli

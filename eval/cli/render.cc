@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/cli/experiment_argument.h"
+#include "eval/output_folder.h"
+#include "eval/synthetic_source.h"
+#include "eval/world.h"
+#include "mapper/io/tum_folder.h"
+#include "sim/colour_camera.h"
+
+namespace depthgrid::cli {
+namespace {
+
+struct Written {
+  bool with_colour = false;
+};
+
+// Images of one frame to the folder. A colour camera has a thread's context, so each thread makes
+// its own.
+void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFolderWriter& writer,
+                bool with_colour, int frame) {
+  const StampedPose& pose = world.trajectory[static_cast<std::size_t>(frame)];
+  const DepthImage depth = sensor.Image(frame);
+  if (!with_colour) {
+    writer.WriteFrame(pose.stamp_s, depth, nullptr);
+    return;
+  }
+  thread_local std::unique_ptr<ColourCamera> camera;
+  if (!camera) camera = std::make_unique<ColourCamera>(world.scene, world.camera);
+  const RgbImage rgb = camera->Render(pose.world_from_camera).rgb;
+  writer.WriteFrame(pose.stamp_s, depth, &rgb);
+}
+
+}  // namespace
+
+void Render(const RenderArguments& arguments) {
+  const ExperimentOptions options = ExperimentOrScene(arguments.scene, arguments.common.set);
+  OutputFolder folder(arguments.common.output, arguments.common.force);
+  const int threads = ThreadsOr(arguments.common.threads);
+  const World world = LoadWorld(options, threads);
+  const SyntheticSensor sensor(world, options);
+  const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
+  {
+    ProgressBar bar("rendering");
+    OrderedFrames<Written> frames(sensor.FrameCount(), threads, [&](int frame) {
+      WriteFrame(world, sensor, writer, !arguments.no_colour, frame);
+      return Written{!arguments.no_colour};
+    });
+    for (int done = 1; frames.Next(); ++done) bar.Show(done, sensor.FrameCount());
+  }
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
+  writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);
+  folder.Commit();
+}
+
+}  // namespace depthgrid::cli

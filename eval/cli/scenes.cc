@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/experiment_options.h"
+#include "eval/shipped.h"
+#include "sim/scene.h"
+#include "sim/trajectory.h"
+
+namespace depthgrid::cli {
+namespace {
+
+std::string SizeText(const TriangleMesh& mesh) {
+  const Eigen::Vector3f size_m = BoundsOf(mesh).sizes();
+  return fmt::format("{:.1f} x {:.1f} x {:.1f} m", size_m.x(), size_m.y(), size_m.z());
+}
+
+double PathLength(const Trajectory& trajectory) {
+  double path_m = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    path_m += (trajectory[i].world_from_camera.translation -
+               trajectory[i - 1].world_from_camera.translation)
+                  .norm();
+  }
+  return path_m;
+}
+
+void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>& rows) {
+  const Scene scene = LoadScene(ResolveName(name, ShippedKind::kScene));
+  std::string first_of_scene = name;
+  std::string size = SizeText(scene.mesh);
+  std::string triangles = fmt::format("{}", scene.mesh.triangles.size());
+  for (const auto& [path_name, spec] : scene.trajectories) {
+    const TrajectoryOptions path = ReadTrajectoryOptions(spec);
+    const int frames = MinimumFrames(path);
+    TrajectoryOptions still = path;  // the hand's shake is no way travelled
+    still.shake_m = 0.0;
+    still.shake_deg = 0.0;
+    const double path_m = PathLength(MakeTrajectory(still, frames, kFrameRateHz, 0));
+    rows.push_back({first_of_scene, size, triangles, path_name, fmt::format("{:.1f} m", path_m),
+                    fmt::format("{}", frames)});
+    first_of_scene = size = triangles = "";
+  }
+  if (scene.trajectories.empty()) rows.push_back({name, size, triangles, "none", "", ""});
+}
+
+}  // namespace
+
+void ListScenes(const ScenesArguments&) {
+  std::vector<std::vector<std::string>> scenes = {
+      {"scene", "size", "triangles", "trajectory", "path", "frames"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kScene)) AddSceneRows(name, scenes);
+  std::vector<std::vector<std::string>> experiments = {
+      {"experiment", "scene", "trajectory", "frames"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kExperiment)) {
+    const std::string path = ResolveName(name, ShippedKind::kExperiment);
+    const ExperimentOptions options =
+        ReadExperiment(Config::FromFile(path), ShippedFolder(ShippedKind::kExperiment));
+    experiments.push_back({name, options.scene,
+                           options.trajectory.empty() ? "first" : options.trajectory,
+                           options.frames > 0 ? fmt::format("{}", options.frames) : "whole path"});
+  }
+  fmt::print("{}\n{}", Table(scenes), Table(experiments));
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,41 @@
+#include "eval/experiment_options.h"
+
+#include <filesystem>
+
+#include "eval/shipped.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file name becomes absolute, so that run.yaml means the same from everywhere; a shipped or named
+// thing stays a name.
+void ResolveFile(std::string& name, const std::string& base_folder) {
+  const bool is_file = name.find('/') != std::string::npos || fs::path(name).has_extension();
+  if (is_file) name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
+}
+
+}  // namespace
+
+void ExperimentOptions::Visit(OptionsVisitor& v) {
+  constexpr double kMaxFrames = 1e6;
+  v.Text("scene", scene, "a shipped scene, a scene file or a mesh file");
+  v.Text("trajectory", trajectory, "one the scene names, or a TUM file; empty is the first");
+  v.Number("frames", frames, {0, kMaxFrames}, "0 is as many as the path needs");
+  v.Seed("seed", seed, "of the depth noise, SLAM's errors and the hand's shake");
+  v.Group("sensor", sensor, "the depth camera");
+  v.Group("mapper", mapper, "the mapper");
+}
+
+ExperimentOptions ReadExperiment(const Config& config, const std::string& base_folder) {
+  ExperimentOptions options;
+  config.Read(options);
+  if (options.scene.empty()) throw InputError(config.Place(), "key 'scene' is missing");
+  ResolveFile(options.scene, base_folder);
+  ResolveFile(options.trajectory, base_folder);
+  return options;
+}
+
+}  // namespace depthgrid

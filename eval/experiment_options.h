@@ -1,0 +1,32 @@
+// Everything that decides what an experiment gives. What only decides how fast (threads, cache) is
+// not here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "mapper/io/config.h"
+#include "mapper/mapper_options.h"
+#include "sim/sensor_options.h"
+
+namespace depthgrid {
+
+struct ExperimentOptions {
+  std::string scene;  // a shipped scene, a scene file or a mesh file
+  // One the scene names, or a TUM file. Empty is the scene's only one, or its first by name.
+  std::string trajectory;
+  // 0: as many as the path needs within its speed bounds, or all of the file. Fewer walk only the
+  // path's beginning, more walk it slower.
+  int frames = 0;
+  std::uint64_t seed = 1;
+  SensorOptions sensor;
+  MapperOptions mapper;
+
+  void Visit(OptionsVisitor& v);
+};
+
+// Reads an experiment and resolves its file names: those in `config` are relative to
+// `base_folder`. Throws InputError.
+ExperimentOptions ReadExperiment(const Config& config, const std::string& base_folder);
+
+}  // namespace depthgrid

@@ -1,0 +1,177 @@
+#include "eval/map_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+constexpr Colour kUnknownCell = {205, 205, 205};  // as Nav2's tools show it
+constexpr Colour kFreeCell = {254, 254, 254};
+constexpr Colour kOccupiedCell = {0, 0, 0};
+constexpr Colour kInk = {30, 30, 30};
+constexpr Colour kPaper = {255, 255, 255};
+
+template <typename ColourOf>
+RgbImage Paint(const GridGeometry& geometry, ColourOf colour_of) {
+  RgbImage image(geometry.width_cells, geometry.height_cells);
+  for (int row = 0; row < geometry.height_cells; ++row) {
+    for (int column = 0; column < geometry.width_cells; ++column) {
+      const Colour colour = colour_of(Cell{geometry.min_cell.x + column,
+                                           geometry.min_cell.y + geometry.height_cells - 1 - row});
+      std::uint8_t* pixel = image.At(column, row);
+      pixel[0] = colour.red;
+      pixel[1] = colour.green;
+      pixel[2] = colour.blue;
+    }
+  }
+  return image;
+}
+
+Colour ColourOf(CellState state) {
+  switch (state) {
+    case CellState::kOccupied:
+      return kOccupiedCell;
+    case CellState::kFree:
+      return kFreeCell;
+    case CellState::kUnknown:
+      break;
+  }
+  return kUnknownCell;
+}
+
+Colour Paler(Colour colour) {
+  const auto half = [](std::uint8_t c) { return static_cast<std::uint8_t>((c + 255) / 2); };
+  return {half(colour.red), half(colour.green), half(colour.blue)};
+}
+
+Colour DifferenceOf(CellState truth, CellState estimate) {
+  const bool wall = truth == CellState::kOccupied;
+  const bool drawn = estimate == CellState::kOccupied;
+  if (wall && drawn) return kOccupiedCell;
+  if (wall) return palette::kMissed;
+  if (drawn) return palette::kInvented;
+  return ColourOf(estimate);
+}
+
+RgbImage Enlarged(const RgbImage& image, int factor) {
+  RgbImage large(image.width_px * factor, image.height_px * factor);
+  for (int v = 0; v < large.height_px; ++v) {
+    for (int u = 0; u < large.width_px; ++u) {
+      std::copy_n(image.At(u / factor, v / factor), 3, large.At(u, v));
+    }
+  }
+  return large;
+}
+
+// 1, 2 or 5 times a power of ten: the largest such length below a third of the width.
+double ScaleBarLength(double width_m) {
+  double length_m = std::pow(10.0, std::floor(std::log10(width_m / 3.0)));
+  if (length_m * 5.0 <= width_m / 3.0) return length_m * 5.0;
+  if (length_m * 2.0 <= width_m / 3.0) return length_m * 2.0;
+  return length_m;
+}
+
+std::string LengthText(double length_m) {
+  if (length_m >= 1.0) return std::to_string(std::lround(length_m)) + " m";
+  return std::to_string(std::lround(length_m * 100.0)) + " cm";
+}
+
+}  // namespace
+
+RgbImage PictureOf(const OccupancyMap& map, const GridGeometry& geometry) {
+  return Paint(geometry, [&](const Cell& cell) {
+    const float prob = map.At(cell);
+    if (std::isnan(prob)) return kUnknownCell;
+    const auto grey =
+        static_cast<std::uint8_t>(std::lround(254.0F * (1.0F - std::clamp(prob, 0.0F, 1.0F))));
+    return Colour{grey, grey, grey};
+  });
+}
+
+RgbImage PictureOf(const StateMap& map, const GridGeometry& geometry) {
+  return Paint(geometry, [&](const Cell& cell) { return ColourOf(map.At(cell)); });
+}
+
+RgbImage PictureOf(const CellSet& cells, const GridGeometry& geometry) {
+  return Paint(geometry,
+               [&](const Cell& cell) { return cells.Has(cell) ? kFreeCell : kUnknownCell; });
+}
+
+RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
+                           const std::optional<CellSet>& observable, const GridGeometry& geometry) {
+  return Paint(geometry, [&](const Cell& cell) {
+    const Colour colour = DifferenceOf(truth.At(cell), estimate.At(cell));
+    return observable && !observable->Has(cell) ? Paler(colour) : colour;
+  });
+}
+
+RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
+                      const std::vector<Path>& paths) {
+  constexpr int kWantedWidthPx = 900;
+  constexpr int kMarginPx = 12;
+  constexpr int kTextScale = 2;
+  constexpr double kPathWidthPx = 2.5;
+  const int factor = std::max(1, kWantedWidthPx / std::max(cells.width_px, 1));
+  const RgbImage large = Enlarged(cells, factor);
+  const int line_px = Canvas::TextHeight(kTextScale) + kMarginPx;
+  const int footer_px = kMarginPx + line_px;
+  Canvas canvas(large.width_px, large.height_px + footer_px, kPaper);
+  RgbImage image = canvas.image();
+  std::copy(large.rgb.begin(), large.rgb.end(), image.rgb.begin());
+  canvas = Canvas(std::move(image));
+
+  // The centre of cell (i, j)'s picture is that of its enlarged square.
+  const Eigen::Vector2d origin_m = geometry.OriginM();
+  const double px_per_m = factor / geometry.resolution_m;
+  for (const Path& path : paths) {
+    std::vector<Eigen::Vector2d> points;
+    for (const StampedPose& pose : path.poses) {
+      const Eigen::Vector2d offset_m = pose.world_from_camera.translation.head<2>() - origin_m;
+      points.emplace_back(offset_m.x() * px_per_m - 0.5,
+                          large.height_px - offset_m.y() * px_per_m - 0.5);
+    }
+    canvas.Polyline(points, kPathWidthPx, path.colour);
+    if (!points.empty()) canvas.Disc(points.front(), 2.0 * kPathWidthPx, path.colour);
+  }
+
+  const double bar_m = ScaleBarLength(geometry.width_cells * geometry.resolution_m);
+  const int bar_px = static_cast<int>(std::lround(bar_m * px_per_m));
+  const int text_top = large.height_px + kMarginPx;
+  const int middle = text_top + Canvas::TextHeight(kTextScale) / 2;
+  canvas.Fill(kMarginPx, middle - 1, bar_px, 3, kInk);
+  canvas.Fill(kMarginPx, middle - 6, 2, 13, kInk);
+  canvas.Fill(kMarginPx + bar_px - 2, middle - 6, 2, 13, kInk);
+  int left = kMarginPx + bar_px + kMarginPx;
+  canvas.Text(left, text_top, LengthText(bar_m), kTextScale, kInk);
+  left += Canvas::TextWidth(LengthText(bar_m), kTextScale) + 2 * kMarginPx;
+  for (const Path& path : paths) {
+    canvas.Fill(left, middle - 2, 2 * kMarginPx, 4, path.colour);
+    left += 3 * kMarginPx;
+    canvas.Text(left, text_top, path.name, kTextScale, kInk);
+    left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
+  }
+  return canvas.image();
+}
+
+GridGeometry KnownPart(const StateMap& map, int margin_cells) {
+  GridGeometry known = map.geometry;
+  known.width_cells = 0;
+  known.height_cells = 0;
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    if (map.states[i] == CellState::kUnknown) continue;
+    GridGeometry one = map.geometry;
+    one.min_cell = map.geometry.CellAt(i);
+    one.width_cells = 1;
+    one.height_cells = 1;
+    known = Union(known, one);
+  }
+  if (known.size() == 0) return map.geometry;
+  known.min_cell.x -= margin_cells;
+  known.min_cell.y -= margin_cells;
+  known.width_cells += 2 * margin_cells;
+  known.height_cells += 2 * margin_cells;
+  return known;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,48 @@
+// Maps as pictures a person reads: states in colours, true against estimated, and the map with its
+// trajectories and a scale bar.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/canvas.h"
+#include "mapper/core/cell_set.h"
+#include "mapper/core/occupancy_map.h"
+#include "mapper/core/trajectory.h"
+
+namespace depthgrid {
+
+// One pixel a cell, north (largest y) up, over the given rectangle.
+RgbImage PictureOf(const OccupancyMap& map, const GridGeometry& geometry);
+RgbImage PictureOf(const StateMap& map, const GridGeometry& geometry);
+RgbImage PictureOf(const CellSet& cells, const GridGeometry& geometry);
+// Where the estimate agrees with the truth about walls, where it misses one and where it invents
+// one; cells outside `observable` are paler.
+RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
+                           const std::optional<CellSet>& observable, const GridGeometry& geometry);
+
+struct Path {
+  std::string name;
+  Colour colour;
+  Trajectory poses;
+};
+
+// The picture (one pixel a cell) enlarged, with paths, a legend and a scale bar below it.
+RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
+                      const std::vector<Path>& paths);
+
+// The part of `geometry` that holds anything but unknown cells, with a margin; all of it if nothing
+// does.
+GridGeometry KnownPart(const StateMap& map, int margin_cells);
+
+namespace palette {
+// Distinguishable also with the common colour vision deficiencies (Okabe and Ito 2008).
+constexpr Colour kTruth = {0, 158, 115};
+constexpr Colour kSlam = {230, 159, 0};
+constexpr Colour kEstimate = {0, 114, 178};
+constexpr Colour kMissed = {213, 94, 0};
+constexpr Colour kInvented = {204, 121, 167};
+}  // namespace palette
+
+}  // namespace depthgrid

@@ -1,0 +1,46 @@
+// A sequence mapped from front to back, whatever it came from, and all that is worth keeping of it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/frame.h"
+#include "mapper/core/slam_output.h"
+#include "mapper/core/trajectory.h"
+#include "mapper/frame_report.h"
+#include "mapper/incremental_mapper.h"
+
+namespace depthgrid {
+
+// Told after each frame; may throw to stop.
+using Progress = std::function<void(int done, int total)>;
+
+// A frame kept whole for the report.
+struct SampleFrame {
+  int frame = 0;
+  std::shared_ptr<const DepthImage> depth;
+};
+
+struct MappingRun {
+  std::vector<FrameReport> reports;  // one an input frame
+  MapperResult result;
+  std::vector<LoopClosure> loops;  // SLAM's events as they came in
+  std::optional<PinholeCamera> camera;
+  std::vector<SampleFrame> samples;
+  std::vector<std::string> warnings;
+  double wall_s = 0.0;
+  double cpu_s = 0.0;  // of the mapper's thread, sources excluded where they have their own
+};
+
+// `final_poses`: SLAM's own final trajectory, empty if there is none.
+MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
+                     const Trajectory& final_poses, const Progress& progress);
+
+// Poses as the run's trajectory files have them; frames without a pose are absent.
+Trajectory SlamTrajectory(const MappingRun& run);    // the input, live
+Trajectory OnlineTrajectory(const MappingRun& run);  // estimates as known at the time
+Trajectory FinalTrajectory(const MappingRun& run);   // estimates after all corrections
+
+}  // namespace depthgrid

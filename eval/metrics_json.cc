@@ -1,0 +1,116 @@
+#include "eval/metrics_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace depthgrid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json ToJson(const Statistics& s) {
+  return {{"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median}, {"std", s.std},
+          {"min", s.min},   {"max", s.max},   {"sse", s.sse},       {"count", s.count}};
+}
+
+Json ToJson(const std::optional<Statistics>& s) { return s ? ToJson(*s) : Json(nullptr); }
+
+Json RmseOf(const std::optional<Statistics>& s) { return s ? Json(s->rmse) : Json(nullptr); }
+
+Json ToJson(const StateScore& score) {
+  return {{"precision", ToJson(score.precision)},
+          {"recall", ToJson(score.recall)},
+          {"f1", ToJson(score.f1)},
+          {"iou", ToJson(score.iou)},
+          {"estimated_cells", score.estimated_cells},
+          {"right_cells", score.right_cells},
+          {"true_cells", score.true_cells},
+          {"found_cells", score.found_cells}};
+}
+
+// The default tolerance's figures at the top, the others under their own names.
+Json ByTolerance(const std::array<StateScore, kMaxToleranceCells + 1>& scores) {
+  Json json = ToJson(scores[kDefaultToleranceCells]);
+  for (std::size_t tolerance = 0; tolerance < scores.size(); ++tolerance) {
+    if (tolerance == kDefaultToleranceCells) continue;
+    json["tolerance_" + std::to_string(tolerance)] = ToJson(scores[tolerance]);
+  }
+  return json;
+}
+
+Json ToJson(const CellScores& scores) {
+  constexpr std::array<const char*, 3> kStates = {"unknown", "free", "occupied"};
+  Json confusion;
+  for (std::size_t truth = 0; truth < kStates.size(); ++truth) {
+    for (std::size_t estimate = 0; estimate < kStates.size(); ++estimate) {
+      confusion[std::string("truth_") + kStates[truth]]
+               [std::string("estimate_") + kStates[estimate]] = scores.confusion[truth][estimate];
+    }
+  }
+  return {{"occupied", ByTolerance(scores.occupied)},
+          {"free", ByTolerance(scores.free)},
+          {"chamfer_m", ToJson(scores.chamfer_m)},
+          {"estimate_to_truth_m", ToJson(scores.estimate_to_truth_m)},
+          {"truth_to_estimate_m", ToJson(scores.truth_to_estimate_m)},
+          {"hausdorff95_m", ToJson(scores.hausdorff95_m)},
+          {"coverage", ToJson(scores.coverage)},
+          {"scored_cells", scores.scored_cells},
+          {"confusion", confusion}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const TrajectoryScore& score) {
+  return {
+      {"mean_euclidean_m", score.xy_unaligned.mean},
+      {"ate_rmse_m", score.xy_unaligned.rmse},
+      {"ate_rmse_origin_m", score.xy_origin.rmse},
+      {"ate_rmse_se2_m", RmseOf(score.xy_se2)},
+      {"mean_euclidean_xyz_m", score.xyz_unaligned.mean},
+      {"ate_rmse_xyz_m", score.xyz_unaligned.rmse},
+      {"ate_rmse_se3_m", RmseOf(score.xyz_se3)},
+      {"ate_rmse_sim3_m", RmseOf(score.xyz_sim3)},
+      {"sim3_scale", ToJson(score.sim3_scale)},
+      {"rpe_frame_rmse_m", RmseOf(score.rpe_frame_translation)},
+      {"rpe_frame_rmse_rad", RmseOf(score.rpe_frame_rotation)},
+      {"rpe_metre_rmse_m", RmseOf(score.rpe_metre_translation)},
+      {"rpe_metre_rmse_rad", RmseOf(score.rpe_metre_rotation)},
+      {"reference_poses", score.reference_poses},
+      {"estimate_poses", score.estimate_poses},
+      {"matched_poses", score.matched_poses},
+      {"reference_path_m", score.reference_path_m},
+      {"xy",
+       {{"unaligned", ToJson(score.xy_unaligned)},
+        {"origin", ToJson(score.xy_origin)},
+        {"se2", ToJson(score.xy_se2)}}},
+      {"xyz",
+       {{"unaligned", ToJson(score.xyz_unaligned)},
+        {"origin", ToJson(score.xyz_origin)},
+        {"se3", ToJson(score.xyz_se3)},
+        {"sim3", ToJson(score.xyz_sim3)}}},
+      {"rotation_rad",
+       {{"unaligned", ToJson(score.rotation_unaligned)}, {"se3", ToJson(score.rotation_se3)}}},
+      {"rpe",
+       {{"frame_m", ToJson(score.rpe_frame_translation)},
+        {"frame_rad", ToJson(score.rpe_frame_rotation)},
+        {"metre_m", ToJson(score.rpe_metre_translation)},
+        {"metre_rad", ToJson(score.rpe_metre_rotation)}}},
+  };
+}
+
+nlohmann::ordered_json ToJson(const MapScore& score) {
+  const CellScores& headline = score.observable ? *score.observable : score.all;
+  Json json;
+  json["chamfer_m"] = ToJson(headline.chamfer_m);
+  json["hausdorff95_m"] = ToJson(headline.hausdorff95_m);
+  json["coverage"] = ToJson(headline.coverage);
+  json["tolerance_cells"] = kDefaultToleranceCells;
+  if (score.observable) json["observable"] = ToJson(*score.observable);
+  json["all"] = ToJson(score.all);
+  return json;
+}
+
+std::string JsonText(const nlohmann::ordered_json& json) { return json.dump(2) + "\n"; }
+
+}  // namespace depthgrid

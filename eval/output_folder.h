@@ -1,0 +1,34 @@
+// The folder a command writes. Everything goes to a sibling first and takes its place when the
+// command is done, so that an error leaves nothing behind, and nobody reads half a result.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace depthgrid {
+
+class OutputFolder {
+ public:
+  // Throws InputError when `path` is a file, or a folder that is not empty unless `force`.
+  OutputFolder(const std::string& path, bool force);
+  // Removes everything again unless committed.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Where to write until Commit().
+  const std::filesystem::path& work() const { return work_; }
+  std::string File(const std::string& name) const { return (work_ / name).string(); }
+
+  // Puts the written files in place. In a folder that has files already (`force`), files of the
+  // same name are replaced and all others stay: what a user put there is never deleted.
+  void Commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path work_;
+  std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
+  bool committed_ = false;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,95 @@
+#include "eval/run_folder.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "eval/map_picture.h"
+#include "eval/metrics_json.h"
+#include "eval/run_tables.h"
+#include "mapper/io/file.h"
+#include "mapper/io/map_file.h"
+#include "mapper/io/png.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kMapMarginCells = 4;
+
+void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
+  const MappingRun& run = *record.mapping;
+  WriteTrajectory(folder.File("trajectory_slam.txt"), SlamTrajectory(run));
+  WriteTrajectory(folder.File("trajectory_online.txt"), OnlineTrajectory(run));
+  WriteTrajectory(folder.File("trajectory_est.txt"), FinalTrajectory(run));
+  if (record.truth != nullptr) {
+    WriteTrajectory(folder.File("trajectory_truth.txt"), record.truth->trajectory);
+  }
+}
+
+void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
+  const OccupancyMap& map = record.mapping->result.map;
+  StateMap shown = StatesOf(map);
+  GridGeometry part = KnownPart(shown, kMapMarginCells);
+  std::vector<Path> paths;
+  if (record.truth != nullptr) {
+    part = Union(part, KnownPart(record.truth->map, kMapMarginCells));
+    paths.push_back({"truth", palette::kTruth, record.truth->trajectory});
+  }
+  paths.push_back({"slam", palette::kSlam, SlamTrajectory(*record.mapping)});
+  paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});
+  WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
+}
+
+// Occupied cells stand for members, so that map viewers show them.
+StateMap AsStates(const CellSet& cells) {
+  StateMap states(cells.geometry);
+  for (std::size_t i = 0; i < cells.members.size(); ++i) {
+    states.states[i] = cells.members[i] != 0 ? CellState::kFree : CellState::kUnknown;
+  }
+  return states;
+}
+
+void WriteTruth(const OutputFolder& folder, const TruthRecord& truth) {
+  WriteMap(folder.File("truth_map.yaml"), truth.map);
+  if (truth.observable) WriteMap(folder.File("observable.yaml"), AsStates(*truth.observable));
+}
+
+void WriteMetrics(const OutputFolder& folder, const RunScores& scores) {
+  nlohmann::ordered_json json;
+  const auto add = [&](const char* name, const std::optional<TrajectoryScore>& score) {
+    json["trajectory"][name] = score ? ToJson(*score) : nlohmann::ordered_json(nullptr);
+  };
+  add("slam", scores.slam);
+  add("online", scores.online);
+  add("est", scores.est);
+  json["map"] = ToJson(scores.map);
+  WriteFile(folder.File("metrics.json"), JsonText(json));
+}
+
+}  // namespace
+
+std::string Provenance(const std::string& scene_hash) {
+  std::string yaml = "provenance:\n";
+  yaml += fmt::format("  version: {}\n", DEPTHGRID_VERSION);
+  if (!scene_hash.empty()) yaml += fmt::format("  scene_hash: {}\n", scene_hash);
+  yaml += fmt::format("  instruction_set: {}\n", DEPTHGRID_ARCH);
+  if (!scene_hash.empty()) yaml += "  ray_instruction_set: avx2\n";
+  return yaml;
+}
+
+void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
+  const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
+  WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.scene_hash));
+  WriteMap(folder.File("map.yaml"), record.mapping->result.map);
+  WriteMapPicture(folder, record);
+  WriteTrajectories(folder, record);
+  if (record.truth != nullptr) WriteTruth(folder, *record.truth);
+  if (record.scores != nullptr) WriteMetrics(folder, *record.scores);
+  WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
+  WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
+  WriteFile(folder.File("timing.json"),
+            TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,30 @@
+// The folder of a run (docs/formats.md): all that `run` and `map` leave behind.
+#pragma once
+
+#include <string>
+
+#include "eval/experiment.h"
+#include "eval/output_folder.h"
+#include "mapper/core/slam_output.h"
+
+namespace depthgrid {
+
+struct RunRecord {
+  std::string title;       // what was run, for people
+  std::string settings;    // YAML of every effective key
+  std::string scene_hash;  // empty for recorded data
+  const MappingRun* mapping = nullptr;
+  const SlamOutput* slam = nullptr;    // nothing for recorded data without events
+  const TruthRecord* truth = nullptr;  // nothing for recorded data
+  const RunScores* scores = nullptr;
+  double wall_s_total = 0.0;
+  double cpu_s_total = 0.0;
+};
+
+// Writes every file into the folder's work area; the caller commits.
+void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
+
+// Version and instruction set, as in every run.yaml.
+std::string Provenance(const std::string& scene_hash);
+
+}  // namespace depthgrid

@@ -1,0 +1,72 @@
+#include "eval/shipped.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* WordFor(ShippedKind kind) {
+  switch (kind) {
+    case ShippedKind::kScene:
+      return "scene";
+    case ShippedKind::kExperiment:
+      return "experiment";
+    case ShippedKind::kSweep:
+      return "sweep";
+  }
+  return "";
+}
+
+bool IsFileName(const std::string& name) {
+  return name.find('/') != std::string::npos || fs::path(name).has_extension();
+}
+
+}  // namespace
+
+std::string ShippedFolder(ShippedKind kind) {
+  const fs::path executable = fs::read_symlink("/proc/self/exe");
+  const fs::path scenes = executable.parent_path().parent_path() / "share/depthgrid/scenes";
+  switch (kind) {
+    case ShippedKind::kScene:
+      return scenes.string();
+    case ShippedKind::kExperiment:
+      return (scenes / "experiments").string();
+    case ShippedKind::kSweep:
+      return (scenes / "sweeps").string();
+  }
+  return "";
+}
+
+std::vector<std::string> ShippedNames(ShippedKind kind) {
+  std::vector<std::string> names;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(ShippedFolder(kind), missing)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string ResolveName(const std::string& name, ShippedKind kind, const std::string& base_folder) {
+  if (IsFileName(name)) {
+    const fs::path path = fs::path(base_folder) / name;  // an absolute name replaces the base
+    if (!fs::exists(path)) throw InputError(path.string(), "no such file");
+    return path.string();
+  }
+  const std::vector<std::string> names = ShippedNames(kind);
+  if (std::find(names.begin(), names.end(), name) != names.end()) {
+    return (fs::path(ShippedFolder(kind)) / (name + ".yaml")).string();
+  }
+  const std::string nearest = NearestWord(name, names);
+  throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" +
+                             (nearest.empty() ? "; see `depthgrid scenes`"
+                                              : ", did you mean '" + nearest + "'?"));
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,25 @@
+// Scenes and experiments that come with the program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace depthgrid {
+
+enum class ShippedKind { kScene, kExperiment, kSweep };
+
+// The file a command-line argument or a key means: itself when it holds a '/' or ends in an
+// extension (.yaml, or a mesh file's), otherwise the shipped file of that name. `base_folder` is
+// where a relative file name in another file starts; empty for the working directory. Throws
+// InputError with the nearest shipped name.
+std::string ResolveName(const std::string& name, ShippedKind kind,
+                        const std::string& base_folder = "");
+
+// Names of all shipped files of a kind, sorted.
+std::vector<std::string> ShippedNames(ShippedKind kind);
+
+// ../share/depthgrid/scenes beside the folder of the running executable: the build tree links it to
+// the source tree, an installation copies it there.
+std::string ShippedFolder(ShippedKind kind);
+
+}  // namespace depthgrid

@@ -1,0 +1,43 @@
+#include "eval/synthetic_source.h"
+
+#include "mapper/core/error.h"
+#include "mapper/io/png.h"
+
+namespace depthgrid {
+
+SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions&)
+    : camera_(world.rays, world.camera), trajectory_(world.trajectory) {}
+
+DepthImage SyntheticSensor::Image(int frame) const {
+  const Pose3& world_from_camera = trajectory_[static_cast<std::size_t>(frame)].world_from_camera;
+  return QuantiseDepth(camera_.Render(world_from_camera));
+}
+
+SyntheticSource::SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam, int threads)
+    : camera_(sensor.camera()),
+      slam_(std::move(slam)),
+      images_(sensor.FrameCount(), threads, [&sensor](int frame) {
+        return std::make_shared<const DepthImage>(sensor.Image(frame));
+      }) {
+  Require(sensor.FrameCount() == FrameCount(), "SLAM says something of every frame");
+}
+
+std::optional<Frame> SyntheticSource::Next() {
+  auto image = images_.Next();
+  if (!image) return std::nullopt;
+  const SlamPose& pose = slam_.live[static_cast<std::size_t>(next_)];
+  Frame frame;
+  frame.index = next_;
+  frame.stamp_s = pose.stamp_s;
+  frame.depth = std::move(*image);
+  frame.slam_from_camera = pose.slam_from_camera;
+  frame.slam_epoch = pose.epoch;
+  for (; next_loop_ < slam_.loops.size() && slam_.loops[next_loop_].reported_at_frame <= next_;
+       ++next_loop_) {
+    frame.loops.push_back(slam_.loops[next_loop_]);
+  }
+  ++next_;
+  return frame;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,48 @@
+// The simulated sensor as a frame source: depth images rendered (or taken from the cache),
+// disturbed and quantised as a PNG would, ahead of the mapper on several threads.
+#pragma once
+
+#include <memory>
+
+#include "eval/experiment_options.h"
+#include "eval/ordered_frames.h"
+#include "eval/world.h"
+#include "mapper/core/frame.h"
+#include "mapper/core/slam_output.h"
+#include "sim/depth_camera.h"
+
+namespace depthgrid {
+
+// Frame i of the sensor: a pure function of the world, the options and i.
+class SyntheticSensor {
+ public:
+  SyntheticSensor(const World& world, const ExperimentOptions& options);
+
+  DepthImage Image(int frame) const;
+  int FrameCount() const { return static_cast<int>(trajectory_.size()); }
+  const PinholeCamera& camera() const { return camera_.camera(); }
+
+ private:
+  DepthCamera camera_;
+  Trajectory trajectory_;
+};
+
+class SyntheticSource final : public FrameSource {
+ public:
+  // `slam.live` has one entry a frame.
+  SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam, int threads);
+
+  std::optional<Frame> Next() override;
+  std::optional<PinholeCamera> Camera() const override { return camera_; }
+  int FrameCount() const override { return static_cast<int>(slam_.live.size()); }
+  std::vector<std::string> Warnings() const override { return {}; }
+
+ private:
+  PinholeCamera camera_;
+  SlamOutput slam_;
+  int next_ = 0;
+  std::size_t next_loop_ = 0;
+  OrderedFrames<std::shared_ptr<const DepthImage>> images_;
+};
+
+}  // namespace depthgrid

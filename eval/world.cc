@@ -1,0 +1,90 @@
+#include "eval/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "eval/hash.h"
+#include "eval/shipped.h"
+#include "mapper/core/error.h"
+#include "mapper/io/trajectory_file.h"
+#include "sim/trajectory.h"
+
+namespace depthgrid {
+namespace {
+
+std::string HashOf(const Scene& scene) {
+  ContentHash hash;
+  for (const Eigen::Vector3f& v : scene.mesh.vertices) hash.Bytes(v.data(), sizeof(float) * 3);
+  for (const auto& t : scene.mesh.triangles) hash.Bytes(t.data(), sizeof t);
+  hash.Value(scene.floor_z_m);
+  return hash.Hex();
+}
+
+const std::string& NamedTrajectory(const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& [candidate, spec] : scene.trajectories) names.push_back(candidate);
+  if (names.empty()) {
+    throw InputError("trajectory", "the scene names none, must be a TUM file");
+  }
+  if (name.empty()) return scene.trajectories.begin()->first;
+  const auto found = scene.trajectories.find(name);
+  if (found != scene.trajectories.end()) return found->first;
+  const std::string nearest = NearestWord(name, names);
+  throw InputError(
+      "trajectory",
+      fmt::format("is '{}', must be one of {} or a TUM file{}", name, fmt::join(names, ", "),
+                  nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+}
+
+Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex.cast<double>());
+  return bounds;
+}
+
+Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentOptions& options) {
+  const std::string& name = NamedTrajectory(scene, options.trajectory);
+  const TrajectoryOptions path = ReadTrajectoryOptions(scene.trajectories.at(name));
+  const int whole = MinimumFrames(path);
+  Trajectory trajectory =
+      MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.seed);
+  if (options.frames > 0) trajectory.resize(static_cast<std::size_t>(options.frames));
+  const auto distance_m = [&](const Eigen::Vector3d& point) -> double {
+    return rays.DistanceToSurface(point.cast<float>(), static_cast<float>(path.clearance_m));
+  };
+  // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
+  constexpr double kFloatSlackM = 1e-5;
+  CheckInside(trajectory, BoundsOfMesh(scene.mesh), name);
+  CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, name);
+  return trajectory;
+}
+
+Trajectory FromFile(const ExperimentOptions& options) {
+  Trajectory trajectory = ReadTrajectory(options.trajectory);
+  const auto wanted = static_cast<std::size_t>(options.frames);
+  if (wanted > trajectory.size()) {
+    throw InputError("frames", fmt::format("is {}, must be at most the {} poses of {}", wanted,
+                                           trajectory.size(), options.trajectory));
+  }
+  if (wanted > 0) trajectory.resize(wanted);
+  return trajectory;
+}
+
+bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
+
+}  // namespace
+
+World LoadWorld(const ExperimentOptions& options, int build_threads) {
+  Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  RayScene rays(scene.mesh, RayIsa::kAvx2, build_threads);
+  const PinholeCamera camera = SensorCamera(options.sensor);
+  Trajectory trajectory =
+      IsFile(options.trajectory) ? FromFile(options) : FromScene(scene, rays, options);
+  std::string hash = HashOf(scene);
+  return {std::move(scene), std::move(hash), std::move(rays), camera, std::move(trajectory)};
+}
+
+}  // namespace depthgrid

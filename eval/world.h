@@ -1,0 +1,27 @@
+// The true side of an experiment: the room, the camera and where the camera went.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "eval/experiment_options.h"
+#include "mapper/core/camera.h"
+#include "mapper/core/trajectory.h"
+#include "sim/ray_scene.h"
+#include "sim/scene.h"
+
+namespace depthgrid {
+
+struct World {
+  Scene scene;
+  std::string scene_hash;  // of triangles, floor and ceiling: what the depth camera can see
+  RayScene rays;
+  PinholeCamera camera;
+  Trajectory trajectory;
+};
+
+// Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
+// path that comes too near to geometry.
+World LoadWorld(const ExperimentOptions& options, int build_threads);
+
+}  // namespace depthgrid
