@@ -1,22 +1,9 @@
 #include "eval/experiment.h"
 
 #include "eval/synthetic_source.h"
+#include "sim/slam_surrogate.h"
 
 namespace depthgrid {
-namespace {
-
-// What a SLAM system without errors would say.
-SlamOutput PerfectSlam(const Trajectory& truth) {
-  SlamOutput output;
-  output.final = truth;
-  for (const StampedPose& pose : truth) {
-    output.live.push_back({pose.stamp_s, pose.world_from_camera, 0});
-  }
-  return output;
-}
-
-}  // namespace
-
 RunScores Score(const MappingRun& run, const TruthRecord& truth) {
   RunScores scores;
   scores.slam = ScoreTrajectory(truth.trajectory, SlamTrajectory(run));
@@ -28,7 +15,7 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth) {
 
 ExperimentRun RunExperiment(const ExperimentOptions& options, const RunContext& context) {
   World world = LoadWorld(options, context.threads);
-  SlamOutput slam = PerfectSlam(world.trajectory);
+  SlamOutput slam = DisturbTrajectory(world.trajectory, options.slam, options.SlamSeed());
   const SyntheticSensor sensor(world, options);
   SyntheticSource source(sensor, slam, context.threads);
   MappingRun mapping = MapFrames(source, options.mapper, slam.final, context.progress);

@@ -24,8 +24,12 @@ void ExperimentOptions::Visit(OptionsVisitor& v) {
   v.Text("scene", scene, "a shipped scene, a scene file or a mesh file");
   v.Text("trajectory", trajectory, "one the scene names, or a TUM file; empty is the first");
   v.Number("frames", frames, {0, kMaxFrames}, "0 is as many as the path needs");
-  v.Seed("seed", seed, "of the depth noise, SLAM's errors and the hand's shake");
+  v.Seed("seed", seed, "of the depth noise and SLAM's errors");
+  v.Seed("depth_seed", depth_seed, "of the depth noise alone; 0 is seed");
+  v.Seed("slam_seed", slam_seed, "of SLAM's errors alone; 0 is seed");
+  v.Seed("trajectory_seed", trajectory_seed, "of the hand's shake");
   v.Group("sensor", sensor, "the depth camera");
+  v.Group("slam", slam, "the SLAM system");
   v.Group("mapper", mapper, "the mapper");
 }
 

@@ -8,6 +8,7 @@
 #include "mapper/io/config.h"
 #include "mapper/mapper_options.h"
 #include "sim/sensor_options.h"
+#include "sim/slam_options.h"
 
 namespace depthgrid {
 
@@ -18,10 +19,18 @@ struct ExperimentOptions {
   // 0: as many as the path needs within its speed bounds, or all of the file. Fewer walk only the
   // path's beginning, more walk it slower.
   int frames = 0;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  // of depth noise and SLAM's errors
+  // 0 follows `seed`; anything else holds one of the two still while the other varies.
+  std::uint64_t depth_seed = 0;
+  std::uint64_t slam_seed = 0;
+  // Of the hand's shake. Apart from `seed`, so that runs over seeds see the same clean images.
+  std::uint64_t trajectory_seed = 1;
   SensorOptions sensor;
+  SlamOptions slam;
   MapperOptions mapper;
 
+  std::uint64_t DepthSeed() const { return depth_seed != 0 ? depth_seed : seed; }
+  std::uint64_t SlamSeed() const { return slam_seed != 0 ? slam_seed : seed; }
   void Visit(OptionsVisitor& v);
 };
 

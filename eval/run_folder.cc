@@ -27,8 +27,17 @@ void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
   }
 }
 
+// A run that mapped nothing still has a map: one unknown cell.
+OccupancyMap MapOf(const MappingRun& run) {
+  if (run.result.map.geometry.size() > 0) return run.result.map;
+  GridGeometry one_cell = run.result.map.geometry;
+  one_cell.width_cells = 1;
+  one_cell.height_cells = 1;
+  return OccupancyMap(one_cell);
+}
+
 void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
-  const OccupancyMap& map = record.mapping->result.map;
+  const OccupancyMap map = MapOf(*record.mapping);
   StateMap shown = StatesOf(map);
   GridGeometry part = KnownPart(shown, kMapMarginCells);
   std::vector<Path> paths;
@@ -81,7 +90,7 @@ std::string Provenance(const std::string& scene_hash) {
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
   WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.scene_hash));
-  WriteMap(folder.File("map.yaml"), record.mapping->result.map);
+  WriteMap(folder.File("map.yaml"), MapOf(*record.mapping));
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
   if (record.truth != nullptr) WriteTruth(folder, *record.truth);

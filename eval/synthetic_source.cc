@@ -5,12 +5,20 @@
 
 namespace depthgrid {
 
-SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions&)
-    : camera_(world.rays, world.camera), trajectory_(world.trajectory) {}
+SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& options)
+    : camera_(world.rays, world.camera),
+      noise_(options.sensor),
+      seed_(options.DepthSeed()),
+      trajectory_(world.trajectory) {}
+
+DepthFrame SyntheticSensor::Clean(int frame) const {
+  const Pose3& world_from_camera = trajectory_[static_cast<std::size_t>(frame)].world_from_camera;
+  if (noise_.NeedsIncidence()) return camera_.RenderWithIncidence(world_from_camera);
+  return {camera_.Render(world_from_camera), {}};
+}
 
 DepthImage SyntheticSensor::Image(int frame) const {
-  const Pose3& world_from_camera = trajectory_[static_cast<std::size_t>(frame)].world_from_camera;
-  return QuantiseDepth(camera_.Render(world_from_camera));
+  return QuantiseDepth(noise_.Apply(Clean(frame), seed_, static_cast<std::uint32_t>(frame)));
 }
 
 SyntheticSource::SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam, int threads)

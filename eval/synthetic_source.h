@@ -10,6 +10,7 @@
 #include "mapper/core/frame.h"
 #include "mapper/core/slam_output.h"
 #include "sim/depth_camera.h"
+#include "sim/depth_noise.h"
 
 namespace depthgrid {
 
@@ -23,7 +24,11 @@ class SyntheticSensor {
   const PinholeCamera& camera() const { return camera_.camera(); }
 
  private:
+  DepthFrame Clean(int frame) const;
+
   DepthCamera camera_;
+  DepthNoise noise_;
+  std::uint64_t seed_;
   Trajectory trajectory_;
 };
 

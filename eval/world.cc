@@ -50,7 +50,7 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
   const TrajectoryOptions path = ReadTrajectoryOptions(scene.trajectories.at(name));
   const int whole = MinimumFrames(path);
   Trajectory trajectory =
-      MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.seed);
+      MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.trajectory_seed);
   if (options.frames > 0) trajectory.resize(static_cast<std::size_t>(options.frames));
   const auto distance_m = [&](const Eigen::Vector3d& point) -> double {
     return rays.DistanceToSurface(point.cast<float>(), static_cast<float>(path.clearance_m));
