@@ -10,6 +10,7 @@
 #include "mapper/grid/map_drawing.h"
 #include "mapper/loop_closing.h"
 #include "mapper/reference_factory.h"
+#include "mapper/scan/depth_to_scan.h"
 
 namespace depthgrid {
 namespace {
@@ -28,19 +29,22 @@ struct IncrementalMapper::State {
   MapperOptions options;
   CpuClock clock;
   GainOracle oracle;
-  std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
+  std::optional<DepthToScan> depth_to_scan;  // empty when frames bring ready scans
+  std::unique_ptr<ReferenceMap> reference;   // null when SLAM is trusted alone
   FrameHistory history;
   CorrectionFilter filter;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   std::vector<MappedFrame> mapped;
 
-  State(const MapperOptions& opts, CpuClock clk, GainOracle orc)
+  State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
+        GainOracle orc)
       : options(opts),
         clock(std::move(clk)),
         oracle(std::move(orc)),
         filter(opts.fusion),
         loop_closer(opts.loops) {
+    if (camera) depth_to_scan.emplace(*camera, options.scan);
     if (!options.fusion.TrustsSlamAlone()) reference = MakeReference(options);
   }
 
@@ -65,9 +69,9 @@ struct IncrementalMapper::State {
 };
 
 IncrementalMapper::IncrementalMapper(const MapperOptions& options,
-                                     const std::optional<PinholeCamera>&, CpuClock clock,
+                                     const std::optional<PinholeCamera>& camera, CpuClock clock,
                                      GainOracle oracle)
-    : state_(std::make_unique<State>(options, std::move(clock), std::move(oracle))) {
+    : state_(std::make_unique<State>(options, camera, std::move(clock), std::move(oracle))) {
   if (options.fusion.mode == FusionMode::kOracle && !state_->oracle) {
     throw InputError("mapper.fusion.mode", "oracle needs an experiment that knows the truth");
   }
@@ -102,9 +106,14 @@ FrameReport IncrementalMapper::State::Begin(const Frame& frame) {
 
 std::shared_ptr<const Scan> IncrementalMapper::State::ScanOf(const Frame& frame,
                                                              FrameReport& report) {
-  if (!frame.scan) return nullptr;
-  report.beams = HitCount(*frame.scan);
-  return frame.scan;
+  const StageTimer timer(clock, report.times.scan_us);
+  std::shared_ptr<const Scan> scan = frame.scan;
+  if (!scan && frame.depth && frame.slam_from_camera) {
+    Require(depth_to_scan.has_value(), "a source of depth images has a camera");
+    scan = std::make_shared<Scan>(depth_to_scan->Convert(*frame.depth, *frame.slam_from_camera));
+  }
+  if (scan) report.beams = HitCount(*scan);
+  return scan;
 }
 
 // Loop events come before the frame's pose is used. How SLAM corrected itself (a new epoch) is not

@@ -5,6 +5,7 @@ namespace depthgrid {
 void MapperOptions::Visit(OptionsVisitor& v) {
   v.Choice("method", method, {{MapperMethod::kPaper, "paper"}, {MapperMethod::kSurfel, "surfel"}},
            "what scans are matched against: the paper's submaps or surfels of everything seen");
+  v.Group("scan", scan, "depth images to scans (Eq. 2)");
   v.Group("grid", grid, "probability grids and the finished map");
   v.Group("submap", submap, "paper: grids that scans are matched against");
   v.Group("match", match, "paper: scan to submap (Eq. 4)");

@@ -8,6 +8,7 @@
 #include "mapper/grid/submap.h"
 #include "mapper/loop_closing.h"
 #include "mapper/match/scan_matcher.h"
+#include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
 
@@ -15,6 +16,7 @@ enum class MapperMethod { kPaper, kSurfel };
 
 struct MapperOptions {
   MapperMethod method = MapperMethod::kPaper;
+  ScanOptions scan;
   GridOptions grid;
   SubmapOptions submap;
   ScanMatcherOptions match;
