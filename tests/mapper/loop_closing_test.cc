@@ -1,0 +1,150 @@
+#include "mapper/loop_closing.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+#include "mapper/paper_reference.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+// Twice round a furnished room at true poses.
+std::vector<MappedFrame> TwoRounds(const PlanarWorld& world, int frames_a_round) {
+  std::vector<MappedFrame> frames;
+  for (int i = 0; i < 2 * frames_a_round; ++i) {
+    const double angle_rad = 2.0 * kPi * i / frames_a_round;
+    MappedFrame frame;
+    frame.frame = i;
+    frame.stamp_s = i / 30.0;
+    frame.map_from_base = {3.0 + 0.8 * std::cos(angle_rad), 1.5 + 0.8 * std::sin(angle_rad),
+                           WrapAngle(angle_rad)};
+    PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    frame.scan = std::make_shared<Scan>(
+        ScanOf(world, frame.map_from_base, laser, 1, static_cast<std::uint32_t>(i)));
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+PlanarLoop LoopBetween(const std::vector<MappedFrame>& frames, int first, int second,
+                       const Pose2& error) {
+  PlanarLoop loop;
+  loop.first = first;
+  loop.second = second;
+  loop.first_from_second = Between(frames[static_cast<std::size_t>(first)].map_from_base,
+                                   frames[static_cast<std::size_t>(second)].map_from_base) *
+                           error;
+  return loop;
+}
+
+TEST(Overlap, TellsTrueLoopsFromFalseOnes) {
+  const std::vector<MappedFrame> frames = TwoRounds(FurnishedRoom(), 150);
+  RandomStream random(1, RandomStage::kTest);
+  int true_loops = 0, true_accepted = 0, false_loops = 0, false_accepted = 0;
+  for (int i = 0; i < 40; ++i) {
+    const int first = static_cast<int>(random.Below(150));
+    const Pose2 noise{0.02 * random.Normal(), 0.02 * random.Normal(), 0.01 * random.Normal()};
+    const OverlapOptions options;
+    ++true_loops;
+    true_accepted +=
+        Agrees(OverlapOf(frames, LoopBetween(frames, first, first + 145, noise), options), options);
+    // Another place altogether, or the right one displaced.
+    PlanarLoop wrong = LoopBetween(frames, first, 150 + static_cast<int>(random.Below(150)), {});
+    wrong.first_from_second = {random.Uniform(-1, 1), random.Uniform(-1, 1),
+                               random.Uniform(-0.6, 0.6)};
+    const Pose2 far{0.4, random.Uniform(0.3, 0.6), 0.2};
+    for (const PlanarLoop& loop : {wrong, LoopBetween(frames, first, first + 145, far)}) {
+      ++false_loops;
+      false_accepted += Agrees(OverlapOf(frames, loop, options), options);
+    }
+  }
+  EXPECT_EQ(true_loops, 40);
+  EXPECT_GE(true_accepted, 39);
+  EXPECT_EQ(false_loops, 80);
+  EXPECT_LE(false_accepted, 4);
+}
+
+Frame PosedFrame(int index, const Pose2& slam_from_base, int epoch) {
+  Frame frame;
+  frame.index = index;
+  frame.slam_epoch = epoch;
+  frame.slam_from_camera = CameraOf(slam_from_base, 1.15);
+  return frame;
+}
+
+LoopClosure CameraLoop(int first, int second, const Pose2& first_from_second) {
+  LoopClosure loop;
+  loop.first_frame = first;
+  loop.second_frame = second;
+  loop.first_from_second = Between(CameraOf({}, 1.15), CameraOf(first_from_second, 1.15));
+  return loop;
+}
+
+void ExpectNear(const Pose2& a, const Pose2& b) {
+  EXPECT_NEAR(a.x_m, b.x_m, 1e-12);
+  EXPECT_NEAR(a.y_m, b.y_m, 1e-12);
+  EXPECT_NEAR(WrapAngle(a.yaw_rad - b.yaw_rad), 0.0, 1e-12);
+}
+
+TEST(ProjectLoop, JoinsMappedFramesDirectly) {
+  FrameHistory history;
+  for (int i = 0; i < 5; ++i) {
+    history.Start(PosedFrame(i, {0.1 * i, 0, 0}, 0));
+    history.newest().mapped = i;
+  }
+  const Pose2 measured{0.3, -0.2, 0.1};
+  const auto loop = ProjectLoop(CameraLoop(0, 3, measured), history, -1);
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->first, 0);
+  EXPECT_EQ(loop->second, 3);
+  ExpectNear(loop->first_from_second, measured);
+  // The newest frame, which is about to be mapped.
+  history.Start(PosedFrame(5, {0.5, 0, 0}, 1));
+  EXPECT_FALSE(ProjectLoop(CameraLoop(0, 5, measured), history, -1));
+  const auto provisional = ProjectLoop(CameraLoop(0, 5, measured), history, 5);
+  ASSERT_TRUE(provisional);
+  EXPECT_EQ(provisional->second, 5);
+}
+
+TEST(ProjectLoop, MovesToTheNearestMappedFrameWithinAnEpoch) {
+  const std::vector<Pose2> slam = {{0, 0, 0}, {0.1, 0, 0.1}, {0.2, 0.1, 0.2}, {0.3, 0.1, 0.3}};
+  // Only frame 1 of the first epoch and frame 3 of the second are mapped.
+  FrameHistory history;
+  for (int i = 0; i < 4; ++i) {
+    history.Start(PosedFrame(i, slam[static_cast<std::size_t>(i)], i / 3));
+    if (i == 1) history.newest().mapped = 0;
+    if (i == 3) history.newest().mapped = 1;
+  }
+  const Pose2 measured{0.5, 0.1, -0.2};
+  const auto loop = ProjectLoop(CameraLoop(2, 3, measured), history, -1);
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->first, 0);
+  ExpectNear(loop->first_from_second, Between(slam[1], slam[2]) * measured);
+  // Both ends at one mapped frame say nothing.
+  EXPECT_FALSE(ProjectLoop(CameraLoop(0, 2, measured), history, -1));
+  EXPECT_FALSE(ProjectLoop(CameraLoop(0, 17, measured), history, -1));
+}
+
+TEST(FrameHistory, RefusesAnIndexTwice) {
+  FrameHistory history;
+  history.Start(PosedFrame(3, {}, 0));
+  EXPECT_THROW(history.Start(PosedFrame(3, {}, 0)), InputError);
+}
+
+TEST(FinalPoses, UnmappedFramesFollowTheNearestMappedOne) {
+  FrameHistory history;
+  for (int i = 0; i < 5; ++i) {
+    history.Start(PosedFrame(i, {0.1 * i, 0, 0}, i / 4));
+    if (i == 1) history.newest().mapped = 0;
+  }
+  const auto poses = FinalPoses(history, {{0.1, 0.3, 0.0}});
+  ASSERT_EQ(poses.size(), 5U);
+  for (int i = 0; i < 4; ++i) {
+    ExpectNear(BaseOf(*poses[static_cast<std::size_t>(i)]), {0.1 * i, 0.3, 0.0});
+  }
+  ExpectNear(BaseOf(*poses[4]), {0.4, 0.0, 0.0});  // another epoch: the correction known then
+}
+
+}  // namespace
+}  // namespace depthgrid
