@@ -36,27 +36,50 @@ Twist Draw(RandomStream& random, double translation_m, double rotation_deg) {
 // The probability of at least one event of a rate within a time.
 double EventProbability(double rate_hz, double time_s) { return -std::expm1(-rate_hz * time_s); }
 
-class BiasProcess {
+// An Ornstein-Uhlenbeck process, exactly, whatever the time step.
+class SlowProcess {
  public:
-  BiasProcess(const SlamOptions& options, std::uint64_t seed) : options_(options), seed_(seed) {
-    rate_ = Fresh(0);
-  }
-  // The stationary process, exactly, whatever the time step.
+  struct Sigma {
+    double translation_m = 0.0;
+    double rotation_deg = 0.0;
+    double time_s = 1.0;
+  };
+  SlowProcess(const Sigma& sigma, std::uint64_t seed, RandomStage stage, const Twist& start)
+      : sigma_(sigma), seed_(seed), stage_(stage), value_(start) {}
+
   Twist Next(std::uint32_t frame, double time_s) {
-    const double kept = std::exp(-time_s / options_.bias_time_s);
-    rate_ = kept * rate_ + std::sqrt(1.0 - kept * kept) * Fresh(frame);
-    return rate_;
+    const double kept = std::exp(-time_s / sigma_.time_s);
+    value_ = kept * value_ + std::sqrt(1.0 - kept * kept) * Fresh(sigma_, seed_, stage_, frame);
+    return value_;
+  }
+  static Twist Fresh(const Sigma& sigma, std::uint64_t seed, RandomStage stage,
+                     std::uint32_t frame) {
+    RandomStream random(seed, stage, frame);
+    return Draw(random, sigma.translation_m, sigma.rotation_deg);
   }
 
  private:
-  Twist Fresh(std::uint32_t frame) const {
-    RandomStream random(seed_, RandomStage::kSlamBias, frame);
-    return Draw(random, options_.bias_translation_m, options_.bias_rotation_deg);
-  }
-  const SlamOptions& options_;
+  Sigma sigma_;
   std::uint64_t seed_;
-  Twist rate_;
+  RandomStage stage_;
+  Twist value_;
 };
+
+// The bias starts at 0, as the first pose is exact.
+SlowProcess BiasProcess(const SlamOptions& options, std::uint64_t seed) {
+  return {{options.bias_translation_m, options.bias_rotation_deg, options.bias_time_s},
+          seed,
+          RandomStage::kSlamBias,
+          {}};
+}
+
+// The rate of drift is stationary from the start.
+SlowProcess DriftProcess(const SlamOptions& options, std::uint64_t seed) {
+  const SlowProcess::Sigma sigma = {options.drift_speed_mps, options.drift_turn_dps,
+                                    options.drift_time_s};
+  return {sigma, seed, RandomStage::kSlamDrift,
+          SlowProcess::Fresh(sigma, seed, RandomStage::kSlamDrift, 0)};
+}
 
 class LostProcess {
  public:
@@ -121,17 +144,19 @@ std::vector<FrameErrors> DrawFrameErrors(const Trajectory& truth, const SlamOpti
   const auto motion_of = [&](const Twist& twist) {
     return PivotedMotion(twist.rotation_rad, twist.translation_m, options.pivot_m);
   };
-  BiasProcess bias(options, seed);
+  SlowProcess bias = BiasProcess(options, seed);
+  SlowProcess drift_rate = DriftProcess(options, seed);
   LostProcess lost(options, seed);
   std::vector<FrameErrors> errors(truth.size());
   for (std::size_t i = 1; i < truth.size(); ++i) {
     const auto frame = static_cast<std::uint32_t>(i);
     const double time_s = truth[i].stamp_s - truth[i - 1].stamp_s;
     const LostProcess::Step tracking = lost.Next(frame, truth[i].stamp_s, time_s);
-    const Twist drift = DrawWalk(options, seed, frame, time_s) + time_s * bias.Next(frame, time_s);
+    const Twist drift =
+        DrawWalk(options, seed, frame, time_s) + time_s * drift_rate.Next(frame, time_s);
     errors[i].motion = motion_of(options.drift_scale * drift +
                                  DrawJump(options, seed, frame, time_s) + tracking.jump);
-    errors[i].jitter = motion_of(DrawJitter(options, seed, frame));
+    errors[i].offset = motion_of(DrawJitter(options, seed, frame) + bias.Next(frame, time_s));
     errors[i].lost = tracking.lost;
     errors[i].relocalised = tracking.relocalised;
   }

@@ -15,8 +15,8 @@ Pose3 PivotedMotion(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& 
                     double pivot_m);
 
 struct FrameErrors {
-  Pose3 motion;  // error of the motion from the frame before: walk, bias, jumps, relocalisation
-  Pose3 jitter;  // error of this live pose alone
+  Pose3 motion;  // error of the motion from the frame before: walk, drift, jumps, relocalisation
+  Pose3 offset;  // error of this pose alone: jitter and bias
   bool lost = false;
   bool relocalised = false;  // the first frame after a burst of lost tracking
 };

@@ -5,6 +5,7 @@ namespace {
 
 constexpr Interval kMetres = {0.0, 10.0};
 constexpr Interval kDegrees = {0.0, 90.0};
+constexpr Interval kCorrelationS = {0.01, 1e6};
 
 }  // namespace
 
@@ -52,15 +53,18 @@ void SlamOptions::Visit(OptionsVisitor& v) {
             {SlamProfile::kPlanarSlamMeasured, "planar_slam_measured"}},
            "sets all keys below; those given override it");
   if (profile != before) *this = ProfileOptions(profile);
-  v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and bias");
+  v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and drift");
   v.Number("pivot_m", pivot_m, {0.0, 20.0}, "rotation errors turn about a point this far ahead");
   v.Number("jitter_translation_m", jitter_translation_m, kMetres, "white error of a pose");
   v.Number("jitter_rotation_deg", jitter_rotation_deg, kDegrees, "white error of a pose");
+  v.Number("bias_translation_m", bias_translation_m, kMetres, "slowly varying bias of a pose");
+  v.Number("bias_rotation_deg", bias_rotation_deg, kDegrees, "slowly varying bias of a pose");
+  v.Number("bias_time_s", bias_time_s, kCorrelationS, "correlation time of the bias");
   v.Number("walk_translation_m", walk_translation_m, kMetres, "random walk in a second");
   v.Number("walk_rotation_deg", walk_rotation_deg, kDegrees, "random walk in a second");
-  v.Number("bias_translation_m", bias_translation_m, kMetres, "bias of the speed, m/s");
-  v.Number("bias_rotation_deg", bias_rotation_deg, kDegrees, "bias of the turn rate, deg/s");
-  v.Number("bias_time_s", bias_time_s, {0.01, 1e6}, "correlation time of the bias");
+  v.Number("drift_speed_mps", drift_speed_mps, kMetres, "slowly varying bias of the speed");
+  v.Number("drift_turn_dps", drift_turn_dps, kDegrees, "slowly varying bias of the turn rate");
+  v.Number("drift_time_s", drift_time_s, kCorrelationS, "correlation time of the drift");
   v.Number("jump_rate_hz", jump_rate_hz, {0.0, 30.0}, "jumps in a second while tracking");
   v.Number("jump_translation_m", jump_translation_m, kMetres, "sigma of such a jump");
   v.Number("jump_rotation_deg", jump_rotation_deg, kDegrees, "sigma of such a jump");

@@ -48,7 +48,7 @@ struct SlamLoopOptions {
 
 struct SlamOptions {
   SlamProfile profile = SlamProfile::kGroundTruth;
-  double drift_scale = 1.0;  // multiplies walk and bias; what calibration sets
+  double drift_scale = 1.0;  // multiplies walk and drift; what calibration sets
 
   // Rotation errors turn about a point this far ahead of the camera: features hold the image onto
   // the scene, so that a camera turned by mistake is also shifted by mistake.
@@ -57,14 +57,19 @@ struct SlamOptions {
   // White error of each live pose.
   double jitter_translation_m = 0.0;
   double jitter_rotation_deg = 0.0;
+  // Slowly varying bias of the pose (Ornstein-Uhlenbeck): stationary sigma and correlation time.
+  // Bounded, as when tracking holds on to a map that is a little bent.
+  double bias_translation_m = 0.0;
+  double bias_rotation_deg = 0.0;
+  double bias_time_s = 1.0;
   // Random walk: white error of the motion, in one second.
   double walk_translation_m = 0.0;
   double walk_rotation_deg = 0.0;
-  // Bias of the motion's rate (Ornstein-Uhlenbeck): stationary sigma in one second, and its
-  // correlation time.
-  double bias_translation_m = 0.0;
-  double bias_rotation_deg = 0.0;
-  double bias_time_s = 10.0;
+  // Slowly varying bias of the rate of motion (Ornstein-Uhlenbeck), which lets errors grow smoothly
+  // and without bound: stationary sigma and correlation time.
+  double drift_speed_mps = 0.0;
+  double drift_turn_dps = 0.0;
+  double drift_time_s = 10.0;
   // Jumps while tracking goes on, as when the local map changes.
   double jump_rate_hz = 0.0;
   double jump_translation_m = 0.0;

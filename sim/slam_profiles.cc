@@ -19,9 +19,9 @@ SlamOptions CalibratedBase() {
   options.jitter_rotation_deg = 0.06;
   options.walk_translation_m = 0.001;
   options.walk_rotation_deg = 0.05;
-  options.bias_translation_m = 0.0004;
-  options.bias_rotation_deg = 0.015;
-  options.bias_time_s = 10.0;
+  options.drift_speed_mps = 0.0004;
+  options.drift_turn_dps = 0.015;
+  options.drift_time_s = 10.0;
   options.loops = WithScenario({}, LoopScenario::kTrue);
   return options;
 }
@@ -40,7 +40,7 @@ SlamOptions PlanarSlam() {
 SlamOptions PlanarSlamMh() {
   SlamOptions options = PlanarSlam();
   options.walk_rotation_deg = 0.0;
-  options.bias_rotation_deg = 0.0;
+  options.drift_turn_dps = 0.0;
   return options;
 }
 

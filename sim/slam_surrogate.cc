@@ -17,7 +17,7 @@ Pose3 Composed(const Pose3& a_from_b, const Pose3& b_from_c) {
   return a_from_b * b_from_c;
 }
 
-// SLAM's estimate of the frames so far, without the jitter of single frames.
+// SLAM's estimate of the frames so far, without the errors of single poses.
 class Estimate {
  public:
   explicit Estimate(const Trajectory& truth) : truth_(truth) {}
@@ -79,11 +79,11 @@ SlamOutput DisturbTrajectory(const Trajectory& truth, const SlamOptions& options
     epoch += corrected ? 1 : 0;
     output.live.push_back({truth[i].stamp_s, std::nullopt, epoch});
     if (errors[i].lost) continue;
-    output.live.back().slam_from_camera = Composed(estimate.poses().back(), errors[i].jitter);
+    output.live.back().slam_from_camera = Composed(estimate.poses().back(), errors[i].offset);
   }
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (errors[i].lost) continue;
-    output.final.push_back({truth[i].stamp_s, Composed(estimate.poses()[i], errors[i].jitter)});
+    output.final.push_back({truth[i].stamp_s, Composed(estimate.poses()[i], errors[i].offset)});
   }
   return output;
 }

@@ -25,6 +25,7 @@ enum class RandomStage : std::uint32_t {
   kOdometry = 13,
   kSlamJumps = 14,
   kFlyingPixels = 15,
+  kSlamDrift = 16,
 };
 
 // Four independent 32-bit words for (seed, stage, frame, item).

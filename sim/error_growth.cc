@@ -1,0 +1,86 @@
+#include "sim/error_growth.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace depthgrid {
+namespace {
+
+constexpr double kMaxWeight = 100.0;
+
+using Rows = Eigen::MatrixX4d;
+
+// What a unit square of each term adds to the growth at a lag.
+Eigen::RowVector4d TermsAt(const CorrelationTimes& times, double lag_s) {
+  const double x = lag_s / times.drift_s;
+  return {2.0, -2.0 * std::expm1(-lag_s / times.bias_s), lag_s,
+          2.0 * times.drift_s * times.drift_s * (x + std::expm1(-x))};
+}
+
+// Least squares with the columns in `mask` alone, the others 0.
+Eigen::Vector4d Solve(const Rows& rows, const Eigen::VectorXd& target, int mask) {
+  Rows used = rows;
+  Eigen::Matrix4d unused = Eigen::Matrix4d::Zero();
+  for (int k = 0; k < 4; ++k) {
+    if (mask & (1 << k)) continue;
+    used.col(k).setZero();
+    unused(k, k) = 1.0;
+  }
+  return (used.transpose() * used + unused).ldlt().solve(used.transpose() * target);
+}
+
+}  // namespace
+
+std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, double frame_s) {
+  std::size_t longest = 0;
+  for (const ErrorTrack& track : tracks) longest = std::max(longest, track.summed.size());
+  std::vector<Growth> growth;
+  std::size_t lag = 1;
+  for (std::size_t next = 2; lag <= longest / 3; std::swap(lag, next), next += lag) {
+    double sum = 0.0;
+    double pairs = 0.0;
+    for (const ErrorTrack& track : tracks) {
+      for (std::size_t i = lag; i < track.summed.size(); ++i) {
+        sum += (track.summed[i] - track.summed[i - lag]).squaredNorm() / 3.0;
+        ++pairs;
+      }
+    }
+    const double frames = static_cast<double>(lag);
+    if (sum == 0.0) continue;
+    growth.push_back({frames * frame_s, sum / pairs, std::min(kMaxWeight, pairs / frames)});
+  }
+  return growth;
+}
+
+double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double lag_s) {
+  const Eigen::Vector4d sigmas(terms.jitter, terms.bias, terms.walk, terms.drift);
+  return TermsAt(times, lag_s) * sigmas.cwiseAbs2();
+}
+
+GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times) {
+  const auto count = static_cast<Eigen::Index>(growth.size());
+  Rows rows(count, 4);
+  Eigen::VectorXd target(count);
+  double weights = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Growth& point = growth[static_cast<std::size_t>(i)];
+    target[i] = std::sqrt(point.weight);
+    rows.row(i) = TermsAt(times, point.lag_s) * (target[i] / point.mean_square);
+    weights += point.weight;
+  }
+  GrowthTerms best;
+  best.misfit = std::numeric_limits<double>::infinity();
+  // Four unknowns: every choice of which are 0 can be tried.
+  for (int mask = 0; mask < 16; ++mask) {
+    const Eigen::Vector4d squares = Solve(rows, target, mask);
+    const double misfit = (rows * squares - target).squaredNorm() / weights;
+    if (squares.minCoeff() < 0.0 || !(misfit < best.misfit)) continue;
+    const Eigen::Vector4d sigmas = squares.cwiseSqrt();
+    best = {sigmas[0], sigmas[1], sigmas[2], sigmas[3], misfit};
+  }
+  return best;
+}
+
+}  // namespace depthgrid

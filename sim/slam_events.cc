@@ -1,0 +1,54 @@
+#include "sim/slam_events.h"
+
+#include <algorithm>
+
+namespace depthgrid {
+namespace {
+
+constexpr double kGapSteps = 1.5;  // a step longer than this many usual ones is a gap
+constexpr double kJumpMedians = 5.0;
+constexpr double kOneJumpS = 0.2;
+constexpr double kCorrectedShare = 0.5;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double StepS(const SlamRun& run, std::size_t to) {
+  return run.truth[to].stamp_s - run.truth[to - 1].stamp_s;
+}
+
+}  // namespace
+
+std::vector<SlamEvent> FindEvents(const SlamRun& run) {
+  std::vector<SlamEvent> events;
+  if (run.truth.size() < 2) return events;
+  std::vector<double> steps_s;
+  std::vector<double> errors_m;
+  for (std::size_t to = 1; to < run.truth.size(); ++to) {
+    steps_s.push_back(StepS(run, to));
+    errors_m.push_back(MotionError(run, to - 1, to).translation.norm());
+  }
+  const double gap_s = kGapSteps * Median(steps_s);
+  const double jump_m = kJumpMedians * Median(errors_m);
+  for (std::size_t to = 1; to < run.truth.size(); ++to) {
+    const bool gap = steps_s[to - 1] > gap_s;
+    if (!gap && errors_m[to - 1] <= jump_m) continue;
+    const double since_s =
+        events.empty() ? 0.0 : run.truth[to - 1].stamp_s - run.truth[events.back().to].stamp_s;
+    if (events.empty() || since_s > kOneJumpS) events.push_back({to - 1, to, 0.0, false, {}});
+    events.back().to = to;
+    if (gap) events.back().lost_s += steps_s[to - 1];
+  }
+  for (SlamEvent& event : events) {
+    event.error = MotionError(run, event.from, event.to);
+    const double before_m = MotionError(run, 0, event.from).translation.norm();
+    const double after_m = MotionError(run, 0, event.to).translation.norm();
+    event.correction = before_m > jump_m && after_m < kCorrectedShare * before_m;
+  }
+  return events;
+}
+
+}  // namespace depthgrid

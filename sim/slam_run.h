@@ -1,0 +1,31 @@
+// A recorded run of a SLAM system beside the truth, and how far its motions are off.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/trajectory.h"
+
+namespace depthgrid {
+
+// Pose i of the estimate belongs to pose i of the truth. Where tracking was lost both have a gap.
+struct SlamRun {
+  Trajectory truth;
+  Trajectory estimate;
+};
+
+// The error of the estimated motion between two poses, in axes of the camera at the later one.
+Pose3 MotionError(const SlamRun& run, std::size_t from, std::size_t to);
+
+// Root mean square error of the motion over a time lag.
+struct LagError {
+  double lag_s = 0.0;
+  double translation_m = 0.0;  // all three axes together
+  double rotation_deg = 0.0;
+  int pairs = 0;
+};
+
+// Over all pairs of poses that far apart, of all runs; lags no run is long enough for are absent.
+std::vector<LagError> ErrorOverLag(const std::vector<SlamRun>& runs,
+                                   const std::vector<double>& lags_s);
+
+}  // namespace depthgrid
