@@ -80,7 +80,7 @@ BENCHMARK_CAPTURE(Correlative, reference, SearchMethod::kReference)->Apply(Corre
 // Argument: beams.
 void Bicubic(benchmark::State& state, SolverMethod method) {
   const std::vector<Case> cases = CasesOf(static_cast<int>(state.range(0)));
-  LeastSquares solver({.method = method, .max_iterations = 100});
+  LeastSquares solver({.method = method});
   std::size_t i = 0;
   int iterations = 0;
   for (auto _ : state) {

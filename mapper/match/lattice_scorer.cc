@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
+
+#include "mapper/match/reached_cells.h"
 
 namespace depthgrid {
 namespace {
@@ -65,43 +66,21 @@ void PairRows(const std::uint32_t* above, std::size_t count, std::uint32_t* row)
   for (std::size_t i = 0; i < count; ++i) row[i] |= above[i] << 16;
 }
 
-struct CellRange {
-  int low = std::numeric_limits<int>::max();
-  int high = std::numeric_limits<int>::min();
-};
-
-template <typename CellOfPoint>
-CellRange RangeOf(const MatchPoints& points, CellOfPoint cell_of_point) {
-  CellRange range;
-  const float* x_m = points.x_m.data();
-  const float* y_m = points.y_m.data();
-  for (int i = 0; i < points.size(); ++i) {
-    const int cell = static_cast<int>(cell_of_point(x_m[i], y_m[i]));
-    range.low = std::min(range.low, cell);
-    range.high = std::max(range.high, cell);
-  }
-  return range;
-}
-
-// The part of `needed` that has to be copied of a map's cells: beyond the map and one square
-// around it everything is unknown and need not be told apart. At least one square.
-CellRange ClippedTo(int map_first, int map_cells, int half_square, CellRange needed) {
-  const int low = map_first - 2 * half_square - 1;
-  const int high = map_first + map_cells + 2 * half_square;
-  CellRange clipped{std::clamp(needed.low, low, high), std::clamp(needed.high, low, high)};
-  clipped.high = std::max(clipped.high, clipped.low + 2 * half_square);
-  return clipped;
-}
-
 }  // namespace
 
 void LatticeScorer::Prepare(const SearchLattice& lattice, const MatchPoints& points,
                             const ProbabilityView& view) {
   lattice_ = lattice;
   CopyPoints(points);
-  PlaceRectangle(points, view.geometry);
-  CopyMap(view);
   const int side = 2 * lattice.half_cells + 1;
+  // A rotation moves the farthest point by less than its arc; one more cell for rounding. Points
+  // beyond the map and one square around it see nothing but unknown cells.
+  const double turn_rad = std::min(2.0, lattice.half_yaw_steps * lattice.yaw_step_rad);
+  const int turn_cells = static_cast<int>(turn_rad * points.farthest_m / lattice.resolution_m) + 2;
+  copied_ = ReachedCells(points, lattice.CellsAt(0), turn_cells + lattice.half_cells, view.geometry,
+                         side);
+  row_of_map_ = RoundUp(copied_.width_cells + kColumns, kColumns);
+  CopyMap(view);
   row_of_sums_ = static_cast<std::size_t>(RoundUp(side, kColumns));
   sums_.resize(row_of_sums_ * static_cast<std::size_t>(side + 1));
   cell_of_point_.resize(kBlock);
@@ -124,42 +103,20 @@ void LatticeScorer::CopyPoints(const MatchPoints& points) {
   }
 }
 
-void LatticeScorer::PlaceRectangle(const MatchPoints& points, const GridGeometry& map) {
-  // Where points can come to lie: their box at the predicted yaw, wider by what a rotation within
-  // the window moves the farthest of them (a chord is shorter than its arc) and by the square.
-  const LatticeRotation middle(lattice_, 0);
-  CellRange x = RangeOf(points, [=](float x_m, float y_m) { return middle.XCells(x_m, y_m); });
-  CellRange y = RangeOf(points, [=](float x_m, float y_m) { return middle.YCells(x_m, y_m); });
-  const double turn_rad = std::min(2.0, lattice_.half_yaw_steps * lattice_.yaw_step_rad);
-  const int half = lattice_.half_cells;
-  constexpr int kRoundingCells = 2;
-  const int reach = kRoundingCells + half +
-                    static_cast<int>(turn_rad * points.farthest_m / lattice_.resolution_m);
-  const Cell whole = middle.whole_cells;
-  x = ClippedTo(map.min_cell.x, map.width_cells, half,
-                {x.low + whole.x - reach, x.high + whole.x + reach});
-  y = ClippedTo(map.min_cell.y, map.height_cells, half,
-                {y.low + whole.y - reach, y.high + whole.y + reach});
-  first_cell_ = {x.low, y.low};
-  width_cells_ = x.high - x.low + 1;
-  height_cells_ = y.high - y.low + 1;
-  row_of_map_ = RoundUp(width_cells_ + kColumns, kColumns);
-}
-
 void LatticeScorer::CopyMap(const ProbabilityView& view) {
   const GridGeometry& map = view.geometry;
   const auto row_size = static_cast<std::size_t>(row_of_map_);
-  const int rows = height_cells_ + 2;  // a pair of rows may begin in the last one
+  const int rows = copied_.height_cells + 2;  // a pair of rows may begin in the last one
   row_pairs_.resize(row_size * static_cast<std::size_t>(rows));
   const std::uint32_t unknown = QuantisedProb(view.unknown_prob);
   largest_ = unknown;
   // Columns of the rectangle that the map has.
-  const int from_x = std::clamp(map.min_cell.x - first_cell_.x, 0, width_cells_);
-  const int to_x =
-      std::clamp(map.min_cell.x + map.width_cells - first_cell_.x, from_x, width_cells_);
+  const int from_x = std::clamp(map.min_cell.x - copied_.min_cell.x, 0, copied_.width_cells);
+  const int to_x = std::clamp(map.min_cell.x + map.width_cells - copied_.min_cell.x, from_x,
+                              copied_.width_cells);
   for (int y = 0; y < rows; ++y) {
     std::uint32_t* row = row_pairs_.data() + row_size * static_cast<std::size_t>(y);
-    const Cell first{first_cell_.x + from_x, first_cell_.y + y};
+    const Cell first{copied_.min_cell.x + from_x, copied_.min_cell.y + y};
     if (to_x > from_x && map.Contains(first)) {
       std::fill(row, row + from_x, unknown);
       largest_ = std::max(largest_, QuantiseRow(view.occupied_prob + map.Index(first),
@@ -172,21 +129,21 @@ void LatticeScorer::CopyMap(const ProbabilityView& view) {
   }
 }
 
-void LatticeScorer::FindCells(const LatticeRotation& rotation, int first, int count) {
+void LatticeScorer::FindCells(const PointCells& rotation, int first, int count) {
   const int half = lattice_.half_cells;
   // The square's corner, relative to the copied rectangle. Points farther outside than the
   // rectangle reaches see nothing but unknown cells, wherever they are moved to.
-  const float x_shift = static_cast<float>(rotation.whole_cells.x - first_cell_.x - half);
-  const float y_shift = static_cast<float>(rotation.whole_cells.y - first_cell_.y - half);
-  const float x_last = static_cast<float>(width_cells_ - 2 * half - 1);
-  const float y_last = static_cast<float>(height_cells_ - 2 * half - 1);
+  const float x_shift = static_cast<float>(rotation.whole_cells.x - copied_.min_cell.x - half);
+  const float y_shift = static_cast<float>(rotation.whole_cells.y - copied_.min_cell.y - half);
+  const float x_last = static_cast<float>(copied_.width_cells - 2 * half - 1);
+  const float y_last = static_cast<float>(copied_.height_cells - 2 * half - 1);
   const float* x_m = x_m_.data() + first;
   const float* y_m = y_m_.data() + first;
   int* cells = cell_of_point_.data();
   const int row = row_of_map_;
   for (int i = 0; i < count; ++i) {
-    float x = rotation.XCells(x_m[i], y_m[i]) + x_shift;
-    float y = rotation.YCells(x_m[i], y_m[i]) + y_shift;
+    float x = rotation.X(x_m[i], y_m[i]) + x_shift;
+    float y = rotation.Y(x_m[i], y_m[i]) + y_shift;
     x = x < 0.0F ? 0.0F : x;
     y = y < 0.0F ? 0.0F : y;
     x = x > x_last ? x_last : x;
@@ -211,7 +168,7 @@ void LatticeScorer::AddBlock(int count) {
 }
 
 bool LatticeScorer::ScoreRotation(int yaw_steps, std::int64_t to_beat) {
-  const LatticeRotation rotation(lattice_, yaw_steps);
+  const PointCells rotation = lattice_.CellsAt(yaw_steps);
   std::fill(sums_.begin(), sums_.end(), 0U);
   for (int first = 0; first < points_; first += kBlock) {
     const int count = std::min(kBlock, points_ - first);

@@ -32,9 +32,8 @@ class LatticeScorer {
            static_cast<std::size_t>(x_cells + lattice_.half_cells);
   }
   void CopyPoints(const MatchPoints& points);
-  void PlaceRectangle(const MatchPoints& points, const GridGeometry& map);
   void CopyMap(const ProbabilityView& view);
-  void FindCells(const LatticeRotation& rotation, int first, int count);
+  void FindCells(const PointCells& rotation, int first, int count);
   void AddBlock(int count);
 
   SearchLattice lattice_;
@@ -42,11 +41,8 @@ class LatticeScorer {
   std::vector<float> y_m_;
   int points_ = 0;
 
-  // The copied rectangle; rows padded so that loads past a row's end stay inside.
-  Cell first_cell_;
-  int width_cells_ = 0;
-  int height_cells_ = 0;
-  int row_of_map_ = 0;
+  GridGeometry copied_;
+  int row_of_map_ = 0;  // rows are padded so that loads past a row's end stay inside
   std::vector<std::uint32_t>
       row_pairs_;                   // cell (x, y) in the low half, (x, y + 1) in the high half
   std::vector<std::uint32_t> row_;  // one row, while copying

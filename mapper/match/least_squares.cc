@@ -7,8 +7,11 @@
 namespace depthgrid {
 namespace {
 
-// A step smaller than this ends the iteration: 100 times below the promised 1e-4 m.
-constexpr double kStepTolerance = 1e-6;
+// The step that is taken without another look. Newton's error after a step is of the order of the
+// step squared over a cell.
+constexpr double kLastStepM = 2e-5;
+// Costs summed in single precision differ by less than this share for no reason.
+constexpr double kCostRounding = 1e-6;
 
 // Moving by one unit of a coordinate moves points by this many metres (root mean square): makes
 // metres and radians comparable.
@@ -39,6 +42,41 @@ Eigen::Vector3d DampedStep(const Eigen::Matrix3d& hessian, const Eigen::Vector3d
   }
 }
 
+// Damped Newton (docs/math.md). `scale` as above; steps are at most `max_step_m` long.
+template <typename Evaluate>
+LeastSquaresMatch SolveWithNewton(Evaluate evaluate, const Pose2& seed_map_from_base,
+                                  const Eigen::Vector3d& scale, double max_step_m,
+                                  int max_iterations) {
+  const Eigen::Vector3d unscale = scale.cwiseInverse();
+  LeastSquaresMatch match{.map_from_base = seed_map_from_base};
+  MatchCost here = evaluate(match.map_from_base);
+  double damping = 0.0;
+  while (match.iterations < max_iterations && !match.converged) {
+    ++match.iterations;
+    const Eigen::Matrix3d hessian = unscale.asDiagonal() * here.hessian * unscale.asDiagonal();
+    Eigen::Vector3d step = DampedStep(hessian, unscale.cwiseProduct(here.gradient), damping);
+    const double length_m = step.norm();
+    if (length_m > max_step_m) step *= max_step_m / length_m;
+    const Pose2 candidate =
+        Pose2::FromVector(match.map_from_base.vector() + unscale.cwiseProduct(step));
+    match.converged = length_m < kLastStepM;
+    if (match.converged) {
+      match.map_from_base = candidate;
+      break;
+    }
+    const MatchCost there = evaluate(candidate);
+    if (there.value <= here.value * (1.0 + kCostRounding)) {
+      match.map_from_base = candidate;
+      here = there;
+      damping *= 0.1;
+    } else {
+      damping = std::max(10.0 * damping, 1e-2 * hessian.cwiseAbs().maxCoeff());
+    }
+  }
+  match.cost = here.value;
+  return match;
+}
+
 }  // namespace
 
 void LeastSquaresOptions::Visit(OptionsVisitor& v) {
@@ -56,46 +94,21 @@ LeastSquares::LeastSquares(const LeastSquaresOptions& options) : options_(option
 LeastSquaresMatch LeastSquares::Solve(const MatchPoints& points, const ProbabilityView& view,
                                       const Pose2& seed_map_from_base,
                                       const Pose2& predicted_map_from_base) {
-  LeastSquaresMatch match{.map_from_base = seed_map_from_base};
-  if (points.size() == 0) return match;
+  if (points.size() == 0) return {.map_from_base = seed_map_from_base};
   const MatchPrior prior{predicted_map_from_base, options_.prior_translation_weight_per_m,
                          options_.prior_rotation_weight_per_rad};
   if (options_.method == SolverMethod::kCeres) {
     return SolveWithCeres(points, view, seed_map_from_base, prior, options_.max_iterations);
   }
-  const auto evaluate = [&](const Pose2& pose) {
-    MatchCost cost = EvaluateMatchCost(points, view, pose);
-    prior.AddTo(pose, cost);
-    return cost;
-  };
-  const Eigen::Vector3d scale = CoordinateScale(points);
-  const double max_step_m = view.geometry.resolution_m;
-  MatchCost here = evaluate(match.map_from_base);
-  double damping = 0.0;
-  while (match.iterations < options_.max_iterations) {
-    ++match.iterations;
-    const Eigen::Vector3d unscale = scale.cwiseInverse();
-    const Eigen::Matrix3d hessian = unscale.asDiagonal() * here.hessian * unscale.asDiagonal();
-    Eigen::Vector3d step = DampedStep(hessian, unscale.cwiseProduct(here.gradient), damping);
-    const double length_m = step.norm();
-    if (length_m > max_step_m) step *= max_step_m / length_m;
-    const Pose2 candidate =
-        Pose2::FromVector(match.map_from_base.vector() + unscale.cwiseProduct(step));
-    if (length_m < kStepTolerance) {
-      match.converged = true;
-      break;
-    }
-    const MatchCost there = evaluate(candidate);
-    if (there.value <= here.value) {
-      match.map_from_base = candidate;
-      here = there;
-      damping *= 0.1;
-    } else {
-      damping = std::max(10.0 * damping, 1e-2 * hessian.cwiseAbs().maxCoeff());
-    }
-  }
-  match.cost = here.value;
-  return match;
+  cost_.Prepare(points, view, seed_map_from_base);
+  return SolveWithNewton(
+      [&](const Pose2& pose) {
+        MatchCost cost = cost_.Evaluate(pose);
+        prior.AddTo(pose, cost);
+        return cost;
+      },
+      seed_map_from_base, CoordinateScale(points), view.geometry.resolution_m,
+      options_.max_iterations);
 }
 
 }  // namespace depthgrid

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "mapper/core/options.h"
-#include "mapper/match/match_cost.h"
+#include "mapper/match/fast_match_cost.h"
 
 namespace depthgrid {
 
@@ -12,7 +12,7 @@ enum class SolverMethod { kCeres, kFast };
 struct LeastSquaresOptions {
   // Same minimum to 1e-4 m; `ceres` is the paper's solver and the reference.
   SolverMethod method = SolverMethod::kFast;
-  int max_iterations = 30;  // Newton needs 4-8, Gauss-Newton (Ceres) 10-40
+  int max_iterations = 100;  // Newton needs 3-8, Gauss-Newton (Ceres) 10-70
   // Weights of the prediction's pull as in Cartographer (10 and 40 there, against a scan weight of
   // 1 as here). 0, the default, is prior-free: fusion (Eq. 3) must not count the prediction twice.
   double prior_translation_weight_per_m = 0.0;
@@ -37,6 +37,7 @@ class LeastSquares {
 
  private:
   LeastSquaresOptions options_;
+  FastMatchCost cost_;
 };
 
 // The reference: Ceres' BiCubicInterpolator and Levenberg-Marquardt.

@@ -37,24 +37,22 @@ SearchLattice MakeLattice(const Pose2& predicted_map_from_base, double window_m,
   return lattice;
 }
 
-LatticeRotation::LatticeRotation(const SearchLattice& lattice, int yaw_steps) {
-  const double r = lattice.resolution_m;
-  const Pose2 pose = lattice.PoseOf({0, 0, yaw_steps});
-  cos_cells_per_m = static_cast<float>(std::cos(pose.yaw_rad) / r);
-  sin_cells_per_m = static_cast<float>(std::sin(pose.yaw_rad) / r);
-  whole_cells = CellOf(pose.translation(), r);
-  x_remainder_cells = static_cast<float>(pose.x_m / r - whole_cells.x);
-  y_remainder_cells = static_cast<float>(pose.y_m / r - whole_cells.y);
+PointCells::PointCells(const Pose2& map_from_base, double resolution_m)
+    : cos_cells_per_m(static_cast<float>(std::cos(map_from_base.yaw_rad) / resolution_m)),
+      sin_cells_per_m(static_cast<float>(std::sin(map_from_base.yaw_rad) / resolution_m)),
+      whole_cells(CellOf(map_from_base.translation(), resolution_m)) {
+  x_remainder_cells = static_cast<float>(map_from_base.x_m / resolution_m - whole_cells.x);
+  y_remainder_cells = static_cast<float>(map_from_base.y_m / resolution_m - whole_cells.y);
 }
 
 std::uint32_t LatticeScore(const SearchLattice& lattice, const LatticeStep& step,
                            const MatchPoints& points, const ProbabilityView& view) {
-  const LatticeRotation rotation(lattice, step.yaw_steps);
-  const Cell shift{rotation.whole_cells.x + step.x_cells, rotation.whole_cells.y + step.y_cells};
+  const PointCells cells = lattice.CellsAt(step.yaw_steps);
+  const Cell shift{cells.whole_cells.x + step.x_cells, cells.whole_cells.y + step.y_cells};
   std::uint32_t sum = 0;
   for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    const Cell cell{shift.x + static_cast<int>(rotation.XCells(points.x_m[i], points.y_m[i])),
-                    shift.y + static_cast<int>(rotation.YCells(points.x_m[i], points.y_m[i]))};
+    const Cell cell{shift.x + static_cast<int>(cells.X(points.x_m[i], points.y_m[i])),
+                    shift.y + static_cast<int>(cells.Y(points.x_m[i], points.y_m[i]))};
     sum += QuantisedProb(view.At(cell));
   }
   return sum;

@@ -21,6 +21,26 @@ inline std::uint16_t QuantisedProb(float prob) {
       static_cast<int>(prob * static_cast<float>(kMatchProbScale) + 0.5F));
 }
 
+// The cells of points at a pose, less `whole_cells`. These expressions are what "the cell of a
+// point" means in every search; vectorised versions evaluate them the same way. The position is
+// split into whole cells and a remainder so that single precision is enough anywhere in the map.
+struct PointCells {
+  float cos_cells_per_m = 0.0F;
+  float sin_cells_per_m = 0.0F;
+  float x_remainder_cells = 0.0F;  // in [0, 1)
+  float y_remainder_cells = 0.0F;
+  Cell whole_cells;
+
+  PointCells(const Pose2& map_from_base, double resolution_m);
+
+  float X(float x_m, float y_m) const {
+    return std::floor((cos_cells_per_m * x_m - sin_cells_per_m * y_m) + x_remainder_cells);
+  }
+  float Y(float x_m, float y_m) const {
+    return std::floor((sin_cells_per_m * x_m + cos_cells_per_m * y_m) + y_remainder_cells);
+  }
+};
+
 // One candidate, as steps from the predicted pose.
 struct LatticeStep {
   int x_cells = 0;
@@ -47,33 +67,17 @@ struct SearchLattice {
             predicted_map_from_base.y_m + step.y_cells * resolution_m,
             WrapAngle(predicted_map_from_base.yaw_rad + step.yaw_steps * yaw_step_rad)};
   }
+  // Cells at a rotation before translation: translations are whole cells, so they only add to
+  // these.
+  PointCells CellsAt(int yaw_steps) const {
+    return PointCells(PoseOf({0, 0, yaw_steps}), resolution_m);
+  }
 };
 
 // Covers at least the window. The angular step moves the farthest point by at most one cell
 // (Hess et al. 2016, Eq. 7: acos(1 - r^2 / 2 d^2)).
 SearchLattice MakeLattice(const Pose2& predicted_map_from_base, double window_m, double window_rad,
                           double resolution_m, double farthest_m);
-
-// The rotation of one yaw step, scaled to cells. The predicted translation is split into whole
-// cells and a remainder so that single precision is enough anywhere in the map.
-struct LatticeRotation {
-  float cos_cells_per_m = 0.0F;
-  float sin_cells_per_m = 0.0F;
-  float x_remainder_cells = 0.0F;  // in [0, 1)
-  float y_remainder_cells = 0.0F;
-  Cell whole_cells;
-
-  LatticeRotation(const SearchLattice& lattice, int yaw_steps);
-
-  // The cell of a point at translation step (0, 0), less whole_cells. These expressions are what
-  // "the cell of a point" means in every search; vectorised versions evaluate them the same way.
-  float XCells(float x_m, float y_m) const {
-    return std::floor((cos_cells_per_m * x_m - sin_cells_per_m * y_m) + x_remainder_cells);
-  }
-  float YCells(float x_m, float y_m) const {
-    return std::floor((sin_cells_per_m * x_m + cos_cells_per_m * y_m) + y_remainder_cells);
-  }
-};
 
 // The score of one candidate: the sum of the points' quantised probabilities. The plain reference.
 std::uint32_t LatticeScore(const SearchLattice& lattice, const LatticeStep& step,
