@@ -33,17 +33,17 @@ Eigen::Vector4d Solve(const Rows& rows, const Eigen::VectorXd& target, int mask)
 
 }  // namespace
 
-std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, double frame_s) {
+std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes, double frame_s) {
   std::size_t longest = 0;
-  for (const ErrorTrack& track : tracks) longest = std::max(longest, track.summed.size());
+  for (const ErrorTrack& track : tracks) longest = std::max(longest, track.size());
   std::vector<Growth> growth;
   std::size_t lag = 1;
   for (std::size_t next = 2; lag <= longest / 3; std::swap(lag, next), next += lag) {
     double sum = 0.0;
     double pairs = 0.0;
     for (const ErrorTrack& track : tracks) {
-      for (std::size_t i = lag; i < track.summed.size(); ++i) {
-        sum += (track.summed[i] - track.summed[i - lag]).squaredNorm() / 3.0;
+      for (std::size_t i = lag; i < track.size(); ++i) {
+        sum += (track[i] - track[i - lag]).squaredNorm() / axes;
         ++pairs;
       }
     }
@@ -59,15 +59,17 @@ double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double 
   return TermsAt(times, lag_s) * sigmas.cwiseAbs2();
 }
 
-GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times) {
+GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times,
+                      double known_walk_square) {
   const auto count = static_cast<Eigen::Index>(growth.size());
   Rows rows(count, 4);
   Eigen::VectorXd target(count);
   double weights = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Growth& point = growth[static_cast<std::size_t>(i)];
-    target[i] = std::sqrt(point.weight);
-    rows.row(i) = TermsAt(times, point.lag_s) * (target[i] / point.mean_square);
+    const double scale = std::sqrt(point.weight) / point.mean_square;
+    target[i] = scale * (point.mean_square - known_walk_square * point.lag_s);
+    rows.row(i) = scale * TermsAt(times, point.lag_s);
     weights += point.weight;
   }
   GrowthTerms best;

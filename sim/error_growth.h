@@ -6,12 +6,8 @@
 
 namespace depthgrid {
 
-// A stretch without gaps: the summed error since its start, one column a pose (rotation or
-// translation, three axes).
-struct ErrorTrack {
-  std::vector<double> stamps_s;
-  std::vector<Eigen::Vector3d> summed;
-};
+// A stretch without gaps: the summed error since its start, one entry a frame.
+using ErrorTrack = std::vector<Eigen::Vector3d>;
 
 // Mean square per axis of the error over a lag.
 struct Growth {
@@ -20,8 +16,9 @@ struct Growth {
   double weight = 0.0;  // independent stretches of that lag, at most 100
 };
 
-// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track.
-std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, double frame_s);
+// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track. `axes` of the three are
+// in use, the others 0.
+std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes, double frame_s);
 
 // One sigma each, per axis: white and slowly varying error of a pose, random walk in 1 s, slowly
 // varying rate.
@@ -41,7 +38,9 @@ struct CorrelationTimes {
 // 2 jitter^2 + 2 bias^2 (1 - exp(-t/b)) + walk^2 t + 2 drift^2 d^2 (t/d - 1 + exp(-t/d)).
 double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double lag_s);
 
-// The terms, none negative, nearest to the growth in relative least squares.
-GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times);
+// The terms, none negative, nearest to the growth in relative least squares, beside a walk of known
+// square.
+GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times,
+                      double known_walk_square);
 
 }  // namespace depthgrid

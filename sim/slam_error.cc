@@ -28,6 +28,7 @@ Eigen::Vector3d Normals(RandomStream& random) {
 }
 
 Twist Draw(RandomStream& random, double translation_m, double rotation_deg) {
+  if (translation_m == 0.0 && rotation_deg == 0.0) return {};  // nothing else follows in a stream
   const Eigen::Vector3d rotation = Normals(random);
   const Eigen::Vector3d translation = Normals(random);
   return {RadFromDeg(rotation_deg) * rotation, translation_m * translation};
@@ -139,10 +140,26 @@ Pose3 PivotedMotion(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& 
   return {rotation, translation_m + pivot - rotation * pivot};
 }
 
+namespace {
+
+// Turns about horizontal axes of the world are `share` of what was drawn.
+Twist Levelled(const Twist& twist, const Pose3& world_from_camera, double share) {
+  if (share == 1.0) return twist;
+  const Eigen::Vector3d up_in_camera =
+      world_from_camera.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d yaw = twist.rotation_rad.dot(up_in_camera) * up_in_camera;
+  return {yaw + share * (twist.rotation_rad - yaw), twist.translation_m};
+}
+
+}  // namespace
+
 std::vector<FrameErrors> DrawFrameErrors(const Trajectory& truth, const SlamOptions& options,
                                          std::uint64_t seed) {
   const auto motion_of = [&](const Twist& twist) {
     return PivotedMotion(twist.rotation_rad, twist.translation_m, options.pivot_m);
+  };
+  const auto levelled = [&](const Twist& twist, std::size_t i) {
+    return Levelled(twist, truth[i].world_from_camera, options.tilt_share);
   };
   SlowProcess bias = BiasProcess(options, seed);
   SlowProcess drift_rate = DriftProcess(options, seed);
@@ -154,9 +171,10 @@ std::vector<FrameErrors> DrawFrameErrors(const Trajectory& truth, const SlamOpti
     const LostProcess::Step tracking = lost.Next(frame, truth[i].stamp_s, time_s);
     const Twist drift =
         DrawWalk(options, seed, frame, time_s) + time_s * drift_rate.Next(frame, time_s);
-    errors[i].motion = motion_of(options.drift_scale * drift +
-                                 DrawJump(options, seed, frame, time_s) + tracking.jump);
-    errors[i].offset = motion_of(DrawJitter(options, seed, frame) + bias.Next(frame, time_s));
+    const Twist jump = DrawJump(options, seed, frame, time_s) + tracking.jump;
+    errors[i].motion = motion_of(levelled(options.drift_scale * drift + jump, i));
+    errors[i].offset =
+        motion_of(DrawJitter(options, seed, frame) + levelled(bias.Next(frame, time_s), i));
     errors[i].lost = tracking.lost;
     errors[i].relocalised = tracking.relocalised;
   }

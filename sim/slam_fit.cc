@@ -13,6 +13,7 @@ namespace depthgrid {
 namespace {
 
 constexpr std::size_t kFewestPoses = 100;
+constexpr double kShortestTiltLagS = 1.0;  // below, jitter hides what drifts
 // Correlation times that are tried: half a minute of data does not tell finer ones apart.
 constexpr double kBiasTimesS[] = {0.2, 0.5, 1.0, 2.0, 5.0, 10.0};
 constexpr double kDriftTimesS[] = {2.0, 5.0, 10.0, 20.0};
@@ -62,67 +63,98 @@ Eigen::Vector3d WithoutPivot(const Pose3& error, double pivot_m) {
 }
 
 struct Tracks {
-  std::vector<ErrorTrack> rotation;
+  std::vector<ErrorTrack> yaw;
+  std::vector<ErrorTrack> tilt;  // about x and y of the world
   std::vector<ErrorTrack> translation;
 
-  void Begin(double stamp_s) {
-    rotation.push_back({{stamp_s}, {Eigen::Vector3d::Zero()}});
-    translation.push_back({{stamp_s}, {Eigen::Vector3d::Zero()}});
+  void Begin() {
+    for (auto* tracks : {&yaw, &tilt, &translation}) {
+      tracks->push_back({Eigen::Vector3d::Zero()});
+    }
   }
-  void Add(double stamp_s, const Pose3& error, double pivot_m) {
-    rotation.back().stamps_s.push_back(stamp_s);
-    rotation.back().summed.push_back(rotation.back().summed.back() + LogRotation(error.rotation));
-    translation.back().stamps_s.push_back(stamp_s);
-    translation.back().summed.push_back(translation.back().summed.back() +
-                                        WithoutPivot(error, pivot_m));
+  void Add(const Pose3& error, const Pose3& world_from_camera, double pivot_m) {
+    const Eigen::Vector3d turn = world_from_camera.rotation * LogRotation(error.rotation);
+    Extend(yaw.back(), {0.0, 0.0, turn.z()});
+    Extend(tilt.back(), {turn.x(), turn.y(), 0.0});
+    Extend(translation.back(), WithoutPivot(error, pivot_m));
+  }
+
+ private:
+  static void Extend(ErrorTrack& track, const Eigen::Vector3d& error) {
+    track.push_back(track.back() + error);
   }
 };
 
-// The errors of all motions summed up. They are errors in camera axes, as the surrogate draws them,
-// so that sums of jitter, bias, walk and drift stay apart from what turning does to a path. Jumps
-// count with the motion they end in; a loss or a correction begins a new track.
+// The errors of all motions summed up, each in the axes the surrogate draws it in (turns about the
+// world's, shifts along the camera's), so that jitter, bias, walk and drift stay apart from what
+// turning does to a path. Jumps count with the motion they end in; a loss or a correction begins a
+// new track.
 Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   Tracks tracks;
   for (const RunEvents& run : runs) {
     std::vector<const SlamEvent*> event_at(run.in_event.size(), nullptr);
     for (const SlamEvent& event : run.events) event_at[event.to] = &event;
-    tracks.Begin(run.run->truth[0].stamp_s);
+    tracks.Begin();
     for (std::size_t to = 1; to < run.in_event.size(); ++to) {
-      const double stamp_s = run.run->truth[to].stamp_s;
+      const Pose3& pose = run.run->truth[to].world_from_camera;
       const SlamEvent* event = event_at[to];
       if (event && (event->correction || event->lost_s > 0.0)) {
-        tracks.Begin(stamp_s);
+        tracks.Begin();
       } else if (event) {
-        tracks.Add(stamp_s, event->error, pivot_m);
+        tracks.Add(event->error, pose, pivot_m);
       } else {
-        tracks.Add(stamp_s, run.in_event[to] ? Pose3{} : MotionError(*run.run, to - 1, to),
-                   pivot_m);
+        tracks.Add(run.in_event[to] ? Pose3{} : MotionError(*run.run, to - 1, to), pose, pivot_m);
       }
     }
   }
   return tracks;
 }
 
-void FitNoise(const std::vector<RunEvents>& runs, double frame_s, SlamFit& fit) {
-  const Tracks tracks = ErrorTracks(runs, fit.options.pivot_m);
-  const std::vector<Growth> rotation = MeasureGrowth(tracks.rotation, frame_s);
-  const std::vector<Growth> translation = MeasureGrowth(tracks.translation, frame_s);
+// Root mean ratio of tilt, per axis, to yaw over the longer lags.
+double TiltShare(const std::vector<Growth>& tilt, const std::vector<Growth>& yaw) {
+  double ratio = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < std::min(tilt.size(), yaw.size()); ++i) {
+    if (yaw[i].lag_s < kShortestTiltLagS) continue;
+    ratio += yaw[i].weight * tilt[i].mean_square / yaw[i].mean_square;
+    weights += yaw[i].weight;
+  }
+  return weights > 0.0 ? std::min(1.0, std::sqrt(ratio / weights)) : 1.0;
+}
+
+struct ErrorGrowth {
+  std::vector<Growth> yaw;
+  std::vector<Growth> tilt;
+  std::vector<Growth> translation;
+};
+
+ErrorGrowth GrowthOf(const std::vector<RunEvents>& runs, double pivot_m, double frame_s) {
+  const Tracks tracks = ErrorTracks(runs, pivot_m);
+  return {MeasureGrowth(tracks.yaw, 1, frame_s), MeasureGrowth(tracks.tilt, 2, frame_s),
+          MeasureGrowth(tracks.translation, 3, frame_s)};
+}
+
+void FitNoise(const ErrorGrowth& growth, SlamFit& fit) {
+  SlamOptions& options = fit.options;
+  const auto walk_of_jumps = [&](double jump) { return options.jump_rate_hz * jump * jump; };
+  const double turn_by_jumps = walk_of_jumps(RadFromDeg(options.jump_rotation_deg));
+  const double shift_by_jumps = walk_of_jumps(options.jump_translation_m);
   double least = std::numeric_limits<double>::infinity();
   const auto try_times = [&](const CorrelationTimes& times) {
-    const GrowthTerms turn = FitGrowth(rotation, times);
-    const GrowthTerms shift = FitGrowth(translation, times);
+    const GrowthTerms turn = FitGrowth(growth.yaw, times, turn_by_jumps);
+    const GrowthTerms shift = FitGrowth(growth.translation, times, shift_by_jumps);
     if (!(turn.misfit + shift.misfit < least)) return;
     least = turn.misfit + shift.misfit;
-    fit.options.jitter_translation_m = shift.jitter;
-    fit.options.bias_translation_m = shift.bias;
-    fit.options.walk_translation_m = shift.walk;
-    fit.options.drift_speed_mps = shift.drift;
-    fit.options.jitter_rotation_deg = DegFromRad(turn.jitter);
-    fit.options.bias_rotation_deg = DegFromRad(turn.bias);
-    fit.options.walk_rotation_deg = DegFromRad(turn.walk);
-    fit.options.drift_turn_dps = DegFromRad(turn.drift);
-    fit.options.bias_time_s = times.bias_s;
-    fit.options.drift_time_s = times.drift_s;
+    options.jitter_translation_m = shift.jitter;
+    options.bias_translation_m = shift.bias;
+    options.walk_translation_m = shift.walk;
+    options.drift_speed_mps = shift.drift;
+    options.jitter_rotation_deg = DegFromRad(turn.jitter);
+    options.bias_rotation_deg = DegFromRad(turn.bias);
+    options.walk_rotation_deg = DegFromRad(turn.walk);
+    options.drift_turn_dps = DegFromRad(turn.drift);
+    options.bias_time_s = times.bias_s;
+    options.drift_time_s = times.drift_s;
   };
   for (const double bias_s : kBiasTimesS) {
     for (const double drift_s : kDriftTimesS) try_times({bias_s, drift_s});
@@ -140,20 +172,23 @@ struct EventSize {
     square_rad2 += LogRotation(event.error.rotation).squaredNorm();
   }
   double TranslationM() const { return count ? std::sqrt(square_m2 / (3.0 * count)) : 0.0; }
-  double RotationDeg() const {
-    return count ? DegFromRad(std::sqrt(square_rad2 / (3.0 * count))) : 0.0;
+  // About the vertical, the others being `tilt_share` of it.
+  double RotationRad(double tilt_share) const {
+    const double axes = 1.0 + 2.0 * tilt_share * tilt_share;
+    return count ? std::sqrt(square_rad2 / (axes * count)) : 0.0;
   }
 };
 
-// The fitted walk contains the jumps: what they explain of it is taken out. Jumps that undo one
-// another explain more than there is; then no walk is left and they are taken to be smaller.
-void TakeFromWalk(double rate_hz, double& jump, double& walk) {
-  const double explained = rate_hz * jump * jump;
-  if (explained > walk * walk) jump *= walk / std::sqrt(explained);
-  walk = std::sqrt(std::max(0.0, walk * walk - explained));
+// Jumps that undo one another explain more growth than there is; then they are taken to be smaller:
+// as large as the growth allows at every lag.
+double Capped(double jump, double rate_hz, const std::vector<Growth>& growth) {
+  for (const Growth& point : growth) {
+    jump = std::min(jump, std::sqrt(point.mean_square / (rate_hz * point.lag_s)));
+  }
+  return jump;
 }
 
-void FitEvents(const std::vector<RunEvents>& runs, SlamFit& fit) {
+void FitEvents(const std::vector<RunEvents>& runs, const ErrorGrowth& growth, SlamFit& fit) {
   EventSize jumps;
   EventSize relocalisations;
   double lost_s = 0.0;
@@ -170,14 +205,14 @@ void FitEvents(const std::vector<RunEvents>& runs, SlamFit& fit) {
   fit.jumps = jumps.count;
   SlamOptions& options = fit.options;
   options.jump_rate_hz = jumps.count / fit.tracked_s;
-  options.jump_translation_m = jumps.TranslationM();
-  options.jump_rotation_deg = jumps.RotationDeg();
-  TakeFromWalk(options.jump_rate_hz, options.jump_translation_m, options.walk_translation_m);
-  TakeFromWalk(options.jump_rate_hz, options.jump_rotation_deg, options.walk_rotation_deg);
+  options.jump_translation_m =
+      Capped(jumps.TranslationM(), options.jump_rate_hz, growth.translation);
+  options.jump_rotation_deg =
+      DegFromRad(Capped(jumps.RotationRad(options.tilt_share), options.jump_rate_hz, growth.yaw));
   options.lost_rate_hz = fit.lost_bursts / fit.tracked_s;
   if (fit.lost_bursts > 0) options.lost_mean_s = lost_s / fit.lost_bursts;
   options.relocalisation_translation_m = relocalisations.TranslationM();
-  options.relocalisation_rotation_deg = relocalisations.RotationDeg();
+  options.relocalisation_rotation_deg = DegFromRad(relocalisations.RotationRad(options.tilt_share));
 }
 
 }  // namespace
@@ -203,8 +238,10 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs) {
                                      poses, kFewestPoses));
   }
   FitPivot(found, fit);
-  FitNoise(found, least_step_s, fit);
-  FitEvents(found, fit);
+  const ErrorGrowth growth = GrowthOf(found, fit.options.pivot_m, least_step_s);
+  fit.options.tilt_share = TiltShare(growth.tilt, growth.yaw);
+  FitEvents(found, growth, fit);
+  FitNoise(growth, fit);
   return fit;
 }
 

@@ -24,7 +24,8 @@ class Views {
   Views(const Trajectory& truth, const SlamLoopOptions& options)
       : truth_(truth),
         positions_(static_cast<Eigen::Index>(truth.size()), 3),
-        max_angle_rad_(RadFromDeg(options.max_angle_deg)) {
+        max_angle_rad_(RadFromDeg(options.max_angle_deg)),
+        cos_half_max_angle_(std::cos(0.5 * max_angle_rad_)) {
     for (std::size_t i = 0; i < truth.size(); ++i) {
       positions_.row(static_cast<Eigen::Index>(i)) =
           truth[i].world_from_camera.translation.transpose() / options.max_distance_m;
@@ -43,6 +44,10 @@ class Views {
   double Angle(int a, int b) const {
     return RotationOf(a).angularDistance(RotationOf(b)) / max_angle_rad_;
   }
+  // Angle above 1, without computing it: |q_a . q_b| is the cosine of half the angle.
+  bool TurnedAway(int a, int b) const {
+    return std::abs(RotationOf(a).dot(RotationOf(b))) < cos_half_max_angle_;
+  }
 
  private:
   const Eigen::Quaterniond& RotationOf(int frame) const {
@@ -51,6 +56,7 @@ class Views {
   const Trajectory& truth_;
   Eigen::MatrixX3d positions_;  // in units of max_distance_m
   double max_angle_rad_;
+  double cos_half_max_angle_;
 };
 
 // The most similar old view of frame `second`, if the camera has been elsewhere since.
@@ -62,17 +68,16 @@ std::optional<int> OldView(const Trajectory& truth, const std::vector<bool>& tra
   double nearest = 1.0;
   std::optional<int> found;
   for (int first = second - 1; first >= 0; --first) {
-    const double enough = was_elsewhere ? nearest : 1.0;
-    if (squared_distance[first] > enough * enough) {  // no need for the angle, which is dear
-      was_elsewhere = was_elsewhere || squared_distance[first] > 1.0;
+    const auto i = static_cast<std::size_t>(first);
+    if (squared_distance[first] > 1.0 || views.TurnedAway(first, second)) {
+      was_elsewhere = true;
       continue;
     }
+    if (!was_elsewhere || !tracked[i] || truth[i].stamp_s > latest_s) continue;
+    if (squared_distance[first] > nearest * nearest) continue;
     const double separation =
         std::max(std::sqrt(squared_distance[first]), views.Angle(first, second));
-    was_elsewhere = was_elsewhere || separation > 1.0;
-    const auto i = static_cast<std::size_t>(first);
-    if (!was_elsewhere || !tracked[i] || separation > nearest || truth[i].stamp_s > latest_s)
-      continue;
+    if (separation > nearest) continue;
     nearest = separation;
     found = first;
   }

@@ -1,5 +1,6 @@
 // How an RGB-D SLAM system errs: the settings of sim/slam_surrogate.h (docs/slam_surrogate.md has
-// the equations). Every sigma is one standard deviation per camera axis.
+// the equations). Every sigma is one standard deviation per axis; those of rotation are about the
+// vertical (see tilt_share).
 #pragma once
 
 #include "mapper/core/options.h"
@@ -15,6 +16,7 @@ enum class SlamProfile {
   kPlanarSlamMh,
   kOrbSlam2Measured,  // fitted to runs of the real systems
   kPlanarSlamMeasured,
+  kOrbSlam2Desk,  // ORB-SLAM2 on TUM fr2/desk, from its error over time lag
 };
 
 // The scenario presets precision, recall and delay of loop closures.
@@ -53,6 +55,9 @@ struct SlamOptions {
   // Rotation errors turn about a point this far ahead of the camera: features hold the image onto
   // the scene, so that a camera turned by mistake is also shifted by mistake.
   double pivot_m = 0.0;
+
+  // Roll and pitch err by this share of what yaw does, jitter aside: 0.2 to 0.4 in real runs.
+  double tilt_share = 1.0;
 
   // White error of each live pose.
   double jitter_translation_m = 0.0;

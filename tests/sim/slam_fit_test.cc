@@ -1,0 +1,185 @@
+#include "sim/slam_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "sim/error_growth.h"
+#include "sim/slam_calibration.h"
+#include "sim/slam_events.h"
+#include "sim/slam_surrogate.h"
+
+namespace depthgrid {
+namespace {
+
+// Once round a desk in 50 s, 1.5 m away and looking down at it, as TUM fr2/desk was recorded.
+Trajectory RoundADesk(double seconds) {
+  Trajectory truth;
+  for (int i = 0; i <= static_cast<int>(seconds * 30.0); ++i) {
+    const double angle_rad = 2.0 * kPi * i / 1500.0;
+    const Pose3 level = CameraOf(
+        {1.5 * std::cos(angle_rad), 1.5 * std::sin(angle_rad), WrapAngle(angle_rad + kPi)}, 1.2);
+    truth.push_back({i / 30.0, level * Pose3{ExpRotation({-0.5, 0.0, 0.0}), {0, 0, 0}}});
+  }
+  return truth;
+}
+
+SlamRun Disturbed(const Trajectory& truth, const SlamOptions& options, std::uint64_t seed) {
+  SlamRun run;
+  const SlamOutput output = DisturbTrajectory(truth, options, seed);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (!output.live[i].slam_from_camera) continue;
+    run.truth.push_back(truth[i]);
+    run.estimate.push_back({truth[i].stamp_s, *output.live[i].slam_from_camera});
+  }
+  return run;
+}
+
+std::vector<SlamRun> Runs(const SlamOptions& options, int count, double seconds) {
+  std::vector<SlamRun> runs;
+  const Trajectory truth = RoundADesk(seconds);
+  for (int seed = 0; seed < count; ++seed) {
+    runs.push_back(Disturbed(truth, options, static_cast<std::uint64_t>(seed)));
+  }
+  return runs;
+}
+
+TEST(ErrorOverLag, IsThatOfAConstantRateByHand) {
+  SlamRun run;
+  for (int i = 0; i <= 90; ++i) {
+    const Pose3 still = CameraOf({0, 0, 0}, 1.0);
+    run.truth.push_back({i / 30.0, still});
+    run.estimate.push_back(
+        {i / 30.0, still * Pose3{Eigen::Quaterniond::Identity(), {0.001 * i, 0, 0}}});
+  }
+  const auto errors = ErrorOverLag({run}, {1.0 / 30.0, 1.0, 3.0, 10.0});
+  ASSERT_EQ(errors.size(), 3U);  // the run is shorter than 10 s
+  EXPECT_NEAR(errors[0].translation_m, 0.001, 1e-12);
+  EXPECT_EQ(errors[0].pairs, 90);
+  EXPECT_NEAR(errors[1].translation_m, 0.030, 1e-12);
+  EXPECT_EQ(errors[1].pairs, 61);
+  EXPECT_NEAR(errors[2].translation_m, 0.090, 1e-12);
+}
+
+// ORB-SLAM2 on TUM fr2/desk: root mean square error over time lags.
+TEST(SlamProfiles, TheDeskProfileErrsOverLagsAsMeasured) {
+  const std::vector<double> lags_s = {1.0 / 30.0, 0.1, 1.0 / 3.0, 1.0, 3.0, 10.0, 30.0, 60.0};
+  const std::array<double, 8> measured_mm = {3.4, 4.6, 5.6, 7.2, 10, 16, 42, 58};
+  const std::array<double, 8> measured_deg = {.28, .33, .38, .46, .56, .82, 1.5, 1.5};
+  const auto desk =
+      ErrorOverLag(Runs(ProfileOptions(SlamProfile::kOrbSlam2Desk), 30, 99.0), lags_s);
+  SlamOptions scale_one = ProfileOptions(SlamProfile::kOrbSlam2);
+  scale_one.loops = {};
+  const auto calibrated = ErrorOverLag(Runs(scale_one, 30, 99.0), lags_s);
+  ASSERT_EQ(desk.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(std::log(desk[i].translation_m * 1e3 / measured_mm[i]), 0.0, std::log(1.25)) << i;
+    EXPECT_NEAR(std::log(desk[i].rotation_deg / measured_deg[i]), 0.0, std::log(1.25)) << i;
+    EXPECT_NEAR(std::log(calibrated[i].translation_m * 1e3 / measured_mm[i]), 0.0, std::log(1.3))
+        << i;
+  }
+}
+
+TEST(FitGrowth, FindsTheTermsOfAnExactGrowth) {
+  const CorrelationTimes times = {0.5, 10.0};
+  const GrowthTerms declared = {0.003, 0.01, 0.002, 0.001, 0.0};
+  std::vector<Growth> growth;
+  for (double lag_s = 1.0 / 30.0; lag_s < 60.0; lag_s *= 1.6) {
+    growth.push_back({lag_s, GrowthOf(declared, times, lag_s), 1.0});
+  }
+  const GrowthTerms fitted = FitGrowth(growth, times, 0.0);
+  EXPECT_NEAR(fitted.jitter, declared.jitter, 1e-6);
+  EXPECT_NEAR(fitted.bias, declared.bias, 1e-6);
+  EXPECT_NEAR(fitted.walk, declared.walk, 1e-6);
+  EXPECT_NEAR(fitted.drift, declared.drift, 1e-6);
+  const GrowthTerms less = FitGrowth(growth, times, 0.001 * 0.001);
+  EXPECT_NEAR(less.walk, 0.001 * std::sqrt(3.0), 1e-6);
+}
+
+TEST(FitSlamErrors, FindsWhatTheSurrogateWasGiven) {
+  SlamOptions given;
+  given.pivot_m = 1.9;
+  given.tilt_share = 0.4;
+  given.jitter_translation_m = 0.0006;
+  given.jitter_rotation_deg = 0.05;
+  given.walk_translation_m = 0.004;
+  given.walk_rotation_deg = 0.1;
+  given.jump_rate_hz = 0.2;
+  given.jump_translation_m = 0.02;
+  given.jump_rotation_deg = 0.8;
+  given.lost_rate_hz = 0.05;
+  given.lost_mean_s = 1.5;
+  given.relocalisation_translation_m = 0.05;
+  given.relocalisation_rotation_deg = 2.0;
+  const SlamFit fit = FitSlamErrors(Runs(given, 12, 100.0));
+  EXPECT_NEAR(fit.options.pivot_m, 1.9, 0.1);
+  EXPECT_GT(fit.pivot_explains, 0.8);
+  EXPECT_NEAR(fit.options.tilt_share, 0.4, 0.08);
+  EXPECT_NEAR(fit.options.jitter_translation_m / given.jitter_translation_m, 1.0, 0.15);
+  // Single motions too small to be told from jitter are missed, large jitter is taken for a jump.
+  EXPECT_NEAR(fit.options.jump_rate_hz / given.jump_rate_hz, 1.0, 0.25);
+  EXPECT_NEAR(fit.options.jump_translation_m / given.jump_translation_m, 1.0, 0.25);
+  EXPECT_NEAR(fit.options.jump_rotation_deg / given.jump_rotation_deg, 1.0, 0.25);
+  EXPECT_NEAR(fit.options.lost_rate_hz / given.lost_rate_hz, 1.0, 0.3);
+  EXPECT_NEAR(fit.options.lost_mean_s / given.lost_mean_s, 1.0, 0.3);
+  // Walk, bias and drift can stand in for one another: what counts is how errors grow.
+  const std::vector<double> lags_s = {1.0 / 30.0, 0.1, 1.0, 10.0, 30.0};
+  const auto before = ErrorOverLag(Runs(given, 12, 100.0), lags_s);
+  const auto after = ErrorOverLag(Runs(fit.options, 12, 100.0), lags_s);
+  for (std::size_t i = 0; i < lags_s.size(); ++i) {
+    EXPECT_NEAR(std::log(after[i].translation_m / before[i].translation_m), 0.0, std::log(1.3));
+    EXPECT_NEAR(std::log(after[i].rotation_deg / before[i].rotation_deg), 0.0, std::log(1.3));
+  }
+}
+
+TEST(FitSlamErrors, LeavesCorrectionsOut) {
+  SlamOptions given = ProfileOptions(SlamProfile::kOrbSlam2);
+  given.drift_scale = 10.0;
+  const SlamRun run = Disturbed(RoundADesk(54.0), given, 3);
+  const auto events = FindEvents(run);
+  int corrections = 0;
+  for (const SlamEvent& event : events) corrections += event.correction ? 1 : 0;
+  EXPECT_EQ(corrections, 1);
+  EXPECT_EQ(FitSlamErrors({run}).corrections, 1);
+}
+
+TEST(FitSlamErrors, RefusesTooLittle) {
+  const Trajectory truth = RoundADesk(1.0);
+  EXPECT_THROW(FitSlamErrors({{truth, truth}}), InputError);
+}
+
+TEST(FitSlamErrors, OfAPerfectRunIsZero) {
+  const Trajectory truth = RoundADesk(20.0);
+  const SlamFit fit = FitSlamErrors({{truth, truth}});
+  EXPECT_EQ(fit.jumps, 0);
+  EXPECT_LT(fit.options.jitter_translation_m, 1e-12);
+  EXPECT_LT(fit.options.walk_translation_m, 1e-12);
+}
+
+TEST(CalibrateDrift, ReachesItsTargetOnOtherSeedsToo) {
+  const Trajectory truth = RoundADesk(20.0);
+  for (const SlamProfile profile : {SlamProfile::kOrbSlam2, SlamProfile::kPlanarSlamMh}) {
+    SlamOptions options = ProfileOptions(profile);
+    const DriftCalibration found = CalibrateDrift(truth, options, 0.3, {1, 60});
+    EXPECT_TRUE(found.reached);
+    EXPECT_NEAR(found.mean_error_m, 0.3, 0.0003);
+    options.drift_scale = found.drift_scale;
+    EXPECT_EQ(MeanLiveErrorM(truth, options, {1, 60}), found.mean_error_m);
+    // Two means of 60 seeds, each with a spread of about 0.5 of the mean: 3 standard errors.
+    EXPECT_NEAR(MeanLiveErrorM(truth, options, {1001, 60}), 0.3,
+                0.3 * 3 * 0.5 * std::sqrt(2.0 / 60.0));
+  }
+}
+
+TEST(CalibrateDrift, SaysWhenItCannot) {
+  SlamOptions options = ProfileOptions(SlamProfile::kOrbSlam2);
+  options.bias_translation_m = 0.5;
+  EXPECT_FALSE(CalibrateDrift(RoundADesk(5.0), options, 0.01, {1, 5}).reached);
+  EXPECT_FALSE(CalibrateDrift(RoundADesk(5.0), {}, 0.01, {1, 2}).reached);
+}
+
+}  // namespace
+}  // namespace depthgrid
