@@ -105,10 +105,11 @@ constexpr const char* kWood = R"glsl(
 vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) {
   float scale = m.colour.w;
   vec3 q = AlongGrain(p, m.other.y);
-  float warp = Grain(q * vec3(0.25, 1.0, 1.0), 2.0 * scale, footprint);
-  float rings = sin(6.2832 * (length(q.yz + 0.31) / scale + 0.6 * warp));
-  float fibre = Grain(q * vec3(0.08, 1.0, 1.0), 0.06 * scale, footprint);
-  float share = 0.35 + 0.25 * rings * Visible(footprint, scale) + 0.25 * fibre;
+  float warp = Grain(q * vec3(0.12, 1.0, 1.0), 2.0 * scale, footprint);
+  float rings = sin(6.2832 * (length(q.yz + 0.31) / scale + 1.6 * warp));
+  float fibre = Grain(q * vec3(0.06, 1.0, 1.0), 0.08 * scale, footprint) +
+                Grain(q * vec3(0.06, 1.0, 1.0), 0.3 * scale, footprint);
+  float share = 0.35 + 0.13 * rings * Visible(footprint, scale) + 0.16 * warp + 0.2 * fibre;
   return mix(m.colour.rgb, m.second_colour.rgb, clamp(share, 0.0, 1.0));
 }
 )glsl";
@@ -123,7 +124,7 @@ vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) {
 
 constexpr const char* kStripes = R"glsl(
 vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) {
-  float across = AlongGrain(p, m.other.y).y + AlongGrain(p, m.other.y).z;
+  float across = AlongGrain(p, m.other.y).x;
   float wave = fract(across / m.colour.w);
   float odd = smoothstep(0.48, 0.52, wave) - smoothstep(0.98, 1.0, wave);
   vec3 c = mix(m.colour.rgb, m.second_colour.rgb, mix(0.5, odd, Visible(footprint, m.colour.w)));
@@ -215,7 +216,7 @@ vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) {
   vec3 warp = vec3(Noise(q + 5.2), Noise(q + 1.3), Noise(q + 9.7));
   float a = Noise(q * 1.3 + 2.0 * warp);
   float b = Noise(q * 2.1 - 2.5 * warp + 17.0);
-  vec3 third = 0.5 * (m.colour.brg + m.second_colour.gbr);
+  vec3 third = 0.45 * mix(m.colour.rgb, m.second_colour.rgb, 0.5) + 0.55 * m.colour.grb;
   vec3 c = mix(m.colour.rgb, m.second_colour.rgb, smoothstep(0.4, 0.6, a));
   c = mix(c, third, smoothstep(0.58, 0.64, b));
   return c * (1.0 + 0.12 * Grain(p * vec3(1.0, 1.0, 0.4), 0.006, footprint));

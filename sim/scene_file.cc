@@ -94,9 +94,11 @@ struct LightingOptions {
 
 struct FileOptions {
   std::string name;
+  std::string include;
   double floor_z_m = 0.0;
   void Visit(OptionsVisitor& v) {
     v.Text("name", name, "shown in lists; default: the file's name");
+    v.Text("include", include, "a file with more materials and groups, relative to this one");
     v.Number("floor_z_m", floor_z_m, {-kMaxSceneExtentM, kMaxSceneExtentM},
              "height of the floor; default: found");
   }
@@ -132,7 +134,6 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 struct Group {
   std::string name;
   std::vector<Config> items;
-  std::string place;
   std::optional<TriangleMesh> mesh;  // once built
   bool being_built = false;
 };
@@ -142,6 +143,8 @@ class SceneReader {
   SceneFile Read(const std::string& path) {
     path_ = path;
     Config config = Config::FromFile(path);
+    scene_.materials.push_back(MaterialOptions().Make("default"));
+    if (config.Has("include")) ReadInclude(config.List("include").front());
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
     ReadLighting(config.Take("lighting"));
@@ -164,9 +167,25 @@ class SceneReader {
   }
 
  private:
+  // A file of furniture: materials and groups, nothing else.
+  void ReadInclude(const std::string& file) {
+    struct NothingElse {
+      void Visit(OptionsVisitor&) {}
+    };
+    const auto path = std::filesystem::path(path_).parent_path() / file;
+    Config config = Config::FromFile(path.string());
+    ReadMaterials(config.Take("materials"));
+    ReadGroups(config.Take("groups"));
+    NothingElse nothing_else;
+    config.Read(nothing_else);
+  }
+
   void ReadMaterials(Config materials) {
-    scene_.materials.push_back(MaterialOptions().Make("default"));
     for (const auto& name : materials.Keys()) {
+      for (const auto& known : scene_.materials) {
+        if (known.name != name) continue;
+        throw InputError(materials.Place(), fmt::format("material '{}' is given twice", name));
+      }
       MaterialOptions options;
       materials.Take(name).Read(options);
       AddMaterial(options.Make(name));
@@ -180,8 +199,11 @@ class SceneReader {
 
   void ReadGroups(Config groups) {
     for (const auto& name : groups.Keys()) {
-      const std::string place = groups.Place();
-      groups_.push_back({name, groups.TakeMaps(name), place, {}, false});
+      for (const auto& known : groups_) {
+        if (known.name != name) continue;
+        throw InputError(groups.Place(), fmt::format("group '{}' is given twice", name));
+      }
+      groups_.push_back({name, groups.TakeMaps(name), {}, false});
     }
   }
 
