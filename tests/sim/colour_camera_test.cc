@@ -36,7 +36,7 @@ Pose3 Tilted(const Pose2& base, double height_m, double pitch_down_rad, double r
 // Whether one smooth surface fills the pixel's neighbourhood. Inverse depth is linear in the pixel
 // on a plane, so its second differences show silhouettes and creases.
 bool IsInside(const DepthImage& depth, int u, int v) {
-  constexpr double kMaxBend = 0.01;  // of the inverse depth
+  constexpr double kMaxBend = 1e-3;  // of the inverse depth: steps of 2 mm seen from 2 m
   const double here_m = depth.At(u, v);
   if (depth.At(u, v) == kInvalidDepth) return false;
   for (const auto& [du, dv] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
@@ -70,7 +70,7 @@ Agreement Compare(const DepthImage& expected, const DepthImage& actual) {
 
 TEST(ColourCamera, DepthIsThatOfTheDepthCamera) {
   int frames = 0;
-  for (const char* name : {"living_room"}) {
+  for (const char* name : {"living_room", "office_room"}) {
     const Scene scene = LoadScene(kScenes + name + ".yaml");
     const RayScene rays(scene.mesh);
     for (const PinholeCamera& camera : {PinholeCamera{}, OddCamera()}) {
@@ -79,13 +79,13 @@ TEST(ColourCamera, DepthIsThatOfTheDepthCamera) {
       for (const double yaw : {0.3, 2.1, -1.7}) {
         const Pose3 pose = Tilted({2.4, 1.5, yaw}, 1.15, 0.3, 0.1);
         const Agreement agreement = Compare(depth.Render(pose), colour.Render(pose).depth);
-        EXPECT_GT(agreement.compared, camera.width_px * camera.height_px * 8 / 10);
+        EXPECT_GT(agreement.compared, camera.width_px * camera.height_px * 2 / 3);
         EXPECT_LT(agreement.rms_m, 20e-6) << name << " yaw " << yaw;
         ++frames;
       }
     }
   }
-  EXPECT_EQ(frames, 6);
+  EXPECT_EQ(frames, 12);
 }
 
 // A board on the left, a ball at the top right, nothing else.
