@@ -13,17 +13,22 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth) {
   return scores;
 }
 
-ExperimentRun RunExperiment(const ExperimentOptions& options, const RunContext& context) {
-  World world = LoadWorld(options, context.threads);
+ExperimentOptions Completed(ExperimentOptions options, const Scene& scene) {
+  options.mapper.scan.floor_z_m = scene.floor_z_m;
+  return options;
+}
+
+ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& context) {
+  World world = LoadWorld(given, context.threads);
+  const ExperimentOptions options = Completed(given, world.scene);
   SlamOutput slam = DisturbTrajectory(world.trajectory, options.slam, options.SlamSeed());
-  const SyntheticSensor sensor(world, options);
+  TruthRecord truth = MakeTruth(world, options.mapper, context.threads);
+  const SyntheticSensor sensor(world, options, context.cache_folder);
   SyntheticSource source(sensor, slam, context.threads);
   MappingRun mapping = MapFrames(source, options.mapper, slam.final, context.progress);
-  TruthRecord truth;
-  truth.trajectory = world.trajectory;
   RunScores scores = Score(mapping, truth);
-  return {std::move(world), std::move(slam),   std::move(mapping),
-          std::move(truth), std::move(scores), 0.0};
+  return {options,          std::move(world), std::move(slam), std::move(mapping),
+          std::move(truth), std::move(scores)};
 }
 
 }  // namespace depthgrid

@@ -7,18 +7,10 @@
 #include "eval/mapping_run.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics/trajectory_metrics.h"
+#include "eval/truth_record.h"
 #include "eval/world.h"
-#include "mapper/core/cell_set.h"
-#include "mapper/core/occupancy_map.h"
 
 namespace depthgrid {
-
-// What is known of the true world of a run.
-struct TruthRecord {
-  Trajectory trajectory;
-  StateMap map;
-  std::optional<CellSet> observable;
-};
 
 struct RunScores {
   std::optional<TrajectoryScore> slam;    // the input, live
@@ -32,17 +24,21 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth);
 // What decides how fast, and nothing else.
 struct RunContext {
   int threads = 1;
+  std::string cache_folder;  // of rendered depth; empty for none
   Progress progress;
 };
 
 struct ExperimentRun {
+  ExperimentOptions options;  // as they took effect
   World world;
   SlamOutput slam;
   MappingRun mapping;
   TruthRecord truth;
   RunScores scores;
-  double render_cpu_s = 0.0;
 };
+
+// The options with what follows from the scene filled in: the height of its floor.
+ExperimentOptions Completed(ExperimentOptions options, const Scene& scene);
 
 ExperimentRun RunExperiment(const ExperimentOptions& options, const RunContext& context);
 

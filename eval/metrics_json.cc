@@ -59,9 +59,7 @@ Json ToJson(const CellScores& scores) {
           {"confusion", confusion}};
 }
 
-}  // namespace
-
-nlohmann::ordered_json ToJson(const TrajectoryScore& score) {
+Json ToJson(const TrajectoryScore& score) {
   return {
       {"mean_euclidean_m", score.xy_unaligned.mean},
       {"ate_rmse_m", score.xy_unaligned.rmse},
@@ -99,7 +97,7 @@ nlohmann::ordered_json ToJson(const TrajectoryScore& score) {
   };
 }
 
-nlohmann::ordered_json ToJson(const MapScore& score) {
+Json ToJson(const MapScore& score) {
   const CellScores& headline = score.observable ? *score.observable : score.all;
   Json json;
   json["chamfer_m"] = ToJson(headline.chamfer_m);
@@ -111,6 +109,16 @@ nlohmann::ordered_json ToJson(const MapScore& score) {
   return json;
 }
 
-std::string JsonText(const nlohmann::ordered_json& json) { return json.dump(2) + "\n"; }
+}  // namespace
+
+std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories,
+                        const MapScore* map) {
+  Json json;
+  for (const auto& [name, score] : trajectories) {
+    json["trajectory"][name] = score ? ToJson(*score) : Json(nullptr);
+  }
+  if (map != nullptr) json["map"] = ToJson(*map);
+  return json.dump(2) + "\n";
+}
 
 }  // namespace depthgrid

@@ -1,18 +1,22 @@
 // Scores as the JSON of metrics.json and of `eval ... --json`, the same keys in both.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics/trajectory_metrics.h"
 
 namespace depthgrid {
 
-nlohmann::ordered_json ToJson(const TrajectoryScore& score);
-nlohmann::ordered_json ToJson(const MapScore& score);
+struct NamedTrajectoryScore {
+  std::string name;                      // slam, online, est
+  std::optional<TrajectoryScore> score;  // null in the file when no stamps are shared
+};
 
-// Two-space indent, numbers in the shortest form that reads back the same, a final line end.
-std::string JsonText(const nlohmann::ordered_json& json);
+// `map` may be null. Numbers are in the shortest form that reads back the same; what is undefined
+// is null.
+std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories, const MapScore* map);
 
 }  // namespace depthgrid

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
 #include "eval/run_tables.h"
@@ -65,15 +63,9 @@ void WriteTruth(const OutputFolder& folder, const TruthRecord& truth) {
 }
 
 void WriteMetrics(const OutputFolder& folder, const RunScores& scores) {
-  nlohmann::ordered_json json;
-  const auto add = [&](const char* name, const std::optional<TrajectoryScore>& score) {
-    json["trajectory"][name] = score ? ToJson(*score) : nlohmann::ordered_json(nullptr);
-  };
-  add("slam", scores.slam);
-  add("online", scores.online);
-  add("est", scores.est);
-  json["map"] = ToJson(scores.map);
-  WriteFile(folder.File("metrics.json"), JsonText(json));
+  WriteFile(folder.File("metrics.json"),
+            MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
+                        &scores.map));
 }
 
 }  // namespace

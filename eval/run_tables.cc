@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/metrics/statistics.h"
-#include "eval/metrics_json.h"
 #include "mapper/core/level.h"
 
 namespace depthgrid {
@@ -90,7 +89,7 @@ std::string TimingJson(const MappingRun& run, double wall_s_total, double cpu_s_
   json["cpu_s_total"] = cpu_s_total;
   json["wall_s_total"] = wall_s_total;
   json["peak_rss_mib"] = static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
-  return JsonText(json);
+  return json.dump(2) + "\n";
 }
 
 }  // namespace depthgrid

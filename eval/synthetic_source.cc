@@ -5,16 +5,32 @@
 
 namespace depthgrid {
 
-SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& options)
+SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& options,
+                                 const std::string& cache_folder)
     : camera_(world.rays, world.camera),
       noise_(options.sensor),
       seed_(options.DepthSeed()),
-      trajectory_(world.trajectory) {}
+      trajectory_(world.trajectory) {
+  if (cache_folder.empty()) return;
+  cache_.emplace(cache_folder, world.scene_hash, world.camera, world.rays.isa());
+  cache_->MakeRoomFor(FrameCount(), noise_.NeedsIncidence());
+}
 
 DepthFrame SyntheticSensor::Clean(int frame) const {
   const Pose3& world_from_camera = trajectory_[static_cast<std::size_t>(frame)].world_from_camera;
-  if (noise_.NeedsIncidence()) return camera_.RenderWithIncidence(world_from_camera);
-  return {camera_.Render(world_from_camera), {}};
+  const bool with_incidence = noise_.NeedsIncidence();
+  if (cache_) {
+    auto cached = cache_->Load(world_from_camera, with_incidence);
+    if (cached) return std::move(*cached);
+  }
+  DepthFrame clean;
+  if (with_incidence) {
+    clean = camera_.RenderWithIncidence(world_from_camera);
+  } else {
+    clean.depth = camera_.Render(world_from_camera);
+  }
+  if (cache_) cache_->Store(world_from_camera, clean);
+  return clean;
 }
 
 DepthImage SyntheticSensor::Image(int frame) const {

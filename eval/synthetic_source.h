@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "eval/depth_cache.h"
 #include "eval/experiment_options.h"
 #include "eval/ordered_frames.h"
 #include "eval/world.h"
@@ -17,7 +18,9 @@ namespace depthgrid {
 // Frame i of the sensor: a pure function of the world, the options and i.
 class SyntheticSensor {
  public:
-  SyntheticSensor(const World& world, const ExperimentOptions& options);
+  // Clean depth comes from the cache where it can; the folder "" is none.
+  SyntheticSensor(const World& world, const ExperimentOptions& options,
+                  const std::string& cache_folder);
 
   DepthImage Image(int frame) const;
   int FrameCount() const { return static_cast<int>(trajectory_.size()); }
@@ -30,6 +33,7 @@ class SyntheticSensor {
   DepthNoise noise_;
   std::uint64_t seed_;
   Trajectory trajectory_;
+  std::optional<DepthCache> cache_;
 };
 
 class SyntheticSource final : public FrameSource {

@@ -13,7 +13,7 @@ struct CommonArguments {
   std::string output;
   std::vector<std::string> set;  // key.path=value
   int threads = 0;               // 0: as many as there are cores
-  std::string cache;             // empty: the default folder
+  std::string cache;             // empty: none
   bool no_cache = false;
   bool force = false;
 };

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -90,9 +89,7 @@ void EvalMap(const EvalMapArguments& arguments) {
   }
   const MapScore score = ScoreMap(truth, estimate, observable);
   if (arguments.json) {
-    nlohmann::ordered_json json;
-    json["map"] = ToJson(score);
-    fmt::print("{}", JsonText(json));
+    fmt::print("{}", MetricsJson({}, &score));
   } else {
     PrintTable(score);
   }

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/metrics/trajectory_metrics.h"
@@ -53,9 +51,7 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
                                  arguments.max_difference_s));
   }
   if (arguments.json) {
-    nlohmann::ordered_json json;
-    json["trajectory"]["est"] = ToJson(*score);
-    fmt::print("{}", JsonText(json));
+    fmt::print("{}", MetricsJson({{"est", score}}, nullptr));
   } else {
     PrintTable(*score);
   }

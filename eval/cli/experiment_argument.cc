@@ -1,6 +1,7 @@
 #include "eval/cli/experiment_argument.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "eval/shipped.h"
@@ -36,6 +37,13 @@ ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<s
   Config config;
   config.Set("scene", name);
   return Read(std::move(config), set, "");
+}
+
+std::string CacheFolder(const CommonArguments& arguments) {
+  if (arguments.no_cache) return "";
+  if (!arguments.cache.empty()) return arguments.cache;
+  const char* folder = std::getenv("DEPTHGRID_CACHE");
+  return folder != nullptr ? folder : "";
 }
 
 }  // namespace depthgrid::cli

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/cli/commands.h"
 #include "eval/experiment_options.h"
 
 namespace depthgrid::cli {
@@ -13,5 +14,8 @@ ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std
 // The experiment of that name, or else everything at its default in the scene of that name (or
 // scene or mesh file).
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set);
+
+// Where rendered depth is kept: --cache, or else $DEPTHGRID_CACHE, unless --no-cache.
+std::string CacheFolder(const CommonArguments& arguments);
 
 }  // namespace depthgrid::cli

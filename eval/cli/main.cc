@@ -34,7 +34,9 @@ void AddThreads(CLI::App& app, CommonArguments& common) {
 }
 
 void AddCache(CLI::App& app, CommonArguments& common) {
-  app.add_option("--cache", common.cache, "Folder of rendered depth to reuse")->type_name("DIR");
+  app.add_option("--cache", common.cache,
+                 "Keep rendered depth in this folder (default: $DEPTHGRID_CACHE)")
+      ->type_name("DIR");
   app.add_flag("--no-cache", common.no_cache, "Render everything anew");
 }
 

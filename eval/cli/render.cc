@@ -39,7 +39,7 @@ void Render(const RenderArguments& arguments) {
   OutputFolder folder(arguments.common.output, arguments.common.force);
   const int threads = ThreadsOr(arguments.common.threads);
   const World world = LoadWorld(options, threads);
-  const SyntheticSensor sensor(world, options);
+  const SyntheticSensor sensor(world, options, CacheFolder(arguments.common));
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   {
     ProgressBar bar("rendering");

@@ -52,12 +52,13 @@ void Run(const RunArguments& arguments) {
   OutputFolder folder(arguments.common.output, arguments.common.force);
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
+  context.cache_folder = CacheFolder(arguments.common);
   ProgressBar bar("mapping");
   context.progress = bar.AsProgress();
   const ExperimentRun run = RunExperiment(options, context);
   RunRecord record;
   record.title = arguments.experiment;
-  record.settings = ToYaml(options);
+  record.settings = ToYaml(run.options);
   record.scene_hash = run.world.scene_hash;
   record.mapping = &run.mapping;
   record.slam = &run.slam;

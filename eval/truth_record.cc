@@ -1,0 +1,23 @@
+#include "eval/truth_record.h"
+
+#include "sim/truth_grid.h"
+
+namespace depthgrid {
+
+TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads) {
+  const TruthGridOptions band = {options.grid.resolution_m, options.scan.band_low_m,
+                                 options.scan.band_high_m};
+  ObservableOptions seen;
+  seen.min_range_m = options.scan.min_range_m;
+  seen.max_range_m = options.scan.max_range_m;
+  seen.threads = threads;
+  const double floor_z_m = world.scene.floor_z_m;
+  TruthRecord truth;
+  truth.trajectory = world.trajectory;
+  truth.map = TruthMap(world.scene.mesh, floor_z_m, world.trajectory, band);
+  truth.observable =
+      ObservableCells(world.rays, floor_z_m, truth.map, world.camera, world.trajectory, band, seen);
+  return truth;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,23 @@
+// What is known of the true world of a run.
+#pragma once
+
+#include <optional>
+
+#include "eval/world.h"
+#include "mapper/core/cell_set.h"
+#include "mapper/core/occupancy_map.h"
+#include "mapper/mapper_options.h"
+
+namespace depthgrid {
+
+struct TruthRecord {
+  Trajectory trajectory;
+  StateMap map;
+  std::optional<CellSet> observable;
+};
+
+// Band, ranges and resolution are the mapper's settings: they say what the map is a map of.
+// `threads` only changes the speed.
+TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads);
+
+}  // namespace depthgrid

@@ -1,0 +1,98 @@
+#include "eval/canvas.h"
+
+#include <gtest/gtest.h>
+
+#include "eval/map_picture.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr Colour kWhite = {255, 255, 255};
+constexpr Colour kBlack = {0, 0, 0};
+
+Colour At(const RgbImage& image, int u, int v) {
+  const std::uint8_t* p = image.At(u, v);
+  return {p[0], p[1], p[2]};
+}
+
+int DarkPixels(const RgbImage& image) {
+  int dark = 0;
+  for (int v = 0; v < image.height_px; ++v) {
+    for (int u = 0; u < image.width_px; ++u) dark += At(image, u, v) == kBlack ? 1 : 0;
+  }
+  return dark;
+}
+
+TEST(Canvas, ALineCoversItsWidth) {
+  Canvas canvas(20, 9, kWhite);
+  canvas.Line({-5, 4}, {25, 4}, 3.0, kBlack);
+  EXPECT_EQ(DarkPixels(canvas.image()), 3 * 20);
+  EXPECT_EQ(At(canvas.image(), 10, 3), kBlack);
+  EXPECT_EQ(At(canvas.image(), 10, 5), kBlack);
+  EXPECT_EQ(At(canvas.image(), 10, 6), kWhite);
+}
+
+TEST(Canvas, WhatLiesOutsideIsClipped) {
+  Canvas canvas(5, 5, kWhite);
+  canvas.Line({-1e9, -1e9}, {-10, 2}, 2.0, kBlack);
+  canvas.Line({0, std::nan("")}, {1, 1}, 2.0, kBlack);
+  canvas.Fill(-3, -3, 100, 2, kBlack);
+  canvas.Text(-2, 100, "out", 1, kBlack);
+  EXPECT_EQ(DarkPixels(canvas.image()), 0);
+}
+
+TEST(Canvas, TextIsDotsOfItsScale) {
+  Canvas canvas(20, 20, kWhite);
+  canvas.Text(0, 0, "-", 2, kBlack);  // five dots in a row
+  EXPECT_EQ(DarkPixels(canvas.image()), 5 * 4);
+  EXPECT_EQ(Canvas::TextWidth("ab", 2), 24);
+  Canvas unknown(20, 20, kWhite);
+  unknown.Text(0, 0, "\xc3", 1, kBlack);
+  EXPECT_GT(DarkPixels(unknown.image()), 0);
+}
+
+TEST(MapPicture, NorthIsUp) {
+  StateMap map(GridGeometry{0.05, {0, 0}, 2, 2});
+  map.states[map.geometry.Index({1, 1})] = CellState::kOccupied;  // east and north
+  const RgbImage image = PictureOf(map, map.geometry);
+  EXPECT_EQ(At(image, 1, 0), kBlack);
+  EXPECT_EQ(DarkPixels(image), 1);
+}
+
+TEST(MapPicture, DifferenceTellsMissedFromInvented) {
+  const GridGeometry row{0.05, {0, 0}, 3, 1};
+  StateMap truth(row);
+  StateMap estimate(row);
+  truth.states = {CellState::kOccupied, CellState::kOccupied, CellState::kFree};
+  estimate.states = {CellState::kOccupied, CellState::kFree, CellState::kOccupied};
+  const RgbImage image = DifferencePicture(truth, estimate, std::nullopt, row);
+  EXPECT_EQ(At(image, 0, 0), kBlack);
+  EXPECT_EQ(At(image, 1, 0), palette::kMissed);
+  EXPECT_EQ(At(image, 2, 0), palette::kInvented);
+}
+
+TEST(MapPicture, PathsLieWhereTheirCellsAre) {
+  const GridGeometry geometry{0.05, {-10, -10}, 20, 20};
+  const StateMap map(geometry);
+  Path path{"p", {255, 0, 0}, {}};
+  // From the middle of the cell left of the map's middle to that right of it.
+  path.poses.push_back({0.0, {Eigen::Quaterniond::Identity(), {-0.025, 0.025, 1.0}}});
+  path.poses.push_back({1.0, {Eigen::Quaterniond::Identity(), {0.025, 0.025, 1.0}}});
+  const RgbImage image = AnnotatedMap(PictureOf(map, geometry), geometry, {path});
+  const int factor = image.width_px / geometry.width_cells;
+  ASSERT_EQ(image.width_px, factor * geometry.width_cells);
+  // Cell (0, 0) is the tenth from the left and, rows counted from the top, the tenth.
+  EXPECT_EQ(At(image, 10 * factor, 9 * factor + factor / 2), (Colour{255, 0, 0}));
+}
+
+TEST(MapPicture, KnownPartHasAMargin) {
+  StateMap map(GridGeometry{0.05, {-50, -50}, 100, 100});
+  map.states[map.geometry.Index({3, 4})] = CellState::kFree;
+  const GridGeometry part = KnownPart(map, 2);
+  EXPECT_EQ(part.min_cell, (Cell{1, 2}));
+  EXPECT_EQ(part.width_cells, 5);
+  EXPECT_EQ(KnownPart(StateMap(map.geometry), 2), map.geometry);
+}
+
+}  // namespace
+}  // namespace depthgrid

@@ -1,0 +1,111 @@
+#include "eval/output_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFolderTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = fs::path(::testing::TempDir()) /
+            ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+  std::string Path(const std::string& name) const { return (root_ / name).string(); }
+  // Names of everything below the root, so that leftovers show.
+  std::vector<std::string> Everything() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(root_)) {
+      names.push_back(fs::relative(entry.path(), root_).string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  fs::path root_;
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(OutputFolderTest, AppearsOnCommitOnly) {
+  {
+    OutputFolder folder(Path("out"), false);
+    WriteFile(folder.File("a.txt"), "1");
+    EXPECT_FALSE(fs::exists(Path("out")));
+    folder.Commit();
+  }
+  EXPECT_EQ(Everything(), (Names{"out", "out/a.txt"}));
+}
+
+TEST_F(OutputFolderTest, LeavesNothingWithoutCommit) {
+  {
+    OutputFolder folder(Path("deep/er/out"), false);
+    WriteFile(folder.File("a.txt"), "1");
+  }
+  EXPECT_EQ(Everything(), Names{});
+}
+
+TEST_F(OutputFolderTest, KeepsAnEmptyFolderThatWasThere) {
+  fs::create_directory(Path("out"));
+  { OutputFolder folder(Path("out"), false); }
+  EXPECT_EQ(Everything(), Names{"out"});
+  OutputFolder folder(Path("out/"), false);
+  WriteFile(folder.File("a.txt"), "1");
+  folder.Commit();
+  EXPECT_TRUE(fs::exists(Path("out/a.txt")));
+}
+
+TEST_F(OutputFolderTest, RefusesWhatIsNotEmptyOrAFile) {
+  fs::create_directory(Path("out"));
+  WriteFile(Path("out/mine.txt"), "precious");
+  EXPECT_THROW(OutputFolder(Path("out"), false), InputError);
+  EXPECT_THROW(OutputFolder(Path("out/mine.txt"), true), InputError);
+  EXPECT_THROW(OutputFolder(Path("out/mine.txt/below"), true), InputError);
+  EXPECT_THROW(OutputFolder("", true), InputError);
+  EXPECT_EQ(Everything(), (Names{"out", "out/mine.txt"}));
+}
+
+TEST_F(OutputFolderTest, ForceReplacesItsOwnNamesAndKeepsOthers) {
+  fs::create_directories(Path("out/rgb"));
+  WriteFile(Path("out/mine.txt"), "precious");
+  WriteFile(Path("out/a.txt"), "old");
+  WriteFile(Path("out/rgb/0.png"), "old");
+  WriteFile(Path("out/rgb/9.png"), "precious");
+  {
+    OutputFolder failing(Path("out"), true);
+    WriteFile(failing.File("a.txt"), "half");
+  }
+  EXPECT_EQ(ReadFile(Path("out/a.txt")), "old");
+  OutputFolder folder(Path("out"), true);
+  WriteFile(folder.File("a.txt"), "new");
+  fs::create_directory(folder.work() / "rgb");
+  WriteFile(folder.File("rgb/0.png"), "new");
+  folder.Commit();
+  EXPECT_EQ(ReadFile(Path("out/a.txt")), "new");
+  EXPECT_EQ(ReadFile(Path("out/rgb/0.png")), "new");
+  EXPECT_EQ(ReadFile(Path("out/rgb/9.png")), "precious");
+  EXPECT_EQ(ReadFile(Path("out/mine.txt")), "precious");
+}
+
+TEST_F(OutputFolderTest, FollowsALinkToAFolder) {
+  fs::create_directory(Path("real"));
+  fs::create_directory_symlink(Path("real"), Path("link"));
+  OutputFolder folder(Path("link"), false);
+  WriteFile(folder.File("a.txt"), "1");
+  folder.Commit();
+  EXPECT_TRUE(fs::is_symlink(Path("link")));
+  EXPECT_TRUE(fs::exists(Path("real/a.txt")));
+}
+
+}  // namespace
+}  // namespace depthgrid
