@@ -69,8 +69,8 @@ TEST(PaperReference, RebuildingAtTheSamePosesChangesNothing) {
     frames.push_back(frame);
   }
   rebuilt.Rebuild(frames);
-  const Scan scan = ScanOf(room, {0.7, 0.0, 1.05}, {.beams = 200});
-  const Pose2 predicted{0.72, 0.02, 1.06};
+  const auto scan = std::make_shared<const Scan>(ScanOf(room, {0.7, 0.0, 1.05}, {.beams = 200}));
+  const Prediction predicted{.map_from_base = {0.72, 0.02, 1.06}};
   const MatchResult a = running.Match(scan, predicted);
   const MatchResult b = rebuilt.Match(scan, predicted);
   ASSERT_TRUE(a.found);
