@@ -25,6 +25,10 @@ class DepthNoise {
   double max_range_m() const { return max_range_m_; }
 
  private:
+  void ClampRange(DepthImage& depth) const;
+  DepthImage AddNoise(const DepthImage& lit, const float* incidence_cos, std::uint64_t seed,
+                      std::uint32_t frame) const;
+
   SensorOptions options_;
   PinholeCamera camera_;
   int threads_;

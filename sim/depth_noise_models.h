@@ -4,9 +4,21 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace depthgrid::noise {
+
+// condition ? yes : no with both computed beforehand, which loops need to vectorise.
+inline float Select(bool condition, float yes, float no) {
+  const std::uint32_t mask = 0U - static_cast<std::uint32_t>(condition);
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(yes) & mask) |
+                              (std::bit_cast<std::uint32_t>(no) & ~mask));
+}
+
+// The floor of 0 <= x < 2^31, vectorised without asking for the machine's rounding modes.
+inline float Whole(float x) { return static_cast<float>(static_cast<std::int32_t>(x)); }
 
 constexpr float kRightAngle = 1.57079632679F;
 
@@ -36,7 +48,7 @@ inline float NguyenSigma(float z, float theta) {
   const float frontal = 0.0012F + 0.0019F * (z - 0.4F) * (z - 0.4F);
   const float rest = std::max(kRightAngle - theta, 0.01F);
   const float oblique = 0.0001F / std::sqrt(z) * (theta * theta) / (rest * rest);
-  return frontal + (theta > kOblique ? oblique : 0.0F);
+  return frontal + Select(theta > kOblique, oblique, 0.0F);
 }
 
 inline float NguyenLateralSigma_px(float theta) { return 0.8F + 0.035F * ObliqueRatio(theta); }
@@ -50,8 +62,10 @@ constexpr float kHandaShift_px = 0.5F;
 constexpr float kHandaDisparitySigma_steps = 1.0F / 6.0F;
 
 inline float HandaDepth(float inverse_z, float noise_steps) {
-  const float steps = std::floor(kHandaSteps_m * inverse_z + noise_steps + 0.5F);
-  return steps >= 1.0F ? kHandaSteps_m / std::max(steps, 1.0F) : 0.0F;
+  constexpr float kMostSteps = 1e6F;  // a third of a millimetre
+  const float shifted = kHandaSteps_m * inverse_z + noise_steps + 0.5F;
+  const float steps = Whole(std::min(std::max(shifted, 0.0F), kMostSteps));
+  return Select(steps >= 1.0F, kHandaSteps_m / steps, 0.0F);
 }
 
 // Stereo: z = f B / disparity, whose subpixel error is 0.08 px (Intel, "Best known methods for

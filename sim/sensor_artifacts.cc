@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "mapper/core/rng.h"
@@ -98,6 +99,32 @@ void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double 
       if (nearest[static_cast<std::size_t>(column)] > disparity(u) + kBias_px) {
         row[u] = kInvalidDepth;
       }
+    }
+  }
+}
+
+void DropEdges(const DepthImage& clean, float step_m, DepthImage& measured) {
+  const int width = clean.width_px, height = clean.height_px;
+  // Columns first, then along the row: of three rows, then of three columns.
+  std::vector<float> low(static_cast<std::size_t>(width) + 2), high(low.size());
+  for (int v = 0; v < height; ++v) {
+    const float* const above = clean.Row(std::max(v - 1, 0));
+    const float* const here = clean.Row(v);
+    const float* const below = clean.Row(std::min(v + 1, height - 1));
+    const auto or_far = [](float z) {
+      return z > 0.0F ? z : std::numeric_limits<float>::infinity();
+    };
+    for (std::size_t u = 0; u < static_cast<std::size_t>(width); ++u) {
+      low[u + 1] = std::min(std::min(or_far(above[u]), or_far(below[u])), or_far(here[u]));
+      high[u + 1] = std::max(std::max(above[u], below[u]), here[u]);
+    }
+    low.front() = low[1], high.front() = high[1];
+    low.back() = low[low.size() - 2], high.back() = high[high.size() - 2];
+    float* const row = measured.Row(v);
+    for (std::size_t u = 0; u < static_cast<std::size_t>(width); ++u) {
+      const float step = std::max(std::max(high[u], high[u + 1]), high[u + 2]) -
+                         std::min(std::min(low[u], low[u + 1]), low[u + 2]);
+      row[u] = step > step_m ? kInvalidDepth : row[u];
     }
   }
 }

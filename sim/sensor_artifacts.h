@@ -19,4 +19,8 @@ DepthImage WithFlyingPixels(const DepthFrame& clean, const PinholeCamera& camera
 // covered by one more than a pixel of disparity nearer.
 void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double baseline_m);
 
+// Invalidates the pixels of `measured` whose 3x3 neighbours in `clean` lie further apart than
+// step_m; invalid neighbours count for nothing.
+void DropEdges(const DepthImage& clean, float step_m, DepthImage& measured);
+
 }  // namespace depthgrid
