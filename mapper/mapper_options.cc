@@ -12,6 +12,7 @@ void MapperOptions::Visit(OptionsVisitor& v) {
   v.Group("fusion", fusion, "how SLAM's pose and the matched one become one (Eq. 3)");
   v.Group("loops", loops, "which loops are believed");
   v.Group("graph", graph, "paper: how loops are closed (Eq. 5-6)");
+  v.Group("surfel", surfel, "surfel: the map of surfels and its joint adjustment");
 }
 
 }  // namespace depthgrid

@@ -9,6 +9,7 @@
 #include "mapper/loop_closing.h"
 #include "mapper/match/scan_matcher.h"
 #include "mapper/scan/scan_options.h"
+#include "mapper/surfel/surfel_map.h"
 
 namespace depthgrid {
 
@@ -23,6 +24,7 @@ struct MapperOptions {
   FusionOptions fusion;
   LoopOptions loops;
   GraphOptions graph;
+  SurfelOptions surfel;
 
   void Visit(OptionsVisitor& v);
 };

@@ -1,26 +1,28 @@
+// Accuracy of `depthgrid map` on laser worlds over many seeds: the tables of docs/results.md, "Laser
+// logs". Results, not times.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <future>
 
 #include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+#include "mapper/io/carmen_line.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/config.h"
 #include "mapper/io/trajectory_file.h"
-#include "mapper/surfel/joint_adjustment.h"
-#include "mapper/surfel/surfel_map.h"
 #include "sim/laser_world.h"
 #include "sim/odometry_noise.h"
 
 using namespace depthgrid;
 
 namespace {
-
 double NowUs() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
 }
-
 struct Scores {
   double mean = 0, ate = 0, max = 0;
 };
@@ -50,166 +52,123 @@ Scores Score(const std::vector<Pose2>& truth, const std::vector<Pose2>& est) {
   return s;
 }
 
-Scan ScanFrom(const std::vector<double>& range, const LaserOptions& o) {
-  Scan scan;
-  scan.max_range_m = o.max_range_m;
-  for (std::size_t i = 0; i < range.size(); ++i) {
-    Beam b;
-    b.bearing_rad =
-        static_cast<float>(o.FirstBearingRad() + static_cast<double>(i) * o.BearingStepRad());
-    if (range[i] >= o.max_range_m) {
-      b.clear_to_m = 5;
-    } else if (range[i] > 0.1) {
-      b.hit = true;
-      b.range_m = static_cast<float>(range[i]);
-      b.clear_to_m = b.range_m;
-    }
-    scan.beams.push_back(b);
-  }
-  return scan;
-}
+struct Run {
+  Scores prior, online, final;
+  double frame_us = 0, finish_us = 0, match_us = 0, insert_us = 0;
+};
 
+Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOptions& laser,
+        const OdometryOptions& odo, const MapperOptions& options, int seed, bool verbose) {
+  const auto odometry = DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed));
+  IncrementalMapper mapper(options, std::nullopt, NowUs);
+  Run run;
+  std::vector<Pose2> online, final;
+  CarmenLogOptions log;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    CarmenScan line;
+    line.first_bearing_rad = laser.FirstBearingRad();
+    line.bearing_step_rad = laser.BearingStepRad();
+    line.max_range_m = laser.max_range_m;
+    line.range_m = DisturbScan(CastScan(world, truth[k], laser), laser, static_cast<std::uint64_t>(seed), static_cast<int>(k));
+    Frame frame;
+    frame.index = static_cast<int>(k);
+    frame.stamp_s = static_cast<double>(k) / 30.0;
+    frame.scan = std::make_shared<Scan>(ScanOf(line, log));
+    frame.slam_from_camera = CameraOf(odometry[k], 0.0);
+    const FrameReport report = mapper.AddFrame(frame);
+    online.push_back(BaseOf(*report.map_from_camera));
+    run.frame_us += report.times.total_us;
+    run.match_us += report.times.match_us;
+    run.insert_us += report.times.insert_us;
+    if (verbose && k % 30 == 0) {
+      const Pose2 e = Between(truth[k], online[k]);
+      std::printf("%4zu err %.4f %.4f %.2fdeg sig %.4f %.4f %.3f score %.2f it %d innov %.4f %.4f %.3f\n", k, e.x_m, e.y_m,
+                  DegFromRad(e.yaw_rad), std::sqrt(report.covariance(0, 0)), std::sqrt(report.covariance(1, 1)),
+                  DegFromRad(std::sqrt(report.covariance(2, 2))), report.match.score, report.match.iterations,
+                  report.innovation[0], report.innovation[1], DegFromRad(report.innovation[2]));
+    }
+  }
+  const double t = NowUs();
+  const MapperResult result = mapper.Finish();
+  const double n = static_cast<double>(truth.size());
+  run.finish_us = (NowUs() - t) / n;
+  run.frame_us /= n;
+  run.match_us /= n;
+  run.insert_us /= n;
+  for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
+  run.prior = Score(truth, odometry);
+  run.online = Score(truth, online);
+  run.final = Score(truth, final);
+  return run;
+}
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app;
-  std::vector<std::string> worlds;
+  std::vector<std::string> worlds, sets;
   LaserOptions laser;
   OdometryOptions odo;
-  SurfelOptions surfel;
-  JointOptions joint;
-  int first_seed = 1, seeds = 3, stride = 1;
-  double qx = 2.5e-3, qy = 1.5e-3, qyaw = 1e-3, qscale = 1;
+  int first_seed = 1, seeds = 3, threads = 2;
   bool verbose = false;
-  unsigned every = 30;
   app.add_option("--worlds", worlds);
   app.add_option("--seeds", seeds);
   app.add_option("--first-seed", first_seed);
-  app.add_option("--stride", stride);
+  app.add_option("--threads", threads);
   app.add_option("--beams", laser.beams);
   app.add_option("--fov", laser.field_of_view_deg);
   app.add_option("--noise", laser.noise_relative);
   app.add_option("--noise2", laser.noise_quadratic_per_m);
   app.add_option("--noise-corr", laser.noise_correlation);
   app.add_option("--outliers", laser.outlier_share);
+  app.add_option("--max-range", laser.max_range_m);
   app.add_option("--drift", odo.mean_error_m);
+  app.add_option("--bias-time", odo.bias_time_frames);
   app.add_option("--jitter", odo.jitter_m);
   app.add_option("--jitter-deg", odo.jitter_deg);
-  app.add_option("--qscale", qscale);
-  app.add_option("--correlation", surfel.correlation);
-  app.add_option("--debias", surfel.debias);
-  app.add_option("--spacing", surfel.spacing_m);
-  app.add_option("--gate", surfel.gate_m);
-  app.add_option("--split", surfel.scan.split_chi2);
-  app.add_option("--beams-per", surfel.scan.beams);
-  app.add_option("--nfloor", surfel.normal_floor_rad);
-  app.add_option("--bnoise", surfel.scan.bearing_noise_steps);
-  app.add_option("--group-m", joint.group_m);
-  app.add_option("--group-deg", joint.group_deg);
-  app.add_option("--landmark", joint.landmark_m);
-  app.add_option("--rounds", joint.rounds);
-  app.add_option("--gate0", joint.first_gate_m);
-  app.add_option("--gate1", joint.last_gate_m);
-  app.add_option("--jhuber", joint.huber_sigmas);
-  app.add_option("--jfloor", joint.surfel_floor_m);
+  app.add_option("--set", sets);
   app.add_flag("-v", verbose);
-  app.add_option("--every", every);
   CLI11_PARSE(app, argc, argv);
-  if (worlds.empty())
-    worlds = {"/work/shared/data/laser/living_s1", "/work/shared/data/laser/office_s1"};
+  MapperOptions options;
+  options.method = MapperMethod::kSurfel;
+  options.fusion.mode = FusionMode::kKalman;
+  Config config;
+  for (const auto& s : sets) config.Set(s);
+  config.Read(options);
+  if (worlds.empty()) worlds = {"/work/shared/data/laser/living_s1", "/work/shared/data/laser/office_s1"};
   for (const std::string& name : worlds) {
     const LaserWorld world = ReadLaserWorld(name + ".world.txt");
     std::vector<Pose2> truth;
     for (const StampedPose& p : ReadTrajectory(name + ".truth.txt")) {
       const auto& q = p.world_from_camera.rotation;
       truth.push_back({p.world_from_camera.translation.x(), p.world_from_camera.translation.y(),
-                       2 * std::atan2(q.z(), q.w())});
-      truth.back().yaw_rad = WrapAngle(truth.back().yaw_rad);
+                       WrapAngle(2 * std::atan2(q.z(), q.w()))});
     }
-    double sum = 0, sum_ate = 0, worst = 0, fsum = 0, fate = 0, fworst = 0;
-    for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
-      const auto odometry = DisturbOdometry(truth, odo, seed);
-      SurfelMapCore map(surfel);
-      std::vector<Pose2> est;
-      Pose2 pose = odometry[0];
-      GroupBuilder builder(joint);
-      Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();
-      Eigen::Matrix3d q = Eigen::Vector3d(qx * qx, qy * qy, qyaw * qyaw).asDiagonal();
-      q *= qscale * qscale;
-      double t_extract = 0, t_match = 0, t_insert = 0, t_group = 0, its = 0, npieces = 0;
-      for (std::size_t k = 0; k < truth.size(); ++k) {
-        const Scan scan = ScanFrom(
-            DisturbScan(CastScan(world, truth[k], laser), laser, seed, static_cast<int>(k)), laser);
-        if (k > 0) {
-          const Pose2 u = Between(odometry[k - 1], odometry[k]);
-          pose = pose * u;
-          const Pose2 ui = Inverse(u);
-          Eigen::Matrix3d ad;  // motion in old base axes to new base axes
-          const double c = std::cos(ui.yaw_rad), s = std::sin(ui.yaw_rad);
-          ad << c, -s, ui.y_m, s, c, -ui.x_m, 0, 0, 1;
-          cov = ad * cov * ad.transpose() + q;
-        }
-        double t0 = NowUs();
-        const auto& pieces = map.Extract(scan);
-        double t1 = NowUs();
-        t_extract += t1 - t0;
-        npieces += static_cast<double>(pieces.size());
-        if (k > 0) {
-          const SurfelMatch m = map.Match(pieces, pose, cov + 1e-12 * Eigen::Matrix3d::Identity());
-          its += m.iterations;
-          if (m.found) {
-            cov = ((cov + 1e-12 * Eigen::Matrix3d::Identity()).inverse() + m.information).inverse();
-            pose = m.map_from_base;
-          }
-          if (verbose && k % every == 0) {
-            const Pose2 e = Between(truth[k], pose);
-            std::printf(
-                "%4zu err %.4f %.4f %.2fdeg  sig %.4f %.4f %.3f expl %.2f used %d of %zu chi2 %.2f "
-                "it %d surfels %zu\n",
-                k, e.x_m, e.y_m, DegFromRad(e.yaw_rad), std::sqrt(cov(0, 0)), std::sqrt(cov(1, 1)),
-                DegFromRad(std::sqrt(cov(2, 2))), m.explained, m.used, pieces.size(),
-                m.chi2 / m.used, m.iterations, map.store().surfels().size());
-          }
-        }
-        double t2 = NowUs();
-        t_match += t2 - t1;
-        map.Insert(pieces, pose, static_cast<int>(k));
-        t_insert += NowUs() - t2;
-        t2 = NowUs();
-        builder.Add(pieces, pose, odometry[k], true);
-        t_group += NowUs() - t2;
-        est.push_back(pose);
-      }
-      const double tj = NowUs();
-      const auto& groups = builder.Groups();
-      const JointResult jr = AdjustJointly(groups, joint);
-      const double t_joint = NowUs() - tj;
-      std::vector<Pose2> fin;
-      for (std::size_t k = 0; k < est.size(); ++k) {
-        fin.push_back(jr.map_from_group[builder.group_of_frame()[k]] *
-                      builder.group_from_frame()[k]);
-      }
-      const Scores fi = Score(truth, fin);
-      const Scores on = Score(truth, est);
-      const Scores pr = Score(truth, odometry);
-      const double n = static_cast<double>(truth.size());
-      std::printf(
-          "%-10s seed %d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f odo "
-          "%.2f %.2f %.3f | groups %zu lm %d obs %d joint us %.0f group %.0f | us extract %.1f "
-          "match %.1f insert %.1f its %.1f pieces %.1f surfels %zu\n",
-          name.substr(name.rfind('/') + 1).c_str(), seed, pr.mean, pr.ate, on.mean, on.ate, on.max,
-          fi.mean, fi.ate, fi.max, 1e3 * jr.odometry_sigma[0], 1e3 * jr.odometry_sigma[1],
-          DegFromRad(jr.odometry_sigma[2]), groups.size(), jr.landmarks, jr.observations,
-          t_joint / n, t_group / n, t_extract / n, t_match / n, t_insert / n, its / n, npieces / n,
-          map.store().surfels().size());
-      sum += on.mean / seeds;
-      sum_ate += on.ate / seeds;
-      worst = std::max(worst, on.mean);
-      fsum += fi.mean / seeds;
-      fate += fi.ate / seeds;
-      fworst = std::max(fworst, fi.mean);
+    std::vector<Run> runs(static_cast<std::size_t>(seeds));
+    std::vector<std::future<void>> jobs;
+    for (int t = 0; t < threads; ++t) {
+      jobs.push_back(std::async(std::launch::async, [&, t] {
+        for (int i = t; i < seeds; i += threads) runs[static_cast<std::size_t>(i)] = Map(world, truth, laser, odo, options, first_seed + i, verbose);
+      }));
     }
-    std::printf("%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f\n",
-                name.substr(name.rfind('/') + 1).c_str(), sum, sum_ate, worst, fsum, fate, fworst);
+    for (auto& j : jobs) j.get();
+    const std::string shown = name.substr(name.rfind('/') + 1);
+    Run mean;
+    double won = 0, wfn = 0, wat = 0, worse_on = -1e9, worse_fn = -1e9;
+    for (int i = 0; i < seeds; ++i) {
+      const Run& r = runs[static_cast<std::size_t>(i)];
+      std::printf("%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us frame %.0f match %.0f insert %.0f finish %.0f\n", shown.c_str(), first_seed + i,
+                  r.prior.mean, r.prior.ate, r.online.mean, r.online.ate, r.online.max, r.final.mean, r.final.ate, r.final.max, r.frame_us, r.match_us, r.insert_us, r.finish_us);
+      mean.online.mean += r.online.mean / seeds;
+      mean.online.ate += r.online.ate / seeds;
+      mean.final.mean += r.final.mean / seeds;
+      mean.final.ate += r.final.ate / seeds;
+      won = std::max(won, r.online.mean);
+      wfn = std::max(wfn, r.final.mean);
+      wat = std::max(wat, r.final.ate);
+      worse_on = std::max(worse_on, r.online.mean - r.prior.mean);
+      worse_fn = std::max(worse_fn, r.final.mean - r.prior.mean);
+    }
+    std::printf("%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f/%.4f  minus prior %.4f %.4f\n", shown.c_str(), mean.online.mean,
+                mean.online.ate, won, mean.final.mean, mean.final.ate, wfn, wat, worse_on, worse_fn);
   }
 }

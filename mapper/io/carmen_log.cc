@@ -34,19 +34,6 @@ Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
   return beam;
 }
 
-Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  Scan scan;
-  scan.max_range_m = line.max_range_m > 0.0 ? std::min(line.max_range_m, options.max_range_m)
-                                            : options.max_range_m;
-  scan.beams.reserve(line.range_m.size());
-  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
-    const double bearing_rad =
-        line.first_bearing_rad + static_cast<double>(i) * line.bearing_step_rad;
-    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], scan.max_range_m, options));
-  }
-  return scan;
-}
-
 class CarmenLogSource : public FrameSource {
  public:
   CarmenLogSource(std::string path, const CarmenLogOptions& options)
@@ -157,6 +144,19 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
+}
+
+Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  Scan scan;
+  scan.max_range_m = line.max_range_m > 0.0 ? std::min(line.max_range_m, options.max_range_m)
+                                            : options.max_range_m;
+  scan.beams.reserve(line.range_m.size());
+  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
+    const double bearing_rad =
+        line.first_bearing_rad + static_cast<double>(i) * line.bearing_step_rad;
+    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], scan.max_range_m, options));
+  }
+  return scan;
 }
 
 std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,

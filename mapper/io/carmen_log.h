@@ -8,6 +8,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/core/options.h"
+#include "mapper/io/carmen_line.h"
 
 namespace depthgrid {
 
@@ -23,6 +24,9 @@ struct CarmenLogOptions {
 
   void Visit(OptionsVisitor& v);
 };
+
+// What a line's readings mean.
+Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that
 // are damaged, truncated or out of time order are left out and counted in Warnings(). Throws

@@ -2,269 +2,194 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
-#include "mapper/surfel/skyline_cholesky.h"
+#include "mapper/surfel/landmarks.h"
 
 namespace depthgrid {
 namespace {
 
-Eigen::Vector2d Rotate(double c, double s, const Eigen::Vector2d& v) {
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
-}
+// The prior is never believed beyond this, a frame: simulated priors can be perfect.
+const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
+// How well the online estimate joins neighbouring groups, before loops have bent it: what keeps the
+// chain together in the first step, which only has to bring revisits within the gate.
+const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
+constexpr int kLoopIterations = 5;
+// Holds the first group where it is.
+constexpr double kAnchor = 1e12;
+// Keeps the factorisation alive when something is not determined at all; far below any information.
+constexpr double kRidge = 1e-9;
 
-Surfel Transformed(const Pose2& a_from_b, const Surfel& in_b) {
-  Surfel in_a = in_b;
-  const double c = std::cos(a_from_b.yaw_rad);
-  const double s = std::sin(a_from_b.yaw_rad);
-  in_a.point_m = Rotate(c, s, in_b.point_m) + a_from_b.translation();
-  in_a.normal = Rotate(c, s, in_b.normal);
-  return in_a;
-}
-
-int Nearest(const SurfelStore& store, const Surfel& piece, double reach_m, double gate_m,
-            double min_cosine) {
-  const Eigen::Vector2d& normal = piece.normal;
-  const Eigen::Vector2d half(std::abs(normal.x()) * gate_m + std::abs(normal.y()) * reach_m,
-                             std::abs(normal.y()) * gate_m + std::abs(normal.x()) * reach_m);
-  int best = -1;
-  double best_score = 2.0;
-  store.ForEachIn(piece.point_m - half, piece.point_m + half, [&](int i) {
-    const Surfel& surfel = store.at(i);
-    if (surfel.normal.dot(normal) < min_cosine) return;
-    const Eigen::Vector2d d = piece.point_m - surfel.point_m;
-    const double along = (d.x() * surfel.normal.y() - d.y() * surfel.normal.x()) / reach_m;
-    const double off = d.dot(surfel.normal) / gate_m;
-    if (std::abs(along) > 1.0 || std::abs(off) > 1.0) return;
-    const double score = along * along + off * off;
-    if (score < best_score) {
-      best_score = score;
-      best = i;
-    }
-  });
-  return best;
-}
-
-struct Observation {
-  int landmark;
-  int group;
-  const Surfel* local;
+struct Problem {
+  const std::vector<SurfelGroup>& groups;
+  const std::vector<GroupMotion>& motions;
+  const JointOptions& options;
 };
+
+// The factor of a chain of groups that are linked to their predecessors and by `links`.
+std::vector<int> ChainEnvelope(std::size_t groups, const std::vector<GroupLink>& links) {
+  std::vector<int> first(groups);
+  for (std::size_t g = 0; g < groups; ++g) first[g] = std::max(static_cast<int>(g) - 1, 0);
+  for (const GroupLink& link : links) {
+    int& place = first[static_cast<std::size_t>(link.second)];
+    place = std::min(place, link.first);
+  }
+  return first;
+}
+
+SkylineMatrix MatrixOf(const std::vector<int>& first_group) {
+  std::vector<int> first;
+  for (const int group : first_group) first.insert(first.end(), 3, 3 * group);
+  return SkylineMatrix(first);
+}
+
+// Solves for small motions of all groups and applies them. False when nothing could be solved.
+bool Step(SkylineMatrix h, const Eigen::VectorXd& g, std::vector<Pose2>& map_from_group) {
+  for (int i = 0; i < h.size(); ++i) *h.At(i, i) *= 1.0 + kRidge;
+  for (int i = 0; i < 3; ++i) *h.At(i, i) += kAnchor;
+  if (!h.Factor()) return false;
+  const Eigen::VectorXd step = h.Solve(g);
+  for (std::size_t i = 0; i < map_from_group.size(); ++i) {
+    const Eigen::Vector3d motion = step.segment<3>(3 * static_cast<Eigen::Index>(i));
+    map_from_group[i] = map_from_group[i] * Pose2::FromVector(motion);
+  }
+  return true;
+}
+
+// Bends the chain of groups as the loops want it, without looking at surfels.
+void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
+                std::vector<Pose2>& map_from_group) {
+  std::vector<GroupLink> links = loops;
+  for (std::size_t g = 1; g < problem.groups.size(); ++g) {
+    const int second = static_cast<int>(g);
+    links.push_back(
+        {second - 1, second, Between(map_from_group[g - 1], map_from_group[g]), kOnlineSigma, 0.0});
+  }
+  for (int i = 0; i < kLoopIterations; ++i) {
+    SkylineMatrix h = MatrixOf(ChainEnvelope(problem.groups.size(), links));
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(h.size());
+    for (const GroupLink& link : links) AddLink(link, map_from_group, h, g);
+    if (!Step(std::move(h), g, map_from_group)) return;
+  }
+}
+
+// The prior's error is mostly a slowly varying bias: over n frames it grows like n, not like its
+// root. `sigma` is that of one frame.
+std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d& sigma) {
+  std::vector<GroupLink> links;
+  for (std::size_t g = 1; g < problem.groups.size(); ++g) {
+    const GroupMotion& motion = problem.motions[g];
+    if (!motion.known) continue;
+    const int second = static_cast<int>(g);
+    links.push_back({second - 1, second, motion.before_from_group, motion.frames * sigma, 0.0});
+  }
+  return links;
+}
+
+Eigen::Vector3d MotionSigma(const Problem& problem, const std::vector<Pose2>& map_from_group) {
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  const std::vector<GroupLink> links = MotionLinks(problem, Eigen::Vector3d::Ones());
+  for (const GroupLink& link : links) {
+    const Eigen::Vector3d error = LinkError(link, map_from_group).cwiseQuotient(link.sigma);
+    squares += error.cwiseProduct(error);
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(links.size(), 1));
+  return (squares / count).cwiseSqrt().cwiseMax(kLeastMotionSigma);
+}
+
+double GateOf(int round, const JointOptions& options) {
+  const double share = options.rounds > 1 ? round / (options.rounds - 1.0) : 1.0;
+  return options.first_gate_m * std::pow(options.last_gate_m / options.first_gate_m, share);
+}
+
+// One Gauss-Newton step of everything: landmarks are found anew at the current poses.
+bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
+                const Eigen::Vector3d& motion_sigma, std::vector<Pose2>& map_from_group) {
+  const JointOptions& options = problem.options;
+  const AssociationGate gate{0.6 * options.landmark_m, gate_m,
+                             std::cos(RadFromDeg(options.max_angle_deg))};
+  const Landmarks landmarks(problem.groups, map_from_group, gate);
+  std::vector<int> first = ChainEnvelope(problem.groups.size(), loops);
+  landmarks.ExtendEnvelope(first);
+  SkylineMatrix h = MatrixOf(first);
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(h.size());
+  landmarks.AddTo(map_from_group, options.huber_sigmas, h, g);
+  for (const GroupLink& link : MotionLinks(problem, motion_sigma)) {
+    AddLink(link, map_from_group, h, g);
+  }
+  for (const GroupLink& loop : loops) AddLink(loop, map_from_group, h, g);
+  return Step(std::move(h), g, map_from_group);
+}
+
+JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) {
+  JointResult result;
+  for (const SurfelGroup& group : problem.groups) {
+    result.map_from_group.push_back(group.map_from_group);
+  }
+  result.motion_sigma = MotionSigma(problem, result.map_from_group);
+  if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
+  for (int round = 0; round < problem.options.rounds; ++round) {
+    if (!AdjustOnce(problem, loops, GateOf(round, problem.options), result.motion_sigma,
+                    result.map_from_group)) {
+      break;
+    }
+    result.motion_sigma = MotionSigma(problem, result.map_from_group);
+  }
+  return result;
+}
+
+// A link runs forward in time and is robust.
+GroupLink AsLoop(GroupLink link, double huber_sigmas) {
+  link.huber_sigmas = huber_sigmas;
+  if (link.first <= link.second) return link;
+  std::swap(link.first, link.second);
+  link.first_from_second = Inverse(link.first_from_second);
+  return link;
+}
 
 }  // namespace
 
-int MergeSurfel(SurfelStore& store, const Surfel& piece, double reach_m, double gate_m,
-                double min_cosine) {
-  const int index = Nearest(store, piece, reach_m, gate_m, min_cosine);
-  if (index < 0) return store.Add(piece);
-  Surfel& surfel = store.at(index);
-  const double error_m = surfel.normal.dot(piece.point_m - surfel.point_m);
-  surfel.information += piece.information;
-  surfel.point_m += (piece.information / surfel.information * error_m) * surfel.normal;
-  const double turn_rad =
-      std::atan2(surfel.normal.x() * piece.normal.y() - surfel.normal.y() * piece.normal.x(),
-                 surfel.normal.dot(piece.normal));
-  surfel.normal_information += piece.normal_information;
-  const double share_rad = piece.normal_information / surfel.normal_information * turn_rad;
-  surfel.normal = Rotate(std::cos(share_rad), std::sin(share_rad), surfel.normal);
-  return index;
+void JointOptions::Visit(OptionsVisitor& v) {
+  v.Group("groups", groups, "frames that move as one");
+  v.Number("rounds", rounds, {0, 1000}, "how often landmarks are found and all poses solved");
+  v.Number("first_gate_m", first_gate_m, {0.01, 10.0},
+           "how far apart one landmark may be seen, first");
+  v.Number("last_gate_m", last_gate_m, {0.01, 10.0}, "and in the last round");
+  v.Number("landmark_m", landmark_m, {0.005, 1.0}, "length of a landmark");
+  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between normals of one landmark, at most");
+  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+  v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
+  v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
+           "a loop farther from the adjusted poses is taken out");
 }
 
-void GroupBuilder::Close() {
-  if (groups_.empty() || !groups_.back().surfels.empty()) return;
-  groups_.back().surfels = store_.surfels();
-  store_.Clear();
-}
-
-const std::vector<SurfelGroup>& GroupBuilder::Groups() {
-  Close();
-  return groups_;
-}
-
-void GroupBuilder::Add(const std::vector<ScanSurfel>& pieces, const Pose2& map_from_base,
-                       const Pose2& prior_from_base, bool linked) {
-  bool fresh = groups_.empty() || !linked;
-  Pose2 group_from_base;
-  if (!fresh) {
-    group_from_base = Between(groups_.back().map_from_group, map_from_base);
-    fresh = group_from_base.translation().norm() > options_.group_m ||
-            std::abs(group_from_base.yaw_rad) > RadFromDeg(options_.group_deg);
+JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
+                          const std::vector<GroupMotion>& motions,
+                          const std::vector<GroupLink>& loops, const JointOptions& options) {
+  const Problem problem{groups, motions, options};
+  std::vector<bool> accepted(loops.size(), true);
+  while (true) {
+    std::vector<GroupLink> used;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      const bool joins_two = loops[i].first != loops[i].second;
+      if (accepted[i] && joins_two) used.push_back(AsLoop(loops[i], options.loop_huber_sigmas));
+    }
+    JointResult result = Adjust(problem, used);
+    // The worst false loop is taken out first: it may be what made true ones look wrong.
+    double worst = options.max_loop_sigmas;
+    std::size_t worst_loop = loops.size();
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      if (!accepted[i]) continue;
+      const double sigmas = LinkSigmas(loops[i], result.map_from_group);
+      if (sigmas <= worst) continue;
+      worst = sigmas;
+      worst_loop = i;
+    }
+    if (worst_loop == loops.size()) {
+      result.loop_accepted = accepted;
+      return result;
+    }
+    accepted[worst_loop] = false;
   }
-  if (fresh) {
-    Close();
-    SurfelGroup group;
-    group.first_frame = static_cast<int>(group_of_frame_.size());
-    group.map_from_group = map_from_base;
-    group.prior_from_group = prior_from_base;
-    group.linked = linked;
-    groups_.push_back(group);
-    group_from_base = Pose2{};
-  }
-  ++groups_.back().frames;
-  group_of_frame_.push_back(static_cast<int>(groups_.size()) - 1);
-  group_from_frame_.push_back(group_from_base);
-  const double min_cosine = std::cos(RadFromDeg(options_.max_angle_deg));
-  for (const ScanSurfel& piece : pieces) {
-    Surfel surfel;
-    surfel.point_m = piece.point_m;
-    surfel.normal = piece.normal;
-    surfel.information = 1.0 / (piece.sigma_m * piece.sigma_m);
-    surfel.normal_information = 1.0 / (piece.sigma_normal_rad * piece.sigma_normal_rad);
-    MergeSurfel(store_, Transformed(group_from_base, surfel), 0.5 * options_.landmark_m,
-                0.02 + 3.0 * piece.sigma_m, min_cosine);
-  }
-}
-
-JointResult AdjustJointly(const std::vector<SurfelGroup>& groups, const JointOptions& options) {
-  JointResult result;
-  const int count = static_cast<int>(groups.size());
-  std::vector<Pose2>& poses = result.map_from_group;
-  for (const SurfelGroup& group : groups) poses.push_back(group.map_from_group);
-  if (count < 2) return result;
-  const double min_cosine = std::cos(RadFromDeg(options.max_angle_deg));
-  const auto link_error = [&](int g) {
-    const Pose2 measured = Between(groups[g - 1].prior_from_group, groups[g].prior_from_group);
-    return Between(measured, Between(poses[g - 1], poses[g])).vector();
-  };
-  const auto estimate_sigma = [&] {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double n = 0.0;
-    for (int g = 1; g < count; ++g) {
-      if (!groups[g].linked) continue;
-      const Eigen::Vector3d e = link_error(g) / groups[g - 1].frames;
-      sum += e.cwiseProduct(e);
-      n += 1.0;
-    }
-    return Eigen::Vector3d((sum / std::max(n, 1.0)).cwiseSqrt());
-  };
-  result.odometry_sigma = estimate_sigma();
-
-  for (int round = 0; round < options.rounds; ++round) {
-    const double share =
-        options.rounds > 1 ? static_cast<double>(round) / (options.rounds - 1) : 1.0;
-    const double gate_m =
-        options.first_gate_m * std::pow(options.last_gate_m / options.first_gate_m, share);
-    // Landmarks at the current poses.
-    SurfelStore store;
-    std::vector<Observation> observations;
-    for (int g = 0; g < count; ++g) {
-      for (const Surfel& local : groups[g].surfels) {
-        const int landmark = MergeSurfel(store, Transformed(poses[g], local),
-                                         0.6 * options.landmark_m, gate_m, min_cosine);
-        observations.push_back({landmark, g, &local});
-      }
-    }
-    std::stable_sort(observations.begin(), observations.end(),
-                     [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
-    // The envelope.
-    std::vector<int> first_group(static_cast<std::size_t>(count));
-    for (int g = 0; g < count; ++g) first_group[g] = std::max(g - 1, 0);
-    for (std::size_t i = 0, j = 0; i < observations.size(); i = j) {
-      for (j = i; j < observations.size() && observations[j].landmark == observations[i].landmark;
-           ++j) {
-        first_group[observations[j].group] =
-            std::min(first_group[observations[j].group], observations[i].group);
-      }
-    }
-    std::vector<int> first;
-    for (int g = 0; g < count; ++g) {
-      for (int k = 0; k < 3; ++k) first.push_back(3 * first_group[g]);
-    }
-    SkylineMatrix h(first);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(3 * count);
-    // Surfels, each landmark's offset eliminated.
-    std::vector<double> error, weight;
-    std::vector<Eigen::Vector3d> row;
-    std::vector<int> of;
-    for (std::size_t i = 0, j = 0; i < observations.size(); i = j) {
-      j = i;
-      while (j < observations.size() && observations[j].landmark == observations[i].landmark) ++j;
-      if (j - i < 2 || observations[i].group == observations[j - 1].group) continue;
-      const Surfel& landmark = store.at(observations[i].landmark);
-      error.clear();
-      weight.clear();
-      row.clear();
-      of.clear();
-      double sum_w = 0, sum_we = 0;
-      for (std::size_t k = i; k < j; ++k) {
-        const Observation& o = observations[k];
-        const Pose2& pose = poses[o.group];
-        const double c = std::cos(pose.yaw_rad), s = std::sin(pose.yaw_rad);
-        const Eigen::Vector2d point_m = Rotate(c, s, o.local->point_m) + pose.translation();
-        const double e = landmark.normal.dot(point_m - landmark.point_m);
-        const double var =
-            1.0 / o.local->information + options.surfel_floor_m * options.surfel_floor_m;
-        double w = 1.0 / var;
-        const double sigmas = std::abs(e) / std::sqrt(var);
-        if (sigmas > options.huber_sigmas) w *= options.huber_sigmas / sigmas;
-        const Eigen::Vector2d n = Rotate(c, -s, landmark.normal);
-        const Eigen::Vector2d& p = o.local->point_m;
-        error.push_back(e);
-        weight.push_back(w);
-        row.emplace_back(n.x(), n.y(), n.y() * p.x() - n.x() * p.y());
-        of.push_back(o.group);
-        sum_w += w;
-        sum_we += w * e;
-      }
-      const double mean = sum_we / sum_w;
-      for (std::size_t k = 0; k < row.size(); ++k) {
-        const int gk = 3 * of[k];
-        const Eigen::Vector3d wj = weight[k] * row[k];
-        b.segment<3>(gk) -= (error[k] - mean) * wj;
-        for (int r = 0; r < 3; ++r) {
-          for (int q = 0; q <= r; ++q) h.At(gk + r, gk + q) += wj[r] * row[k][q];
-        }
-        for (std::size_t l = 0; l <= k; ++l) {
-          const int gl = 3 * of[l];
-          const Eigen::Vector3d wl = (weight[l] / sum_w) * row[l];
-          if (gl == gk) {
-            const double twice = l == k ? 1.0 : 2.0;
-            for (int r = 0; r < 3; ++r) {
-              for (int q = 0; q <= r; ++q)
-                h.At(gk + r, gk + q) -= 0.5 * twice * (wj[r] * wl[q] + wj[q] * wl[r]);
-            }
-          } else {
-            for (int r = 0; r < 3; ++r) {
-              double* out = h.Row(gk + r) + (gl - h.First(gk + r));
-              for (int q = 0; q < 3; ++q) out[q] -= wj[r] * wl[q];
-            }
-          }
-        }
-      }
-    }
-    // The prior's motion.
-    for (int g = 1; g < count; ++g) {
-      if (!groups[g].linked) continue;
-      const Eigen::Vector3d sigma =
-          groups[g - 1].frames * result.odometry_sigma.cwiseMax(Eigen::Vector3d(1e-5, 1e-5, 1e-6));
-      const Eigen::Vector3d info = sigma.cwiseProduct(sigma).cwiseInverse();
-      const Eigen::Vector3d e = link_error(g);
-      const Pose2 z = Inverse(Between(poses[g - 1], poses[g]));
-      Eigen::Matrix3d ji;
-      const double c = std::cos(z.yaw_rad), s = std::sin(z.yaw_rad);
-      ji << -c, s, -z.y_m, -s, -c, z.x_m, 0, 0, -1;
-      const Eigen::Matrix3d wji = info.asDiagonal() * ji;
-      const Eigen::Matrix3d hii = ji.transpose() * wji;
-      b.segment<3>(3 * g - 3) -= wji.transpose() * e;
-      b.segment<3>(3 * g) -= info.cwiseProduct(e);
-      for (int r = 0; r < 3; ++r) {
-        for (int q = 0; q <= r; ++q) h.At(3 * g - 3 + r, 3 * g - 3 + q) += hii(r, q);
-        h.At(3 * g + r, 3 * g + r) += info[r];
-        for (int q = 0; q < 3; ++q) h.At(3 * g + r, 3 * g - 3 + q) += wji(r, q);
-      }
-    }
-    for (int k = 0; k < 3; ++k) h.At(k, k) += 1e12;  // the first group stays
-    for (int i = 0; i < 3 * count; ++i) h.At(i, i) *= 1.0 + 1e-9;
-    result.landmarks = static_cast<int>(store.surfels().size());
-    result.observations = static_cast<int>(observations.size());
-    if (!h.Factor()) break;
-    const Eigen::VectorXd step = h.Solve(b);
-    for (int g = 0; g < count; ++g) {
-      poses[g] = poses[g] * Pose2{step[3 * g], step[3 * g + 1], step[3 * g + 2]};
-    }
-    result.odometry_sigma = estimate_sigma();
-  }
-  return result;
 }
 
 }  // namespace depthgrid

@@ -1,69 +1,48 @@
 // Poses and surfels corrected together (docs/math.md, "Joint adjustment").
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
-#include "mapper/core/pose2.h"
-#include "mapper/surfel/scan_surfels.h"
-#include "mapper/surfel/surfel_store.h"
+#include "mapper/core/options.h"
+#include "mapper/surfel/group_links.h"
+#include "mapper/surfel/surfel_groups.h"
 
 namespace depthgrid {
 
-// Frames so close together that their relative poses are taken as they are, seen as one.
-struct SurfelGroup {
-  int first_frame = 0;
-  int frames = 0;
-  Pose2 map_from_group;         // the pose of its first frame
-  Pose2 prior_from_group;       // the same in the prior's frame
-  bool linked = true;           // the prior's motion from the group before is meaningful
-  std::vector<Surfel> surfels;  // in group axes
-};
-
 struct JointOptions {
-  double group_m = 0.15;
-  double group_deg = 6.0;
-  double landmark_m = 0.04;
-  int rounds = 8;
+  SurfelGroupOptions groups;
+  int rounds = 6;
+  // What groups see is one landmark when it lies this near: in the first round, in the last.
   double first_gate_m = 0.5;
   double last_gate_m = 0.1;
-  double huber_sigmas = 2.5;
+  double landmark_m = 0.05;  // length of a landmark along its wall
   double max_angle_deg = 40.0;
-  double surfel_floor_m = 0.0;
+  double huber_sigmas = 2.5;
+  double loop_huber_sigmas = 2.0;
+  // A loop farther than this from the adjusted poses is taken out, and all adjusted again.
+  double max_loop_sigmas = 5.0;
+
+  void Visit(OptionsVisitor& v);
 };
 
-// Collects frames into groups.
-class GroupBuilder {
- public:
-  explicit GroupBuilder(const JointOptions& options) : options_(options) {}
-  void Add(const std::vector<ScanSurfel>& pieces, const Pose2& map_from_base,
-           const Pose2& prior_from_base, bool linked);
-  const std::vector<SurfelGroup>& Groups();
-  // Per frame: its group, and its pose in it.
-  const std::vector<int>& group_of_frame() const { return group_of_frame_; }
-  const std::vector<Pose2>& group_from_frame() const { return group_from_frame_; }
-
- private:
-  void Close();
-
-  JointOptions options_;
-  std::vector<SurfelGroup> groups_;
-  SurfelStore store_;
-  std::vector<int> group_of_frame_;
-  std::vector<Pose2> group_from_frame_;
+// The prior's motion from the group before, over so many frames; nothing is known when `known` is
+// false (SLAM jumped).
+struct GroupMotion {
+  bool known = false;
+  Pose2 before_from_group;
+  int frames = 0;
 };
 
 struct JointResult {
-  std::vector<Pose2> map_from_group;
-  Eigen::Vector3d odometry_sigma = Eigen::Vector3d::Zero();  // a frame, learned
-  int landmarks = 0;
-  int observations = 0;
+  std::vector<Pose2> map_from_group;  // the first is unchanged
+  std::vector<bool> loop_accepted;
+  Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();  // of the prior, a frame, as learnt
 };
 
-JointResult AdjustJointly(const std::vector<SurfelGroup>& groups, const JointOptions& options);
-
-// Adds a piece of surface to the store: to the surfel it belongs to or as a new one.
-int MergeSurfel(SurfelStore& store, const Surfel& piece, double reach_m, double gate_m,
-                double min_cosine);
+// `motions` has one entry a group; the first is not used. `loops` are links without an order of
+// time.
+JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
+                          const std::vector<GroupMotion>& motions,
+                          const std::vector<GroupLink>& loops, const JointOptions& options);
 
 }  // namespace depthgrid

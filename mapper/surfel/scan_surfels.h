@@ -1,70 +1,42 @@
-// A scan cut into short pieces of surface: what is matched and what is mapped.
+// A scan as surfels, in base axes: what is matched and what is mapped.
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "mapper/core/options.h"
-#include "mapper/core/scan.h"
-#include "mapper/surfel/range_noise.h"
+#include "mapper/surfel/scan_lines.h"
+#include "mapper/surfel/surfel.h"
 
 namespace depthgrid {
 
-// A piece of surface as one scan sees it, in base axes.
-struct ScanSurfel {
-  Eigen::Vector2d point_m;
-  Eigen::Vector2d normal;         // unit, towards the sensor
-  double sigma_m = 0.0;           // of the point along the normal
-  double sigma_normal_rad = 0.0;  // of the normal's direction
-  int beams = 0;
-};
-
 struct ScanSurfelOptions {
-  int beams = 8;                     // of a cluster, at most: trades time for nothing else
-  double max_width_m = 0.2;          // of a cluster, so that coarse scanners keep details
-  double jump_sigmas = 5.0;          // a difference of neighbours this unlikely cuts the scan
-  double split_chi2 = 30.0;          // a gain of fit this large makes two lines of one
-  int min_segment_beams = 4;         // shorter pieces are left out
-  double bearing_noise_steps = 0.0;  // uncertainty of a bearing, in steps between beams
+  // A surfel has the mean of so many beams at most; a line's normal comes from all of its beams.
+  int beams = 8;
+  // Nor is it longer than this, so that coarse scanners keep details.
+  double max_length_m = 0.2;
+  double jump_sigmas = 5.0;
+  double split_chi2 = 20.0;
+  int min_line_beams = 4;
 
   void Visit(OptionsVisitor& v);
 };
 
-class ScanSurfelExtractor {
+class ScanSurfelMaker {
  public:
-  explicit ScanSurfelExtractor(const ScanSurfelOptions& options) : options_(options) {}
-  // Valid until the next call.
-  const std::vector<ScanSurfel>& Extract(const Scan& scan, const RangeNoise& noise);
+  explicit ScanSurfelMaker(const ScanSurfelOptions& options)
+      : options_(options),
+        returns_(options.jump_sigmas),
+        lines_(options.split_chi2, options.min_line_beams) {}
+
+  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise);
 
  private:
-  struct Return {
-    double bearing_rad, cosine, sine, inverse_range, relative_sigma;
-  };
-  // Sums of weighted products over the returns before an index: normal equations of a line fit.
-  struct Sums {
-    double cc = 0, cs = 0, ss = 0, cu = 0, su = 0, uu = 0;
-  };
-  struct Piece {
-    int begin, end;
-  };
-
-  void CollectReturns(const Scan& scan, const RangeNoise& noise);
-  void CutAtJumps();
-  void Split(Piece piece);
-  void Emit(Piece piece);
-  Sums SumsOf(int begin, int end) const;
-  double Chi2(int begin, int end) const;
+  int BeamsAt(const ScanLine& line, int begin) const;
+  Surfel SurfelOf(const ScanLine& line, Span span) const;
 
   ScanSurfelOptions options_;
-  std::vector<float> bearings_;  // of the table below
-  std::vector<Eigen::Vector2d> directions_;
-  double step_rad_ = 0.0;
-  std::vector<Return> returns_;
-  std::vector<int> kept_;
-  std::vector<Sums> sums_;
-  std::vector<Piece> runs_;
-  std::vector<Piece> stack_;
-  std::vector<ScanSurfel> surfels_;
+  ScanReturns returns_;
+  ScanLineFinder lines_;
 };
 
 }  // namespace depthgrid

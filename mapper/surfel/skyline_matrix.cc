@@ -1,4 +1,4 @@
-#include "mapper/surfel/skyline_cholesky.h"
+#include "mapper/surfel/skyline_matrix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,17 @@
 namespace depthgrid {
 namespace {
 
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+
 double Dot(const double* a, const double* b, int n) {
-  return Eigen::Map<const Eigen::VectorXd>(a, n).dot(Eigen::Map<const Eigen::VectorXd>(b, n));
+  return ConstVector(a, n).dot(ConstVector(b, n));
 }
 
 }  // namespace
 
 SkylineMatrix::SkylineMatrix(std::vector<int> first) : first_(std::move(first)) {
   std::size_t total = 0;
+  begin_.reserve(first_.size());
   for (int i = 0; i < size(); ++i) {
     Require(First(i) >= 0 && First(i) <= i, "a skyline row begins at or before the diagonal");
     begin_.push_back(total);
@@ -27,13 +30,12 @@ SkylineMatrix::SkylineMatrix(std::vector<int> first) : first_(std::move(first)) 
 
 bool SkylineMatrix::Factor() {
   for (int i = 0; i < size(); ++i) {
-    double* row = Row(i);
     const int begin = First(i);
+    double* row = At(i, begin);
     for (int j = begin; j < i; ++j) {
-      const double* other = Row(j);
       const int k = std::max(begin, First(j));
-      const double sum = Dot(row + (k - begin), other + (k - First(j)), j - k);
-      row[j - begin] = (row[j - begin] - sum) / other[j - First(j)];
+      const double sum = Dot(row + (k - begin), At(j, k), j - k);
+      row[j - begin] = (row[j - begin] - sum) / *At(j, j);
     }
     double& diagonal = row[i - begin];
     diagonal -= Dot(row, row, i - begin);
@@ -46,13 +48,12 @@ bool SkylineMatrix::Factor() {
 Eigen::VectorXd SkylineMatrix::Solve(Eigen::VectorXd b) const {
   for (int i = 0; i < size(); ++i) {
     const int begin = First(i);
-    b[i] = (b[i] - Dot(Row(i), b.data() + begin, i - begin)) / Row(i)[i - begin];
+    b[i] = (b[i] - Dot(At(i, begin), b.data() + begin, i - begin)) / *At(i, i);
   }
   for (int i = size() - 1; i >= 0; --i) {
     const int begin = First(i);
-    b[i] /= Row(i)[i - begin];
-    Eigen::Map<Eigen::VectorXd>(b.data() + begin, i - begin) -=
-        b[i] * Eigen::Map<const Eigen::VectorXd>(Row(i), i - begin);
+    b[i] /= *At(i, i);
+    b.segment(begin, i - begin) -= b[i] * ConstVector(At(i, begin), i - begin);
   }
   return b;
 }

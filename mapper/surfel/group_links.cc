@@ -1,0 +1,52 @@
+#include "mapper/surfel/group_links.h"
+
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+Pose2 RelativePose(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
+  return Between(map_from_group[static_cast<std::size_t>(link.first)],
+                 map_from_group[static_cast<std::size_t>(link.second)]);
+}
+
+}  // namespace
+
+Eigen::Vector3d LinkError(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
+  return Between(link.first_from_second, RelativePose(link, map_from_group)).vector();
+}
+
+double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
+  return LinkError(link, map_from_group).cwiseQuotient(link.sigma).norm();
+}
+
+void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, SkylineMatrix& h,
+             Eigen::VectorXd& g) {
+  const Eigen::Vector3d error = LinkError(link, map_from_group);
+  Eigen::Vector3d weight = link.sigma.cwiseProduct(link.sigma).cwiseInverse();
+  const double sigmas = LinkSigmas(link, map_from_group);
+  if (link.huber_sigmas > 0.0 && sigmas > link.huber_sigmas) weight *= link.huber_sigmas / sigmas;
+  // A small motion of `first` moves second_from_first's far end by minus its adjoint.
+  const Pose2 second_from_first = Inverse(RelativePose(link, map_from_group));
+  const double c = std::cos(second_from_first.yaw_rad);
+  const double s = std::sin(second_from_first.yaw_rad);
+  Eigen::Matrix3d by_first;
+  by_first << -c, s, -second_from_first.y_m,  //
+      -s, -c, second_from_first.x_m,          //
+      0, 0, -1;
+  const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
+  const Eigen::Matrix3d first_block = by_first.transpose() * weighted;
+  const int i = 3 * link.first;
+  const int j = 3 * link.second;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column <= row; ++column) {
+      *h.At(i + row, i + column) += first_block(row, column);
+    }
+    for (int column = 0; column < 3; ++column) *h.At(j + row, i + column) += weighted(row, column);
+    *h.At(j + row, j + row) += weight[row];
+  }
+  g.segment<3>(i) -= weighted.transpose() * error;
+  g.segment<3>(j) -= weight.cwiseProduct(error);
+}
+
+}  // namespace depthgrid

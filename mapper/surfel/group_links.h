@@ -1,0 +1,31 @@
+// What is known of groups' relative poses apart from surfels: the prior's motion and loops.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapper/core/pose2.h"
+#include "mapper/surfel/skyline_matrix.h"
+
+namespace depthgrid {
+
+struct GroupLink {
+  int first = 0;  // < second
+  int second = 0;
+  Pose2 first_from_second;                          // measured
+  Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // of its error, in axes of `second`
+  double huber_sigmas = 0.0;                        // larger errors count linearly; 0: never
+};
+
+// The measured relative pose against that of the poses: (forward m, left m, yaw rad) in axes of
+// `second`.
+Eigen::Vector3d LinkError(const GroupLink& link, const std::vector<Pose2>& map_from_group);
+// Its length in standard deviations.
+double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_group);
+
+// Adds the link to the normal equations h step = g of small motions of all groups, three rows a
+// group.
+void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, SkylineMatrix& h,
+             Eigen::VectorXd& g);
+
+}  // namespace depthgrid

@@ -1,0 +1,112 @@
+#include "mapper/surfel/landmarks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// h(rows, columns) -= left * right^T for two different groups.
+void SubtractOuter(int row_place, int column_place, const Eigen::Vector3d& left,
+                   const Eigen::Vector3d& right, SkylineMatrix& h) {
+  for (int row = 0; row < 3; ++row) {
+    double* out = h.At(row_place + row, column_place);
+    out[0] -= left[row] * right[0];
+    out[1] -= left[row] * right[1];
+    out[2] -= left[row] * right[2];
+  }
+}
+
+void AddToOwnBlock(int place, const Eigen::Matrix3d& block, SkylineMatrix& h) {
+  for (int row = 0; row < 3; ++row) {
+    double* out = h.At(place + row, place);
+    for (int column = 0; column <= row; ++column) out[column] += block(row, column);
+  }
+}
+
+}  // namespace
+
+Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
+                     const std::vector<Pose2>& map_from_group, const AssociationGate& gate) {
+  std::vector<Sighting> in_time;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Motion2 motion(map_from_group[g]);
+    for (const Surfel& surfel : groups[g].surfels) {
+      in_time.push_back({store_.Merge(motion * surfel, gate), static_cast<int>(g), &surfel});
+    }
+  }
+  // Counting sort by landmark; within one they stay in order of time.
+  begin_.assign(static_cast<std::size_t>(store_.size()) + 1, 0);
+  for (const Sighting& s : in_time) ++begin_[static_cast<std::size_t>(s.landmark) + 1];
+  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  sightings_.resize(in_time.size());
+  for (const Sighting& s : in_time) sightings_[next[static_cast<std::size_t>(s.landmark)]++] = s;
+}
+
+void Landmarks::ExtendEnvelope(std::vector<int>& first) const {
+  for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
+    const int earliest = sightings_[begin_[landmark]].group;
+    for (std::size_t i = begin_[landmark]; i < begin_[landmark + 1]; ++i) {
+      int& place = first[static_cast<std::size_t>(sightings_[i].group)];
+      place = std::min(place, earliest);
+    }
+  }
+}
+
+Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
+                                double huber_sigmas) const {
+  const Surfel& landmark = store_[sighting.landmark];
+  const Surfel& local = *sighting.surfel;
+  Row row;
+  row.place = 3 * sighting.group;
+  row.error_m = OffsetFrom(landmark, motion * local.point_m);
+  const double sigmas = std::abs(row.error_m) * std::sqrt(local.information);
+  row.weight = local.information * std::min(1.0, huber_sigmas / sigmas);
+  row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
+  return row;
+}
+
+void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas,
+                      SkylineMatrix& h, Eigen::VectorXd& g) const {
+  std::vector<Motion2> motions;
+  for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
+  std::vector<Row> rows;
+  std::vector<std::pair<int, Eigen::Vector3d>> sums;
+  for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
+    const std::size_t begin = begin_[landmark];
+    const std::size_t end = begin_[landmark + 1];
+    if (sightings_[begin].group == sightings_[end - 1].group) continue;  // says nothing of poses
+    rows.clear();
+    double weights = 0.0;
+    double weighted_error = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto group = static_cast<std::size_t>(sightings_[i].group);
+      rows.push_back(RowOf(sightings_[i], motions[group], huber_sigmas));
+      weights += rows.back().weight;
+      weighted_error += rows.back().weight * rows.back().error_m;
+    }
+    const double offset_m = weighted_error / weights;
+    // Sightings by the same group come one after the other: one sum of rows each.
+    sums.clear();
+    for (const Row& row : rows) {
+      const Eigen::Vector3d weighted_row = row.weight * row.jacobian;
+      g.segment<3>(row.place) -= (row.error_m - offset_m) * weighted_row;
+      AddToOwnBlock(row.place, weighted_row * row.jacobian.transpose(), h);
+      if (!sums.empty() && sums.back().first == row.place) {
+        sums.back().second += weighted_row;
+      } else {
+        sums.emplace_back(row.place, weighted_row);
+      }
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      const Eigen::Vector3d scaled = sums[k].second / weights;
+      for (std::size_t l = 0; l < k; ++l) {
+        SubtractOuter(sums[k].first, sums[l].first, scaled, sums[l].second, h);
+      }
+      AddToOwnBlock(sums[k].first, -scaled * sums[k].second.transpose(), h);
+    }
+  }
+}
+
+}  // namespace depthgrid

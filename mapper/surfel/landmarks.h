@@ -1,0 +1,48 @@
+// Pieces of wall that several groups of frames saw.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapper/surfel/skyline_matrix.h"
+#include "mapper/surfel/surfel_groups.h"
+
+namespace depthgrid {
+
+// A group's surfel is a sighting of a landmark.
+struct Sighting {
+  int landmark = 0;
+  int group = 0;
+  const Surfel* surfel = nullptr;  // in the group's axes
+};
+
+class Landmarks {
+ public:
+  // Merges what the groups saw, placed at the given poses.
+  Landmarks(const std::vector<SurfelGroup>& groups, const std::vector<Pose2>& map_from_group,
+            const AssociationGate& gate);
+
+  const SurfelStore& store() const { return store_; }
+  // Lowers first[group] to the earliest group that shares a landmark with it.
+  void ExtendEnvelope(std::vector<int>& first) const;
+  // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
+  // offset along its normal is an unknown too; it is eliminated (Schur complement), which couples
+  // all groups that saw the landmark.
+  void AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, SkylineMatrix& h,
+             Eigen::VectorXd& g) const;
+
+ private:
+  struct Row {
+    int place = 0;  // of the group's first row
+    double weight = 0.0;
+    double error_m = 0.0;
+    Eigen::Vector3d jacobian;
+  };
+  Row RowOf(const Sighting& sighting, const Motion2& motion, double huber_sigmas) const;
+
+  SurfelStore store_;
+  std::vector<Sighting> sightings_;  // by landmark, then by group
+  std::vector<std::size_t> begin_;   // of each landmark's sightings, and the end of the last
+};
+
+}  // namespace depthgrid

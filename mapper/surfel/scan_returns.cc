@@ -1,0 +1,91 @@
+#include "mapper/surfel/scan_returns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace depthgrid {
+namespace {
+
+// Hits this many steps apart are still neighbours: beams between them were lost.
+constexpr double kMaxGapSteps = 3.5;
+// Walls seen more steeply than 85 degrees from their normal look like jumps.
+constexpr double kMaxIncidenceTangent = 11.4;
+// The noise changes slowly with range: it is looked up again after this relative change.
+constexpr double kNoiseLookupShare = 0.1;
+
+}  // namespace
+
+void ScanReturns::Read(const Scan& scan, const RangeNoise& noise) {
+  LearnDirections(scan);
+  returns_.clear();
+  double looked_up_m = 0.0;
+  double relative_sigma = 0.0;
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    if (!scan.beams[i].hit) continue;
+    const double range_m = scan.beams[i].range_m;
+    if (std::abs(range_m - looked_up_m) > kNoiseLookupShare * looked_up_m) {
+      looked_up_m = range_m;
+      relative_sigma = noise.RelativeSigma(range_m);
+    }
+    returns_.push_back({bearings_rad_[i], directions_[i], 1.0 / range_m, relative_sigma});
+  }
+  DropLoneOutliers();
+  Cut();
+}
+
+// Scans of one sensor share their bearings: sines and cosines are computed once.
+void ScanReturns::LearnDirections(const Scan& scan) {
+  const auto& beams = scan.beams;
+  const auto same = [](const Beam& beam, float bearing) { return beam.bearing_rad == bearing; };
+  if (beams.size() == bearings_rad_.size() &&
+      std::equal(beams.begin(), beams.end(), bearings_rad_.begin(), same)) {
+    return;
+  }
+  bearings_rad_.clear();
+  directions_.clear();
+  for (const Beam& beam : beams) {
+    const double bearing_rad = beam.bearing_rad;
+    bearings_rad_.push_back(beam.bearing_rad);
+    directions_.emplace_back(std::cos(bearing_rad), std::sin(bearing_rad));
+  }
+  if (beams.size() > 1) {
+    step_rad_ = (beams.back().bearing_rad - beams.front().bearing_rad) /
+                static_cast<double>(beams.size() - 1);
+  }
+}
+
+bool ScanReturns::Jumps(const ScanReturn& a, const ScanReturn& b) const {
+  const double gap_rad = b.bearing_rad - a.bearing_rad;
+  if (gap_rad > kMaxGapSteps * step_rad_) return true;
+  const double relative =
+      std::abs(a.inverse_range - b.inverse_range) / std::min(a.inverse_range, b.inverse_range);
+  return relative >
+         jump_sigmas_ * std::numbers::sqrt2 * a.relative_sigma + kMaxIncidenceTangent * gap_rad;
+}
+
+// A hit that differs from both neighbours, which agree with each other.
+void ScanReturns::DropLoneOutliers() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < returns_.size(); ++i) {
+    if (kept > 0 && i + 1 < returns_.size()) {
+      const ScanReturn& left = returns_[kept - 1];
+      const ScanReturn& right = returns_[i + 1];
+      if (Jumps(left, returns_[i]) && Jumps(returns_[i], right) && !Jumps(left, right)) continue;
+    }
+    returns_[kept++] = returns_[i];
+  }
+  returns_.resize(kept);
+}
+
+void ScanReturns::Cut() {
+  runs_.clear();
+  int begin = 0;
+  for (int i = 1; i <= size(); ++i) {
+    if (i < size() && !Jumps((*this)[i - 1], (*this)[i])) continue;
+    if (i > begin) runs_.push_back({begin, i});
+    begin = i;
+  }
+}
+
+}  // namespace depthgrid

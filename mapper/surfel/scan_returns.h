@@ -1,0 +1,52 @@
+// A scan's hits as inverse ranges, without lone outliers, cut where the range jumps.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapper/core/scan.h"
+#include "mapper/surfel/range_noise.h"
+
+namespace depthgrid {
+
+// Half-open interval of indices into the returns.
+struct Span {
+  int begin = 0;
+  int end = 0;
+  int size() const { return end - begin; }
+};
+
+struct ScanReturn {
+  double bearing_rad = 0.0;
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
+  double inverse_range = 0.0;   // 1/m
+  double relative_sigma = 0.0;  // of the range, and so of its inverse
+};
+
+class ScanReturns {
+ public:
+  // `jump_sigmas`: a difference of two neighbours this unlikely cuts.
+  explicit ScanReturns(double jump_sigmas) : jump_sigmas_(jump_sigmas) {}
+
+  void Read(const Scan& scan, const RangeNoise& noise);
+
+  int size() const { return static_cast<int>(returns_.size()); }
+  const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
+  const std::vector<Span>& runs() const { return runs_; }
+  double step_rad() const { return step_rad_; }  // mean angle between beams
+
+ private:
+  void LearnDirections(const Scan& scan);
+  bool Jumps(const ScanReturn& a, const ScanReturn& b) const;
+  void DropLoneOutliers();
+  void Cut();
+
+  double jump_sigmas_;
+  std::vector<float> bearings_rad_;  // those the directions were computed for
+  std::vector<Eigen::Vector2d> directions_;
+  double step_rad_ = 1.0;
+  std::vector<ScanReturn> returns_;
+  std::vector<Span> runs_;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,120 @@
+#include "mapper/surfel/surfel_matcher.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// Three directions need three pieces.
+constexpr int kMinPieces = 3;
+// Steps smaller than this change nothing any more: a tenth of the best map's accuracy.
+constexpr double kConvergedM = 2e-5;
+constexpr double kConvergedRad = 4e-6;
+// The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
+constexpr double kLeastVariance = 1e-10;
+// A residual within this many standard deviations is explained.
+constexpr double kExplainedSigmas = 3.0;
+// The linearised equations are not followed farther than this from where they were evaluated; what
+// the match says beyond it, it says in directions it hardly sees.
+constexpr double kFarthestM = 0.1;
+constexpr double kFarthestRad = 0.05;
+
+// h^-1 g over the directions that h sees.
+Eigen::Vector3d SeenStep(const NormalEquations& equations) {
+  // In units where a metre and a radian of a view 3 m deep weigh alike.
+  const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
+  const Eigen::Matrix3d h = unit.asDiagonal() * equations.h * unit.asDiagonal();
+  const Eigen::Vector3d g = unit.cwiseProduct(equations.g);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
+  constexpr double kUnseen = 1e-9;  // of the largest eigenvalue
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double value = solver.eigenvalues()[i];
+    if (value <= kUnseen * solver.eigenvalues()[2]) continue;
+    const Eigen::Vector3d direction = solver.eigenvectors().col(i);
+    step += std::clamp(direction.dot(g) / value, -kFarthestM, kFarthestM) * direction;
+  }
+  step = unit.cwiseProduct(step);
+  step.z() = std::clamp(step.z(), -kFarthestRad, kFarthestRad);
+  return step;
+}
+
+}  // namespace
+
+void SurfelMatchOptions::Visit(OptionsVisitor& v) {
+  v.Number("gate_m", gate_m, {0.01, 10.0}, "farther along the normal nothing is associated");
+  v.Number("along_m", along_m, {0.01, 10.0}, "farther along the wall nothing is associated");
+  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between associated normals, at most");
+  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+  v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
+  v.Number("debias", debias, {0.0, 100.0},
+           "a direction with less than this times the information that noisy normals feign is "
+           "not seen; 0 believes all");
+  v.Number("max_iterations", max_iterations, {1, 1000}, "of the least squares");
+}
+
+SurfelMatcher::Evaluation SurfelMatcher::Evaluate(const std::vector<Surfel>& pieces,
+                                                  const SurfelStore& map,
+                                                  const Pose2& map_from_base) const {
+  Evaluation evaluation;
+  NormalEquations& equations = evaluation.equations;
+  const Motion2 motion(map_from_base);
+  const double min_cosine = std::cos(RadFromDeg(options_.max_angle_deg));
+  const double floor_rad2 = options_.normal_floor_rad * options_.normal_floor_rad;
+  for (const Surfel& piece : pieces) {
+    const Surfel moved = motion * piece;
+    const double piece_variance = 1.0 / piece.information;
+    const AssociationGate gate{options_.along_m, options_.gate_m + 2.0 * std::sqrt(piece_variance),
+                               min_cosine};
+    const int index = map.Nearest(moved, gate);
+    if (index < 0) continue;
+    const Surfel& surfel = map[index];
+    const double error_m = OffsetFrom(surfel, moved.point_m);
+    const double variance = piece_variance + 1.0 / surfel.information;
+    const double sigmas = std::abs(error_m) / std::sqrt(variance);
+    const double weight = std::min(1.0, options_.huber_sigmas / sigmas) / variance;
+    const Eigen::Vector2d normal = motion.TurnBack(surfel.normal);
+    const Eigen::Vector2d tangent(-normal.y(), normal.x());
+    const Eigen::Vector3d row = OffsetJacobian(normal, piece.point_m);
+    const Eigen::Vector3d tangent_row = OffsetJacobian(tangent, piece.point_m);
+    const double normal_variance = std::max(1.0 / surfel.normal_information, floor_rad2);
+    equations.h += weight * row * row.transpose();
+    equations.g -= weight * error_m * row;
+    equations.false_h += weight * normal_variance * tangent_row * tangent_row.transpose();
+    ++evaluation.used;
+    evaluation.explained += sigmas < kExplainedSigmas ? 1 : 0;
+  }
+  return evaluation;
+}
+
+MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
+                                 const Prediction& prediction) const {
+  MatchResult match;
+  match.map_from_base = prediction.map_from_base;
+  const Eigen::Matrix3d prior_h =
+      (prediction.covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse();
+  Pose2 pose = prediction.map_from_base;
+  Evaluation evaluation;
+  NormalEquations seen;
+  while (match.iterations < options_.max_iterations) {
+    evaluation = Evaluate(pieces, map, pose);
+    ++match.iterations;
+    if (evaluation.used < kMinPieces) return match;
+    seen = Debiased(evaluation.equations, options_.debias);
+    const Eigen::Vector3d back = Between(pose, prediction.map_from_base).vector();
+    const Eigen::Vector3d step = (seen.h + prior_h).ldlt().solve(seen.g + prior_h * back);
+    pose = pose * Pose2::FromVector(step);
+    seen.g -= seen.h * step;  // as it is after the step
+    if (step.head<2>().norm() < kConvergedM && std::abs(step.z()) < kConvergedRad) break;
+  }
+  match.found = true;
+  match.map_from_base = pose * Pose2::FromVector(SeenStep(seen));
+  match.information = seen.h;
+  match.score = static_cast<double>(evaluation.explained) / static_cast<double>(pieces.size());
+  return match;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,47 @@
+// A scan's surfels against those of the map: robust point-to-line least squares.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/options.h"
+#include "mapper/frame_report.h"
+#include "mapper/surfel/debias.h"
+#include "mapper/surfel/surfel_store.h"
+
+namespace depthgrid {
+
+struct SurfelMatchOptions {
+  double gate_m = 0.15;            // farther along the normal nothing is associated
+  double along_m = 0.075;          // nor farther along the wall: the map's surfels are 5 cm apart
+  double max_angle_deg = 45.0;     // nor with normals farther apart
+  double huber_sigmas = 2.5;       // larger residuals count linearly
+  double normal_floor_rad = 0.01;  // no normal is known better
+  double debias = 3.0;             // threshold of Debiased()
+  int max_iterations = 10;
+
+  void Visit(OptionsVisitor& v);
+};
+
+class SurfelMatcher {
+ public:
+  explicit SurfelMatcher(const SurfelMatchOptions& options) : options_(options) {}
+
+  // Iterates towards the maximum a posteriori, which keeps directions that the scan does not see
+  // where the prediction puts them. What is returned is the match alone: the pose at which the
+  // debiased equations have their minimum, and their information.
+  MatchResult Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
+                    const Prediction& prediction) const;
+
+ private:
+  struct Evaluation {
+    NormalEquations equations;
+    int used = 0;
+    int explained = 0;
+  };
+  Evaluation Evaluate(const std::vector<Surfel>& pieces, const SurfelStore& map,
+                      const Pose2& map_from_base) const;
+
+  SurfelMatchOptions options_;
+};
+
+}  // namespace depthgrid
