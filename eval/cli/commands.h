@@ -45,6 +45,28 @@ struct MapArguments {
 };
 void Map(const MapArguments& arguments);
 
+struct SlamArguments {
+  std::string sequence;
+  std::string profile = "orb_slam2";
+  std::uint64_t seed = 1;
+  CommonArguments common;
+};
+void Slam(const SlamArguments& arguments);
+
+struct SlamCalibrateArguments {
+  std::string experiment;
+  double target_m = 0.0;
+  int seeds = 400;
+  std::uint64_t first_seed = 1;
+  CommonArguments common;
+};
+void SlamCalibrate(const SlamCalibrateArguments& arguments);
+
+struct SlamFitArguments {
+  std::vector<std::string> files;  // truth, estimate, truth, estimate ...
+};
+void FitSlam(const SlamFitArguments& arguments);
+
 struct EvalTrajectoryArguments {
   std::string reference;
   std::string estimate;

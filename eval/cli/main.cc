@@ -104,6 +104,47 @@ void AddRun(Program& program) {
   AddCache(*app, arguments->common);
 }
 
+void AddSlam(Program& program) {
+  const auto [app, arguments] = program.Add<SlamArguments>(
+      program.app, "slam", "Disturb a sequence's true trajectory as a SLAM system would",
+      "depthgrid slam /tmp/living_room --profile orb_slam2 --seed 1 -o /tmp/slam", &Slam);
+  app->add_option("sequence", arguments->sequence, "A TUM folder with groundtruth.txt")->required();
+  app->add_option("--profile", arguments->profile, "Which system, as slam.profile of an experiment")
+      ->capture_default_str();
+  app->add_option("--seed", arguments->seed, "Of the errors")->capture_default_str();
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+}
+
+void AddSlamCalibrate(Program& program) {
+  const auto [app, arguments] = program.Add<SlamCalibrateArguments>(
+      program.app, "slam-calibrate",
+      "Find the slam.drift_scale that gives a mean error of the live poses",
+      "depthgrid slam-calibrate living_room --set slam.profile=orb_slam2 --target 0.407",
+      &SlamCalibrate);
+  app->add_option("experiment", arguments->experiment, "Shipped experiment or scene, or a file")
+      ->required();
+  app->add_option("--target", arguments->target_m, "Mean distance to the truth in xy, metres")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  app->add_option("--seeds", arguments->seeds, "How many runs to average")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app->add_option("--first-seed", arguments->first_seed, "The first of them")
+      ->capture_default_str();
+  AddSet(*app, arguments->common);
+  AddThreads(*app, arguments->common);
+}
+
+void AddSlamFit(Program& program) {
+  const auto [app, arguments] = program.Add<SlamFitArguments>(
+      program.app, "slam-fit", "Find the slam settings that describe recorded SLAM runs",
+      "depthgrid slam-fit groundtruth.txt live.txt", &FitSlam);
+  app->add_option("files", arguments->files, "Pairs of TUM files: truth, estimate as given live")
+      ->required()
+      ->expected(2, 1000);
+}
+
 void AddEval(Program& program) {
   CLI::App* eval = program.app.add_subcommand("eval", "Score a trajectory or a map");
   eval->require_subcommand(1);
@@ -149,6 +190,9 @@ int Main(int argc, char** argv) {
   AddRender(program);
   AddMap(program);
   AddRun(program);
+  AddSlam(program);
+  AddSlamCalibrate(program);
+  AddSlamFit(program);
   AddEval(program);
   try {
     program.app.parse(argc, argv);

@@ -1,0 +1,54 @@
+#include "eval/cli/commands.h"
+#include "eval/output_folder.h"
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+#include "mapper/io/pose_track.h"
+#include "mapper/io/slam_files.h"
+#include "mapper/io/trajectory_file.h"
+#include "mapper/io/tum_folder.h"
+#include "sim/slam_surrogate.h"
+
+namespace depthgrid::cli {
+namespace {
+
+// The true pose of each frame of a TUM folder, at the frame's stamp.
+Trajectory TrueFrames(const std::string& folder) {
+  const std::string truth_path = folder + "/groundtruth.txt";
+  const Trajectory truth = ReadTrajectory(truth_path);
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : truth) stamps_s.push_back(pose.stamp_s);
+  const RecordingOptions options;
+  Trajectory frames;
+  for (const RecordedImage& image : ListTumFolder(folder, options).images) {
+    const auto nearest = NearestStamp(stamps_s, image.stamp_s, options.max_stamp_difference_s);
+    if (!nearest) {
+      throw InputError(truth_path, "has no pose for the image at " + std::to_string(image.stamp_s));
+    }
+    frames.push_back({image.stamp_s, truth[*nearest].world_from_camera});
+  }
+  return frames;
+}
+
+// Keys as in an experiment: slam.profile, slam.loops.recall ...
+struct SlamSettings {
+  SlamOptions slam;
+  void Visit(OptionsVisitor& v) { v.Group("slam", slam, "how SLAM errs"); }
+};
+
+}  // namespace
+
+void Slam(const SlamArguments& arguments) {
+  Config config;
+  config.Set("slam.profile", arguments.profile);
+  for (const std::string& assignment : arguments.common.set) config.Set(assignment);
+  SlamSettings settings;
+  config.Read(settings);
+  const Trajectory truth = TrueFrames(arguments.sequence);
+  OutputFolder folder(arguments.common.output, arguments.common.force);
+  WriteSlamFiles(folder.work().string(), DisturbTrajectory(truth, settings.slam, arguments.seed));
+  WriteFile(folder.File("slam.yaml"), ToYaml(settings));
+  folder.Commit();
+}
+
+}  // namespace depthgrid::cli

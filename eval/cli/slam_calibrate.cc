@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/cli/experiment_argument.h"
+#include "eval/world.h"
+#include "mapper/core/error.h"
+#include "sim/slam_calibration.h"
+
+namespace depthgrid::cli {
+
+void SlamCalibrate(const SlamCalibrateArguments& arguments) {
+  const ExperimentOptions options = ExperimentOrScene(arguments.experiment, arguments.common.set);
+  const World world = LoadWorld(options, ThreadsOr(arguments.common.threads));
+  const SeedRange seeds = {arguments.first_seed, arguments.seeds};
+  const DriftCalibration found =
+      CalibrateDrift(world.trajectory, options.slam, arguments.target_m, seeds);
+  if (!found.reached) {
+    throw InputError("--target",
+                     fmt::format("is {} m, but with drift_scale {} the error is {:.4f} m",
+                                 arguments.target_m, found.drift_scale, found.mean_error_m));
+  }
+  fmt::print(
+      "# mean live error {:.4f} m in xy, not aligned, over {} frames and {} seeds\n"
+      "slam: {{drift_scale: {:.4g}}}\n",
+      found.mean_error_m, world.trajectory.size(), seeds.count, found.drift_scale);
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,96 @@
+#include "sim/slam_fit.h"
+
+#include <fmt/format.h>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/metrics/association.h"
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/trajectory_file.h"
+#include "sim/slam_surrogate.h"
+
+namespace depthgrid::cli {
+namespace {
+
+constexpr int kCheckSeeds = 20;
+const std::vector<double>& Lags() {
+  static const std::vector<double> lags_s = {1.0 / 30.0, 0.1,  1.0 / 3.0, 1.0,
+                                             3.0,        10.0, 30.0,      60.0};
+  return lags_s;
+}
+
+SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path) {
+  SlamRun run;
+  for (const PosePair& pair :
+       Associate(ReadTrajectory(truth_path), ReadTrajectory(estimate_path))) {
+    run.truth.push_back(pair.reference);
+    run.estimate.push_back(pair.estimate);
+  }
+  if (run.truth.empty()) throw InputError(estimate_path, "shares no stamp with " + truth_path);
+  return run;
+}
+
+// What the fitted surrogate makes of the same true paths, over several seeds.
+std::vector<SlamRun> Imitated(const std::vector<SlamRun>& runs, const SlamOptions& options) {
+  std::vector<SlamRun> imitated;
+  for (const SlamRun& run : runs) {
+    for (std::uint64_t seed = 1; seed <= kCheckSeeds; ++seed) {
+      SlamRun copy;
+      const SlamOutput output = DisturbTrajectory(run.truth, options, seed);
+      for (std::size_t i = 0; i < run.truth.size(); ++i) {
+        if (!output.live[i].slam_from_camera) continue;
+        copy.truth.push_back(run.truth[i]);
+        copy.estimate.push_back({run.truth[i].stamp_s, *output.live[i].slam_from_camera});
+      }
+      imitated.push_back(std::move(copy));
+    }
+  }
+  return imitated;
+}
+
+void PrintComments(const std::string& text) {
+  std::size_t start = 0;
+  while (start < text.size()) {
+    const std::size_t end = text.find('\n', start);
+    fmt::print("# {}\n", text.substr(start, end - start));
+    if (end == std::string::npos) return;
+    start = end + 1;
+  }
+}
+
+std::string LagTable(const std::vector<LagError>& measured, const std::vector<LagError>& imitated) {
+  std::vector<std::vector<std::string>> rows = {
+      {"error over", "run (mm)", "surrogate (mm)", "run (deg)", "surrogate (deg)"}};
+  for (std::size_t i = 0; i < std::min(measured.size(), imitated.size()); ++i) {
+    rows.push_back({fmt::format("{:.3f} s", measured[i].lag_s),
+                    fmt::format("{:.1f}", 1e3 * measured[i].translation_m),
+                    fmt::format("{:.1f}", 1e3 * imitated[i].translation_m),
+                    fmt::format("{:.2f}", measured[i].rotation_deg),
+                    fmt::format("{:.2f}", imitated[i].rotation_deg)});
+  }
+  return Table(rows);
+}
+
+}  // namespace
+
+void FitSlam(const SlamFitArguments& arguments) {
+  const std::vector<std::string>& files = arguments.files;
+  if (files.size() % 2 != 0) {
+    throw InputError(files.back(), "has no partner: files come in pairs, truth and estimate");
+  }
+  std::vector<SlamRun> runs;
+  for (std::size_t i = 0; i < files.size(); i += 2) runs.push_back(ReadRun(files[i], files[i + 1]));
+  const SlamFit fit = FitSlamErrors(runs);
+  SlamOptions with_loops = fit.options;
+  with_loops.loops = WithScenario(with_loops.loops, LoopScenario::kTrue);
+  PrintComments(fmt::format(
+      "{:.1f} s of tracking: {} jumps, {} losses, {} corrections (left out of the fit)\n"
+      "turning about the pivot explains {:.0f} % of the sideways error from frame to frame\n",
+      fit.tracked_s, fit.jumps, fit.lost_bursts, fit.corrections, 100.0 * fit.pivot_explains));
+  PrintComments(
+      LagTable(ErrorOverLag(runs, Lags()), ErrorOverLag(Imitated(runs, with_loops), Lags())));
+  fmt::print("{}", ToYaml(fit.options));
+}
+
+}  // namespace depthgrid::cli
