@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/grid/probability_grid.h"
+#include "mapper/grid/scan_rasterizer.h"
 #include "mapper/match/correlative_search.h"
 #include "mapper/match/least_squares.h"
 #include "mapper/match/scan_matcher.h"
@@ -29,7 +30,7 @@ const OccupancyMap& RoomMap() {
     for (int k = 0; k < 90; ++k) {
       const Scan scan =
           ScanOf(FurnishedRoom(), PathPose(k), LaserOf(640), 1, static_cast<std::uint32_t>(k));
-      built.Insert(CellsOfScanPlain(SegmentsOf(scan, PathPose(k), 0.05)));
+      built.Insert(ScanRasterizer().Rasterize(scan, PathPose(k), 0.05));
     }
     return built;
   }();

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "mapper/core/error.h"
-#include "mapper/grid/scan_cells.h"
 
 namespace depthgrid {
 
@@ -31,7 +30,7 @@ void PaperReference::Insert(const std::shared_ptr<const Scan>& scan, const Pose2
 }
 
 void PaperReference::Draw(const Scan& scan, const Pose2& map_from_base) {
-  submaps_.Insert(CellsOfScanPlain(SegmentsOf(scan, map_from_base, resolution_m_)));
+  submaps_.Insert(rasterizer_.Rasterize(scan, map_from_base, resolution_m_));
 }
 
 Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mapper/graph/scan_submap_graph.h"
+#include "mapper/grid/scan_rasterizer.h"
 #include "mapper/grid/submap.h"
 #include "mapper/match/scan_matcher.h"
 #include "mapper/reference_map.h"
@@ -28,6 +29,7 @@ class PaperReference : public ReferenceMap {
   int scans_per_submap_;
   GraphOptions graph_options_;
   ScanMatcher matcher_;
+  ScanRasterizer rasterizer_;
   ActiveSubmaps submaps_;
   std::vector<Pose2> map_from_base_;  // of all scans inserted, as the map has them now
   std::vector<ScanMeasurement> measurements_;

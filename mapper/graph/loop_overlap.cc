@@ -5,6 +5,7 @@
 
 #include "mapper/core/occupancy_map.h"
 #include "mapper/grid/probability_grid.h"
+#include "mapper/grid/scan_rasterizer.h"
 
 namespace depthgrid {
 namespace {
@@ -23,6 +24,7 @@ GridOptions PlaceGrid(const OverlapOptions& options) {
 
 Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
                   const OverlapOptions& options) {
+  ScanRasterizer rasterizer;
   Place place{.points = {}, .grid = ProbabilityGrid(PlaceGrid(options))};
   const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
   const int steps = options.window_frames / options.stride;
@@ -31,8 +33,7 @@ Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
     if (index < 0 || index >= static_cast<int>(frames.size())) continue;
     const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    place.grid.Insert(
-        CellsOfScanPlain(SegmentsOf(*frame.scan, middle_from_base, options.resolution_m)));
+    place.grid.Insert(rasterizer.Rasterize(*frame.scan, middle_from_base, options.resolution_m));
     for (const Beam& beam : frame.scan->beams) {
       if (beam.hit) place.points.push_back(middle_from_base * EndPoint(beam));
     }

@@ -57,6 +57,10 @@ class CellMask {
     for (int word = first_word + 1; word < last_word; ++word) row[word] = ~std::uint64_t{0};
     row[last_word] |= to_last;
   }
+  // Takes out the cells of a mask of the same rectangle.
+  void Remove(const CellMask& other) {
+    for (std::size_t i = 0; i < bits_.size(); ++i) bits_[i] &= ~other.bits_[i];
+  }
   // False outside the mask's rectangle.
   bool Contains(const Cell& cell) const {
     const int word = WordOf(cell.x) - first_word_;
@@ -65,6 +69,8 @@ class CellMask {
     }
     return ((Row(cell.y)[word] >> (cell.x & (kWordCells - 1))) & 1U) != 0;
   }
+  bool operator==(const CellMask&) const = default;
+
   std::size_t Count() const {
     std::size_t count = 0;
     for (const std::uint64_t word : bits_) count += static_cast<std::size_t>(std::popcount(word));

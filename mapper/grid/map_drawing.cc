@@ -16,8 +16,8 @@ MapDrawing::MapDrawing(const GridOptions& options)
 
 void MapDrawing::Add(const Scan& scan, const Pose2& map_from_base) {
   const double clear_margin_m = options_.clear_margin_cells * options_.resolution_m;
-  const ScanCells cells =
-      CellsOfScanPlain(SegmentsOf(scan, map_from_base, options_.resolution_m, clear_margin_m));
+  const ScanCells& cells =
+      rasterizer_.Rasterize(scan, map_from_base, options_.resolution_m, clear_margin_m);
   AddMask(cells.hit, true);
   AddMask(cells.passed, false);
 }

@@ -10,7 +10,7 @@
 
 #include "mapper/core/occupancy_map.h"
 #include "mapper/grid/grid_options.h"
-#include "mapper/grid/scan_cells.h"
+#include "mapper/grid/scan_rasterizer.h"
 
 namespace depthgrid {
 
@@ -43,6 +43,7 @@ class MapDrawing {
   int miss_units_;
   int min_units_;
   int max_units_;
+  ScanRasterizer rasterizer_;
   std::map<TileIndex, std::unique_ptr<Tile>> tiles_;  // ordered: no result depends on addresses
 };
 

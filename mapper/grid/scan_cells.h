@@ -3,10 +3,8 @@
 // it: that is "hits before misses, one update a cell and scan".
 #pragma once
 
-#include <vector>
-
-#include "mapper/core/scan.h"
 #include "mapper/grid/cell_mask.h"
+#include "mapper/grid/scan_segments.h"
 
 namespace depthgrid {
 
@@ -15,24 +13,6 @@ struct ScanCells {
   CellMask hit;
   CellMask passed;  // cells crossed by a beam's clear interval, less those hit
 };
-
-// Beams in cell coordinates (metres / resolution) of the map frame.
-struct ScanSegments {
-  struct Segment {
-    Eigen::Vector2d clear_from = Eigen::Vector2d::Zero();
-    Eigen::Vector2d clear_to = Eigen::Vector2d::Zero();
-    Eigen::Vector2d end = Eigen::Vector2d::Zero();  // of the hit
-    bool clears = false;
-    bool hit = false;
-  };
-  std::vector<Segment> beams;
-  Cell min_cell;  // around all of them
-  Cell max_cell;
-};
-
-// `clear_margin_m`: a beam stops clearing this far before its hit.
-ScanSegments SegmentsOf(const Scan& scan, const Pose2& map_from_base, double resolution_m,
-                        double clear_margin_m = 0.0);
 
 // The reference: every beam's cells, one beam after the other.
 ScanCells CellsOfScanPlain(const ScanSegments& segments);

@@ -4,6 +4,7 @@
 #include "mapper/grid/log_odds.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/grid/probability_grid.h"
+#include "mapper/grid/scan_rasterizer.h"
 #include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
@@ -18,7 +19,7 @@ Beam HitAt(float bearing_rad, float range_m) {
 }
 
 ScanCells CellsOf(const Scan& scan, const Pose2& map_from_base = {0.025, 0.025, 0.0}) {
-  return CellsOfScanPlain(SegmentsOf(scan, map_from_base, 0.05));
+  return CellsOfScanPlain(SegmentBuilder().Build(scan, map_from_base, 0.05));
 }
 
 TEST(LogOdds, IsTheInverseOfTheProbability) {
@@ -56,6 +57,76 @@ TEST(ScanCells, AHitOutweighsEveryPass) {
   EXPECT_TRUE(cells.passed.Contains({5, 0}));
 }
 
+// Rooms full of clutter, seen with every kind of laser, range and gap in the data.
+TEST(ScanRasterizer, GivesTheCellsOfThePlainReference) {
+  RandomStream random(2, RandomStage::kTest);
+  ScanRasterizer rasterizer;
+  SegmentBuilder builder;
+  int cases = 0;
+  std::size_t passed = 0;
+  for (const double field_of_view_deg : {0.5, 58.0, 140.0, 359.0}) {
+    for (const int beams : {1, 2, 45, 640}) {
+      for (int i = 0; i < 60; ++i, ++cases) {
+        PlanarWorld world = RectangleWorld(-6.0, -7.0, 9.0, 5.0);
+        for (int wall = 0; wall < 8; ++wall) {
+          const Eigen::Vector2d from(random.Uniform(-6, 9), random.Uniform(-7, 5));
+          world.push_back({from, from + Eigen::Vector2d(random.Normal(), random.Normal())});
+        }
+        const Pose2 pose{random.Uniform(-3, 3), random.Uniform(-3, 3), random.Uniform(-4, 4)};
+        Scan scan = ScanOf(world, pose,
+                           {.beams = beams,
+                            .field_of_view_rad = RadFromDeg(field_of_view_deg),
+                            .min_range_m = i % 3 == 0 ? 0.0 : 0.4,
+                            .max_range_m = i % 2 == 0 ? 6.0 : 20.0,
+                            .sigma_of_range = i % 4 == 0 ? 0.0 : 0.01},
+                           static_cast<std::uint64_t>(i));
+        for (Beam& beam : scan.beams) {
+          if (random.Uniform() < 0.05) beam = {.bearing_rad = beam.bearing_rad};
+          if (random.Uniform() < 0.1) beam.clear_from_m = beam.clear_to_m * 0.7F;
+        }
+        const double margin_m = i % 5 == 0 ? 0.07 : 0.0;
+        const ScanCells plain = CellsOfScanPlain(builder.Build(scan, pose, 0.05, margin_m));
+        const ScanCells& fast = rasterizer.Rasterize(scan, pose, 0.05, margin_m);
+        ASSERT_EQ(fast.hit, plain.hit);
+        ASSERT_EQ(fast.passed, plain.passed)
+            << field_of_view_deg << " deg, " << beams << " beams, case " << i;
+        passed += plain.passed.Count();
+      }
+    }
+  }
+  EXPECT_EQ(cases, 960);
+  EXPECT_GT(passed, 1000000U);
+}
+
+// Beams along the axes and the diagonals from a cell's corner and centre meet corners exactly.
+TEST(ScanRasterizer, GivesTheCellsOfThePlainReferenceOnGridLines) {
+  ScanRasterizer rasterizer;
+  SegmentBuilder builder;
+  int cases = 0;
+  for (const double x : {0.0, 0.5, 0.25}) {
+    for (const double y : {0.0, 0.5}) {
+      for (int turn = 0; turn < 8; ++turn, ++cases) {
+        Scan scan{{}, 20.0};
+        for (int i = -4; i <= 3; ++i) {
+          scan.beams.push_back(HitAt(static_cast<float>(i * kPi / 4), 7.0F));
+        }
+        const Pose2 pose{x, y, turn * kPi / 4};
+        const ScanCells plain = CellsOfScanPlain(builder.Build(scan, pose, 1.0));
+        const ScanCells& fast = rasterizer.Rasterize(scan, pose, 1.0);
+        ASSERT_EQ(fast.hit, plain.hit);
+        ASSERT_EQ(fast.passed, plain.passed) << x << " " << y << " " << turn;
+      }
+    }
+  }
+  EXPECT_EQ(cases, 48);
+}
+
+TEST(ScanRasterizer, UnsortedBeamsAreStillRight) {
+  const Scan scan{{HitAt(0.3F, 2.0F), HitAt(-0.2F, 3.0F), HitAt(0.1F, 1.0F)}, 6.0};
+  ScanRasterizer rasterizer;
+  EXPECT_EQ(rasterizer.Rasterize(scan, {0.025, 0.025, 0.0}, 0.05).passed, CellsOf(scan).passed);
+}
+
 TEST(ProbabilityGrid, OneUpdateACellAndScan) {
   GridOptions options;
   ProbabilityGrid grid(options);
@@ -90,7 +161,7 @@ TEST(ProbabilityGrid, GrowingLosesNothing) {
   ProbabilityGrid growing{GridOptions{}};
   for (int i = 0; i < 40; ++i) {
     const Pose2 pose{random.Uniform(-25, 25), random.Uniform(-25, 25), random.Uniform(-3, 3)};
-    scans.push_back(CellsOfScanPlain(SegmentsOf(ScanOf(world, pose, laser), pose, 0.05)));
+    scans.push_back(CellsOf(ScanOf(world, pose, laser), pose));
     growing.Insert(scans.back());
   }
   // The same from a grid that is large enough from the start.
@@ -140,7 +211,7 @@ TEST(MapDrawing, TheLogOddsRuleIsTheGridsRule) {
     const Pose2 pose{0.01 * i, 0.02 * i, 0.2 * i};
     const Scan scan = ScanOf(world, pose, {.beams = 200});
     drawing.Add(scan, pose);
-    grid.Insert(CellsOfScanPlain(SegmentsOf(scan, pose, options.resolution_m)));
+    grid.Insert(CellsOf(scan, pose));
   }
   const OccupancyMap map = drawing.Map();
   ASSERT_GT(map.geometry.size(), 5000U);
