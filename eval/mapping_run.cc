@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <ctime>
-#include <map>
+
+#include "eval/metrics/association.h"
+#include "mapper/io/pose_track.h"
 
 namespace depthgrid {
 namespace {
@@ -35,15 +37,16 @@ Trajectory Collect(const MappingRun& run, PoseOf pose_of) {
   return trajectory;
 }
 
+// SLAM's final pose of each frame, by stamp; empty if there are none.
 std::vector<std::optional<Pose3>> FinalPosesOf(const std::vector<FrameReport>& reports,
                                                const Trajectory& final_poses) {
   if (final_poses.empty()) return {};
-  std::map<double, Pose3> by_stamp;
-  for (const StampedPose& pose : final_poses) by_stamp[pose.stamp_s] = pose.world_from_camera;
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : final_poses) stamps_s.push_back(pose.stamp_s);
   std::vector<std::optional<Pose3>> found;
   for (const FrameReport& report : reports) {
-    const auto entry = by_stamp.find(report.stamp_s);
-    found.push_back(entry == by_stamp.end() ? std::nullopt : std::optional(entry->second));
+    const auto entry = NearestStamp(stamps_s, report.stamp_s, kMaxStampDifferenceS);
+    found.push_back(entry ? std::optional(final_poses[*entry].world_from_camera) : std::nullopt);
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
 #include "mapper/io/png.h"
+#include "mapper/io/slam_files.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {
@@ -48,20 +49,6 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 
-// Occupied cells stand for members, so that map viewers show them.
-StateMap AsStates(const CellSet& cells) {
-  StateMap states(cells.geometry);
-  for (std::size_t i = 0; i < cells.members.size(); ++i) {
-    states.states[i] = cells.members[i] != 0 ? CellState::kFree : CellState::kUnknown;
-  }
-  return states;
-}
-
-void WriteTruth(const OutputFolder& folder, const TruthRecord& truth) {
-  WriteMap(folder.File("truth_map.yaml"), truth.map);
-  if (truth.observable) WriteMap(folder.File("observable.yaml"), AsStates(*truth.observable));
-}
-
 void WriteMetrics(const OutputFolder& folder, const RunScores& scores) {
   WriteFile(folder.File("metrics.json"),
             MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
@@ -85,8 +72,9 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteMap(folder.File("map.yaml"), MapOf(*record.mapping));
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
-  if (record.truth != nullptr) WriteTruth(folder, *record.truth);
+  if (record.truth != nullptr) WriteTruthMaps(folder.work().string(), *record.truth);
   if (record.scores != nullptr) WriteMetrics(folder, *record.scores);
+  if (record.slam != nullptr) WriteFile(folder.File("loops.csv"), LoopsText(*record.slam));
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),

@@ -1,8 +1,20 @@
 #include "eval/truth_record.h"
 
+#include "mapper/io/map_file.h"
 #include "sim/truth_grid.h"
 
 namespace depthgrid {
+namespace {
+
+StateMap AsStates(const CellSet& cells) {
+  StateMap states(cells.geometry);
+  for (std::size_t i = 0; i < cells.members.size(); ++i) {
+    states.states[i] = cells.members[i] != 0 ? CellState::kFree : CellState::kUnknown;
+  }
+  return states;
+}
+
+}  // namespace
 
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads) {
   const TruthGridOptions band = {options.grid.resolution_m, options.scan.band_low_m,
@@ -18,6 +30,11 @@ TruthRecord MakeTruth(const World& world, const MapperOptions& options, int thre
   truth.observable =
       ObservableCells(world.rays, floor_z_m, truth.map, world.camera, world.trajectory, band, seen);
   return truth;
+}
+
+void WriteTruthMaps(const std::string& folder, const TruthRecord& truth) {
+  WriteMap(folder + "/truth_map.yaml", truth.map);
+  if (truth.observable) WriteMap(folder + "/observable.yaml", AsStates(*truth.observable));
 }
 
 }  // namespace depthgrid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "eval/world.h"
 #include "mapper/core/cell_set.h"
@@ -19,5 +20,8 @@ struct TruthRecord {
 // Band, ranges and resolution are the mapper's settings: they say what the map is a map of.
 // `threads` only changes the speed.
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads);
+
+// truth_map.yaml/.pgm and observable.yaml/.pgm, the latter's free cells being the observable ones.
+void WriteTruthMaps(const std::string& folder, const TruthRecord& truth);
 
 }  // namespace depthgrid

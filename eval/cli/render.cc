@@ -3,9 +3,13 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/experiment.h"
 #include "eval/output_folder.h"
+#include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
 #include "eval/world.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
 #include "mapper/io/tum_folder.h"
 #include "sim/colour_camera.h"
 
@@ -35,10 +39,11 @@ void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFold
 }  // namespace
 
 void Render(const RenderArguments& arguments) {
-  const ExperimentOptions options = ExperimentOrScene(arguments.scene, arguments.common.set);
+  const ExperimentOptions given = ExperimentOrScene(arguments.scene, arguments.common.set);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   const int threads = ThreadsOr(arguments.common.threads);
-  const World world = LoadWorld(options, threads);
+  const World world = LoadWorld(given, threads);
+  const ExperimentOptions options = Completed(given, world.scene);
   const SyntheticSensor sensor(world, options, CacheFolder(arguments.common));
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   {
@@ -52,6 +57,8 @@ void Render(const RenderArguments& arguments) {
   std::vector<double> stamps_s;
   for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
   writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);
+  WriteTruthMaps(folder.work().string(), MakeTruth(world, options.mapper, threads));
+  WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(world.scene_hash));
   folder.Commit();
 }
 
