@@ -1,6 +1,7 @@
 #include "eval/truth_record.h"
 
 #include "mapper/io/map_file.h"
+#include "sim/observable_cells.h"
 #include "sim/truth_grid.h"
 
 namespace depthgrid {
@@ -27,8 +28,8 @@ TruthRecord MakeTruth(const World& world, const MapperOptions& options, int thre
   TruthRecord truth;
   truth.trajectory = world.trajectory;
   truth.map = TruthMap(world.scene.mesh, floor_z_m, world.trajectory, band);
-  truth.observable =
-      ObservableCells(world.rays, floor_z_m, truth.map, world.camera, world.trajectory, band, seen);
+  truth.observable = ObservableCells(world.scene.mesh, floor_z_m, truth.map, world.camera,
+                                     world.trajectory, band, seen);
   return truth;
 }
 

@@ -1,9 +1,10 @@
+#include "sim/observable_cells.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "mapper/core/level.h"
-#include "sim/truth_grid.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
@@ -28,7 +29,7 @@ World Look(const TriangleMesh& mesh, const Trajectory& path, const ObservableOpt
            const PinholeCamera& camera = {}) {
   const TruthGridOptions grid;
   World world{TruthMap(mesh, 0.0, path, grid), {}};
-  world.seen = ObservableCells(RayScene(mesh), 0.0, world.truth, camera, path, grid, options);
+  world.seen = ObservableCells(mesh, 0.0, world.truth, camera, path, grid, options);
   return world;
 }
 
@@ -95,6 +96,20 @@ TEST(ObservableCells, HangingThingsBlockToo) {
   EXPECT_FALSE(world.Sees(8.03, 3.0));
 }
 
+TEST(ObservableCells, ThinBoardsBlockToo) {
+  // A table top 2 mm thick on nothing, and a shelf of one triangle's thickness.
+  for (const float thickness_m : {0.002F, 0.0F}) {
+    TriangleMesh mesh = Room();
+    Append(mesh, test::Box({6.51F, 2.0F, 0.703F}, {7.0F, 4.0F, 0.703F + thickness_m}));
+    const World world = Look(mesh, At(4.0, 3.0, 0.0));
+    EXPECT_EQ(world.StateAt(6.72, 3.0), CellState::kOccupied);
+    EXPECT_TRUE(world.Sees(6.52, 3.0));
+    EXPECT_FALSE(world.Sees(6.72, 3.0));
+    EXPECT_FALSE(world.Sees(7.5, 3.0));
+    EXPECT_FALSE(world.Sees(8.03, 3.0));
+  }
+}
+
 TEST(ObservableCells, WallsOnCellBoundariesAreSeenFromBothSides) {
   // Walls at 0 and 8 m lie on boundaries; the hit may come out on either side of them.
   const TriangleMesh mesh = test::Box({0, 0, 0}, {8, 6, 2.5F});
@@ -117,9 +132,9 @@ TEST(ObservableCells, WallsOnCellBoundariesAreSeenFromBothSides) {
 }
 
 TEST(ObservableCells, ATurnedAndTiltedCameraSeesAccordingly) {
-  // Looking 40 degrees down from 1.15 m, the view ends 13.4 degrees below the horizon: the lowest
-  // ray leaves it at 1.025 / tan(13.4 deg) = 4.3 m, so the wall 4.02 m ahead is seen just above the
-  // floor; 50 degrees down it is not.
+  // Looking 40 degrees down from 1.15 m, the view ends 13.4 degrees below the horizon: the band's
+  // lower limit leaves it at 1.05 / tan(13.4 deg) = 4.4 m, so the wall 4.02 m ahead is seen just
+  // above the floor; 50 degrees down it is not.
   const auto tilted = [](double down_deg) {
     Trajectory path = At(4.0, 3.0, 0.0);
     path[0].world_from_camera.rotation =
@@ -132,7 +147,7 @@ TEST(ObservableCells, ATurnedAndTiltedCameraSeesAccordingly) {
   EXPECT_TRUE(down.Sees(4.7, 3.0));  // the floor is in view from 0.5 m on
   const World further_down = Look(Room(), tilted(50.0));
   EXPECT_FALSE(further_down.Sees(8.03, 3.0));
-  // Straight down every bearing is in view, as far as the pyramid reaches: 0.66 x 1.025 m sideways.
+  // Straight down every bearing is in view, as far as the pyramid reaches: 0.66 x 1.05 m sideways.
   const World straight = Look(Room(), tilted(90.0));
   EXPECT_TRUE(straight.Sees(4.0, 3.55));
   EXPECT_TRUE(straight.Sees(4.0, 2.45));
