@@ -81,13 +81,14 @@ BENCHMARK_CAPTURE(Correlative, reference, SearchMethod::kReference)->Apply(Corre
 // Argument: beams.
 void Bicubic(benchmark::State& state, SolverMethod method) {
   const std::vector<Case> cases = CasesOf(static_cast<int>(state.range(0)));
-  LeastSquares solver({.method = method});
+  const LeastSquaresOptions options{.method = method};
+  FastMatchCost cost;
   std::size_t i = 0;
   int iterations = 0;
   for (auto _ : state) {
     const Case& c = cases[i++ % cases.size()];
-    const LeastSquaresMatch match =
-        solver.Solve(c.points, ViewOf(RoomMap()), c.predicted, c.predicted);
+    cost.Prepare(c.points, ViewOf(RoomMap()), c.predicted);
+    const LeastSquaresMatch match = SolveLeastSquares(options, cost, c.predicted, c.predicted);
     iterations += match.iterations;
     benchmark::DoNotOptimize(match);
   }

@@ -145,53 +145,90 @@ double SumOf(Floats lanes) {
   return sum;
 }
 
-// With lengths in cells: cost, gradient and second derivative of 1/2 sum (1 - M)^2.
+// What one point adds, with lengths in cells; E is its motion per unit of (x, y, yaw).
+struct PointTerms {
+  Floats residual;                   // 1 - M
+  Floats slope_x, slope_y;           // gradient of M
+  Floats slope_yaw;                  // E^T grad M
+  Floats wall_xx, wall_xy, wall_yy;  // C = grad M grad M^T - (1 - M) D^2 M
+  Floats x_yaw, y_yaw, yaw_yaw;      // of E^T C E, and the bend of the point's way in yaw_yaw
+
+  PointTerms(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
+    residual = hn::Mul(weight, hn::Sub(hn::Set(kFloats, 1.0F), m.value));
+    slope_x = hn::Mul(weight, m.dx);
+    slope_y = hn::Mul(weight, m.dy);
+    slope_yaw = hn::NegMulAdd(arm_y, slope_x, hn::Mul(arm_x, slope_y));
+    wall_xx = hn::NegMulAdd(residual, m.dxx, hn::Mul(slope_x, slope_x));
+    wall_xy = hn::NegMulAdd(residual, m.dxy, hn::Mul(slope_x, slope_y));
+    wall_yy = hn::NegMulAdd(residual, m.dyy, hn::Mul(slope_y, slope_y));
+    x_yaw = hn::NegMulAdd(arm_y, wall_xx, hn::Mul(arm_x, wall_xy));
+    y_yaw = hn::NegMulAdd(arm_y, wall_xy, hn::Mul(arm_x, wall_yy));
+    const Floats turn = hn::NegMulAdd(arm_y, x_yaw, hn::Mul(arm_x, y_yaw));
+    // The arm's own second derivative is minus the arm.
+    const Floats bend = hn::MulAdd(arm_x, slope_x, hn::Mul(arm_y, slope_y));
+    yaw_yaw = hn::MulAdd(residual, bend, turn);
+  }
+};
+
+// A gradient or second derivative from sums with lengths in cells.
+Eigen::Vector3d GradientOf(double x, double y, double yaw, double resolution_m) {
+  return {x / resolution_m, y / resolution_m, yaw};
+}
+
+Eigen::Matrix3d HessianOf(double xx, double xy, double yy, double x_yaw, double y_yaw,
+                          double yaw_yaw, double resolution_m) {
+  const Eigen::Vector3d per_unit{1.0 / resolution_m, 1.0 / resolution_m, 1.0};
+  Eigen::Matrix3d hessian;
+  hessian << xx, xy, x_yaw, xy, yy, y_yaw, x_yaw, y_yaw, yaw_yaw;
+  return per_unit.asDiagonal() * hessian * per_unit.asDiagonal();
+}
+
 struct CostSums {
   Floats value = hn::Zero(kFloats);
   Floats x = hn::Zero(kFloats), y = hn::Zero(kFloats), yaw = hn::Zero(kFloats);
   Floats xx = hn::Zero(kFloats), xy = hn::Zero(kFloats), yy = hn::Zero(kFloats);
   Floats x_yaw = hn::Zero(kFloats), y_yaw = hn::Zero(kFloats), yaw_yaw = hn::Zero(kFloats);
 
-  // A point's sample, with its arm from base in map axes.
-  void Add(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
-    const Floats r = hn::Mul(weight, hn::Sub(hn::Set(kFloats, 1.0F), m.value));
-    const Floats slope_x = hn::Mul(weight, m.dx);
-    const Floats slope_y = hn::Mul(weight, m.dy);
-    value = hn::MulAdd(r, r, value);
-    const Floats slope_yaw = hn::NegMulAdd(arm_y, slope_x, hn::Mul(arm_x, slope_y));
-    x = hn::NegMulAdd(r, slope_x, x);
-    y = hn::NegMulAdd(r, slope_y, y);
-    yaw = hn::NegMulAdd(r, slope_yaw, yaw);
-    // Per point: C = grad M grad M^T - r D^2 M, then E^T C E with E the point's motion.
-    const Floats c_xx = hn::NegMulAdd(r, m.dxx, hn::Mul(slope_x, slope_x));
-    const Floats c_xy = hn::NegMulAdd(r, m.dxy, hn::Mul(slope_x, slope_y));
-    const Floats c_yy = hn::NegMulAdd(r, m.dyy, hn::Mul(slope_y, slope_y));
-    const Floats c_x_yaw = hn::NegMulAdd(arm_y, c_xx, hn::Mul(arm_x, c_xy));
-    const Floats c_y_yaw = hn::NegMulAdd(arm_y, c_xy, hn::Mul(arm_x, c_yy));
-    xx = hn::Add(xx, c_xx);
-    xy = hn::Add(xy, c_xy);
-    yy = hn::Add(yy, c_yy);
-    x_yaw = hn::Add(x_yaw, c_x_yaw);
-    y_yaw = hn::Add(y_yaw, c_y_yaw);
-    const Floats turn = hn::NegMulAdd(arm_y, c_x_yaw, hn::Mul(arm_x, c_y_yaw));
-    // The arm's own second derivative is minus the arm.
-    const Floats bend = hn::MulAdd(arm_x, slope_x, hn::Mul(arm_y, slope_y));
-    yaw_yaw = hn::Add(yaw_yaw, hn::MulAdd(r, bend, turn));
+  void Add(const PointTerms& point) {
+    value = hn::MulAdd(point.residual, point.residual, value);
+    x = hn::NegMulAdd(point.residual, point.slope_x, x);
+    y = hn::NegMulAdd(point.residual, point.slope_y, y);
+    yaw = hn::NegMulAdd(point.residual, point.slope_yaw, yaw);
+    xx = hn::Add(xx, point.wall_xx);
+    xy = hn::Add(xy, point.wall_xy);
+    yy = hn::Add(yy, point.wall_yy);
+    x_yaw = hn::Add(x_yaw, point.x_yaw);
+    y_yaw = hn::Add(y_yaw, point.y_yaw);
+    yaw_yaw = hn::Add(yaw_yaw, point.yaw_yaw);
   }
+  Eigen::Vector3d Gradient(double resolution_m) const {
+    return GradientOf(SumOf(x), SumOf(y), SumOf(yaw), resolution_m);
+  }
+  Eigen::Matrix3d Hessian(double resolution_m) const {
+    return HessianOf(SumOf(xx), SumOf(xy), SumOf(yy), SumOf(x_yaw), SumOf(y_yaw), SumOf(yaw_yaw),
+                     resolution_m);
+  }
+  // Second derivatives with respect to the pose and to a shift of the points.
+  Eigen::Matrix<double, 3, 2> ShiftCurvature(double resolution_m) const {
+    const double xy_sum = SumOf(xy);
+    Eigen::Matrix<double, 3, 2> curvature;
+    curvature << SumOf(xx), xy_sum, xy_sum, SumOf(yy), SumOf(x_yaw), SumOf(y_yaw);
+    curvature /= resolution_m;
+    curvature.topRows<2>() /= resolution_m;
+    return curvature;
+  }
+};
 
-  MatchCost Cost(double resolution_m, double count) const {
-    const double per_m = 1.0 / resolution_m;
-    MatchCost cost;
-    cost.value = 0.5 * SumOf(value) / count;
-    cost.gradient = Eigen::Vector3d(SumOf(x) * per_m, SumOf(y) * per_m, SumOf(yaw)) / count;
-    const double h_xy = SumOf(xy) * per_m * per_m;
-    const double h_x_yaw = SumOf(x_yaw) * per_m;
-    const double h_y_yaw = SumOf(y_yaw) * per_m;
-    cost.hessian << SumOf(xx) * per_m * per_m, h_xy, h_x_yaw,  //
-        h_xy, SumOf(yy) * per_m * per_m, h_y_yaw,              //
-        h_x_yaw, h_y_yaw, SumOf(yaw_yaw);
-    cost.hessian /= count;
-    return cost;
+// The curvature of walls turned by 90 degrees: C becomes (yy, -xy, xx).
+struct AlongSums {
+  Floats x_yaw = hn::Zero(kFloats), y_yaw = hn::Zero(kFloats), yaw_yaw = hn::Zero(kFloats);
+
+  void Add(const PointTerms& point, Floats arm_x, Floats arm_y) {
+    const Floats along_x = hn::Neg(hn::MulAdd(arm_y, point.wall_yy, hn::Mul(arm_x, point.wall_xy)));
+    const Floats along_y = hn::MulAdd(arm_y, point.wall_xy, hn::Mul(arm_x, point.wall_xx));
+    x_yaw = hn::Add(x_yaw, along_x);
+    y_yaw = hn::Add(y_yaw, along_y);
+    yaw_yaw = hn::Add(yaw_yaw, hn::NegMulAdd(arm_y, along_x, hn::Mul(arm_x, along_y)));
   }
 };
 
@@ -254,7 +291,8 @@ bool FastMatchCost::Reaches(const Pose2& map_from_base) const {
   return moved_m <= kReachCells * copied_.resolution_m;
 }
 
-MatchCost FastMatchCost::Evaluate(const Pose2& map_from_base) {
+template <typename Visitor>
+void FastMatchCost::ForEachVector(const Pose2& map_from_base, Visitor visit) {
   if (!Reaches(map_from_base)) CopyMap(map_from_base);
   const double r = copied_.resolution_m;
   const Floats c = hn::Set(kFloats, static_cast<float>(std::cos(map_from_base.yaw_rad) / r));
@@ -270,13 +308,9 @@ MatchCost FastMatchCost::Evaluate(const Pose2& map_from_base) {
   const Floats high_x = hn::Set(kFloats, static_cast<float>(copied_.width_cells - 3));
   const Floats high_y = hn::Set(kFloats, static_cast<float>(copied_.height_cells - 3));
   const Ints row = hn::Set(kInts, copied_.width_cells);
+  const Ints one = hn::Set(kInts, 1);
   const std::size_t lanes = hn::Lanes(kFloats);
-  const auto address = reinterpret_cast<std::uintptr_t>(polynomial_.data());
-  const std::size_t vector_bytes = lanes * sizeof(float);
-  float* polynomial =
-      polynomial_.data() + (vector_bytes - address % vector_bytes) % vector_bytes / sizeof(float);
-
-  CostSums sums;
+  float* polynomial = AlignedPolynomials();
   for (std::size_t i = 0; i < x_m_.size(); i += lanes, polynomial += kCoefficients * lanes) {
     const Floats x_m = hn::LoadU(kFloats, x_m_.data() + i);
     const Floats y_m = hn::LoadU(kFloats, y_m_.data() + i);
@@ -287,7 +321,6 @@ MatchCost FastMatchCost::Evaluate(const Pose2& map_from_base) {
     const Floats u0 = hn::Floor(u);
     const Floats v0 = hn::Floor(v);
     // The first of the 4 x 4 cells is one before in x and y.
-    const Ints one = hn::Set(kInts, 1);
     const Ints square = hn::Add(hn::Mul(hn::Sub(hn::ConvertTo(kInts, v0), one), row),
                                 hn::Sub(hn::ConvertTo(kInts, u0), one));
     if (!hn::AllTrue(kInts, hn::Eq(square, hn::LoadU(kInts, square_.data() + i)))) {
@@ -295,9 +328,63 @@ MatchCost FastMatchCost::Evaluate(const Pose2& map_from_base) {
       FitPolynomials(probs_.data(), copied_.width_cells, square_.data() + i, polynomial);
     }
     const Sample sample = EvaluatePolynomials(polynomial, hn::Sub(u, u0), hn::Sub(v, v0));
-    sums.Add(sample, arm_x, arm_y, hn::LoadU(kFloats, weight_.data() + i));
+    const Floats weight = hn::LoadU(kFloats, weight_.data() + i);
+    visit(i, sample, PointTerms(sample, arm_x, arm_y, weight), arm_x, arm_y, weight);
   }
-  return sums.Cost(r, points_->size());
+}
+
+float* FastMatchCost::AlignedPolynomials() {
+  const std::size_t vector_bytes = hn::Lanes(kFloats) * sizeof(float);
+  const auto address = reinterpret_cast<std::uintptr_t>(polynomial_.data());
+  return polynomial_.data() +
+         (vector_bytes - address % vector_bytes) % vector_bytes / sizeof(float);
+}
+
+MatchCost FastMatchCost::Evaluate(const Pose2& map_from_base) {
+  CostSums sums;
+  ForEachVector(map_from_base, [&](std::size_t, const Sample&, const PointTerms& point, Floats,
+                                   Floats, Floats) { sums.Add(point); });
+  const double count = points_->size();
+  const double r = copied_.resolution_m;
+  return {0.5 * SumOf(sums.value) / count, sums.Gradient(r) / count, sums.Hessian(r) / count};
+}
+
+InformationSums FastMatchCost::SumUp(const Pose2& map_from_base,
+                                     const MatchInformationOptions& options) {
+  const double r = copied_.resolution_m;
+  InformationSums sums;
+  Eigen::Matrix2d walls = Eigen::Matrix2d::Zero();
+  CostSums patch;
+  AlongSums along;
+  Floats explained = hn::Zero(kFloats);
+  const Floats threshold = hn::Set(kFloats, static_cast<float>(kExplainedProb));
+  const auto end_patch = [&] {
+    const Eigen::Matrix<double, 3, 2> shift_curvature = patch.ShiftCurvature(r);
+    walls += shift_curvature.topRows<2>();
+    sums.curvature += patch.Hessian(r);
+    AddPatch(patch.Gradient(r), shift_curvature, options.map_sigma_m, sums.gradient_covariance);
+    patch = CostSums();
+  };
+  const float patch_m2 = static_cast<float>(options.patch_m * options.patch_m);
+  std::size_t start = 0;
+  ForEachVector(map_from_base, [&](std::size_t i, const Sample& sample, const PointTerms& point,
+                                   Floats arm_x, Floats arm_y, Floats weight) {
+    const float dx_m = x_m_[i] - x_m_[start];
+    const float dy_m = y_m_[i] - y_m_[start];
+    if (i % kPatchStep == 0 && dx_m * dx_m + dy_m * dy_m > patch_m2) {
+      end_patch();
+      start = i;
+    }
+    patch.Add(point);
+    along.Add(point, arm_x, arm_y);
+    explained = hn::Add(explained, hn::IfThenElseZero(hn::Gt(sample.value, threshold), weight));
+  });
+  end_patch();
+  sums.curvature_along_walls =
+      HessianOf(walls(1, 1) * r * r, -walls(0, 1) * r * r, walls(0, 0) * r * r, SumOf(along.x_yaw),
+                SumOf(along.y_yaw), SumOf(along.yaw_yaw), r);
+  sums.explained = static_cast<int>(SumOf(explained));
+  return sums;
 }
 
 }  // namespace depthgrid

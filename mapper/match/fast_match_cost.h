@@ -1,10 +1,12 @@
 // The cost of Eq. 4 (match_cost.h), eight points at a time in single precision.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "mapper/match/match_cost.h"
+#include "mapper/match/match_information.h"
 
 namespace depthgrid {
 
@@ -13,17 +15,30 @@ namespace depthgrid {
 // evaluated again. Keeps its memory from scan to scan.
 class FastMatchCost {
  public:
-  // Copies the points and the part of the map they can reach from here. Not empty.
+  // Copies the part of the map that the points can reach from here. Not empty; the points and the
+  // map's cells must live until the last evaluation.
   void Prepare(const MatchPoints& points, const ProbabilityView& view, const Pose2& map_from_base);
 
   // As EvaluateMatchCost, to single precision, anywhere.
   MatchCost Evaluate(const Pose2& map_from_base);
+  // As SumUpInformation.
+  InformationSums SumUp(const Pose2& map_from_base, const MatchInformationOptions& options);
+
+  // What the last Prepare was given; the points are borrowed.
+  const MatchPoints& points() const { return *points_; }
+  const ProbabilityView& view() const { return view_; }
+  // Lengths that points and cells have: of the points' arms, about, and of a cell.
+  double arm_m() const { return std::max(0.5 * points_->farthest_m, 1e-3); }
+  double resolution_m() const { return view_.geometry.resolution_m; }
 
  private:
+  template <typename Visitor>
+  void ForEachVector(const Pose2& map_from_base, Visitor visit);
   bool Reaches(const Pose2& map_from_base) const;
   void CopyMap(const Pose2& map_from_base);
+  float* AlignedPolynomials();
 
-  const MatchPoints* points_ = nullptr;  // of the last Prepare, as is the view
+  const MatchPoints* points_ = nullptr;
   ProbabilityView view_;
 
   // The copied rectangle around the points at `middle_`.

@@ -13,17 +13,6 @@ constexpr double kLastStepM = 2e-5;
 // Costs summed in single precision differ by less than this share for no reason.
 constexpr double kCostRounding = 1e-6;
 
-// Moving by one unit of a coordinate moves points by this many metres (root mean square): makes
-// metres and radians comparable.
-Eigen::Vector3d CoordinateScale(const MatchPoints& points) {
-  double sum_m2 = 0.0;
-  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    sum_m2 += points.x_m[i] * points.x_m[i] + points.y_m[i] * points.y_m[i];
-  }
-  const double arm_m = std::sqrt(sum_m2 / points.size());
-  return {1.0, 1.0, std::max(arm_m, 1e-3)};
-}
-
 // The smallest of a few shifts mu >= 0 for which H + mu I is safely positive definite, and the
 // step it gives.
 Eigen::Vector3d DampedStep(const Eigen::Matrix3d& hessian, const Eigen::Vector3d& gradient,
@@ -42,11 +31,17 @@ Eigen::Vector3d DampedStep(const Eigen::Matrix3d& hessian, const Eigen::Vector3d
   }
 }
 
-// Damped Newton (docs/math.md). `scale` as above; steps are at most `max_step_m` long.
-template <typename Evaluate>
-LeastSquaresMatch SolveWithNewton(Evaluate evaluate, const Pose2& seed_map_from_base,
-                                  const Eigen::Vector3d& scale, double max_step_m,
-                                  int max_iterations) {
+}  // namespace
+
+LeastSquaresMatch SolveWithNewton(FastMatchCost& cost, const Pose2& seed_map_from_base,
+                                  const MatchPrior& prior, int max_iterations) {
+  const auto evaluate = [&](const Pose2& pose) {
+    MatchCost here = cost.Evaluate(pose);
+    prior.AddTo(pose, here);
+    return here;
+  };
+  // Steps are measured by how far they move a typical point.
+  const Eigen::Vector3d scale{1.0, 1.0, cost.arm_m()};
   const Eigen::Vector3d unscale = scale.cwiseInverse();
   LeastSquaresMatch match{.map_from_base = seed_map_from_base};
   MatchCost here = evaluate(match.map_from_base);
@@ -56,7 +51,7 @@ LeastSquaresMatch SolveWithNewton(Evaluate evaluate, const Pose2& seed_map_from_
     const Eigen::Matrix3d hessian = unscale.asDiagonal() * here.hessian * unscale.asDiagonal();
     Eigen::Vector3d step = DampedStep(hessian, unscale.cwiseProduct(here.gradient), damping);
     const double length_m = step.norm();
-    if (length_m > max_step_m) step *= max_step_m / length_m;
+    if (length_m > cost.resolution_m()) step *= cost.resolution_m() / length_m;
     const Pose2 candidate =
         Pose2::FromVector(match.map_from_base.vector() + unscale.cwiseProduct(step));
     match.converged = length_m < kLastStepM;
@@ -77,8 +72,6 @@ LeastSquaresMatch SolveWithNewton(Evaluate evaluate, const Pose2& seed_map_from_
   return match;
 }
 
-}  // namespace
-
 void LeastSquaresOptions::Visit(OptionsVisitor& v) {
   v.Choice("method", method, {{SolverMethod::kFast, "fast"}, {SolverMethod::kCeres, "ceres"}},
            "the solver; both find the same minimum");
@@ -89,26 +82,15 @@ void LeastSquaresOptions::Visit(OptionsVisitor& v) {
            "pull of the predicted yaw; 0 is prior-free, Cartographer has 40");
 }
 
-LeastSquares::LeastSquares(const LeastSquaresOptions& options) : options_(options) {}
-
-LeastSquaresMatch LeastSquares::Solve(const MatchPoints& points, const ProbabilityView& view,
-                                      const Pose2& seed_map_from_base,
-                                      const Pose2& predicted_map_from_base) {
-  if (points.size() == 0) return {.map_from_base = seed_map_from_base};
-  const MatchPrior prior{predicted_map_from_base, options_.prior_translation_weight_per_m,
-                         options_.prior_rotation_weight_per_rad};
-  if (options_.method == SolverMethod::kCeres) {
-    return SolveWithCeres(points, view, seed_map_from_base, prior, options_.max_iterations);
-  }
-  cost_.Prepare(points, view, seed_map_from_base);
-  return SolveWithNewton(
-      [&](const Pose2& pose) {
-        MatchCost cost = cost_.Evaluate(pose);
-        prior.AddTo(pose, cost);
-        return cost;
-      },
-      seed_map_from_base, CoordinateScale(points), view.geometry.resolution_m,
-      options_.max_iterations);
+LeastSquaresMatch SolveLeastSquares(const LeastSquaresOptions& options, FastMatchCost& cost,
+                                    const Pose2& seed_map_from_base,
+                                    const Pose2& predicted_map_from_base) {
+  const MatchPrior prior{predicted_map_from_base, options.prior_translation_weight_per_m,
+                         options.prior_rotation_weight_per_rad};
+  return options.method == SolverMethod::kCeres
+             ? SolveWithCeres(cost.points(), cost.view(), seed_map_from_base, prior,
+                              options.max_iterations)
+             : SolveWithNewton(cost, seed_map_from_base, prior, options.max_iterations);
 }
 
 }  // namespace depthgrid

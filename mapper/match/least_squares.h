@@ -28,21 +28,18 @@ struct LeastSquaresMatch {
   int iterations = 0;
 };
 
-class LeastSquares {
- public:
-  explicit LeastSquares(const LeastSquaresOptions& options);
+// A local minimum of `cost`, which was prepared near the seed.
+LeastSquaresMatch SolveWithNewton(FastMatchCost& cost, const Pose2& seed_map_from_base,
+                                  const MatchPrior& prior, int max_iterations);
 
-  LeastSquaresMatch Solve(const MatchPoints& points, const ProbabilityView& view,
-                          const Pose2& seed_map_from_base, const Pose2& predicted_map_from_base);
-
- private:
-  LeastSquaresOptions options_;
-  FastMatchCost cost_;
-};
-
-// The reference: Ceres' BiCubicInterpolator and Levenberg-Marquardt.
+// The reference: Ceres' BiCubicInterpolator and Levenberg-Marquardt. Points are not empty.
 LeastSquaresMatch SolveWithCeres(const MatchPoints& points, const ProbabilityView& view,
                                  const Pose2& seed_map_from_base, const MatchPrior& prior,
                                  int max_iterations);
+
+// One of the two, as the options say. `cost` is prepared for the points and the view near the seed.
+LeastSquaresMatch SolveLeastSquares(const LeastSquaresOptions& options, FastMatchCost& cost,
+                                    const Pose2& seed_map_from_base,
+                                    const Pose2& predicted_map_from_base);
 
 }  // namespace depthgrid

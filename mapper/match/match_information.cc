@@ -1,97 +1,148 @@
 #include "mapper/match/match_information.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
+#include <Eigen/LU>
 
 #include "mapper/match/bicubic.h"
 
 namespace depthgrid {
 namespace {
 
-struct InformationSums {
-  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();         // H, second derivative of the cost
-  Eigen::Matrix3d false_curvature = Eigen::Matrix3d::Zero();   // what wrong wall directions give
-  Eigen::Matrix3d gradient_scatter = Eigen::Matrix3d::Zero();  // sum g g^T over the points
-};
+// Eigenvalues below this share of the largest are rounding.
+constexpr double kRounding = 1e-9;
 
-InformationSums SumUp(const MatchPoints& points, const ProbabilityView& view,
-                      const Pose2& map_from_base) {
-  InformationSums sums;
-  const double c = std::cos(map_from_base.yaw_rad);
-  const double s = std::sin(map_from_base.yaw_rad);
-  Eigen::Matrix2d map_from_base_axes;
-  map_from_base_axes << c, -s, s, c;
-  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    const Eigen::Vector2d point{points.x_m[i], points.y_m[i]};
-    const BicubicSample m = SampleBicubic(view, map_from_base * point);
-    const double residual = 1.0 - m.value;
-    const Eigen::Vector2d slope = map_from_base_axes.transpose() * Eigen::Vector2d(m.dx, m.dy);
-    Eigen::Matrix2d second;
-    second << m.dxx, m.dxy, m.dxy, m.dyy;
-    const Eigen::Matrix2d wall = slope * slope.transpose() - residual *
-                                                                 map_from_base_axes.transpose() *
-                                                                 second * map_from_base_axes;
-    // The same curvature turned by 90 degrees: along the wall.
-    Eigen::Matrix2d along;
-    along << wall(1, 1), -wall(0, 1), -wall(1, 0), wall(0, 0);
-    Eigen::Matrix<double, 2, 3> motion;  // of the point per unit of (forward, left, yaw)
-    motion << 1.0, 0.0, -point.y(), 0.0, 1.0, point.x();
-    const Eigen::Vector3d gradient = -residual * motion.transpose() * slope;
-    sums.curvature += motion.transpose() * wall * motion;
-    sums.curvature(2, 2) += residual * point.dot(slope);
-    sums.false_curvature += motion.transpose() * along * motion;
-    sums.gradient_scatter += gradient * gradient.transpose();
-  }
-  return sums;
-}
-
-// Keeps of `signal` in every direction the share by which it exceeds `noise`: with
-// signal v = lambda noise v, the factor max(0, 1 - 3 / lambda).
-Eigen::Matrix3d Debias(const Eigen::Matrix3d& signal, const Eigen::Matrix3d& noise) {
+// The curvature left in every direction when `noise` of it is wrong: with
+// curvature v = lambda noise v the factor max(0, 1 - 3 / lambda), three being where an estimate is
+// told from its error.
+Eigen::Matrix3d Debiased(const Eigen::Matrix3d& curvature, const Eigen::Matrix3d& noise) {
   constexpr double kNoiseLevels = 3.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> pencil(signal, noise);
-  // With V^T noise V = I, signal = V^-T diag(lambda) V^-1 and V^-1 = V^T noise.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> pencil(curvature, noise);
+  // With V^T noise V = I: curvature = B diag(lambda) B^T, B = noise V.
   const Eigen::Matrix3d back = noise * pencil.eigenvectors();
   const Eigen::Vector3d kept = (pencil.eigenvalues().array() - kNoiseLevels).max(0.0).matrix();
   return back * kept.asDiagonal() * back.transpose();
 }
 
+// Away from a minimum a wall can count negatively; here it must be positive definite.
+Eigen::Matrix3d MadePositive(const Eigen::Matrix3d& matrix, double least) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(matrix);
+  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
+// Unit eigenvector of a symmetric 2 x 2 matrix for its larger eigenvalue.
+Eigen::Vector2d LargestAxis(const Eigen::Matrix2d& matrix) {
+  const double angle_rad = 0.5 * std::atan2(2.0 * matrix(0, 1), matrix(0, 0) - matrix(1, 1));
+  return {std::cos(angle_rad), std::sin(angle_rad)};
+}
+
+// (x, y, yaw) of the map from (forward, left, yaw) of base.
+Eigen::Matrix3d MapFromBaseAxes(double yaw_rad) {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  Eigen::Matrix3d axes;
+  axes << c, -s, 0, s, c, 0, 0, 0, 1;
+  return axes;
+}
+
 }  // namespace
 
 void MatchInformationOptions::Visit(OptionsVisitor& v) {
+  v.Number("patch_m", patch_m, {0.0, 10.0}, "length of wall whose beams share their error");
+  v.Number("map_sigma_m", map_sigma_m, {0.0, 1.0},
+           "standard deviation of where the map has such a length of wall");
   v.Number("wall_direction_sigma_rad", wall_direction_sigma_rad, {0.0, 1.0},
            "uncertainty of wall directions; takes away what they seem to tell along themselves");
-  v.Number("covariance_scale", covariance_scale, {1e-6, 1e6},
-           "measured over believed covariance of a match");
+  v.Number("covariance_scale", covariance_scale, {1e-6, 1e6}, "factor of a match's covariance");
 }
 
-Eigen::Matrix3d MatchInformation(const MatchPoints& points, const ProbabilityView& view,
+void AddPatch(const Eigen::Vector3d& gradient, const Eigen::Matrix<double, 3, 2>& shift_curvature,
+              double map_sigma_m, Eigen::Matrix3d& gradient_covariance) {
+  gradient_covariance += gradient * gradient.transpose();
+  // A wall only shifts across itself, where its curvature is largest.
+  const Eigen::Vector2d across = LargestAxis(shift_curvature.topRows<2>());
+  const Eigen::Vector3d shifted = map_sigma_m * (shift_curvature * across);
+  gradient_covariance += shifted * shifted.transpose();
+}
+
+InformationSums SumUpInformation(const MatchPoints& points, const ProbabilityView& view,
                                  const Pose2& map_from_base,
                                  const MatchInformationOptions& options) {
-  const InformationSums sums = SumUp(points, view, map_from_base);
-  const double size = sums.curvature.cwiseAbs().maxCoeff();
-  if (!(size > 0.0) || !std::isfinite(size)) return Eigen::Matrix3d::Zero();
-  // Away from a minimum walls can count negatively; noise must still be positive definite.
-  const double sigma2 = options.wall_direction_sigma_rad * options.wall_direction_sigma_rad;
-  constexpr double kFloor = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> false_axes(sigma2 * sums.false_curvature);
-  const Eigen::Matrix3d noise = false_axes.eigenvectors() *
-                                false_axes.eigenvalues().cwiseMax(kFloor * size).asDiagonal() *
-                                false_axes.eigenvectors().transpose();
-  const Eigen::Matrix3d curvature = Debias(sums.curvature, noise);
-  // Quasi-likelihood dispersion: how much the gradient scatters per unit of curvature.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(curvature);
-  double dispersion = 0.0;
-  int determined = 0;
-  for (int i = 0; i < 3; ++i) {
-    const double value = axes.eigenvalues()(i);
-    if (value < kFloor * size) continue;
-    const Eigen::Vector3d axis = axes.eigenvectors().col(i);
-    dispersion += axis.dot(sums.gradient_scatter * axis) / value;
-    ++determined;
+  InformationSums sums;
+  Eigen::Vector3d patch_gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 3, 2> patch_curvature = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Vector2f patch_start = Eigen::Vector2f::Zero();
+  const auto end_patch = [&] {
+    AddPatch(patch_gradient, patch_curvature, options.map_sigma_m, sums.gradient_covariance);
+    patch_gradient.setZero();
+    patch_curvature.setZero();
+  };
+  const double c = std::cos(map_from_base.yaw_rad);
+  const double s = std::sin(map_from_base.yaw_rad);
+  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
+    const Eigen::Vector2f point(points.x_m[i], points.y_m[i]);
+    if (i % kPatchStep == 0 && (i == 0 || (point - patch_start).norm() > options.patch_m)) {
+      if (i > 0) end_patch();
+      patch_start = point;
+    }
+    const Eigen::Vector2d arm{c * point.x() - s * point.y(), s * point.x() + c * point.y()};
+    const BicubicSample m = SampleBicubic(view, map_from_base.translation() + arm);
+    const double residual = 1.0 - m.value;
+    const Eigen::Vector2d slope{m.dx, m.dy};
+    Eigen::Matrix2d wall;
+    wall << m.dxx, m.dxy, m.dxy, m.dyy;
+    wall = slope * slope.transpose() - residual * wall;
+    Eigen::Matrix2d along;
+    along << wall(1, 1), -wall(0, 1), -wall(1, 0), wall(0, 0);
+    Eigen::Matrix<double, 2, 3> motion;  // of the point per unit of (x, y, yaw)
+    motion << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+    sums.curvature += motion.transpose() * wall * motion;
+    sums.curvature(2, 2) += residual * arm.dot(slope);
+    sums.curvature_along_walls += motion.transpose() * along * motion;
+    patch_gradient -= residual * motion.transpose() * slope;
+    patch_curvature += motion.transpose() * wall;
+    if (m.value > kExplainedProb) ++sums.explained;
   }
-  if (determined == 0 || !(dispersion > 0.0)) return Eigen::Matrix3d::Zero();
-  return curvature * (determined / (dispersion * options.covariance_scale));
+  end_patch();
+  return sums;
+}
+
+Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_from_base,
+                                 const MatchInformationOptions& options) {
+  const double size = sums.curvature.cwiseAbs().maxCoeff();
+  if (sums.explained == 0 || !(size > 0.0)) return Eigen::Matrix3d::Zero();
+  const double sigma2 = options.wall_direction_sigma_rad * options.wall_direction_sigma_rad;
+  const Eigen::Matrix3d noise = MadePositive(sigma2 * sums.curvature_along_walls, kRounding * size);
+  const Eigen::Matrix3d curvature = Debiased(sums.curvature, noise);
+  // The sandwich: an error of the gradient with covariance V moves the minimum by H^-1 of it, so
+  // the inverse covariance is H V^-1 H.
+  const double variance = sums.gradient_covariance.trace();
+  if (!(variance > 0.0)) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d gradient_covariance =
+      MadePositive(sums.gradient_covariance, kRounding * variance);
+  const Eigen::Matrix3d in_map =
+      curvature * gradient_covariance.inverse() * curvature / options.covariance_scale;
+  const Eigen::Matrix3d axes = MapFromBaseAxes(map_from_base.yaw_rad);
+  const Eigen::Matrix3d information = axes.transpose() * in_map * axes;
+  return 0.5 * (information + information.transpose());
+}
+
+Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
+                           const Eigen::Matrix3d& information, double arm_m) {
+  const Eigen::Vector3d scale{1.0, 1.0, arm_m};
+  const Eigen::Vector3d unscale = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(unscale.asDiagonal() * information *
+                                                            unscale.asDiagonal());
+  const Eigen::Vector3d to_predicted =
+      scale.cwiseProduct(Between(matched_map_from_base, predicted_map_from_base).vector());
+  Eigen::Vector3d undetermined = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (axes.eigenvalues()(i) > kRounding * axes.eigenvalues()(2)) continue;
+    const Eigen::Vector3d axis = axes.eigenvectors().col(i);
+    undetermined += axis * axis.dot(to_predicted);
+  }
+  if (undetermined.isZero(0.0)) return matched_map_from_base;
+  return matched_map_from_base * Pose2::FromVector(unscale.cwiseProduct(undetermined));
 }
 
 }  // namespace depthgrid

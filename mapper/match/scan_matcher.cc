@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "mapper/match/bicubic.h"
-
 namespace depthgrid {
 namespace {
 
@@ -12,18 +10,6 @@ bool IsUsable(const Pose2& pose) {
   constexpr double kFarthestM = 1e6;
   return std::abs(pose.x_m) < kFarthestM && std::abs(pose.y_m) < kFarthestM &&
          std::isfinite(pose.yaw_rad);
-}
-
-// Share of the points that lie where the map is rather occupied than free.
-double ExplainedShare(const MatchPoints& points, const ProbabilityView& view,
-                      const Pose2& map_from_base) {
-  constexpr double kOccupied = 0.525;  // half of what one hit (0.55) adds to knowing nothing
-  int explained = 0;
-  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    const Eigen::Vector2d point{points.x_m[i], points.y_m[i]};
-    if (SampleBicubic(view, map_from_base * point).value > kOccupied) ++explained;
-  }
-  return static_cast<double>(explained) / points.size();
 }
 
 }  // namespace
@@ -43,7 +29,7 @@ void ScanMatcherOptions::Visit(OptionsVisitor& v) {
 }
 
 ScanMatcher::ScanMatcher(const ScanMatcherOptions& options)
-    : options_(options), search_(options.search), least_squares_(options.least_squares) {}
+    : options_(options), search_(options.search) {}
 
 MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
                                const Pose2& predicted_map_from_base) {
@@ -54,21 +40,28 @@ MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
   ProbabilityView map = view;
   map.unknown_prob = static_cast<float>(options_.unknown_prob);
 
-  Pose2 pose = predicted_map_from_base;
+  Pose2 seed = predicted_map_from_base;
   if (options_.stages != MatchStages::kLeastSquares) {
-    pose = search_.Search(points_, map, pose).map_from_base;
+    seed = search_.Search(points_, map, predicted_map_from_base).map_from_base;
   }
+  cost_.Prepare(points_, map, seed);
+  Pose2 pose = seed;
   if (options_.stages != MatchStages::kSearch) {
     const LeastSquaresMatch refined =
-        least_squares_.Solve(points_, map, pose, predicted_map_from_base);
+        SolveLeastSquares(options_.least_squares, cost_, seed, predicted_map_from_base);
     pose = refined.map_from_base;
     result.iterations = refined.iterations;
   }
-  result.score = ExplainedShare(points_, map, pose);
-  result.found = result.score >= options_.min_score;
-  if (!result.found) return result;
-  result.map_from_base = pose;
-  result.information = MatchInformation(points_, map, pose, options_.information);
+  const InformationSums sums = cost_.SumUp(pose, options_.information);
+  result.score = static_cast<double>(sums.explained) / points_.size();
+  result.information = MatchInformation(sums, pose, options_.information);
+  result.found = result.score >= options_.min_score && !result.information.isZero(0.0);
+  if (!result.found) {
+    result.information.setZero();
+    return result;
+  }
+  result.map_from_base =
+      WithUndeterminedFrom(predicted_map_from_base, pose, result.information, cost_.arm_m());
   return result;
 }
 

@@ -40,8 +40,8 @@ class ScanMatcher {
  private:
   ScanMatcherOptions options_;
   CorrelativeSearch search_;
-  LeastSquares least_squares_;
-  MatchPoints points_;  // kept for its memory
+  MatchPoints points_;  // these two are kept for their memory
+  FastMatchCost cost_;
 };
 
 }  // namespace depthgrid
