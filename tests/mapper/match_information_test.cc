@@ -55,8 +55,8 @@ OccupancyMap CorridorMap(const PlanarWorld& corridor, const Pose2& world_from_co
   for (int k = 0; k < 60; ++k) {
     const Pose2 pose = world_from_corridor *
                        Pose2{0.03 * k - 0.9, 0.1 * std::sin(0.1 * k), 0.2 * std::sin(0.05 * k)};
-    grid.Insert(CellsOfScanPlain(
-        SegmentsOf(ScanOf(corridor, pose, laser, 1, static_cast<std::uint32_t>(k)), pose, 0.05)));
+    grid.Insert(CellsOfScanPlain(SegmentBuilder().Build(
+        ScanOf(corridor, pose, laser, 1, static_cast<std::uint32_t>(k)), pose, 0.05)));
   }
   return grid.map();
 }
