@@ -72,6 +72,7 @@ TEST(SlamProfiles, TheDeskProfileErrsOverLagsAsMeasured) {
   const auto desk =
       ErrorOverLag(Runs(ProfileOptions(SlamProfile::kOrbSlam2Desk), 30, 99.0), lags_s);
   SlamOptions scale_one = ProfileOptions(SlamProfile::kOrbSlam2);
+  scale_one.drift_scale = 1.0;
   scale_one.loops = {};
   const auto calibrated = ErrorOverLag(Runs(scale_one, 30, 99.0), lags_s);
   ASSERT_EQ(desk.size(), 8U);
