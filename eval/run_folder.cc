@@ -4,10 +4,13 @@
 
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
+#include "eval/run_report.h"
 #include "eval/run_tables.h"
+#include "eval/sample_pictures.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
 #include "mapper/io/png.h"
+#include "mapper/io/scan_file.h"
 #include "mapper/io/slam_files.h"
 #include "mapper/io/trajectory_file.h"
 
@@ -49,6 +52,17 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 
+void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
+  std::vector<StoredScan> stored;
+  std::size_t report = 0;
+  for (const MappedFrame& mapped : run.result.mapped) {
+    while (run.reports[report].index != mapped.frame) ++report;
+    stored.push_back(
+        {mapped.frame, run.reports[report].stamp_s, mapped.map_from_base, *mapped.scan});
+  }
+  WriteScans(folder.File("scans.bin"), stored);
+}
+
 void WriteMetrics(const OutputFolder& folder, const RunScores& scores) {
   WriteFile(folder.File("metrics.json"),
             MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
@@ -76,6 +90,9 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   if (record.scores != nullptr) WriteMetrics(folder, *record.scores);
   if (record.slam != nullptr) WriteFile(folder.File("loops.csv"), LoopsText(*record.slam));
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
+  WriteStoredScans(folder, *record.mapping);
+  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.scene, truth);
+  WriteRunReport(folder.work().string());
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));

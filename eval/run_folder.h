@@ -17,6 +17,8 @@ struct RunRecord {
   const SlamOutput* slam = nullptr;    // nothing for recorded data without events
   const TruthRecord* truth = nullptr;  // nothing for recorded data
   const RunScores* scores = nullptr;
+  const Scene* scene = nullptr;  // nothing for recorded data
+  ScanOptions scan;              // the mapper's
   double wall_s_total = 0.0;
   double cpu_s_total = 0.0;
 };

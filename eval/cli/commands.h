@@ -83,4 +83,15 @@ struct EvalMapArguments {
 };
 void EvalMap(const EvalMapArguments& arguments);
 
+struct ReportArguments {
+  std::string folder;
+};
+void Report(const ReportArguments& arguments);
+
+struct RegridArguments {
+  std::string folder;
+  double resolution_m = 0.05;
+};
+void Regrid(const RegridArguments& arguments);
+
 }  // namespace depthgrid::cli

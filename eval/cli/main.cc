@@ -171,6 +171,24 @@ void AddEval(Program& program) {
   map->add_flag("--json", m->json, "Print JSON instead of a table");
 }
 
+void AddReport(Program& program) {
+  const auto [app, arguments] =
+      program.Add<ReportArguments>(program.app, "report", "Write a folder's HTML report (again)",
+                                   "depthgrid report /tmp/out", &Report);
+  app->add_option("folder", arguments->folder, "Folder that `run` or `map` wrote")->required();
+}
+
+void AddRegrid(Program& program) {
+  const auto [app, arguments] = program.Add<RegridArguments>(
+      program.app, "regrid",
+      "Draw a run's map again from its stored scans, as map_RESOLUTION.yaml beside the first",
+      "depthgrid regrid /tmp/out --resolution 0.02", &Regrid);
+  app->add_option("folder", arguments->folder, "Folder that `run` or `map` wrote")->required();
+  app->add_option("--resolution", arguments->resolution_m, "Cell size, metres")
+      ->required()
+      ->check(CLI::PositiveNumber);
+}
+
 // One line, whatever the message holds.
 int Complain(const std::string& message, int exit_code) {
   std::string line = message;
@@ -194,6 +212,8 @@ int Main(int argc, char** argv) {
   AddSlamCalibrate(program);
   AddSlamFit(program);
   AddEval(program);
+  AddRegrid(program);
+  AddReport(program);
   try {
     program.app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version

@@ -85,6 +85,7 @@ void Map(const MapArguments& arguments) {
   record.title = arguments.input;
   record.settings = ToYaml(settings);
   record.mapping = &run;
+  record.scan = settings.mapper.scan;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;

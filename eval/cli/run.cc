@@ -64,6 +64,8 @@ void Run(const RunArguments& arguments) {
   record.slam = &run.slam;
   record.truth = &run.truth;
   record.scores = &run.scores;
+  record.scene = &run.world.scene;
+  record.scan = run.options.mapper.scan;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();

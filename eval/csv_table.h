@@ -1,0 +1,23 @@
+// A small CSV of numbers, as this program writes them: a header line, commas, no quotes.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace depthgrid {
+
+struct CsvTable {
+  std::map<std::string, std::vector<double>> columns;  // NaN for an empty cell
+  std::size_t rows = 0;
+
+  // Throws InputError naming the file when the column is not there.
+  const std::vector<double>& Column(const std::string& name) const;
+
+  std::string place;
+};
+
+// Throws InputError for a missing file, a row of another length or a cell that is no number.
+CsvTable ReadCsv(const std::string& path);
+
+}  // namespace depthgrid

@@ -1,0 +1,45 @@
+#include "eval/run_files.h"
+
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/map_file.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+StateMap ReadStates(const std::string& path) { return StatesOf(AlignedMap(ReadMap(path))); }
+
+}  // namespace
+
+RunFiles ReadRunFolder(const std::string& folder) {
+  const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
+  const auto exists = [&](const char* name) { return fs::exists(path(name)); };
+  if (!exists("run.yaml")) throw InputError(folder, "is no run's folder: it has no run.yaml");
+  RunFiles run;
+  run.folder = folder;
+  run.settings = ReadFile(path("run.yaml"));
+  if (exists("metrics.json")) run.metrics_json = ReadFile(path("metrics.json"));
+  run.map = ReadStates(path("map.yaml"));
+  if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));
+  if (exists("observable.yaml")) {
+    const StateMap states = ReadStates(path("observable.yaml"));
+    run.observable.emplace(states.geometry);
+    for (std::size_t i = 0; i < states.states.size(); ++i) {
+      run.observable->members[i] = states.states[i] == CellState::kFree;
+    }
+  }
+  if (exists("trajectory_truth.txt")) run.truth = ReadTrajectory(path("trajectory_truth.txt"));
+  run.slam = ReadTrajectoryFile(path("trajectory_slam.txt")).poses;
+  run.online = ReadTrajectoryFile(path("trajectory_online.txt")).poses;
+  run.est = ReadTrajectoryFile(path("trajectory_est.txt")).poses;
+  run.frames = ReadCsv(path("frames.csv"));
+  if (exists("scans.bin")) run.scans = ReadScans(path("scans.bin"));
+  return run;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,34 @@
+// A run's folder read back: what reports, comparisons and other later looks at a run need.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/csv_table.h"
+#include "mapper/core/cell_set.h"
+#include "mapper/core/occupancy_map.h"
+#include "mapper/core/trajectory.h"
+#include "mapper/io/scan_file.h"
+
+namespace depthgrid {
+
+struct RunFiles {
+  std::string folder;
+  std::string settings;      // run.yaml
+  std::string metrics_json;  // empty for recorded data
+  StateMap map;
+  std::optional<StateMap> truth_map;
+  std::optional<CellSet> observable;
+  std::optional<Trajectory> truth;
+  Trajectory slam;
+  Trajectory online;
+  Trajectory est;
+  CsvTable frames;
+  std::vector<StoredScan> scans;
+};
+
+// Throws InputError when the folder is no run's, or a file of it is damaged.
+RunFiles ReadRunFolder(const std::string& folder);
+
+}  // namespace depthgrid

@@ -1,0 +1,262 @@
+#include "eval/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/base64.h"
+#include "eval/map_picture.h"
+#include "eval/run_files.h"
+#include "eval/web_assets.h"
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+#include "mapper/io/png.h"
+#include "mapper/io/pose_track.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int kMapMarginCells = 4;
+constexpr double kSameStampS = 1e-6;  // as files write stamps
+
+// As many digits as a picture can show; NaN is null.
+Json Rounded(double value, int decimals) {
+  if (!std::isfinite(value)) return nullptr;
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
+
+Json RoundedAll(const std::vector<double>& values, int decimals) {
+  Json json = Json::array();
+  for (const double value : values) json.push_back(Rounded(value, decimals));
+  return json;
+}
+
+std::string PngUri(const std::string& png) { return "data:image/png;base64," + Base64(png); }
+
+Json MapJson(const RunFiles& run) {
+  GridGeometry part = KnownPart(run.map, kMapMarginCells);
+  if (run.truth_map) part = Union(part, KnownPart(*run.truth_map, kMapMarginCells));
+  const auto uri = [](const RgbImage& image) { return PngUri(EncodeRgbPng(image)); };
+  Json json;
+  json["resolution"] = part.resolution_m;
+  json["origin"] = {part.OriginM().x(), part.OriginM().y()};
+  json["width"] = part.width_cells;
+  json["height"] = part.height_cells;
+  json["layers"]["estimate"] = uri(PictureOf(run.map, part));
+  if (run.truth_map) {
+    json["layers"]["truth"] = uri(PictureOf(*run.truth_map, part));
+    json["layers"]["difference"] =
+        uri(DifferencePicture(*run.truth_map, run.map, run.observable, part));
+  }
+  if (run.observable) json["layers"]["observable"] = uri(PictureOf(*run.observable, part));
+  return json;
+}
+
+// The pose of every row of frames.csv, null where there is none.
+std::vector<std::optional<Pose3>> PosesAt(const Trajectory& trajectory,
+                                          const std::vector<double>& stamps_s) {
+  std::vector<double> known_s;
+  for (const StampedPose& pose : trajectory) known_s.push_back(pose.stamp_s);
+  std::vector<std::optional<Pose3>> poses;
+  for (const double stamp_s : stamps_s) {
+    const auto entry = NearestStamp(known_s, stamp_s, kSameStampS);
+    poses.push_back(entry ? std::optional(trajectory[*entry].world_from_camera) : std::nullopt);
+  }
+  return poses;
+}
+
+Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
+  Json json = {{"x", Json::array()}, {"y", Json::array()}, {"yaw", Json::array()}};
+  for (const auto& pose : poses) {
+    const Pose2 base = pose ? BaseOf(*pose) : Pose2{};
+    json["x"].push_back(pose ? Rounded(base.x_m, 4) : Json(nullptr));
+    json["y"].push_back(pose ? Rounded(base.y_m, 4) : Json(nullptr));
+    json["yaw"].push_back(pose ? Rounded(base.yaw_rad, 4) : Json(nullptr));
+  }
+  return json;
+}
+
+std::vector<double> FinalErrors(const std::vector<std::optional<Pose3>>& est,
+                                const std::vector<std::optional<Pose3>>& truth) {
+  std::vector<double> errors_m;
+  for (std::size_t i = 0; i < est.size(); ++i) {
+    errors_m.push_back(
+        est[i] && truth[i] ? (est[i]->translation - truth[i]->translation).head<2>().norm() : NAN);
+  }
+  return errors_m;
+}
+
+Json FramesJson(const CsvTable& frames, const std::vector<double>& final_errors_m) {
+  Json json;
+  json["frame"] = RoundedAll(frames.Column("frame"), 0);
+  json["stamp_s"] = RoundedAll(frames.Column("stamp_s"), 3);
+  for (const char* name : {"gain_forward", "gain_left", "gain_yaw", "innovation_forward_m",
+                           "innovation_left_m", "innovation_yaw_rad", "match_score", "beams"}) {
+    json[name] = RoundedAll(frames.Column(name), 5);
+  }
+  if (!final_errors_m.empty()) {
+    json["slam_error_m"] = RoundedAll(frames.Column("slam_error_m"), 5);
+    json["map_error_m"] = RoundedAll(frames.Column("map_error_m"), 5);
+    json["est_error_m"] = RoundedAll(final_errors_m, 5);
+  }
+  return json;
+}
+
+// Rows with the largest values, none nearer to another than a fiftieth of the run: neighbours of a
+// bad frame are bad for the same reason.
+std::vector<std::size_t> WorstRows(const std::vector<double>& badness) {
+  constexpr std::size_t kHowMany = 10;
+  constexpr std::size_t kApartShare = 50;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < badness.size(); ++i) {
+    if (std::isfinite(badness[i])) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return badness[a] > badness[b]; });
+  const std::size_t apart = std::max<std::size_t>(1, badness.size() / kApartShare);
+  std::vector<std::size_t> worst;
+  for (const std::size_t row : order) {
+    const bool near = std::any_of(worst.begin(), worst.end(), [&](std::size_t other) {
+      return (row > other ? row - other : other - row) < apart;
+    });
+    if (!near) worst.push_back(row);
+    if (worst.size() == kHowMany) break;
+  }
+  return worst;
+}
+
+// Hits of some scans in base axes, whole centimetres: an even spread, and the worst frames'.
+Json ScansJson(const RunFiles& run, const std::vector<std::size_t>& worst) {
+  constexpr std::size_t kSpreadScans = 150;
+  constexpr std::size_t kMaxHits = 160;
+  const std::vector<double>& frame_of_row = run.frames.Column("frame");
+  const std::size_t step = std::max<std::size_t>(1, run.scans.size() / kSpreadScans);
+  Json json = Json::array();
+  std::size_t row = 0;
+  for (std::size_t i = 0; i < run.scans.size(); ++i) {
+    const StoredScan& stored = run.scans[i];
+    while (row < frame_of_row.size() && frame_of_row[row] < stored.frame) ++row;
+    const bool is_worst = std::find(worst.begin(), worst.end(), row) != worst.end();
+    if (i % step != 0 && !is_worst) continue;
+    std::vector<Eigen::Vector2d> hits;
+    for (const Beam& beam : stored.scan.beams) {
+      if (beam.hit) hits.push_back(EndPoint(beam));
+    }
+    Json cm = Json::array();
+    const std::size_t hit_step = std::max<std::size_t>(1, hits.size() / kMaxHits);
+    for (std::size_t k = 0; k < hits.size(); k += hit_step) {
+      cm.push_back(std::lround(hits[k].x() * 100.0));
+      cm.push_back(std::lround(hits[k].y() * 100.0));
+    }
+    json.push_back({{"row", row}, {"cm", cm}});
+  }
+  return json;
+}
+
+Json SamplesJson(const std::string& folder) {
+  std::vector<std::string> stems;
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder + "/frames", missing)) {
+    const std::string name = entry.path().filename().string();
+    constexpr std::string_view kDepthEnd = "_depth.png";
+    if (name.ends_with(kDepthEnd)) stems.push_back(name.substr(0, name.size() - kDepthEnd.size()));
+  }
+  std::sort(stems.begin(), stems.end());
+  Json json = Json::array();
+  for (const std::string& stem : stems) {
+    const std::string base = folder + "/frames/" + stem;
+    Json sample;
+    sample["frame"] = std::stoi("0" + stem);
+    sample["depth"] = PngUri(ReadFile(base + "_depth.png"));
+    if (fs::exists(base + "_colour.png")) {
+      sample["colour"] = PngUri(ReadFile(base + "_colour.png"));
+    }
+    json.push_back(sample);
+  }
+  return json;
+}
+
+std::string ValueOf(const Config& settings, const std::string& key) {
+  return settings.Has(key) ? settings.List(key).front() : "";
+}
+
+std::string TitleOf(const Config& settings) {
+  for (const char* key : {"scene", "input"}) {
+    const std::string value = ValueOf(settings, key);
+    if (!value.empty()) return fs::path(value).stem().string();
+  }
+  return "Run";
+}
+
+std::string SubtitleOf(const Config& settings, std::size_t frames) {
+  std::string text = fmt::format("{} frames", frames);
+  const auto add = [&](const char* name, const char* key) {
+    const std::string value = ValueOf(settings, key);
+    if (!value.empty()) text += fmt::format(", {} {}", name, value);
+  };
+  add("trajectory", "trajectory");
+  add("SLAM", "slam.profile");
+  add("depth noise", "sensor.noise");
+  add("seed", "seed");
+  add("mapper", "mapper.method");
+  add("fusion", "mapper.fusion.mode");
+  if (ValueOf(settings, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
+  return text;
+}
+
+Json RunJson(const RunFiles& run, const Config& settings) {
+  const std::vector<double>& stamps_s = run.frames.Column("stamp_s");
+  const auto est = PosesAt(run.est, stamps_s);
+  Json json;
+  json["subtitle"] = SubtitleOf(settings, run.frames.rows);
+  json["settings"] = run.settings;
+  json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);
+  json["mapped_frames"] = run.scans.size();
+  json["map"] = MapJson(run);
+  json["paths"]["slam"] = PathJson(PosesAt(run.slam, stamps_s));
+  json["paths"]["online"] = PathJson(PosesAt(run.online, stamps_s));
+  json["paths"]["est"] = PathJson(est);
+  std::vector<double> final_errors_m;
+  if (run.truth) {
+    const auto truth = PosesAt(*run.truth, stamps_s);
+    json["paths"]["truth"] = PathJson(truth);
+    final_errors_m = FinalErrors(est, truth);
+  }
+  json["frames"] = FramesJson(run.frames, final_errors_m);
+  std::vector<double> badness = final_errors_m;
+  if (badness.empty()) {
+    for (const double score : run.frames.Column("match_score")) badness.push_back(1.0 - score);
+  }
+  const std::vector<std::size_t> worst = WorstRows(badness);
+  json["worst"] = worst;
+  json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
+                               : "By the match score, the lowest first.";
+  json["scans"] = ScansJson(run, worst);
+  json["samples"] = SamplesJson(run.folder);
+  return json;
+}
+
+}  // namespace
+
+void WriteRunReport(const std::string& folder) {
+  const RunFiles run = ReadRunFolder(folder);
+  const Config settings = Config::FromText(run.settings, folder + "/run.yaml");
+  Json json;
+  try {
+    json = RunJson(run, settings);
+  } catch (const Json::exception&) {
+    throw InputError(folder + "/metrics.json", "is not valid JSON");
+  }
+  WriteFile(folder + "/report.html", FillPage("run.html", TitleOf(settings), json.dump()));
+}
+
+}  // namespace depthgrid

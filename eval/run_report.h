@@ -1,0 +1,12 @@
+// report.html of a run's folder, made from the files in it.
+#pragma once
+
+#include <string>
+
+namespace depthgrid {
+
+// Throws InputError when the folder holds no run. Stage times are not in the page: it is the same
+// bytes for the same run.yaml.
+void WriteRunReport(const std::string& folder);
+
+}  // namespace depthgrid

@@ -1,0 +1,56 @@
+#include "eval/sample_pictures.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "eval/depth_picture.h"
+#include "mapper/io/png.h"
+#include "sim/colour_camera.h"
+
+namespace depthgrid {
+namespace {
+
+const MappedFrame* MappedOf(const MappingRun& run, int frame) {
+  for (const MappedFrame& mapped : run.result.mapped) {
+    if (mapped.frame == frame) return &mapped;
+  }
+  return nullptr;
+}
+
+const FrameReport* ReportOf(const MappingRun& run, int frame) {
+  for (const FrameReport& report : run.reports) {
+    if (report.index == frame) return &report;
+  }
+  return nullptr;
+}
+
+RgbImage PictureOf(const SampleFrame& sample, const MappingRun& run, const ScanOptions& options) {
+  const MappedFrame* mapped = MappedOf(run, sample.frame);
+  const FrameReport* report = ReportOf(run, sample.frame);
+  if (mapped == nullptr || report == nullptr || !report->slam_from_camera || !run.camera) {
+    return DepthPicture(*sample.depth, options.max_range_m);
+  }
+  return DepthPictureWithBeams(*sample.depth, *run.camera, *report->slam_from_camera, *mapped->scan,
+                               options);
+}
+
+}  // namespace
+
+void WriteSamplePictures(const std::string& folder, const MappingRun& run,
+                         const ScanOptions& options, const Scene* scene, const Trajectory* truth) {
+  if (run.samples.empty()) return;
+  std::filesystem::create_directory(folder + "/frames");
+  std::optional<ColourCamera> camera;
+  if (scene != nullptr && run.camera) camera.emplace(*scene, *run.camera);
+  for (const SampleFrame& sample : run.samples) {
+    const std::string stem = fmt::format("{}/frames/{:06}", folder, sample.frame);
+    WriteRgbPng(stem + "_depth.png", PictureOf(sample, run, options));
+    if (!camera || truth == nullptr) continue;
+    const Pose3& pose = (*truth)[static_cast<std::size_t>(sample.frame)].world_from_camera;
+    WriteRgbPng(stem + "_colour.png", camera->Render(pose).rgb);
+  }
+}
+
+}  // namespace depthgrid

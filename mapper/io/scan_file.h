@@ -1,0 +1,25 @@
+// scans.bin: the scans a map was drawn from, at their final poses, so that it can be drawn again
+// (docs/formats.md, "Stored scans"). Little-endian, no padding.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mapper/core/scan.h"
+
+namespace depthgrid {
+
+struct StoredScan {
+  int frame = 0;  // of the input, counted from 0
+  double stamp_s = 0.0;
+  Pose2 map_from_base;
+  Scan scan;
+
+  bool operator==(const StoredScan&) const = default;
+};
+
+// Throws InputError for a file that is missing, truncated or something else.
+std::vector<StoredScan> ReadScans(const std::string& path);
+void WriteScans(const std::string& path, const std::vector<StoredScan>& scans);
+
+}  // namespace depthgrid
