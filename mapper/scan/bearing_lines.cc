@@ -57,9 +57,9 @@ Axes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_ca
   return axes;
 }
 
-BearingLine LineAt(const Axes& axes, double bearing_rad) {
-  const double c = std::cos(bearing_rad);
-  const double s = std::sin(bearing_rad);
+BearingLine LineAt(const Axes& axes, const Bearing& bearing) {
+  const double c = bearing.cosine;
+  const double s = bearing.sine;
   const Eigen::RowVector3d off_plane = Eigen::RowVector3d(-s, c, 0.0) * axes.level_from_ray;
   const Eigen::RowVector3d along = Eigen::RowVector3d(c, s, 0.0) * axes.level_from_ray;
   const Eigen::RowVector3d up = axes.level_from_ray.row(2);
@@ -102,8 +102,8 @@ bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& le
   return std::abs(off_plane.y()) * camera.fx_px > std::abs(off_plane.x()) * camera.fy_px;
 }
 
-std::vector<double> ScanBearings(const PinholeCamera& camera,
-                                 const Eigen::Quaterniond& level_from_camera, int beams) {
+std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
+                                  const Eigen::Quaterniond& level_from_camera, int beams) {
   const bool transposed = LinesRunAlongRows(camera, level_from_camera);
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
   // The image's borders are half a pixel beyond the outer pixels' centres; left is positive, and
@@ -113,18 +113,29 @@ std::vector<double> ScanBearings(const PinholeCamera& camera,
   const double last_rad = std::atan(left_per_a * (axes.width_px - 0.5 - axes.cx_px) / axes.fx_px);
   const double right_rad = std::min(first_rad, last_rad);
   const double step_rad = std::abs(last_rad - first_rad) / beams;
-  std::vector<double> bearings_rad;
-  for (int k = 0; k < beams; ++k) bearings_rad.push_back(right_rad + (k + 0.5) * step_rad);
-  return bearings_rad;
+  const double first_angle_rad = right_rad + 0.5 * step_rad;
+  // Each direction is the one before, turned by a step: a thousand steps err by 1e-13.
+  const double step_cosine = std::cos(step_rad);
+  const double step_sine = std::sin(step_rad);
+  Bearing bearing{first_angle_rad, std::cos(first_angle_rad), std::sin(first_angle_rad)};
+  std::vector<Bearing> bearings;
+  bearings.reserve(static_cast<std::size_t>(beams));
+  for (int k = 0; k < beams; ++k) {
+    bearings.push_back(bearing);
+    bearing = {right_rad + (k + 1.5) * step_rad,
+               step_cosine * bearing.cosine - step_sine * bearing.sine,
+               step_sine * bearing.cosine + step_cosine * bearing.sine};
+  }
+  return bearings;
 }
 
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
                                       const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<double>& bearings_rad, bool transposed) {
+                                      const std::vector<Bearing>& bearings, bool transposed) {
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
   std::vector<BearingLine> lines;
-  lines.reserve(bearings_rad.size());
-  for (const double bearing_rad : bearings_rad) lines.push_back(LineAt(axes, bearing_rad));
+  lines.reserve(bearings.size());
+  for (const Bearing& bearing : bearings) lines.push_back(LineAt(axes, bearing));
   return lines;
 }
 

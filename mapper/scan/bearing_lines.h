@@ -26,14 +26,20 @@ struct BearingLine {
 // transposed first.
 bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_camera);
 
+struct Bearing {
+  double angle_rad = 0.0;
+  double cosine = 1.0;
+  double sine = 0.0;
+};
+
 // Bearings of `beams` bins of equal angle over the field of view the camera would have if it were
 // level (rolled to the nearest quarter turn), increasing (counter-clockwise).
-std::vector<double> ScanBearings(const PinholeCamera& camera,
-                                 const Eigen::Quaterniond& level_from_camera, int beams);
+std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
+                                  const Eigen::Quaterniond& level_from_camera, int beams);
 
 // `transposed`: rows and columns of the image are exchanged; `camera` is still the original one.
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
                                       const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<double>& bearings_rad, bool transposed);
+                                      const std::vector<Bearing>& bearings, bool transposed);
 
 }  // namespace depthgrid

@@ -1,101 +1,102 @@
 #include "mapper/scan/bearing_returns.h"
 
 #include <algorithm>
+#include <memory>
+#include <new>
+
+#include "mapper/scan/bearing_block.h"
 
 namespace depthgrid {
 namespace {
 
-float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,
-               int v) {
-  const auto row = static_cast<float>(v);
-  const float u = line.u0 + line.u1 * row;
-  const float base = std::clamp(std::floor(u), 0.0F, static_cast<float>(image.width_px - 2));
-  const float share = std::clamp(u - base, 0.0F, 1.0F);
-  const float* pixel = image.Row(v) + static_cast<int>(base);
-  const float z_m = DepthBetween(pixel[0], pixel[1], share);
-  if (!(z_m >= limits.min_depth_m)) return kUnusable;
-  const float range_m = z_m * (line.h0 + line.h1 * row);
-  const float height_m = z_m * (line.g0 + line.g1 * row);
-  const bool marks =
-      range_m <= limits.max_range_m && height_m >= limits.low_m && height_m <= limits.high_m;
-  return marks ? range_m : kPassing;
-}
+using internal::BearingBlock;
+using internal::BlockLane;
+using internal::BlockMean;
+using internal::BlockSamples;
+using internal::BlockViews;
+using internal::kBlockBearings;
 
-float MeanWithin(const std::vector<float>& samples, float low, float high, float otherwise) {
-  float sum = 0.0F;
-  float count = 0.0F;
-  for (const float sample : samples) {
-    if (sample >= low && sample <= high) {
-      sum += sample;
-      count += 1.0F;
-    }
+// Lanes of samples, row by row.
+class SampleBuffer {
+ public:
+  float* Rows(std::size_t rows) {
+    if (rows > lanes_.size()) lanes_.resize(rows);
+    return lanes_.data()->data();
   }
-  return count > 0.0F ? sum / count : otherwise;
+
+ private:
+  std::vector<BlockLane> lanes_;
+};
+
+RowRange RangeOf(float first, float last) {
+  return {static_cast<int>(first), static_cast<int>(last)};
 }
 
-// The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself.
-void FindNearest(const std::vector<float>& samples, const ReturnLimits& limits,
-                 const NoiseWindow& window, BearingReturns& returns) {
-  std::vector<float> sorted = samples;
-  std::sort(sorted.begin(), sorted.end());
-  const auto needed = static_cast<std::size_t>(limits.min_returns - 1);
-  for (std::size_t i = 0; i + needed < sorted.size() && sorted[i] < kPassing; ++i) {
-    const float width_m = window.At(sorted[i]);
-    if (sorted[i + needed] > sorted[i] + width_m) continue;
-    const float half_m = 0.5F * width_m;
-    const float centre_m = MeanWithin(samples, sorted[i], sorted[i] + width_m, sorted[i]);
-    returns.hit = true;
-    returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
+RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, to) : RowRange{}; }
+
+// FindNearest for a block. Lanes whose smallest sample is not supported by others (a stray pixel)
+// are done one by one.
+void FindNearestOfBlock(const BearingBlock& block, const BlockSamples& found, const float* samples,
+                        const ReturnLimits& limits, const NoiseWindow& window,
+                        BearingReturns* returns) {
+  BlockLane width, high;
+  for (std::size_t i = 0; i < kBlockBearings; ++i) {
+    width[i] = window.At(found.nearest[i]);
+    high[i] = found.nearest[i] + width[i];
+  }
+  const std::size_t rows = block.RowCount();
+  const BlockMean first = internal::MeanWithin(samples, rows, found.nearest, high, found.nearest);
+  BlockLane low;
+  for (std::size_t i = 0; i < kBlockBearings; ++i) {
+    const float half_m = 0.5F * width[i];
+    low[i] = first.mean[i] - half_m;
+    high[i] = first.mean[i] + half_m;
+  }
+  const BlockMean second = internal::MeanWithin(samples, rows, low, high, first.mean);
+  std::vector<float> column;
+  for (std::size_t i = 0; i < block.bearings; ++i) {
+    if (found.nearest[i] >= kPassing) continue;
+    if (first.count[i] >= static_cast<float>(limits.min_returns)) {
+      returns[i].hit = true;
+      returns[i].range_m = second.mean[i];
+      continue;
+    }
+    column.clear();
+    for (std::size_t r = 0; r < rows; ++r) column.push_back(samples[r * kBlockBearings + i]);
+    FindNearest(column, limits, window, returns[i]);
+  }
+}
+
+void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const float* samples,
+                      BearingReturns* returns) {
+  const bool all_usable =
+      *std::max_element(found.farthest.begin(), found.farthest.end()) < kUnusable;
+  if (all_usable) {
+    for (std::size_t i = 0; i < block.bearings; ++i) returns[i].seen = block.rows;
     return;
   }
-}
-
-// The longest run of unusable rows between usable ones, below and above the horizon.
-void FindGaps(const std::vector<float>& samples, const BearingLine& line, int first_row,
-              BearingReturns& returns) {
-  const auto consider = [](RowRange& longest, int from, int to) {
-    if (to - from > 1 && to - from > longest.last - longest.first) longest = {from, to};
-  };
-  int last_seen = -1;
-  for (int v = first_row; v < first_row + static_cast<int>(samples.size()); ++v) {
-    if (samples[static_cast<std::size_t>(v - first_row)] == kUnusable) continue;
-    if (last_seen < 0) {
-      returns.seen.first = v;
-    } else {
-      // Height of the ray at the gap's end decides: a gap across the horizon counts as either.
-      const bool above = line.g0 + line.g1 * static_cast<float>(v) > 0.0F;
-      consider(above ? returns.gap_above : returns.gap_below, last_seen, v);
-    }
-    last_seen = v;
-    returns.seen.last = v;
+  const BlockViews views = internal::FindViews(block, samples);
+  for (std::size_t i = 0; i < block.bearings; ++i) {
+    returns[i].seen = RangeOf(views.first[i], views.last[i]);
+    returns[i].gap_below = GapOf(views.below_from[i], views.below_to[i]);
+    returns[i].gap_above = GapOf(views.above_from[i], views.above_to[i]);
   }
 }
 
 }  // namespace
 
-std::vector<float> SamplesOf(const DepthImage& image, const BearingLine& line,
-                             const ReturnLimits& limits, RowRange& rows) {
-  rows = {std::max(line.first_row, limits.first_row), std::min(line.last_row, limits.last_row)};
-  std::vector<float> samples;
-  for (int v = rows.first; v <= rows.last; ++v) {
-    samples.push_back(SampleAt(image, line, limits, v));
-  }
-  return samples;
-}
-
 std::vector<BearingReturns> FindReturns(const DepthImage& image,
                                         const std::vector<BearingLine>& lines,
                                         const ReturnLimits& limits, const NoiseWindow& window) {
-  std::vector<BearingReturns> all;
-  all.reserve(lines.size());
-  for (const BearingLine& line : lines) {
-    RowRange rows;
-    const std::vector<float> samples = SamplesOf(image, line, limits, rows);
-    BearingReturns returns;
-    FindNearest(samples, limits, window, returns);
-    FindGaps(samples, line, rows.first, returns);
-    all.push_back(returns);
+  std::vector<BearingReturns> all(lines.size());
+  SampleBuffer buffer;
+  for (std::size_t begin = 0; begin < lines.size(); begin += kBlockBearings) {
+    const BearingBlock block = internal::MakeBearingBlock(lines, begin, limits);
+    if (block.RowCount() == 0) continue;
+    float* samples = buffer.Rows(block.RowCount());
+    const BlockSamples found = internal::SampleBlock(image, limits, block, samples);
+    FindNearestOfBlock(block, found, samples, limits, window, &all[begin]);
+    FindViewsOfBlock(block, found, samples, &all[begin]);
   }
   return all;
 }

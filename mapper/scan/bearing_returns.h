@@ -2,6 +2,7 @@
 // which rays were seen at all.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -54,16 +55,26 @@ inline float DepthBetween(float z0, float z1, float share_of_1) {
     return z0 + share_of_1 * difference;
   }
   const float nearer = share_of_1 < 0.5F ? z0 : z1;
-  const float other = share_of_1 < 0.5F ? z1 : z0;
-  return nearer > 0.0F ? nearer : other;
+  return nearer > 0.0F ? nearer : std::max(z0, z1);
 }
 
+// Columns are kept between 0 and this, so that there always is a pixel to the right.
+inline float LastColumn(int width_px) { return static_cast<float>(width_px - 1) - 0.001F; }
+
+// The sample of a line at row v.
+float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits, int v);
+
+// The rows of a line that take part.
+RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
+
+// The nearest range that enough samples agree on: the mean over the noise window above the smallest
+// supported sample, once more centred on itself.
+void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
+                 const NoiseWindow& window, BearingReturns& returns);
+
+// All of the above for every line at once, vectorised; the same values bit for bit.
 std::vector<BearingReturns> FindReturns(const DepthImage& image,
                                         const std::vector<BearingLine>& lines,
                                         const ReturnLimits& limits, const NoiseWindow& window);
-
-// The samples of one line, rows first_row to last_row of the line and the limits.
-std::vector<float> SamplesOf(const DepthImage& image, const BearingLine& line,
-                             const ReturnLimits& limits, RowRange& rows);
 
 }  // namespace depthgrid

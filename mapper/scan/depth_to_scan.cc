@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
@@ -25,7 +27,7 @@ struct Reading {
   bool transposed = false;
   DepthImage transposed_image;
   const DepthImage* image = nullptr;
-  std::vector<double> bearings_rad;
+  std::vector<Bearing> bearings;
   std::vector<BearingLine> lines;
 };
 
@@ -36,8 +38,8 @@ Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera,
   reading.transposed = LinesRunAlongRows(camera, level_from_camera);
   if (reading.transposed) reading.transposed_image = Transposed(depth);
   reading.image = reading.transposed ? &reading.transposed_image : &depth;
-  reading.bearings_rad = ScanBearings(camera, level_from_camera, beams);
-  reading.lines = BearingLines(camera, level_from_camera, reading.bearings_rad, reading.transposed);
+  reading.bearings = ScanBearings(camera, level_from_camera, beams);
+  reading.lines = BearingLines(camera, level_from_camera, reading.bearings, reading.transposed);
   return reading;
 }
 
@@ -92,18 +94,21 @@ Beam BeamOf(double bearing_rad, const BearingLine& line, const BearingReturns& r
   return beam;
 }
 
+void RequireBelow(const char* low_key, double low, const char* high_key, double high) {
+  if (low < high) return;
+  std::ostringstream rule;
+  rule << "is " << low << ", must be below " << high_key << ", " << high;
+  throw InputError(std::string("mapper.scan.") + low_key, rule.str());
+}
+
 }  // namespace
 
 DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options)
     : camera_(camera), options_(options) {
   Require(!camera.HasDistortion(), "depth images come undistorted");
   Require(camera.width_px >= 2 && camera.height_px >= 2, "depth images have 2x2 pixels or more");
-  if (options.band_low_m >= options.band_high_m) {
-    throw InputError("mapper.scan.band_low_m", "must be below band_high_m");
-  }
-  if (options.min_range_m >= options.max_range_m) {
-    throw InputError("mapper.scan.min_range_m", "must be below max_range_m");
-  }
+  RequireBelow("band_low_m", options.band_low_m, "band_high_m", options.band_high_m);
+  RequireBelow("min_range_m", options.min_range_m, "max_range_m", options.max_range_m);
 }
 
 double DepthToScan::CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const {
@@ -130,8 +135,8 @@ Scan DepthToScan::ConvertAtHeight(const DepthImage& depth, const Pose3& slam_fro
   scan.max_range_m = options_.max_range_m;
   scan.beams.reserve(returns.size());
   for (std::size_t k = 0; k < returns.size(); ++k) {
-    scan.beams.push_back(
-        BeamOf(reading.bearings_rad[k], reading.lines[k], returns[k], camera_height_m, options_));
+    scan.beams.push_back(BeamOf(reading.bearings[k].angle_rad, reading.lines[k], returns[k],
+                                camera_height_m, options_));
   }
   return scan;
 }
@@ -147,14 +152,15 @@ std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
   for (std::size_t k = 0; k < scan.beams.size(); ++k) {
     if (!scan.beams[k].hit) continue;
     const BearingLine& line = reading.lines[k];
-    RowRange rows;
-    const std::vector<float> samples = SamplesOf(*reading.image, line, limits, rows);
-    const auto nearest = std::min_element(samples.begin(), samples.end(), [&](float a, float b) {
-      return std::abs(a - scan.beams[k].range_m) < std::abs(b - scan.beams[k].range_m);
-    });
-    if (nearest == samples.end()) continue;
-    const double v = rows.first + static_cast<double>(nearest - samples.begin());
-    pixels[k] = {line.u0 + line.u1 * v, v};
+    const RowRange rows = RowsOf(line, limits);
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (int v = rows.first; v <= rows.last; ++v) {
+      const double away_m =
+          std::abs(SampleAt(*reading.image, line, limits, v) - scan.beams[k].range_m);
+      if (away_m >= nearest_m) continue;
+      nearest_m = away_m;
+      pixels[k] = {line.u0 + line.u1 * static_cast<double>(v), static_cast<double>(v)};
+    }
     if (reading.transposed) std::swap(pixels[k].x(), pixels[k].y());
   }
   return pixels;

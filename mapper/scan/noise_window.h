@@ -12,7 +12,7 @@ namespace depthgrid {
 
 class NoiseWindow {
  public:
-  // From second differences of inverse depth along image columns, which vanish on planes: a high
+  // From second differences of inverse depth along image rows, which vanish on planes: a high
   // quantile of them for each class of depth.
   explicit NoiseWindow(const DepthImage& image);
 

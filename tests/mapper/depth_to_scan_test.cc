@@ -5,9 +5,6 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
-#include "mapper/scan/bearing_returns.h"
-#include "mapper/scan/clear_interval.h"
-#include "mapper/scan/floor_height.h"
 #include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
@@ -80,6 +77,295 @@ TEST(DepthToScan, NoBeamIsEmptyWhenLevel) {
   for (const Beam& beam : scan.beams) EXPECT_TRUE(beam.hit);
   EXPECT_NEAR(DegFromRad(scan.beams.back().bearing_rad - scan.beams.front().bearing_rad),
               67.25 * 639.0 / 640.0, 0.01);
+}
+
+TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
+  const AnalyticRoom room = RoomWithPillars();
+  PinholeCamera camera;
+  const DepthToScan converter(camera, {});
+  int cases = 0;
+  for (const double roll_deg : {90.0, -90.0, 180.0, 80.0, -130.0}) {
+    const Pose3 pose =
+        TiltedCamera({-1.5, 0.3, 0.1}, kHeightM, RadFromDeg(5.0), RadFromDeg(roll_deg));
+    const Scan scan = converter.Convert(room.Render(camera, pose), pose);
+    Errors errors;
+    Compare(scan, room, BaseOf(pose), errors);
+    EXPECT_LT(errors.Rms(), 0.001) << roll_deg;
+    EXPECT_GE(errors.hits, errors.beams * 0.9) << roll_deg;
+    EXPECT_GT(errors.hits, 300) << roll_deg;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
+}
+
+// z noise of standard deviation(z), independent in each pixel.
+template <typename Sigma>
+DepthImage Noisy(const DepthImage& image, RandomStream& random, Sigma sigma_m) {
+  DepthImage noisy = image;
+  for (float& z_m : noisy.z_m) z_m += static_cast<float>(sigma_m(z_m) * random.Normal());
+  return noisy;
+}
+
+struct Bias {
+  double mean_m = 0.0;
+  double sigma_m = 0.0;
+  int beams = 0;
+};
+
+Bias BiasOf(const Scan& scan, double wall_x_m) {
+  Bias bias;
+  double sum = 0.0, squares = 0.0;
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit || std::abs(beam.bearing_rad) > 0.5) continue;
+    const double error_m = beam.range_m - wall_x_m / std::cos(beam.bearing_rad);
+    sum += error_m;
+    squares += error_m * error_m;
+    ++bias.beams;
+  }
+  bias.mean_m = sum / bias.beams;
+  bias.sigma_m = std::sqrt(squares / bias.beams - bias.mean_m * bias.mean_m);
+  return bias;
+}
+
+AnalyticRoom RoomWithWallAt(double x_m) {
+  AnalyticRoom room;
+  room.walls = {{-3.0, -6.0, 0.0}, {x_m, 6.0, 2.5}};
+  return room;
+}
+
+// The minimum of a column of Nguyen's noise at 4 m lies 75 mm before the wall; the scan must not.
+TEST(DepthToScan, NoiseDoesNotPullWallsNearer) {
+  const PinholeCamera camera;
+  const DepthToScan converter(camera, {});
+  const auto kinect = [](double z) { return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4); };
+  const auto d435 = [](double z) { return 0.00377 * z * z; };
+  const auto flight_time = [](double) { return 0.005; };
+  RandomStream random(1, RandomStage::kTest);
+  int cases = 0;
+  const auto check = [&](const auto& sigma_m) {
+    for (const double wall_m : {1.0, 2.0, 3.0, 4.0}) {
+      for (const double pitch_deg : {0.0, 15.0}) {
+        const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(pitch_deg), 0.0);
+        const DepthImage image =
+            Noisy(RoomWithWallAt(wall_m).Render(camera, pose), random, sigma_m);
+        const Bias bias = BiasOf(converter.Convert(image, pose), wall_m);
+        EXPECT_GT(bias.beams, 500);
+        // 1 mm is a fiftieth of a cell; the scatter is that of a mean over tens of pixels.
+        EXPECT_NEAR(bias.mean_m, 0.0, 0.001) << wall_m << " m " << pitch_deg << " deg";
+        EXPECT_LT(bias.sigma_m, 0.1 * sigma_m(wall_m)) << wall_m << " m " << pitch_deg << " deg";
+        ++cases;
+      }
+    }
+  };
+  check(kinect);
+  check(d435);
+  check(flight_time);
+  EXPECT_EQ(cases, 24);
+}
+
+// 1/8 pixel disparities with a jitter of 1/6 step (Handa): at 3 m the steps are 25 mm apart, and
+// where a wall lies between two of them the few pixels that say the nearer one must not win.
+TEST(DepthToScan, RoundedDepthIsAveraged) {
+  const PinholeCamera camera;
+  const DepthToScan converter(camera, {});
+  RandomStream random(2, RandomStage::kTest);
+  const Pose3 pose = TiltedCamera({0.0, 0.0, 0.2}, kHeightM, 0.05, 0.0);
+  DepthImage image = RoomWithWallAt(3.0).Render(camera, pose);
+  for (float& z_m : image.z_m) {
+    const double disparity = std::floor(351.30 / z_m + random.Normal() / 6.0 + 0.5);
+    z_m = static_cast<float>(351.30 / disparity);
+  }
+  double sum = 0.0, squares = 0.0;
+  int beams = 0;
+  for (const Beam& beam : converter.Convert(image, pose).beams) {
+    const double error_m = beam.range_m - 3.0 / std::cos(beam.bearing_rad + 0.2);
+    if (!beam.hit || std::abs(beam.bearing_rad) > 0.5) continue;
+    sum += error_m;
+    squares += error_m * error_m;
+    ++beams;
+  }
+  EXPECT_GT(beams, 500);
+  EXPECT_NEAR(sum / beams, 0.0, 0.001);
+  EXPECT_LT(std::sqrt(squares / beams), 0.004);
+}
+
+TEST(DepthToScan, ThinThingsAreFoundAndStrayPixelsAreNot) {
+  AnalyticRoom room = RoomWithWallAt(4.0);
+  room.boxes.push_back({{2.0, -0.5, 0.70}, {2.02, 0.5, 0.73}});  // a 3 cm board
+  room.cylinders.push_back({{2.5, 0.9}, 0.01, 0.0, 1.5});        // a 2 cm pole
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kHeightM);
+  DepthImage image = room.Render(camera, pose);
+  image.Row(240)[500] = 1.0F;
+  image.Row(200)[520] = 0.7F;
+  const Scan scan = DepthToScan(camera, {}).Convert(image, pose);
+  int on_board = 0, board_beams = 0, pole = 0;
+  for (const Beam& beam : scan.beams) {
+    ASSERT_TRUE(beam.hit);
+    const Eigen::Vector2d end = EndPoint(beam);
+    EXPECT_GT(end.x(), 1.99);
+    if (std::abs(std::tan(beam.bearing_rad)) < 0.24) {
+      ++board_beams;
+      on_board += std::abs(end.x() - 2.0) < 0.003 ? 1 : 0;
+    }
+    pole += (end - Eigen::Vector2d(2.5, 0.9)).norm() < 0.02 ? 1 : 0;
+  }
+  EXPECT_GT(board_beams, 200);
+  EXPECT_EQ(on_board, board_beams);
+  EXPECT_GE(pole, 3);
+}
+
+// The camera sees over a table nearer than 1.4 m, and hits the wall behind it.
+TEST(DepthToScan, AFarHitDoesNotErasetheNearTable) {
+  AnalyticRoom room = RoomWithWallAt(4.0);
+  room.boxes.push_back({{0.4, -0.8, 0.0}, {1.2, 0.8, 0.45}});
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kHeightM);
+  const Scan scan = DepthToScan(camera, {}).Convert(room.Render(camera, pose), pose);
+  // The lowest pixel's ray falls 239.5 / 480 a metre: it reaches the band's edge at 2.10 m ahead.
+  const double from_m = (kHeightM - 0.1) / (239.5 / 480.0);
+  int seen_over = 0;
+  for (const Beam& beam : scan.beams) {
+    ASSERT_TRUE(beam.hit);
+    EXPECT_NEAR(EndPoint(beam).x(), 4.0, 1e-3);
+    EXPECT_NEAR(beam.clear_from_m * std::cos(beam.bearing_rad), from_m, 1e-3);
+    EXPECT_EQ(beam.clear_to_m, beam.range_m);
+    ++seen_over;
+  }
+  EXPECT_EQ(seen_over, 640);
+}
+
+TEST(DepthToScan, TooNearTooFarAndInvalidAreThreeThings) {
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kHeightM);
+  ScanOptions options;
+  options.max_range_m = 3.0;
+  const DepthToScan converter(camera, options);
+  const DepthImage far_wall = RoomWithWallAt(5.0).Render(camera, pose);
+  const auto middle = [&](const DepthImage& image) {
+    return converter.Convert(image, pose).beams[320];
+  };
+  // Too far: no hit, free up to the limit.
+  EXPECT_FALSE(middle(far_wall).hit);
+  EXPECT_EQ(middle(far_wall).clear_to_m, 3.0F);
+  EXPECT_GT(middle(far_wall).clear_from_m, 2.0F);
+  // Invalid, and too near: no hit, nothing free.
+  for (const float value : {kInvalidDepth, 0.2F}) {
+    DepthImage image = far_wall;
+    for (int v = 100; v < 400; ++v) {
+      for (int u = 300; u < 340; ++u) image.Row(v)[u] = value;
+    }
+    EXPECT_FALSE(middle(image).hit);
+    EXPECT_GE(middle(image).clear_from_m, middle(image).clear_to_m) << value;
+  }
+  // A third of the pixels missing at random hides nothing.
+  DepthImage image = far_wall;
+  RandomStream random(4, RandomStage::kTest);
+  for (float& z_m : image.z_m) z_m = random.Uniform() < 0.33 ? kInvalidDepth : z_m;
+  EXPECT_NEAR(middle(image).clear_to_m, 3.0F, 1e-3);
+  EXPECT_NEAR(middle(image).clear_from_m, middle(far_wall).clear_from_m, 0.03);
+}
+
+TEST(DepthToScan, FloorAndCeilingOnlyClear) {
+  // Nothing but a floor: a room whose walls are far beyond the range.
+  AnalyticRoom hall;
+  hall.walls = {{-50.0, -50.0, 0.0}, {50.0, 50.0, 2.5}};
+  const PinholeCamera camera;
+  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(40.0), 0.0);
+  const Scan scan = DepthToScan(camera, {}).Convert(hall.Render(camera, pose), pose);
+  const Beam& middle = scan.beams[320];
+  EXPECT_FALSE(middle.hit);
+  // The highest ray falls with 40 - 26.5 degrees and reaches 0.1 m at 4.37 m.
+  const double top_rad = RadFromDeg(40.0) - std::atan(239.5 / 480.0);
+  EXPECT_NEAR(middle.clear_to_m, 1.05 / std::tan(top_rad), 0.01);
+}
+
+TEST(DepthToScan, RowModesReadLikeALaser) {
+  AnalyticRoom room = RoomWithWallAt(4.0);
+  room.boxes.push_back({{2.0, -0.5, 0.0}, {2.5, 0.5, 0.9}});  // below the optical axis
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kHeightM);
+  const DepthImage image = room.Render(camera, pose);
+  ScanOptions options;
+  options.mode = ScanMode::kCentreRow;
+  const Scan row = DepthToScan(camera, options).Convert(image, pose);
+  for (const Beam& beam : row.beams) {
+    ASSERT_TRUE(beam.hit);
+    EXPECT_NEAR(EndPoint(beam).x(), 4.0, 1e-3);
+    EXPECT_EQ(beam.clear_from_m, 0.0F);
+    EXPECT_EQ(beam.clear_to_m, beam.range_m);
+  }
+  options.mode = ScanMode::kRowBand;
+  options.band_rows = 150;  // 75 rows down: 0.156 a metre, 0.79 m of height at 2.3 m
+  EXPECT_NEAR(DepthToScan(camera, options).Convert(image, pose).beams[320].range_m, 2.0, 0.01);
+  options.band_rows = 20;
+  EXPECT_NEAR(DepthToScan(camera, options).Convert(image, pose).beams[320].range_m, 4.0, 0.01);
+}
+
+TEST(DepthToScan, HeightOfTheFloorInTheImageOutweighsTheDriftOfZ) {
+  AnalyticRoom room = RoomWithWallAt(3.0);
+  room.boxes.push_back({{1.5, -1.0, 0.0}, {2.5, -0.2, 0.45}});
+  const PinholeCamera camera;
+  ScanOptions options;
+  options.floor = FloorSource::kImage;
+  const DepthToScan converter(camera, options);
+  RandomStream random(5, RandomStage::kTest);
+  for (const double pitch_deg : {0.0, 15.0, 30.0}) {
+    const Pose3 truth = TiltedCamera({}, kHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
+    const DepthImage image =
+        Noisy(room.Render(camera, truth), random, [](double z) { return 0.002 * z * z; });
+    Pose3 drifted = truth;
+    drifted.translation.z() += 0.3;
+    EXPECT_NEAR(converter.CameraHeightM(image, drifted), kHeightM, 0.01) << pitch_deg;
+    // A tilt that is wrong by a degree moves the median by the floor's distance times it.
+    drifted.rotation = drifted.rotation * Eigen::AngleAxisd(0.017, Eigen::Vector3d::UnitX());
+    EXPECT_NEAR(converter.CameraHeightM(image, drifted), kHeightM, 0.06) << pitch_deg;
+  }
+  // Looking up, no floor is seen, and the pose's height counts.
+  const Pose3 upwards = TiltedCamera({}, kHeightM, RadFromDeg(-40.0), 0.0);
+  EXPECT_EQ(converter.CameraHeightM(room.Render(camera, upwards), upwards), kHeightM);
+}
+
+TEST(DepthToScan, HitPixelsLeadBackToTheHits) {
+  const AnalyticRoom room = RoomWithPillars();
+  const PinholeCamera camera;
+  const DepthToScan converter(camera, {});
+  int hits = 0;
+  for (const double roll_deg : {5.0, 90.0}) {
+    const Pose3 pose = TiltedCamera({-1.5, 0.3, 0.1}, kHeightM, 0.2, RadFromDeg(roll_deg));
+    const DepthImage image = room.Render(camera, pose);
+    const Scan scan = converter.Convert(image, pose);
+    const auto pixels = converter.HitPixels(image, pose, scan);
+    ASSERT_EQ(pixels.size(), scan.beams.size());
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      if (!scan.beams[k].hit) {
+        EXPECT_EQ(pixels[k].x(), -1.0);
+        continue;
+      }
+      const Eigen::Vector3d ray =
+          LevelFromCamera(pose) * Unproject(camera, pixels[k].x(), pixels[k].y(), 1.0);
+      EXPECT_NEAR(std::atan2(ray.y(), ray.x()), scan.beams[k].bearing_rad, 1e-4);
+      ++hits;
+    }
+  }
+  EXPECT_GT(hits, 900);
+}
+
+TEST(DepthToScan, ContradictingOptionsAreRefused) {
+  const auto error_of = [](const ScanOptions& options) {
+    try {
+      DepthToScan converter(PinholeCamera{}, options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  ScanOptions band;
+  band.band_low_m = 2.0;
+  EXPECT_EQ(error_of(band), "mapper.scan.band_low_m: is 2, must be below band_high_m, 1.8");
+  ScanOptions range;
+  range.min_range_m = 7.0;
+  EXPECT_EQ(error_of(range), "mapper.scan.min_range_m: is 7, must be below max_range_m, 6");
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <vector>
+
+#include "mapper/scan/bearing_returns.h"
+
+namespace depthgrid {
+namespace {
+
+float MeanWithin(std::span<const float> samples, float low, float high, float otherwise) {
+  float sum = 0.0F;
+  float count = 0.0F;
+  for (const float sample : samples) {
+    if (sample >= low && sample <= high) {
+      sum += sample;
+      count += 1.0F;
+    }
+  }
+  return count > 0.0F ? sum / count : otherwise;
+}
+
+}  // namespace
+
+RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits) {
+  return {std::max(line.first_row, limits.first_row), std::min(line.last_row, limits.last_row)};
+}
+
+float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,
+               int v) {
+  const auto row = static_cast<float>(v);
+  const float u = std::min(std::max(line.u0 + line.u1 * row, 0.0F), LastColumn(image.width_px));
+  const int column = static_cast<int>(u);
+  const float share = u - static_cast<float>(column);
+  const float* pixel = image.Row(v) + column;
+  const float z_m = DepthBetween(pixel[0], pixel[1], share);
+  if (!(z_m >= limits.min_depth_m)) return kUnusable;
+  const float range_m = z_m * (line.h0 + line.h1 * row);
+  const float height_m = z_m * (line.g0 + line.g1 * row);
+  const bool marks =
+      range_m <= limits.max_range_m && height_m >= limits.low_m && height_m <= limits.high_m;
+  return marks ? range_m : kPassing;
+}
+
+void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
+                 const NoiseWindow& window, BearingReturns& returns) {
+  std::vector<float> sorted(samples.begin(), samples.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto needed = static_cast<std::size_t>(limits.min_returns - 1);
+  for (std::size_t i = 0; i + needed < sorted.size() && sorted[i] < kPassing; ++i) {
+    const float width_m = window.At(sorted[i]);
+    if (sorted[i + needed] > sorted[i] + width_m) continue;
+    const float half_m = 0.5F * width_m;
+    const float centre_m = MeanWithin(samples, sorted[i], sorted[i] + width_m, sorted[i]);
+    returns.hit = true;
+    returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
+    return;
+  }
+}
+
+}  // namespace depthgrid

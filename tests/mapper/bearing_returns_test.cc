@@ -1,0 +1,152 @@
+// The vectorised search against the plain one it is defined by.
+#include "mapper/scan/bearing_returns.h"
+
+#include <gtest/gtest.h>
+
+#define HWY_DISABLE_PCLMUL_AES
+#include <hwy/highway.h>
+
+#include "mapper/core/rng.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+void ConsiderGap(RowRange& longest, int from, int to) {
+  if (to - from > 1 && to - from > longest.last - longest.first) longest = {from, to};
+}
+
+BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
+                            const ReturnLimits& limits, const NoiseWindow& window) {
+  const RowRange rows = RowsOf(line, limits);
+  BearingReturns returns;
+  std::vector<float> samples;
+  for (int v = rows.first; v <= rows.last; ++v) {
+    samples.push_back(SampleAt(image, line, limits, v));
+    if (samples.back() == kUnusable) continue;
+    if (returns.seen.last < 0) {
+      returns.seen.first = v;
+    } else {
+      const bool above = line.g0 + line.g1 * static_cast<float>(v) > 0.0F;
+      ConsiderGap(above ? returns.gap_above : returns.gap_below, returns.seen.last, v);
+    }
+    returns.seen.last = v;
+  }
+  FindNearest(samples, limits, window, returns);
+  return returns;
+}
+
+// Holes, single wrong pixels, a region that is too near and one too far.
+void Damage(DepthImage& image, RandomStream& random) {
+  const auto whole = [&](int bound) {
+    return static_cast<int>(random.Below(static_cast<std::uint64_t>(bound)));
+  };
+  for (const float value : {kInvalidDepth, 0.2F, 30.0F, kInvalidDepth}) {
+    const int u = whole(image.width_px), v = whole(image.height_px);
+    for (int y = v; y < std::min(v + image.height_px / 5, image.height_px); ++y) {
+      for (int x = u; x < std::min(u + image.width_px / 5, image.width_px); ++x) {
+        image.Row(y)[x] = value;
+      }
+    }
+  }
+  for (float& z_m : image.z_m) {
+    const double draw = random.Uniform();
+    if (draw < 0.02) z_m = kInvalidDepth;
+    if (draw > 0.999) z_m *= 0.7F;
+  }
+}
+
+class InstructionSets : public testing::Test {
+ protected:
+  ~InstructionSets() override { Choose(0); }
+  // 0: all that there are.
+  static void Choose(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+};
+
+TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
+  AnalyticRoom room;
+  room.boxes.push_back({{0.9, -1.0, 0.0}, {1.5, -0.3, 0.5}});
+  room.cylinders.push_back({{1.4, 0.5}, 0.04, 0.0, 2.5});
+  const std::vector<PinholeCamera> cameras = {
+      {160, 120, 120.3, 120.0, 79.5, 59.5, {}},  // columns within two vectors
+      {160, 120, 400.0, 400.0, 70.0, 50.0, {}},  // a narrow view
+      {12, 10, 9.0, 9.0, 5.5, 4.5, {}},          // narrower than two vectors
+      {90, 200, 70.0, 80.0, 45.0, 90.0, {}}};
+  RandomStream random(11, RandomStage::kTest);
+  int cases = 0, hits = 0, gaps = 0;
+  for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
+    if ((hwy::SupportedTargets() & target) == 0) continue;
+    Choose(target);
+    for (int i = 0; i < 48; ++i) {
+      const PinholeCamera& camera = cameras[static_cast<std::size_t>(i) % cameras.size()];
+      const double pitch_rad = random.Uniform(-1.0, 1.0) * (i % 3 == 0 ? 1.5 : 0.4);
+      const double roll_rad = random.Uniform(-1.0, 1.0) * (i % 5 == 0 ? 3.1 : 0.4);
+      const Pose3 pose =
+          TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15, pitch_rad, roll_rad);
+      DepthImage image = room.Render(camera, pose);
+      if (i % 4 != 0) Damage(image, random);
+      const Eigen::Quaterniond level = LevelFromCamera(pose);
+      const auto lines =
+          BearingLines(camera, level, ScanBearings(camera, level, 8 + 37 * (i % 7)), false);
+      ReturnLimits limits;
+      limits.min_depth_m = 0.4F;
+      limits.max_range_m = 6.0F;
+      limits.low_m = -1.05F;
+      limits.high_m = 0.65F;
+      limits.min_returns = 1 + i % 4;
+      limits.first_row = i % 6 == 0 ? camera.height_px / 3 : 0;
+      limits.last_row = camera.height_px - 1;
+      const NoiseWindow window(image);
+      const auto returns = FindReturns(image, lines, limits, window);
+      ASSERT_EQ(returns.size(), lines.size());
+      for (std::size_t k = 0; k < lines.size(); ++k) {
+        const BearingReturns plain = PlainReturns(image, lines[k], limits, window);
+        ASSERT_EQ(returns[k].hit, plain.hit) << i << " " << k;
+        ASSERT_EQ(returns[k].range_m, plain.range_m) << i << " " << k;
+        ASSERT_EQ(returns[k].seen, plain.seen) << i << " " << k;
+        ASSERT_EQ(returns[k].gap_below, plain.gap_below) << i << " " << k ;
+        ASSERT_EQ(returns[k].gap_above, plain.gap_above) << i << " " << k;
+        ++cases;
+        hits += plain.hit ? 1 : 0;
+        gaps += plain.gap_below.last > 0 || plain.gap_above.last > 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(cases, 4000);
+  EXPECT_GE(hits, 2000);
+  EXPECT_GE(gaps, 600);
+}
+
+TEST(FindNearest, NeedsSupportAndAveragesTheWindow) {
+  const NoiseWindow window{DepthImage(8, 8)};  // nothing measured: the default noise
+  const float width_m = window.At(2.0F);
+  ASSERT_GT(width_m, 0.02F);
+  ReturnLimits limits;
+  limits.min_returns = 3;
+  const auto nearest = [&](std::vector<float> samples) {
+    BearingReturns returns;
+    FindNearest(samples, limits, window, returns);
+    return returns.hit ? returns.range_m : -1.0F;
+  };
+  // 1.5 stands alone; 2.00 to 2.02 belong together; 3 is behind.
+  EXPECT_FLOAT_EQ(nearest({3.0F, 2.02F, 1.5F, 2.00F, 2.01F, 3.0F, kPassing, kUnusable}), 2.01F);
+  EXPECT_EQ(nearest({1.5F, 2.5F, 3.5F, kPassing, kPassing, kPassing}), -1.0F);
+  EXPECT_EQ(nearest({}), -1.0F);
+  limits.min_returns = 1;
+  EXPECT_EQ(nearest({3.0F, 1.5F, 2.0F}), 1.5F);
+}
+
+TEST(DepthBetween, InterpolatesASurfaceAndJumpsAtAnEdge) {
+  EXPECT_FLOAT_EQ(DepthBetween(2.0F, 2.04F, 0.25F), 2.01F);
+  EXPECT_EQ(DepthBetween(2.0F, 3.0F, 0.4F), 2.0F);
+  EXPECT_EQ(DepthBetween(2.0F, 3.0F, 0.6F), 3.0F);
+  EXPECT_EQ(DepthBetween(kInvalidDepth, 3.0F, 0.1F), 3.0F);  // the other pixel stands in
+  EXPECT_EQ(DepthBetween(2.0F, kInvalidDepth, 0.9F), 2.0F);
+  EXPECT_EQ(DepthBetween(kInvalidDepth, kInvalidDepth, 0.5F), kInvalidDepth);
+}
+
+}  // namespace
+}  // namespace depthgrid
