@@ -25,7 +25,7 @@ PlanarLaser LaserOf(int beams) {
 Pose2 PathPose(int k) { return {2.2 + 0.012 * k, 1.2 + 0.005 * k, 0.4 + 0.02 * k}; }
 
 const OccupancyMap& RoomMap() {
-  static const ProbabilityGrid grid = [] {
+  static ProbabilityGrid grid = [] {
     ProbabilityGrid built({});
     for (int k = 0; k < 90; ++k) {
       const Scan scan =

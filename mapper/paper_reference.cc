@@ -16,7 +16,7 @@ PaperReference::PaperReference(const GridOptions& grid, const SubmapOptions& sub
 
 MatchResult PaperReference::Match(const std::shared_ptr<const Scan>& scan,
                                   const Prediction& prediction) {
-  const ProbabilityGrid* grid = submaps_.matching();
+  ProbabilityGrid* grid = submaps_.matching();
   if (grid == nullptr) return {};
   return matcher_.Match(*scan, ViewOf(grid->map()), prediction.map_from_base);
 }

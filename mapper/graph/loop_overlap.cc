@@ -10,10 +10,10 @@
 namespace depthgrid {
 namespace {
 
-// One place: its scans relative to the frame in its middle, and the grid they draw.
+// One place: its scans relative to the frame in its middle, and the map they draw.
 struct Place {
   std::vector<Eigen::Vector2d> points;  // obstacles, in the middle frame's base axes
-  ProbabilityGrid grid;
+  OccupancyMap map;
 };
 
 GridOptions PlaceGrid(const OverlapOptions& options) {
@@ -25,7 +25,8 @@ GridOptions PlaceGrid(const OverlapOptions& options) {
 Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
                   const OverlapOptions& options) {
   ScanRasterizer rasterizer;
-  Place place{.points = {}, .grid = ProbabilityGrid(PlaceGrid(options))};
+  ProbabilityGrid grid(PlaceGrid(options));
+  Place place;
   const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
   const int steps = options.window_frames / options.stride;
   for (int step = -steps; step <= steps; ++step) {
@@ -33,11 +34,12 @@ Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
     if (index < 0 || index >= static_cast<int>(frames.size())) continue;
     const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    place.grid.Insert(rasterizer.Rasterize(*frame.scan, middle_from_base, options.resolution_m));
+    grid.Insert(rasterizer.Rasterize(*frame.scan, middle_from_base, options.resolution_m));
     for (const Beam& beam : frame.scan->beams) {
       if (beam.hit) place.points.push_back(middle_from_base * EndPoint(beam));
     }
   }
+  place.map = grid.map();
   return place;
 }
 
@@ -58,7 +60,7 @@ void Compare(const Place& place, const Place& other, const Pose2& place_from_oth
              const OverlapOptions& options, Overlap& overlap) {
   const int reach_cells = static_cast<int>(std::lround(options.tolerance_m / options.resolution_m));
   for (const Eigen::Vector2d& point : other.points) {
-    const Finding finding = Look(place.grid.map(), place_from_other * point, reach_cells);
+    const Finding finding = Look(place.map, place_from_other * point, reach_cells);
     overlap.compared += finding == Finding::kUnseen ? 0 : 1;
     overlap.agreeing += finding == Finding::kWall ? 1 : 0;
   }

@@ -1,5 +1,9 @@
 #include "mapper/grid/scan_rasterizer.h"
 
+// Highway asks for AES with AVX2, which x86-64-v3 does not promise and nothing here uses.
+#define HWY_DISABLE_PCLMUL_AES
+#include <hwy/highway.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +15,29 @@ namespace {
 // Neighbours count as touching only with this much to spare, so that no rounding decides.
 constexpr double kTouchMargin = 0.99;
 
+// Beyond any scan, and within an int.
+constexpr double kFarCells = 1e8;
+
+namespace hn = hwy::HWY_NAMESPACE;
+using DoubleLanes = hn::CappedTag<double, 4>;
+using Doubles = hn::Vec<DoubleLanes>;
+constexpr DoubleLanes kDoubles;
+
+// Whole numbers as 32-bit integers.
+void StoreInts(Doubles values, std::int32_t* out) {
+  const hn::Rebind<std::int32_t, DoubleLanes> ints;
+  hn::StoreU(hn::DemoteTo(ints, values), ints, out);
+}
+
+// The last cell of the points between `end`, which counts, and `crossing`, which does not unless
+// the segment ends there.
+Doubles LastCellBetween(Doubles end, Doubles crossing, hn::Mask<DoubleLanes> one_row) {
+  const Doubles below_crossing = hn::Sub(hn::Ceil(crossing), hn::Set(kDoubles, 1.0));
+  const auto open = hn::AndNot(one_row, hn::Gt(crossing, end));
+  const Doubles last = hn::IfThenElse(open, below_crossing, hn::Floor(hn::Max(end, crossing)));
+  return hn::Max(last, hn::Floor(hn::Min(end, crossing)));
+}
+
 }  // namespace
 
 const ScanCells& ScanRasterizer::Rasterize(const ScanSegments& segments) {
@@ -20,8 +47,9 @@ const ScanCells& ScanRasterizer::Rasterize(const ScanSegments& segments) {
   }
   cells_.hit.Reset(segments.min_cell, segments.max_cell);
   cells_.passed.Reset(segments.min_cell, segments.max_cell);
-  OrientUpwards(segments);
-  FindEndSpans(segments.size());
+  Resize(segments.from_x.size());
+  FindEndSpans(segments);
+  FindTouching(segments);
   SetHits(segments);
   SetEndSpans(segments);
   FillRuns(segments);
@@ -29,61 +57,54 @@ const ScanCells& ScanRasterizer::Rasterize(const ScanSegments& segments) {
   return cells_;
 }
 
-void ScanRasterizer::OrientUpwards(const ScanSegments& segments) {
-  const std::size_t count = segments.size();
-  for (auto* values : {&low_x_, &low_y_, &high_x_, &high_y_, &slope_}) values->resize(count);
-  goes_up_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool down = segments.from_y[i] > segments.to_y[i];
-    goes_up_[i] = down ? 0 : 1;
-    low_x_[i] = down ? segments.to_x[i] : segments.from_x[i];
-    low_y_[i] = down ? segments.to_y[i] : segments.from_y[i];
-    high_x_[i] = down ? segments.from_x[i] : segments.to_x[i];
-    high_y_[i] = down ? segments.from_y[i] : segments.to_y[i];
-    const double rise = high_y_[i] - low_y_[i];
-    slope_[i] = (high_x_[i] - low_x_[i]) / (rise > 0.0 ? rise : 1.0);
+void ScanRasterizer::Resize(std::size_t padded) {
+  // Neighbours are read together, from the second beam on.
+  for (auto* values : {&low_x_, &low_y_, &slope_, &reach_}) values->resize(padded + 1);
+  touches_.resize(padded + 1);
+  for (auto* values : {&first_row_, &last_row_, &first_span_first_, &first_span_last_,
+                       &last_span_first_, &last_span_last_}) {
+    values->resize(padded);
   }
 }
 
-// The spans of RowSpan (mapper/grid/ray.h) in the first and in the last row, as vector loops.
-void ScanRasterizer::FindEndSpans(std::size_t count) {
-  for (auto* values : {&first_high_x_, &last_low_x_}) values->resize(count);
-  for (auto* values : {&first_row_, &last_row_, &first_span_first_, &first_span_last_,
-                       &last_span_first_, &last_span_last_}) {
-    values->resize(count);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const double first_row = std::floor(low_y_[i]);
-    const double last_row = std::floor(high_y_[i]);
-    const bool one_row = first_row == last_row;
-    first_row_[i] = static_cast<std::int32_t>(first_row);
-    last_row_[i] = static_cast<std::int32_t>(last_row);
-    const double leave_x = low_x_[i] + (first_row + 1.0 - low_y_[i]) * slope_[i];
-    const double enter_x = low_x_[i] + (last_row - low_y_[i]) * slope_[i];
-    first_high_x_[i] = one_row ? high_x_[i] : leave_x;
-    last_low_x_[i] = one_row ? low_x_[i] : enter_x;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const double a = low_x_[i];
-    const double b = first_high_x_[i];
-    const bool one_row = first_row_[i] == last_row_[i];
-    const double first = std::floor(a <= b ? a : b);
-    const double closed_last = std::floor(a <= b ? b : a);
-    const double open_last = std::ceil(b) - 1.0;
-    const double last = a <= b && !one_row ? open_last : closed_last;
-    first_span_first_[i] = static_cast<std::int32_t>(first);
-    first_span_last_[i] = static_cast<std::int32_t>(last > first ? last : first);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const double a = last_low_x_[i];
-    const double b = high_x_[i];
-    const bool one_row = first_row_[i] == last_row_[i];
-    const double first = std::floor(a <= b ? a : b);
-    const double closed_last = std::floor(a <= b ? b : a);
-    const double open_last = std::ceil(a) - 1.0;
-    const double last = a > b && !one_row ? open_last : closed_last;
-    last_span_first_[i] = static_cast<std::int32_t>(first);
-    last_span_last_[i] = static_cast<std::int32_t>(last > first ? last : first);
+// RowSpan (mapper/grid/ray.h) for the first and for the last row of every beam.
+void ScanRasterizer::FindEndSpans(const ScanSegments& segments) {
+  const Doubles one = hn::Set(kDoubles, 1.0);
+  const Doubles origin_y = hn::Set(kDoubles, segments.origin.y());
+  for (std::size_t i = 0; i < segments.size(); i += hn::Lanes(kDoubles)) {
+    const Doubles from_x = hn::LoadU(kDoubles, segments.from_x.data() + i);
+    const Doubles from_y = hn::LoadU(kDoubles, segments.from_y.data() + i);
+    const Doubles to_x = hn::LoadU(kDoubles, segments.to_x.data() + i);
+    const Doubles to_y = hn::LoadU(kDoubles, segments.to_y.data() + i);
+    const auto down = hn::Gt(from_y, to_y);
+    const Doubles low_x = hn::IfThenElse(down, to_x, from_x);
+    const Doubles low_y = hn::IfThenElse(down, to_y, from_y);
+    const Doubles high_x = hn::IfThenElse(down, from_x, to_x);
+    const Doubles high_y = hn::IfThenElse(down, from_y, to_y);
+    const Doubles rise = hn::Sub(high_y, low_y);
+    const Doubles divisor = hn::IfThenElse(hn::Gt(rise, hn::Zero(kDoubles)), rise, one);
+    const Doubles slope = hn::Div(hn::Sub(high_x, low_x), divisor);
+    hn::StoreU(low_x, kDoubles, low_x_.data() + i);
+    hn::StoreU(low_y, kDoubles, low_y_.data() + i);
+    hn::StoreU(slope, kDoubles, slope_.data() + i);
+
+    const Doubles first_row = hn::Floor(low_y);
+    const Doubles last_row = hn::Floor(high_y);
+    const Doubles reach = hn::Max(hn::Sub(last_row, origin_y), hn::Sub(origin_y, first_row));
+    hn::StoreU(reach, kDoubles, reach_.data() + i);
+    StoreInts(first_row, first_row_.data() + i);
+    StoreInts(last_row, last_row_.data() + i);
+    const auto one_row = hn::Eq(first_row, last_row);
+    const Doubles rows_end = hn::Sub(hn::Add(first_row, one), low_y);
+    const Doubles rows_begin = hn::Sub(last_row, low_y);
+    const Doubles leave_x =
+        hn::IfThenElse(one_row, high_x, hn::Add(low_x, hn::Mul(rows_end, slope)));
+    const Doubles enter_x =
+        hn::IfThenElse(one_row, low_x, hn::Add(low_x, hn::Mul(rows_begin, slope)));
+    StoreInts(hn::Floor(hn::Min(low_x, leave_x)), first_span_first_.data() + i);
+    StoreInts(LastCellBetween(low_x, leave_x, one_row), first_span_last_.data() + i);
+    StoreInts(hn::Floor(hn::Min(high_x, enter_x)), last_span_first_.data() + i);
+    StoreInts(LastCellBetween(high_x, enter_x, one_row), last_span_last_.data() + i);
   }
 }
 
@@ -102,66 +123,98 @@ void ScanRasterizer::SetEndSpans(const ScanSegments& segments) {
   }
 }
 
-ScanRasterizer::Span ScanRasterizer::CrossingSpan(std::size_t beam, int row) const {
-  const CellSpan span = RowSpan({low_x_[beam], low_y_[beam]}, {high_x_[beam], high_y_[beam]},
-                                slope_[beam], row, false, false);
-  return {span.first_x, span.last_x};
+// RowSpan of a beam that crosses the row from side to side: its leftmost and its rightmost cell.
+inline int ScanRasterizer::LeftCell(std::size_t beam, int row) const {
+  const double below = low_x_[beam] + (row - low_y_[beam]) * slope_[beam];
+  const double above = low_x_[beam] + (row + 1 - low_y_[beam]) * slope_[beam];
+  return FloorToInt(std::min(below, above));
 }
 
-// The rows in which the crossing spans of a beam and of the one before it touch, as far as their
-// distance goes. Both start at the origin: at a height h above it they are h |slope difference|
-// apart, and within a row each is as wide as its slope.
-ScanRasterizer::RowRange ScanRasterizer::ContiguousRows(std::size_t beam, double origin_y) const {
+inline int ScanRasterizer::RightCell(std::size_t beam, int row) const {
+  const double below = low_x_[beam] + (row - low_y_[beam]) * slope_[beam];
+  const double above = low_x_[beam] + (row + 1 - low_y_[beam]) * slope_[beam];
+  return std::max(FloorToInt(std::min(below, above)), LastCellBelow(std::max(below, above)));
+}
+
+// The crossing spans of a beam and of the one before it touch where h |slope difference| does not
+// exceed this, h the height above the origin at which they enter a row: both start at the origin,
+// so that is their distance, and within the row each is as wide as its slope.
+inline double ScanRasterizer::AllowedDistance(std::size_t beam) const {
   const double slope = slope_[beam];
   const double before = slope_[beam - 1];
   const double width = slope * before > 0.0 ? std::min(std::abs(slope), std::abs(before)) : 0.0;
-  const double apart = std::abs(slope - before);
-  constexpr double kFar = 1e8;  // cells: beyond any grid, within an int
-  const double reach = apart * kFar > 1.0 + width ? kTouchMargin * (1.0 + width) / apart : kFar;
-  return {static_cast<int>(std::ceil(origin_y - reach)) - 1,
-          static_cast<int>(std::floor(origin_y + reach))};
+  return kTouchMargin * (1.0 + width);
 }
 
-// Above the origin x falls from beam to beam, below it rises.
-void ScanRasterizer::Open(std::size_t beam, int first, int last) {
-  for (int row = first; row <= last; ++row) {
-    const Span span = CrossingSpan(beam, row);
-    open_x_[static_cast<std::size_t>(row - cells_.passed.first_row())] =
-        goes_up_[beam] != 0 ? span.last_x : span.first_x;
+// For every beam whether it touches the one before it in every row that either crosses.
+void ScanRasterizer::FindTouching(const ScanSegments& segments) {
+  const Doubles one = hn::Set(kDoubles, 1.0);
+  const Doubles margin = hn::Set(kDoubles, kTouchMargin);
+  for (std::size_t i = 1; i < segments.size(); i += hn::Lanes(kDoubles)) {
+    const Doubles slope = hn::LoadU(kDoubles, slope_.data() + i);
+    const Doubles before = hn::LoadU(kDoubles, slope_.data() + i - 1);
+    const auto same_side = hn::Gt(hn::Mul(slope, before), hn::Zero(kDoubles));
+    const Doubles width = hn::IfThenElseZero(same_side, hn::Min(hn::Abs(slope), hn::Abs(before)));
+    const Doubles height =
+        hn::Max(hn::LoadU(kDoubles, reach_.data() + i), hn::LoadU(kDoubles, reach_.data() + i - 1));
+    const auto touches = hn::Le(hn::Mul(height, hn::Abs(hn::Sub(slope, before))),
+                                hn::Mul(margin, hn::Add(one, width)));
+    StoreInts(hn::IfThenElseZero(touches, one), touches_.data() + i);
   }
 }
 
-void ScanRasterizer::Close(std::size_t beam, int first, int last) {
+// The part of `rows` in which a beam touches the one before it.
+ScanRasterizer::RowRange ScanRasterizer::TouchingRows(std::size_t beam, double origin_y,
+                                                      const RowRange& rows) const {
+  const double reach = AllowedDistance(beam) / std::abs(slope_[beam] - slope_[beam - 1]);
+  if (!(reach < kFarCells)) return rows;
+  return Overlap(rows, {static_cast<int>(std::ceil(origin_y - reach)) - 1,
+                        static_cast<int>(std::floor(origin_y + reach))});
+}
+
+// Above the origin x falls from beam to beam, below it rises.
+inline void ScanRasterizer::Open(std::size_t beam, bool above, int first, int last) {
   for (int row = first; row <= last; ++row) {
-    const Span span = CrossingSpan(beam, row);
+    open_x_[static_cast<std::size_t>(row - cells_.passed.first_row())] =
+        above ? RightCell(beam, row) : LeftCell(beam, row);
+  }
+}
+
+inline void ScanRasterizer::Close(std::size_t beam, bool above, int first, int last) {
+  for (int row = first; row <= last; ++row) {
     const int open_x = open_x_[static_cast<std::size_t>(row - cells_.passed.first_row())];
-    if (goes_up_[beam] != 0) {
-      cells_.passed.SetSpan(row, span.first_x, open_x);
+    if (above) {
+      cells_.passed.SetSpan(row, LeftCell(beam, row), open_x);
     } else {
-      cells_.passed.SetSpan(row, open_x, span.last_x);
+      cells_.passed.SetSpan(row, open_x, RightCell(beam, row));
     }
   }
 }
 
 void ScanRasterizer::FillRuns(const ScanSegments& segments) {
   open_x_.resize(static_cast<std::size_t>(cells_.passed.rows()));
+  const double origin_y = segments.origin.y();
+  const auto is_above = [origin_y](const RowRange& rows) { return rows.first >= origin_y; };
   RowRange open;  // rows in which a run goes on up to the beam before
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const RowRange crossed = segments.clears[i] != 0 ? CrossedRows(i) : RowRange{};
+    const RowRange crossed =
+        segments.clears[i] != 0 ? RowRange{first_row_[i] + 1, last_row_[i] - 1} : RowRange{};
+    if (crossed == open && touches_[i] != 0) continue;  // most of them
     RowRange shared = Overlap(open, crossed);
-    if (!shared.empty()) shared = Overlap(shared, ContiguousRows(i, segments.origin.y()));
+    if (!shared.empty() && touches_[i] == 0) shared = TouchingRows(i, origin_y, shared);
     if (shared.empty()) {
-      if (i > 0) Close(i - 1, open.first, open.last);
-      Open(i, crossed.first, crossed.last);
+      if (!open.empty()) Close(i - 1, is_above(open), open.first, open.last);
+      Open(i, is_above(crossed), crossed.first, crossed.last);
     } else {
-      Close(i - 1, open.first, shared.first - 1);
-      Close(i - 1, shared.last + 1, open.last);
-      Open(i, crossed.first, shared.first - 1);
-      Open(i, shared.last + 1, crossed.last);
+      const bool above = is_above(shared);
+      Close(i - 1, above, open.first, shared.first - 1);
+      Close(i - 1, above, shared.last + 1, open.last);
+      Open(i, above, crossed.first, shared.first - 1);
+      Open(i, above, shared.last + 1, crossed.last);
     }
     open = crossed;
   }
-  if (segments.size() > 0) Close(segments.size() - 1, open.first, open.last);
+  if (!open.empty()) Close(segments.size() - 1, is_above(open), open.first, open.last);
 }
 
 }  // namespace depthgrid

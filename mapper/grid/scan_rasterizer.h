@@ -31,38 +31,37 @@ class ScanRasterizer {
     int first = 0;
     int last = -1;
     bool empty() const { return last < first; }
+    bool operator==(const RowRange&) const = default;
   };
-  struct Span {
-    int first_x = 0;
-    int last_x = 0;
-  };
-
-  void OrientUpwards(const ScanSegments& segments);
-  void FindEndSpans(std::size_t count);
-  void SetHits(const ScanSegments& segments);
-  void SetEndSpans(const ScanSegments& segments);
-  void FillRuns(const ScanSegments& segments);
-  Span CrossingSpan(std::size_t beam, int row) const;
-  RowRange CrossedRows(std::size_t beam) const {
-    return {first_row_[beam] + 1, last_row_[beam] - 1};
-  }
-  RowRange ContiguousRows(std::size_t beam, double origin_y) const;
   static RowRange Overlap(const RowRange& a, const RowRange& b) {
     return {std::max(a.first, b.first), std::min(a.last, b.last)};
   }
-  // A run of beams begins, or ends, with this one in the rows from `first` to `last`.
-  void Open(std::size_t beam, int first, int last);
-  void Close(std::size_t beam, int first, int last);
+
+  void Resize(std::size_t padded);
+  void FindEndSpans(const ScanSegments& segments);
+  void FindTouching(const ScanSegments& segments);
+  void SetHits(const ScanSegments& segments);
+  void SetEndSpans(const ScanSegments& segments);
+  void FillRuns(const ScanSegments& segments);
+  int LeftCell(std::size_t beam, int row) const;
+  int RightCell(std::size_t beam, int row) const;
+  double AllowedDistance(std::size_t beam) const;
+  RowRange TouchingRows(std::size_t beam, double origin_y, const RowRange& rows) const;
+  // A run of beams begins, or ends, with this one in the rows from `first` to `last`, above or
+  // below the origin.
+  void Open(std::size_t beam, bool above, int first, int last);
+  void Close(std::size_t beam, bool above, int first, int last);
 
   SegmentBuilder builder_;
   ScanCells cells_;
-  // One entry a beam: its clear interval from the lower to the higher end.
-  std::vector<double> low_x_, low_y_, high_x_, high_y_, slope_;
-  std::vector<std::uint8_t> goes_up_;
-  std::vector<double> first_high_x_, last_low_x_;  // where it leaves its first row, enters its last
+  // One entry a beam, and some to fill the last vector: the lower end of its clear interval, dx /
+  // dy, rows from the origin to the farther end, the rows of the two ends, its spans of cells in
+  // these rows, and whether it touches the beam before it.
+  std::vector<double> low_x_, low_y_, slope_, reach_;
   std::vector<std::int32_t> first_row_, last_row_;
   std::vector<std::int32_t> first_span_first_, first_span_last_;
   std::vector<std::int32_t> last_span_first_, last_span_last_;
+  std::vector<std::int32_t> touches_;
   std::vector<std::int32_t> open_x_;  // per row of the mask: the outer end of the run that is open
 };
 

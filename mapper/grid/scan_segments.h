@@ -9,7 +9,10 @@
 
 namespace depthgrid {
 
-// One entry a beam in every vector, in the order of the scan. Laid out for vector loops.
+// One entry a beam in every vector, in the order of the scan; coordinates have up to
+// kSegmentPadding - 1 entries more (the origin), so that vector loops need no remainder.
+constexpr std::size_t kSegmentPadding = 4;
+
 struct ScanSegments {
   std::vector<double> from_x;  // the clear interval; where there is none, the scan's origin twice
   std::vector<double> from_y;
@@ -36,17 +39,21 @@ class SegmentBuilder {
                             double clear_margin_m = 0.0);
 
  private:
-  void UpdateDirections(const Scan& scan);
   void Unpack(const Scan& scan, double clear_margin_m);
+  void UpdateDirections();
   void Place(const Pose2& map_from_base, double resolution_m);
   void Bound();
 
+  // One entry a beam.
   std::vector<float> bearing_rad_;
-  std::vector<double> cos_;
-  std::vector<double> sin_;
   std::vector<double> clear_from_m_;
   std::vector<double> clear_to_m_;
-  std::vector<double> range_m_;  // 0 where there is no hit
+  std::vector<double> range_m_;           // 0 where there is no hit
+  std::vector<float> known_bearing_rad_;  // whose directions these are
+  std::vector<double> cos_;
+  std::vector<double> sin_;
+  std::vector<double> x_per_m_;
+  std::vector<double> y_per_m_;
   ScanSegments segments_;
 };
 

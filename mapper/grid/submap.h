@@ -28,7 +28,7 @@ class ActiveSubmaps {
   void RestartAt(int scan_count);
 
   // The older one, which scans are matched against; null before the first scan.
-  const ProbabilityGrid* matching() const { return grids_.empty() ? nullptr : &grids_.front(); }
+  ProbabilityGrid* matching() { return grids_.empty() ? nullptr : &grids_.front(); }
 
  private:
   SubmapOptions submap_options_;

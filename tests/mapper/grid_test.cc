@@ -167,14 +167,16 @@ TEST(ProbabilityGrid, GrowingLosesNothing) {
   // The same from a grid that is large enough from the start.
   ProbabilityGrid large{GridOptions{}};
   ScanCells empty;
-  empty.hit.Reset({-2000, -2000}, {2000, 2000});
+  empty.hit.Reset({-800, -800}, {800, 800});
   empty.passed = empty.hit;
   large.Insert(empty);
   for (const ScanCells& cells : scans) large.Insert(cells);
   int known = 0;
-  for (std::size_t i = 0; i < large.map().occupied_prob.size(); ++i) {
-    const float prob = large.map().occupied_prob[i];
-    const float grown = growing.map().At(large.map().geometry.CellAt(i));
+  const OccupancyMap& expected = large.map();
+  const OccupancyMap& map = growing.map();
+  for (std::size_t i = 0; i < expected.occupied_prob.size(); ++i) {
+    const float prob = expected.occupied_prob[i];
+    const float grown = map.At(expected.geometry.CellAt(i));
     ASSERT_TRUE(prob == grown || (std::isnan(prob) && std::isnan(grown)));
     known += std::isnan(prob) ? 0 : 1;
   }

@@ -18,7 +18,7 @@ ScanCells MarkOf(int n) {
 }
 
 // Which scans the submap that is matched against holds.
-std::pair<int, int> RangeOf(const ActiveSubmaps& submaps, int count) {
+std::pair<int, int> RangeOf(ActiveSubmaps& submaps, int count) {
   int first = -1, last = -1;
   for (int n = 0; n < count; ++n) {
     if (std::isnan(submaps.matching()->map().At({n, 0}))) continue;
