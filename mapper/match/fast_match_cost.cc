@@ -5,7 +5,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "mapper/core/error.h"
@@ -35,7 +34,7 @@ struct Cubic {
 };
 
 // Catmull-Rom through four neighbours, between the second and the third, as powers of the fraction.
-Cubic CatmullRom(Floats p0, Floats p1, Floats p2, Floats p3) {
+HWY_INLINE Cubic CatmullRom(Floats p0, Floats p1, Floats p2, Floats p3) {
   const Floats half = hn::Set(kFloats, 0.5F);
   const Floats inner = hn::Sub(p1, p2);
   const Floats c1 = hn::Mul(half, hn::Sub(p2, p0));
@@ -50,7 +49,7 @@ struct CubicValue {
   Floats value, first, half_second;
 };
 
-CubicValue Evaluate(Floats c0, Floats c1, Floats c2, Floats c3, Floats t) {
+HWY_INLINE CubicValue Evaluate(Floats c0, Floats c1, Floats c2, Floats c3, Floats t) {
   Floats value = hn::MulAdd(c3, t, c2);
   Floats first = hn::MulAdd(c3, t, value);
   const Floats half_second = hn::MulAdd(c3, t, first);
@@ -66,7 +65,7 @@ struct Neighbours {
 
 // Four cells in a row from each point's first one: loads and a transposition, since gathers are
 // slow on many machines (12 times on the one measured).
-Neighbours LoadRow(const float* probs, const std::int32_t* square) {
+HWY_INLINE Neighbours LoadRow(const float* probs, const std::int32_t* square) {
   using Four = hn::CappedTag<float, 4>;
   const auto from = [&](std::size_t lane) {
     const auto low = hn::LoadU(Four(), probs + square[lane]);
@@ -118,7 +117,7 @@ struct Sample {
   Floats value, dx, dy, dxx, dxy, dyy;
 };
 
-Sample EvaluatePolynomials(const float* polynomial, Floats tx, Floats ty) {
+HWY_INLINE Sample EvaluatePolynomials(const float* polynomial, Floats tx, Floats ty) {
   const std::size_t lanes = hn::Lanes(kFloats);
   CubicValue in_y[4];
   for (std::size_t i = 0; i < 4; ++i) {
@@ -137,13 +136,8 @@ Sample EvaluatePolynomials(const float* polynomial, Floats tx, Floats ty) {
           dy.first,    hn::Mul(two, dyy.value)};
 }
 
-double SumOf(Floats lanes) {
-  alignas(64) std::array<float, 8> values{};
-  hn::Store(lanes, kFloats, values.data());
-  double sum = 0.0;
-  for (const float value : values) sum += value;
-  return sum;
-}
+// Pairwise, always in the same order.
+double SumOf(Floats lanes) { return hn::GetLane(hn::SumOfLanes(kFloats, lanes)); }
 
 // What one point adds, with lengths in cells; E is its motion per unit of (x, y, yaw).
 struct PointTerms {
@@ -153,7 +147,7 @@ struct PointTerms {
   Floats wall_xx, wall_xy, wall_yy;  // C = grad M grad M^T - (1 - M) D^2 M
   Floats x_yaw, y_yaw, yaw_yaw;      // of E^T C E, and the bend of the point's way in yaw_yaw
 
-  PointTerms(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
+  HWY_INLINE PointTerms(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
     residual = hn::Mul(weight, hn::Sub(hn::Set(kFloats, 1.0F), m.value));
     slope_x = hn::Mul(weight, m.dx);
     slope_y = hn::Mul(weight, m.dy);
@@ -189,7 +183,7 @@ struct CostSums {
   Floats xx = hn::Zero(kFloats), xy = hn::Zero(kFloats), yy = hn::Zero(kFloats);
   Floats x_yaw = hn::Zero(kFloats), y_yaw = hn::Zero(kFloats), yaw_yaw = hn::Zero(kFloats);
 
-  void Add(const PointTerms& point) {
+  HWY_INLINE void Add(const PointTerms& point) {
     value = hn::MulAdd(point.residual, point.residual, value);
     x = hn::NegMulAdd(point.residual, point.slope_x, x);
     y = hn::NegMulAdd(point.residual, point.slope_y, y);
@@ -223,7 +217,7 @@ struct CostSums {
 struct AlongSums {
   Floats x_yaw = hn::Zero(kFloats), y_yaw = hn::Zero(kFloats), yaw_yaw = hn::Zero(kFloats);
 
-  void Add(const PointTerms& point, Floats arm_x, Floats arm_y) {
+  HWY_INLINE void Add(const PointTerms& point, Floats arm_x, Floats arm_y) {
     const Floats along_x = hn::Neg(hn::MulAdd(arm_y, point.wall_yy, hn::Mul(arm_x, point.wall_xy)));
     const Floats along_y = hn::MulAdd(arm_y, point.wall_xy, hn::Mul(arm_x, point.wall_xx));
     x_yaw = hn::Add(x_yaw, along_x);
@@ -353,15 +347,13 @@ InformationSums FastMatchCost::SumUp(const Pose2& map_from_base,
                                      const MatchInformationOptions& options) {
   const double r = copied_.resolution_m;
   InformationSums sums;
-  Eigen::Matrix2d walls = Eigen::Matrix2d::Zero();
+  CostSums total;
   CostSums patch;
   AlongSums along;
   Floats explained = hn::Zero(kFloats);
   const Floats threshold = hn::Set(kFloats, static_cast<float>(kExplainedProb));
   const auto end_patch = [&] {
     const Eigen::Matrix<double, 3, 2> shift_curvature = patch.ShiftCurvature(r);
-    walls += shift_curvature.topRows<2>();
-    sums.curvature += patch.Hessian(r);
     AddPatch(patch.Gradient(r), shift_curvature, options.map_sigma_m, sums.gradient_covariance);
     patch = CostSums();
   };
@@ -375,13 +367,15 @@ InformationSums FastMatchCost::SumUp(const Pose2& map_from_base,
       end_patch();
       start = i;
     }
+    total.Add(point);
     patch.Add(point);
     along.Add(point, arm_x, arm_y);
     explained = hn::Add(explained, hn::IfThenElseZero(hn::Gt(sample.value, threshold), weight));
   });
   end_patch();
+  sums.curvature = total.Hessian(r);
   sums.curvature_along_walls =
-      HessianOf(walls(1, 1) * r * r, -walls(0, 1) * r * r, walls(0, 0) * r * r, SumOf(along.x_yaw),
+      HessianOf(SumOf(total.yy), -SumOf(total.xy), SumOf(total.xx), SumOf(along.x_yaw),
                 SumOf(along.y_yaw), SumOf(along.yaw_yaw), r);
   sums.explained = static_cast<int>(SumOf(explained));
   return sums;

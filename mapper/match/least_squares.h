@@ -24,7 +24,7 @@ struct LeastSquaresOptions {
 struct LeastSquaresMatch {
   bool converged = false;  // false without points and when the iterations ran out
   Pose2 map_from_base;
-  double cost = 0.0;  // F of match_cost.h there, prior included
+  double cost = 0.0;  // F of match_cost.h, prior included, where it was last evaluated
   int iterations = 0;
 };
 

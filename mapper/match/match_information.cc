@@ -32,8 +32,14 @@ Eigen::Matrix3d MadePositive(const Eigen::Matrix3d& matrix, double least) {
 
 // Unit eigenvector of a symmetric 2 x 2 matrix for its larger eigenvalue.
 Eigen::Vector2d LargestAxis(const Eigen::Matrix2d& matrix) {
-  const double angle_rad = 0.5 * std::atan2(2.0 * matrix(0, 1), matrix(0, 0) - matrix(1, 1));
-  return {std::cos(angle_rad), std::sin(angle_rad)};
+  const double difference = matrix(0, 0) - matrix(1, 1);
+  const double twice_off = 2.0 * matrix(0, 1);
+  const double root = std::sqrt(difference * difference + twice_off * twice_off);
+  if (!(root > 0.0)) return Eigen::Vector2d::UnitX();
+  // Of the two ways to write it the one without cancellation.
+  const Eigen::Vector2d axis = difference >= 0.0 ? Eigen::Vector2d(difference + root, twice_off)
+                                                 : Eigen::Vector2d(twice_off, root - difference);
+  return axis / axis.norm();
 }
 
 // (x, y, yaw) of the map from (forward, left, yaw) of base.

@@ -16,7 +16,7 @@ struct MatchPoints {
 
   int size() const { return static_cast<int>(x_m.size()); }
   // Replaces the points by those of the scan, reusing memory. Beams whose bearing is not
-  // finite or whose range is not in (0, 10 km) are left out.
+  // within two turns or whose range is not in (0, 10 km) are left out.
   void Assign(const Scan& scan);
 };
 
