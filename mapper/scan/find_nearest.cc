@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <vector>
 
 #include "mapper/scan/bearing_returns.h"
@@ -42,14 +44,23 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 
 void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                  const NoiseWindow& window, BearingReturns& returns) {
-  std::vector<float> sorted(samples.begin(), samples.end());
-  std::sort(sorted.begin(), sorted.end());
-  const auto needed = static_cast<std::size_t>(limits.min_returns - 1);
-  for (std::size_t i = 0; i + needed < sorted.size() && sorted[i] < kPassing; ++i) {
-    const float width_m = window.At(sorted[i]);
-    if (sorted[i + needed] > sorted[i] + width_m) continue;
+  // Samples come out of the heap in increasing order, and few of them do before one is supported.
+  std::vector<float> heap;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(heap),
+               [](float sample) { return sample < kPassing; });
+  std::make_heap(heap.begin(), heap.end(), std::greater<>());
+  std::vector<float> increasing;
+  const auto needed = static_cast<std::size_t>(limits.min_returns);
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+    increasing.push_back(heap.back());
+    heap.pop_back();
+    if (increasing.size() < needed) continue;
+    const float smallest = increasing[increasing.size() - needed];
+    const float width_m = window.At(smallest);
+    if (increasing.back() > smallest + width_m) continue;
     const float half_m = 0.5F * width_m;
-    const float centre_m = MeanWithin(samples, sorted[i], sorted[i] + width_m, sorted[i]);
+    const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
     returns.hit = true;
     returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
     return;
