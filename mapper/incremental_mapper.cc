@@ -10,7 +10,7 @@
 #include "mapper/grid/map_drawing.h"
 #include "mapper/loop_closing.h"
 #include "mapper/reference_factory.h"
-#include "mapper/scan/depth_to_scan.h"
+#include "mapper/scan/frame_scans.h"
 
 namespace depthgrid {
 namespace {
@@ -29,8 +29,8 @@ struct IncrementalMapper::State {
   MapperOptions options;
   CpuClock clock;
   GainOracle oracle;
-  std::optional<DepthToScan> depth_to_scan;  // empty when frames bring ready scans
-  std::unique_ptr<ReferenceMap> reference;   // null when SLAM is trusted alone
+  FrameScanner scanner;
+  std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
   FrameHistory history;
   CorrectionFilter filter;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
@@ -42,26 +42,26 @@ struct IncrementalMapper::State {
       : options(opts),
         clock(std::move(clk)),
         oracle(std::move(orc)),
+        scanner(camera, opts.scan),
         filter(opts.fusion),
         loop_closer(opts.loops) {
-    if (camera) depth_to_scan.emplace(*camera, options.scan);
     if (!options.fusion.TrustsSlamAlone()) reference = MakeReference(options);
   }
 
   FrameReport Begin(const Frame& frame);
-  std::shared_ptr<const Scan> ScanOf(const Frame& frame, FrameReport& report);
-  void CloseLoops(const Frame& frame, const std::shared_ptr<const Scan>& scan, FrameReport& report);
+  FrameScans ScansOf(const Frame& frame, FrameReport& report);
+  void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);
-  void Insert(const std::shared_ptr<const Scan>& scan, const FusedPose& fused, FrameReport& report);
+  void Insert(const FrameScans& scans, const FusedPose& fused, FrameReport& report);
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
   Pose2 Extrapolated() const;
   void Anchor(const Pose2& map_from_base);
-  MappedFrame AsMapped(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base) const;
+  MappedFrame AsMapped(const FrameScans& scans, const Pose2& map_from_base) const;
   void FinishByAdjusting(MapperResult& result) const;
   void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
                       MapperResult& result) const;
@@ -83,13 +83,13 @@ IncrementalMapper::IncrementalMapper(IncrementalMapper&&) noexcept = default;
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   FrameReport report = state_->Begin(frame);
   const StageTimer total(state_->clock, report.times.total_us);
-  const std::shared_ptr<const Scan> scan = state_->ScanOf(frame, report);
-  state_->CloseLoops(frame, scan, report);
+  const FrameScans scans = state_->ScansOf(frame, report);
+  state_->CloseLoops(frame, scans, report);
   if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
-  const Prediction prediction = state_->Predict(scan, report);
-  state_->Match(scan, prediction, report);
+  const Prediction prediction = state_->Predict(scans.matched, report);
+  state_->Match(scans.matched, prediction, report);
   const FusedPose fused = state_->Fuse(prediction, report);
-  state_->Insert(scan, fused, report);
+  state_->Insert(scans, fused, report);
   return report;
 }
 
@@ -104,30 +104,24 @@ FrameReport IncrementalMapper::State::Begin(const Frame& frame) {
   return report;
 }
 
-std::shared_ptr<const Scan> IncrementalMapper::State::ScanOf(const Frame& frame,
-                                                             FrameReport& report) {
+FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& report) {
   const StageTimer timer(clock, report.times.scan_us);
-  std::shared_ptr<const Scan> scan = frame.scan;
-  if (!scan && frame.depth && frame.slam_from_camera) {
-    Require(depth_to_scan.has_value(), "a source of depth images has a camera");
-    scan = std::make_shared<Scan>(depth_to_scan->Convert(*frame.depth, *frame.slam_from_camera));
-  }
-  if (scan) report.beams = HitCount(*scan);
-  return scan;
+  FrameScans scans = scanner.ScansOf(frame);
+  if (scans.matched) report.beams = HitCount(*scans.matched);
+  return scans;
 }
 
 // Loop events come before the frame's pose is used. How SLAM corrected itself (a new epoch) is not
 // followed: the loops correct the map, and the frame is placed in it by its own loop or, failing
 // that, stays where the motion before leads.
-void IncrementalMapper::State::CloseLoops(const Frame& frame,
-                                          const std::shared_ptr<const Scan>& scan,
+void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
   if (!reference || frame.loops.empty() || mapped.empty()) return;
   std::vector<MappedFrame> frames = mapped;
-  const bool provisional = scan && frame.slam_from_camera;
+  const bool provisional = scans.matched && frame.slam_from_camera;
   if (provisional) {
-    frames.push_back(AsMapped(scan, SameEpoch() ? CarriedOn() : Extrapolated()));
+    frames.push_back(AsMapped(scans, SameEpoch() ? CarriedOn() : Extrapolated()));
   }
   const LoopCloser::Outcome outcome =
       loop_closer.Close(frame.loops, history, frames, provisional, *reference);
@@ -201,15 +195,15 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
   return fused;
 }
 
-void IncrementalMapper::State::Insert(const std::shared_ptr<const Scan>& scan,
-                                      const FusedPose& fused, FrameReport& report) {
+void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& fused,
+                                      FrameReport& report) {
   const StageTimer timer(clock, report.times.insert_us);
-  if (!scan) return;
-  MappedFrame frame = AsMapped(scan, fused.map_from_base);
+  if (!scans.matched) return;
+  MappedFrame frame = AsMapped(scans, fused.map_from_base);
   frame.match = report.match;
   history.newest().mapped = static_cast<int>(mapped.size());
   mapped.push_back(std::move(frame));
-  if (reference) reference->Insert(scan, fused.map_from_base, fused.covariance);
+  if (reference) reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
   report.inserted = true;
 }
 
@@ -247,13 +241,14 @@ void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
   filter_epoch = record.epoch;
 }
 
-MappedFrame IncrementalMapper::State::AsMapped(const std::shared_ptr<const Scan>& scan,
+MappedFrame IncrementalMapper::State::AsMapped(const FrameScans& scans,
                                                const Pose2& map_from_base) const {
   const FrameRecord& record = history.newest();
   MappedFrame frame;
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
-  frame.scan = scan;
+  frame.scan = scans.matched;
+  frame.obstacles = scans.obstacles;
   frame.map_from_base = map_from_base;
   if (!mapped.empty()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
@@ -267,7 +262,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const std::shared_ptr<const Scan>
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
   MapDrawing drawing(options.grid);
-  for (const MappedFrame& frame : frames) drawing.Add(*frame.scan, frame.map_from_base);
+  for (const MappedFrame& frame : frames) drawing.Add(*frame.obstacles, frame.map_from_base);
   return drawing.Map();
 }
 

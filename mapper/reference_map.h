@@ -15,7 +15,8 @@ namespace depthgrid {
 struct MappedFrame {
   int frame = 0;  // Frame::index
   double stamp_s = 0.0;
-  std::shared_ptr<const Scan> scan;
+  std::shared_ptr<const Scan> scan;       // what is matched
+  std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; often the same object
   Pose2 map_from_base;
   // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
   std::optional<Pose2> slam_motion;

@@ -36,6 +36,10 @@ struct ScanOptions {
   // Free space must be seen without a vertical gap larger than this: what could hide in a smaller
   // one is as low as what lies below the band.
   double max_gap_m = 0.1;
+  // What is matched is a level slice of this half height around the camera (see frame_scans.h); 0
+  // matches the obstacle scan. 0.1 m keeps three rows or more of the image up to 6 m with a tilted
+  // camera and is thin against furniture.
+  double slice_half_height_m = 0.1;
   FloorSource floor = FloorSource::kPose;
   double floor_z_m = 0.0;  // the floor in the frame of the poses
 

@@ -1,0 +1,35 @@
+// The two scans of a frame. What a robot must not run into is the nearest surface anywhere in the
+// obstacle band; but which surface that is changes with the camera's tilt and distance (a table top
+// leaves the image when the camera comes near), so such scans do not fit each other rigidly. A thin
+// level slice at the camera's own height is seen at any distance and is the paper's "horizontal
+// point cloud": that is what is matched.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mapper/core/frame.h"
+#include "mapper/scan/depth_to_scan.h"
+
+namespace depthgrid {
+
+struct FrameScans {
+  std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
+  std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
+};
+
+class FrameScanner {
+ public:
+  // The camera may be absent when every frame brings a ready scan.
+  FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options);
+
+  // Of a ready scan both are that scan; without image, scan or pose both are null.
+  FrameScans ScansOf(const Frame& frame) const;
+
+ private:
+  std::optional<DepthToScan> obstacles_;
+  std::optional<DepthToScan> slice_;  // empty where the obstacle scan itself is matched
+  double slice_half_height_m_ = 0.0;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,77 @@
+#include "mapper/scan/frame_scans.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kCameraHeightM = 1.15;
+constexpr double kWallM = 4.0;
+constexpr double kTableM = 2.0;
+constexpr double kTableTopM = 0.9;
+
+// A wall across the view with a table in front of it that ends below the camera's height.
+std::shared_ptr<const DepthImage> WallBehindTable(const PinholeCamera& camera) {
+  auto image = std::make_shared<DepthImage>(camera.width_px, camera.height_px);
+  for (int v = 0; v < camera.height_px; ++v) {
+    const double drop = (v - camera.cy_px) / camera.fy_px;
+    const bool table = kCameraHeightM - kTableM * drop < kTableTopM;
+    std::fill_n(image->Row(v), camera.width_px, static_cast<float>(table ? kTableM : kWallM));
+  }
+  return image;
+}
+
+double MeanForwardM(const Scan& scan) {
+  double sum_m = 0.0;
+  int hits = 0;
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit) continue;
+    sum_m += beam.range_m * std::cos(beam.bearing_rad);
+    ++hits;
+  }
+  EXPECT_GT(hits, 600);
+  return sum_m / hits;
+}
+
+Frame WallFrame() {
+  Frame frame;
+  frame.depth = WallBehindTable(PinholeCamera{});
+  frame.slam_from_camera = CameraOf(Pose2{}, kCameraHeightM);
+  return frame;
+}
+
+TEST(FrameScanner, ObstaclesAreTheNearestSurfaceAndTheSliceIsLevelWithTheCamera) {
+  const FrameScans scans = FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(WallFrame());
+  EXPECT_NEAR(MeanForwardM(*scans.obstacles), kTableM, 1e-3);
+  EXPECT_NEAR(MeanForwardM(*scans.matched), kWallM, 1e-3);
+}
+
+TEST(FrameScanner, WithoutASliceTheObstaclesAreMatched) {
+  ScanOptions options;
+  options.slice_half_height_m = 0.0;
+  const FrameScans scans = FrameScanner(PinholeCamera{}, options).ScansOf(WallFrame());
+  EXPECT_EQ(scans.obstacles, scans.matched);
+}
+
+TEST(FrameScanner, AReadyScanIsBoth) {
+  Frame frame;
+  frame.scan = std::make_shared<const Scan>();
+  const FrameScans scans = FrameScanner({}, ScanOptions{}).ScansOf(frame);
+  EXPECT_EQ(scans.obstacles, frame.scan);
+  EXPECT_EQ(scans.matched, frame.scan);
+}
+
+TEST(FrameScanner, WithoutImageOrPoseThereIsNoScan) {
+  Frame frame = WallFrame();
+  frame.slam_from_camera.reset();
+  EXPECT_EQ(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(frame).matched, nullptr);
+  EXPECT_EQ(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(Frame{}).obstacles, nullptr);
+}
+
+}  // namespace
+}  // namespace depthgrid
