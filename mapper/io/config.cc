@@ -4,11 +4,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/io/config_text.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 
@@ -263,13 +263,7 @@ Config& Config::operator=(const Config& other) {
 Config::~Config() = default;
 
 Config Config::FromFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path, "cannot be opened for reading");
-  std::stringstream text;
-  text << file.rdbuf();
-  if (file.bad() || (text.str().empty() && !file.eof())) throw InputError(path, "cannot be read");
-  if (text.str().size() > kMaxConfigBytes) throw InputError(path, "is larger than 16 MiB");
-  return FromText(text.str(), path);
+  return FromText(ReadFile(path, kMaxConfigBytes), path);
 }
 
 Config Config::FromText(const std::string& text, const std::string& place) {
