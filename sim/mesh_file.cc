@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "mapper/core/error.h"
+#include "sim/ply_file.h"
 #include "sim/scene_limits.h"
 
 namespace depthgrid {
@@ -143,6 +144,39 @@ class Assembler {
   TriangleMesh mesh_;
 };
 
+Eigen::Affine3d WorldFromFile(double scale, UpAxis up) {
+  Eigen::Affine3d world_from_file = Eigen::Affine3d::Identity();
+  world_from_file.linear() = scale * ZUpFrom(up);
+  return world_from_file;
+}
+
+MeshFile ReadPlyFile(const std::string& path, double scale, UpAxis up) {
+  return {Transformed(ReadPly(path), WorldFromFile(scale, up)), {Material{}}};
+}
+
+MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
+  Assimp::Importer importer;
+  // Only positions matter here; without the rest, vertices that differ in nothing else join.
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                  aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
+  const bool is_dae = ExtensionOf(path) == ".dae";
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kAuto);
+  const aiScene* scene = importer.ReadFile(
+      path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    throw InputError(path, "is not a readable mesh: " + OneLine(importer.GetErrorString()));
+  }
+  // Assimp turns a DAE to +y up by what it states; glTF has +y up.
+  if (up == UpAxis::kAuto) up = is_dae || IsGltf(path) ? UpAxis::kY : UpAxis::kZ;
+  MeshFile file;
+  file.mesh = Assembler(*scene, path, WorldFromFile(scale, up)).Take();
+  file.materials = MaterialsOf(*scene, IsGltf(path));
+  return file;
+}
+
 }  // namespace
 
 bool IsMeshFile(const std::string& path) {
@@ -156,31 +190,9 @@ MeshFile ReadMeshFile(const std::string& path, double scale, UpAxis up) {
     throw InputError(path, "is not a mesh file (.obj .ply .stl .gltf .glb .dae)");
   }
   RequireReadableFile(path);
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // Only positions matter here; without the rest, vertices that differ in nothing else join.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_COLORS | aiComponent_TEXCOORDS |
-                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-  const bool is_dae = ExtensionOf(path) == ".dae";
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kAuto);
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent |
-                                  aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw InputError(path, "is not a readable mesh: " + OneLine(importer.GetErrorString()));
-  }
-  // Assimp turns a DAE to +y up by what it states; glTF has +y up.
-  if (up == UpAxis::kAuto) up = is_dae || IsGltf(path) ? UpAxis::kY : UpAxis::kZ;
-  Eigen::Affine3d world_from_root = Eigen::Affine3d::Identity();
-  world_from_root.linear() = scale * ZUpFrom(up);
-  MeshFile file;
-  file.mesh = Assembler(*scene, path, world_from_root).Take();
+  MeshFile file =
+      ExtensionOf(path) == ".ply" ? ReadPlyFile(path, scale, up) : ReadByAssimp(path, scale, up);
   if (file.mesh.triangles.empty()) throw InputError(path, "has no triangles");
-  file.materials = MaterialsOf(*scene, IsGltf(path));
   return file;
 }
 

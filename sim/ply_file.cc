@@ -1,0 +1,211 @@
+#include "sim/ply_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "sim/ply_header.h"
+#include "sim/scene_limits.h"
+
+namespace depthgrid {
+namespace {
+
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+// The file's text from front to back.
+class PlyParser {
+ public:
+  PlyParser(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {}
+
+  TriangleMesh Parse() {
+    const PlyHeader header = ReadPlyHeader(text_, path_);
+    at_ = header.bytes;
+    encoding_ = header.encoding;
+    for (const PlyElement& element : header.elements) {
+      RequireRoomFor(element);
+      if (element.name == "vertex") {
+        ReadVertices(element);
+      } else if (element.name == "face") {
+        ReadFaces(element);
+      } else {
+        for (std::size_t i = 0; i < element.count; ++i) Skip(element);
+      }
+    }
+    CheckFaces();
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& message) const { throw InputError(path_, message); }
+
+  // So that a wrong number in the header cannot ask for more memory than the file has data.
+  void RequireRoomFor(const PlyElement& element) const {
+    std::size_t least_bytes = 0;
+    for (const PlyProperty& p : element.properties) {
+      const std::size_t stored = p.count ? p.count->bytes : p.value.bytes;
+      least_bytes += encoding_ == PlyEncoding::kAscii ? 1 : stored;
+    }
+    if (least_bytes == 0 && element.count > 0) {
+      Fail(fmt::format("its element '{}' has no properties", element.name));
+    }
+    if (element.count > 0 && element.count > (text_.size() - at_) / least_bytes) FailCutOff();
+  }
+
+  [[noreturn]] void FailCutOff() const { Fail("ends before all that its header announces"); }
+
+  double Number(const PlyType& type) {
+    return encoding_ == PlyEncoding::kAscii ? AsciiNumber() : BinaryNumber(type);
+  }
+
+  double AsciiNumber() {
+    while (at_ < text_.size() && IsSpace(text_[at_])) ++at_;
+    if (at_ >= text_.size()) FailCutOff();
+    const char* begin = text_.data() + at_;
+    const char* end = text_.data() + text_.size();
+    if (*begin == '+') ++begin;
+    double number = 0.0;
+    const auto [stop, error] = std::from_chars(begin, end, number);
+    if (error == std::errc::invalid_argument || (stop != end && !IsSpace(*stop))) {
+      std::size_t word_end = at_;
+      while (word_end < text_.size() && !IsSpace(text_[word_end]) && word_end - at_ < 32)
+        ++word_end;
+      Fail(fmt::format("'{}' is not a number", text_.substr(at_, word_end - at_)));
+    }
+    at_ = static_cast<std::size_t>(stop - text_.data());
+    return number;
+  }
+
+  double BinaryNumber(const PlyType& type) {
+    if (text_.size() - at_ < type.bytes) FailCutOff();
+    std::array<unsigned char, 8> raw{};
+    const bool is_little = encoding_ == PlyEncoding::kLittleEndian;
+    const bool is_native = is_little == (std::endian::native == std::endian::little);
+    for (std::size_t i = 0; i < type.bytes; ++i) {
+      raw[is_native ? i : type.bytes - 1 - i] = static_cast<unsigned char>(text_[at_ + i]);
+    }
+    at_ += type.bytes;
+    switch (type.kind) {
+      case PlyNumber::kFloat:
+        return type.bytes == 4 ? As<float>(raw) : As<double>(raw);
+      case PlyNumber::kSigned:
+        return type.bytes == 1   ? As<std::int8_t>(raw)
+               : type.bytes == 2 ? As<std::int16_t>(raw)
+                                 : As<std::int32_t>(raw);
+      case PlyNumber::kUnsigned:
+        break;
+    }
+    return type.bytes == 1   ? As<std::uint8_t>(raw)
+           : type.bytes == 2 ? As<std::uint16_t>(raw)
+                             : As<std::uint32_t>(raw);
+  }
+
+  template <typename T>
+  static double As(const std::array<unsigned char, 8>& raw) {
+    T value;
+    std::memcpy(&value, raw.data(), sizeof(T));
+    return static_cast<double>(value);
+  }
+
+  std::size_t ListLength(const PlyProperty& property) {
+    const double length = Number(*property.count);
+    if (!(length >= 0.0) || length > static_cast<double>(text_.size())) FailCutOff();
+    return static_cast<std::size_t>(length);
+  }
+
+  void SkipProperty(const PlyProperty& property) {
+    const std::size_t values = property.count ? ListLength(property) : 1;
+    for (std::size_t i = 0; i < values; ++i) Number(property.value);
+  }
+
+  void Skip(const PlyElement& element) {
+    for (const PlyProperty& property : element.properties) SkipProperty(property);
+  }
+
+  void ReadVertices(const PlyElement& element) {
+    for (const char* name : {"x", "y", "z"}) {
+      if (std::none_of(element.properties.begin(), element.properties.end(),
+                       [&](const PlyProperty& p) { return p.name == name && !p.count; })) {
+        Fail(fmt::format("its vertices have no '{}'", name));
+      }
+    }
+    for (std::size_t i = 0; i < element.count; ++i) {
+      Eigen::Vector3d point = Eigen::Vector3d::Zero();
+      for (const PlyProperty& property : element.properties) {
+        const bool is_coordinate = !property.count && property.name.size() == 1 &&
+                                   property.name[0] >= 'x' && property.name[0] <= 'z';
+        if (is_coordinate) {
+          point[property.name[0] - 'x'] = Number(property.value);
+        } else {
+          SkipProperty(property);
+        }
+      }
+      mesh_.AddVertex(point);
+      if (!mesh_.vertices.back().allFinite()) Fail(fmt::format("vertex {} is not finite", i));
+    }
+  }
+
+  void ReadFaces(const PlyElement& element) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const PlyProperty& property : element.properties) {
+        const bool is_polygon = property.count && (property.name == "vertex_indices" ||
+                                                   property.name == "vertex_index");
+        if (is_polygon) {
+          ReadPolygon(property);
+        } else {
+          SkipProperty(property);
+        }
+      }
+    }
+  }
+
+  void ReadPolygon(const PlyProperty& property) {
+    const std::size_t corners = ListLength(property);
+    if (mesh_.triangles.size() + corners > kMaxSceneTriangles) {
+      Fail(fmt::format("has more than {} triangles", kMaxSceneTriangles));
+    }
+    std::uint32_t first = 0;
+    std::uint32_t before = 0;
+    for (std::size_t k = 0; k < corners; ++k) {
+      const std::uint32_t corner = VertexIndex(Number(property.value));
+      if (k >= 2) mesh_.AddTriangle(first, before, corner);
+      if (k == 0) first = corner;
+      before = corner;
+    }
+  }
+
+  std::uint32_t VertexIndex(double number) const {
+    if (!(number >= 0.0) || number != std::floor(number) || number > 4294967295.0) {
+      Fail(fmt::format("a face uses vertex '{}'", number));
+    }
+    return static_cast<std::uint32_t>(number);
+  }
+
+  // At the end: faces may come before vertices.
+  void CheckFaces() const {
+    for (const auto& triangle : mesh_.triangles) {
+      for (const auto vertex : triangle) {
+        if (vertex >= mesh_.vertices.size()) {
+          Fail(fmt::format("a face uses vertex {} of {}", vertex, mesh_.vertices.size()));
+        }
+      }
+    }
+  }
+
+  std::string path_;
+  std::string text_;
+  std::size_t at_ = 0;
+  PlyEncoding encoding_ = PlyEncoding::kAscii;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh ReadPly(const std::string& path) { return PlyParser(path, ReadFile(path)).Parse(); }
+
+}  // namespace depthgrid

@@ -1,0 +1,41 @@
+// What a PLY file says about itself before its numbers.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace depthgrid {
+
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+enum class PlyNumber { kSigned, kUnsigned, kFloat };
+
+struct PlyType {
+  PlyNumber kind = PlyNumber::kFloat;
+  std::size_t bytes = 4;
+};
+
+struct PlyProperty {
+  std::string name;
+  std::optional<PlyType> count;  // of a list's length; empty for a single number
+  PlyType value;
+};
+
+struct PlyElement {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t bytes = 0;  // where the numbers begin
+};
+
+// Throws InputError naming `path` and the line.
+PlyHeader ReadPlyHeader(std::string_view text, const std::string& path);
+
+}  // namespace depthgrid
