@@ -9,10 +9,10 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kLevelLimitDeg = 5.0;          // ramps are steeper, uneven ground is not
-constexpr double kSlabM = 0.05;                 // surfaces this near in height count as one
-constexpr double kFloorShareOfFootprint = 0.1;  // U-shaped buildings leave much of it empty
-constexpr double kFloorShareOfLargest = 0.25;   // below that it is a pit, not the floor
+constexpr double kLevelLimitDeg = 5.0;           // ramps are steeper, uneven ground is not
+constexpr double kSlabM = 0.05;                  // surfaces this near in height count as one
+constexpr double kFloorShareOfFootprint = 0.25;  // more than a rug, less than an L
+constexpr double kFloorShareOfLargest = 0.25;    // below that it is a pit, not the floor
 constexpr double kCeilingShareOfFootprint = 0.25;
 constexpr double kStandingRoomM = 1.5;
 constexpr double kFloorToleranceM = 0.02;
@@ -69,7 +69,17 @@ double FootprintM2(const TriangleMesh& mesh) {
   return size.x() * size.y();
 }
 
-std::optional<double> FloorAmong(const std::vector<LevelPatch>& patches, double footprint_m2) {
+// Floors lie in the lower half, so that roofs and wall tops are none; a mesh too low to stand in
+// has no roof.
+double HighestFloorM(const TriangleMesh& mesh) {
+  const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
+  const double height_m = bounds.sizes().z();
+  return height_m < kStandingRoomM ? bounds.max().z() : bounds.min().z() + 0.5 * height_m;
+}
+
+std::optional<double> FloorAmong(std::vector<LevelPatch> patches, double footprint_m2,
+                                 double highest_m) {
+  std::erase_if(patches, [&](const LevelPatch& patch) { return patch.z_m > highest_m; });
   if (patches.empty()) return {};
   const std::vector<double> slabs_m2 = SlabAreas(patches);
   const double largest_m2 = *std::max_element(slabs_m2.begin(), slabs_m2.end());
@@ -85,8 +95,9 @@ std::optional<double> FloorAmong(const std::vector<LevelPatch>& patches, double 
 
 std::optional<double> FindFloor(const TriangleMesh& mesh) {
   const double footprint_m2 = FootprintM2(mesh);
-  const auto floor = FloorAmong(LevelPatches(mesh, Facing::kUp), footprint_m2);
-  return floor ? floor : FloorAmong(LevelPatches(mesh, Facing::kDown), footprint_m2);
+  const double highest_m = HighestFloorM(mesh);
+  const auto floor = FloorAmong(LevelPatches(mesh, Facing::kUp), footprint_m2, highest_m);
+  return floor ? floor : FloorAmong(LevelPatches(mesh, Facing::kDown), footprint_m2, highest_m);
 }
 
 bool HasFloorAt(const TriangleMesh& mesh, double z_m) {

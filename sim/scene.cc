@@ -40,25 +40,24 @@ double FloorOf(const TriangleMesh& mesh, const std::optional<double>& stated_z_m
   if (!stated_z_m) {
     if (const auto floor_z_m = FindFloor(mesh)) return *floor_z_m;
     throw InputError(path,
-                     "the scene has no floor: no level surface facing up covers a tenth of it");
+                     "the scene has no floor: no level surface facing up covers a quarter of it");
   }
   if (HasFloorAt(mesh, *stated_z_m)) return *stated_z_m;
   throw InputError(path, fmt::format("floor_z_m is '{}', but no level surface facing up covers a "
-                                     "tenth of the scene there",
+                                     "quarter of the scene there",
                                      *stated_z_m));
 }
 
-// A lamp under the middle of the ceiling, or well above an open world.
+// For files that name no lamps: one so high and far aside that it lights all of the scene alike and
+// surfaces of different directions differently.
 PointLight DefaultLight(const Scene& scene) {
-  constexpr float kBelowCeilingM = 0.3F;
-  constexpr float kOpenWorldHeightM = 3.0F;
+  constexpr float kFarExtents = 10.0F;
+  const Eigen::Vector3f direction = Eigen::Vector3f(0.45F, 0.25F, 0.86F).normalized();
   const Eigen::AlignedBox3f bounds = BoundsOf(scene.mesh);
+  const float distance_m = kFarExtents * bounds.sizes().maxCoeff();
   PointLight light;
-  light.at = bounds.center();
-  light.at.z() = scene.ceiling_z_m ? static_cast<float>(*scene.ceiling_z_m) - kBelowCeilingM
-                                   : bounds.max().z() + kOpenWorldHeightM;
-  const float reach_m = light.at.z() - static_cast<float>(scene.floor_z_m);
-  light.intensity = Eigen::Vector3f::Constant(0.5F * reach_m * reach_m);
+  light.at = bounds.center() + distance_m * direction;
+  light.intensity = Eigen::Vector3f::Constant(0.6F * distance_m * distance_m);
   return light;
 }
 

@@ -143,6 +143,7 @@ class SceneReader {
   SceneFile Read(const std::string& path) {
     path_ = path;
     Config config = Config::FromFile(path);
+    RequireKnownKeys(config);
     scene_.materials.push_back(MaterialOptions().Make("default"));
     if (config.Has("include")) ReadInclude(config.List("include").front());
     ReadMaterials(config.Take("materials"));
@@ -167,6 +168,16 @@ class SceneReader {
   }
 
  private:
+  // Here and not by the reader, which only sees the keys that are left and cannot name the nearest.
+  void RequireKnownKeys(const Config& config) const {
+    const std::vector<std::string> known = {"name",   "include", "floor_z_m", "materials",
+                                            "groups", "shapes",  "lighting",  "trajectories"};
+    for (const auto& key : config.Keys()) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      throw InputError(path_, fmt::format("unknown key '{}'{}", key, DidYouMean(key, known)));
+    }
+  }
+
   // A file of furniture: materials and groups, nothing else.
   void ReadInclude(const std::string& file) {
     struct NothingElse {
@@ -225,9 +236,9 @@ class SceneReader {
     scene_.lighting.sky = LinearFrom255(options.sky);
   }
 
-  TriangleMesh BuildItems(const std::vector<Config>& items, int depth) {
+  TriangleMesh BuildItems(std::vector<Config> items, int depth) {
     TriangleMesh whole;
-    for (const Config& config : items) {
+    for (Config& config : items) {
       const BuiltItem built = BuildItem(config, depth);
       const std::size_t total =
           whole.triangles.size() +
@@ -243,7 +254,7 @@ class SceneReader {
   }
 
   // The item in its own axes, its materials set.
-  BuiltItem BuildItem(const Config& config, int depth) {
+  BuiltItem BuildItem(Config& config, int depth) {
     std::vector<std::string> kinds = ShapeNames();
     kinds.insert(kinds.end(), {"mesh", "use"});
     if (!config.Has("shape")) {
@@ -289,7 +300,7 @@ class SceneReader {
       if (group.being_built) throw InputError(place, fmt::format("group '{}' uses itself", name));
       if (!group.mesh) {
         group.being_built = true;
-        group.mesh = BuildItems(group.items, depth + 1);
+        group.mesh = BuildItems(std::move(group.items), depth + 1);
         group.being_built = false;
       }
       return *group.mesh;

@@ -188,10 +188,10 @@ TriangleMesh MakeLeaf(const LeafShape& leaf) {
   const auto ring = [](int i) { return static_cast<std::uint32_t>(1 + 4 * i); };
   for (std::uint32_t s = 0; s < 4; ++s) {
     const std::uint32_t next = (s + 1) % 4;
-    mesh.AddTriangle(base, ring(0) + s, ring(0) + next);
-    mesh.AddTriangle(tip, ring(rings - 1) + next, ring(rings - 1) + s);
+    mesh.AddTriangle(base, ring(0) + next, ring(0) + s);
+    mesh.AddTriangle(tip, ring(rings - 1) + s, ring(rings - 1) + next);
     for (int i = 0; i + 1 < rings; ++i) {
-      mesh.AddQuad(ring(i) + s, ring(i + 1) + s, ring(i + 1) + next, ring(i) + next);
+      mesh.AddQuad(ring(i) + s, ring(i) + next, ring(i + 1) + next, ring(i + 1) + s);
     }
   }
   return mesh;
