@@ -1,0 +1,30 @@
+// Camera files of other programs, told apart by their content (docs/formats.md, "Camera files").
+#pragma once
+
+#include <string>
+
+#include "mapper/core/pose3.h"
+#include "mapper/io/camera_file.h"
+
+namespace depthgrid {
+
+struct CameraDescription {
+  std::string kind;  // for the screen: "ROS CameraInfo"
+  CameraFile file;
+  bool has_size = true;         // a bare matrix does not say width and height
+  bool has_depth_scale = true;  // nor how many units make a metre
+  // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
+  // poses are to be turned by FlipY.
+  bool y_up = false;
+};
+
+// Our camera.yaml, a ROS CameraInfo (YAML of camera_calibration or of a printed message),
+// ORB-SLAM2/3 settings, or a text with a 3x3, 3x4 or 4x4 matrix. Throws InputError.
+CameraDescription ReadCameraDescription(const std::string& path);
+CameraDescription ParseCameraDescription(const std::string& text, const std::string& place);
+
+// The same motion as seen by a camera whose y axis points down, in a world whose y axis is turned
+// likewise: S T S with S = diag(1, -1, 1, 1).
+Pose3 FlipY(const Pose3& world_from_camera);
+
+}  // namespace depthgrid

@@ -1,0 +1,24 @@
+// Poses written as matrices: camera to world, row-major.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/pose3.h"
+
+namespace depthgrid {
+
+// A file with one 4x4 (or 3x4) matrix in four (three) lines, as 7-Scenes and ScanNet give each
+// frame. Nothing when it holds NaN or infinity: the frame has no pose. Throws InputError when it
+// is no rigid motion.
+std::optional<Pose3> ReadMatrixPose(const std::string& path);
+std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
+
+// A file with many: one of 16 or 12 numbers a line, or three or four lines of four numbers each
+// (ICL-NUIM's .gt.sim).
+std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path);
+std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
+                                                   const std::string& place);
+
+}  // namespace depthgrid

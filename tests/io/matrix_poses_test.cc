@@ -1,0 +1,66 @@
+#include "mapper/io/matrix_poses.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr const char* kQuarterTurn = "0 -1 0 1\n1 0 0 2\n0 0 1 3\n";
+
+std::string ErrorOf(const std::string& text) {
+  try {
+    ParseMatrixPoses(text, "p");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void ExpectQuarterTurn(const std::optional<Pose3>& pose) {
+  ASSERT_TRUE(pose);
+  EXPECT_TRUE(pose->translation.isApprox(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_TRUE((*pose * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(1, 3, 3)));
+}
+
+TEST(MatrixPoses, OneMatrixAFile) {
+  ExpectQuarterTurn(ParseMatrixPose(std::string(kQuarterTurn) + "0 0 0 1\n", "p"));
+  ExpectQuarterTurn(ParseMatrixPose(kQuarterTurn, "p"));
+  EXPECT_FALSE(ParseMatrixPose("-inf -inf -inf -inf\nnan 0 0 0\n0 0 0 0\n0 0 0 1\n", "p"));
+  EXPECT_FALSE(ParseMatrixPose("0 0 0 0\n0 0 0 0\n0 0 0 0\n0 0 0 1\n", "p"));
+}
+
+TEST(MatrixPoses, ManyInAnyLayout) {
+  const std::string line = "0 -1 0 1 1 0 0 2 0 0 1 3";
+  for (const std::string& text :
+       {line + "\n" + line + "\n", line + " 0 0 0 1\n" + line + " 0 0 0 1\n",
+        std::string(kQuarterTurn) + "\n" + kQuarterTurn,
+        std::string(kQuarterTurn) + "0 0 0 1\n" + kQuarterTurn + "0 0 0 1\n"}) {
+    const auto poses = ParseMatrixPoses(text, "p");
+    ASSERT_EQ(poses.size(), 2U) << text;
+    ExpectQuarterTurn(poses[0]);
+    ExpectQuarterTurn(poses[1]);
+  }
+  // Four poses of three lines: twelve lines, whose fourth starts a matrix.
+  EXPECT_EQ(
+      ParseMatrixPoses(std::string(kQuarterTurn) + kQuarterTurn + kQuarterTurn + kQuarterTurn, "p")
+          .size(),
+      4U);
+}
+
+TEST(MatrixPoses, OneClearLineForEachFault) {
+  EXPECT_EQ(ErrorOf("1 2 3\n"),
+            "p:1: has 3 columns, must be a row of a matrix (4) or a whole matrix (12 or 16)");
+  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n"), "p:2: the last matrix is incomplete");
+  EXPECT_EQ(ErrorOf("2 0 0 0\n0 2 0 0\n0 0 2 0\n"),
+            "p:3: the matrix's upper left 3x3 must be a rotation");
+  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n0 0 -1 0\n"),
+            "p:3: the matrix's upper left 3x3 must be a rotation");
+  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"),
+            "p:4: the matrix's last row must be 0 0 0 1");
+  EXPECT_EQ(ErrorOf("1 0 0 0 0 1 0 0 0 0 1 x\n"), "p:1: 'x' is not a number");
+}
+
+}  // namespace
+}  // namespace depthgrid
