@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mapper/core/error.h"
+#include "mapper/surfel/frame_smoother.h"
 
 namespace depthgrid {
 namespace {
@@ -43,6 +44,7 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
   v.Group("scan", scan, "how a scan is cut into surfels");
   v.Group("match", match, "how they are matched against the map's");
   v.Group("joint", joint, "how poses and surfels are corrected together");
+  v.Number("smooth", smooth, {0.0, 1000.0}, "");
   v.Number("spacing_m", spacing_m, {0.005, 1.0}, "between the map's surfels along a wall");
   v.Number("merge_gate_m", merge_gate_m, {0.0, 1.0},
            "a surfel is changed by what lies this near along its normal");
@@ -68,16 +70,21 @@ MatchResult SurfelMap::Match(const std::shared_ptr<const Scan>& scan,
   return matcher_.Match(PiecesOf(scan), map_, prediction);
 }
 
+void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
+                           const Pose2& map_from_surfels) const {
+  const Motion2 motion(map_from_surfels);
+  const double min_cosine = std::cos(RadFromDeg(options_.match.max_angle_deg));
+  for (const Surfel& surfel : surfels) {
+    const double off_m =
+        options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
+    map.Merge(motion * surfel, {0.6 * options_.spacing_m, off_m, min_cosine});
+  }
+}
+
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                        const Eigen::Matrix3d&) {
-  const Motion2 motion(map_from_base);
-  const double min_cosine = std::cos(RadFromDeg(options_.match.max_angle_deg));
   const std::vector<Surfel>& pieces = PiecesOf(scan);
-  for (const Surfel& piece : pieces) {
-    const double off_m =
-        options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(piece.information);
-    map_.Merge(motion * piece, {0.6 * options_.spacing_m, off_m, min_cosine});
-  }
+  InsertInto(map_, pieces, map_from_base);
   groups_.Add(pieces, map_from_base);
 }
 
@@ -95,10 +102,23 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
       AdjustJointly(groups.groups(), MotionsOf(groups.groups(), frames), links, options_.joint);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
-  for (const GroupPlace& place : groups.places()) {
-    const Pose2& map_from_group = result.map_from_group[static_cast<std::size_t>(place.group)];
-    adjustment.map_from_base.push_back(map_from_group * place.group_from_base);
+  SurfelStore map;
+  for (std::size_t g = 0; g < groups.groups().size(); ++g) {
+    InsertInto(map, groups.groups()[g].surfels, result.map_from_group[g]);
   }
+  std::vector<SmootherFrame> smoother;
+  Eigen::Matrix3d cov = Eigen::Vector3d(0.02 * 0.02, 0.02 * 0.02, 0.01 * 0.01).asDiagonal();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const GroupPlace& place = groups.places()[i];
+    const Pose2& map_from_group = result.map_from_group[static_cast<std::size_t>(place.group)];
+    const Pose2 pose = map_from_group * place.group_from_base;
+    smoother.push_back({pose,
+                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov}),
+                        frames[i].slam_motion});
+  }
+  adjustment.map_from_base = Smoothed(smoother, options_.smooth * result.motion_sigma);
+  const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
+  for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;
 }
 
@@ -107,14 +127,8 @@ void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {
   for (const MappedFrame& frame : frames) map_from_base.push_back(frame.map_from_base);
   groups_.MoveTo(map_from_base);
   map_.Clear();
-  const double min_cosine = std::cos(RadFromDeg(options_.match.max_angle_deg));
   for (const SurfelGroup& group : groups_.groups()) {
-    const Motion2 motion(group.map_from_group);
-    for (const Surfel& surfel : group.surfels) {
-      const double off_m =
-          options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
-      map_.Merge(motion * surfel, {0.6 * options_.spacing_m, off_m, min_cosine});
-    }
+    InsertInto(map_, group.surfels, group.map_from_group);
   }
 }
 

@@ -21,6 +21,7 @@ struct SurfelOptions {
   JointOptions joint;
   // Between the map's surfels along a wall.
   double spacing_m = 0.05;
+  double smooth = 1.0;
   // A piece of scan changes a surfel that lies this near along the normal, and its own noise.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
@@ -42,6 +43,8 @@ class SurfelMap : public ReferenceMap {
   const SurfelStore& surfels() const { return map_; }
 
  private:
+  void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
+                  const Pose2& map_from_surfels) const;
   const std::vector<Surfel>& PiecesOf(const std::shared_ptr<const Scan>& scan);
 
   SurfelOptions options_;
