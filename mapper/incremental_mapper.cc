@@ -154,8 +154,9 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
     Pose2 better = extrapolated;
     if (scan && !mapped.empty()) {
       const MatchResult at_extrapolated =
-          reference->Match(scan, {extrapolated, filter.covariance()});
-      const MatchResult at_carried_on = reference->Match(scan, {carried_on, filter.covariance()});
+          reference->Match(scan, {extrapolated, filter.covariance(), {}});
+      const MatchResult at_carried_on =
+          reference->Match(scan, {carried_on, filter.covariance(), {}});
       const auto worth = [](const MatchResult& match) { return match.found ? match.score : 0.0; };
       if (worth(at_carried_on) > worth(at_extrapolated)) better = carried_on;
     }

@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   MapperOptions options;
   options.method = MapperMethod::kSurfel;
-  options.fusion.mode = FusionMode::kKalman;
+  options.fusion.mode = FusionMode::kLearned;
   Config config;
   for (const auto& s : sets) config.Set(s);
   config.Read(options);

@@ -14,9 +14,16 @@ Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
 
 }  // namespace
 
+// What is learnt is how the correction moves, so it has to be carried on.
+bool CorrectionFilter::Learns() const {
+  return options_.mode == FusionMode::kLearned && options_.prior == PriorMode::kRelative;
+}
+
 Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s) const {
+  if (Learns()) return tracker_.Predict(slam_from_base);
   const bool relative = options_.prior == PriorMode::kRelative;
-  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_};
+  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_,
+                        slam_from_base};
   if (!last_) return prediction;
   const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
   prediction.covariance = Transported(covariance_, motion) +
@@ -29,6 +36,7 @@ FusedPose CorrectionFilter::Fuse(const Prediction& prediction, const MatchResult
   FusedPose unmatched;
   unmatched.map_from_base = prediction.map_from_base;
   unmatched.covariance = prediction.covariance;
+  last_match_ = MatchResult{};
   if (!match.found) return unmatched;
   MatchResult humble = match;
   humble.information /= options_.match_overconfidence;
@@ -40,6 +48,10 @@ FusedPose CorrectionFilter::Fuse(const Prediction& prediction, const MatchResult
     return unmatched;
   }
   switch (options_.mode) {
+    case FusionMode::kLearned:
+      last_match_ = humble;
+      return Learns() ? tracker_.Fuse(prediction.slam_from_base, humble)
+                      : FuseKalman(prediction, humble);
     case FusionMode::kKalman:
       return FuseKalman(prediction, humble);
     case FusionMode::kAdaptive:
@@ -78,6 +90,15 @@ void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
   }
   covariance_ = covariance;
   last_ = Last{slam_from_base, stamp_s};
+  if (Learns()) tracker_.Commit(slam_from_base, map_from_base, covariance, last_match_);
+  last_match_ = MatchResult{};
+}
+
+void CorrectionFilter::SetCorrection(const Pose2& map_from_slam) {
+  map_from_slam_ = map_from_slam;
+  if (Learns() && last_) {
+    tracker_.Commit(last_->slam_from_base, map_from_slam * last_->slam_from_base, covariance_, {});
+  }
 }
 
 }  // namespace depthgrid

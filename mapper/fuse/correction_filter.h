@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "mapper/fuse/drift_tracker.h"
 #include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
@@ -28,7 +29,7 @@ class CorrectionFilter {
               const Eigen::Matrix3d& covariance);
 
   // The map was corrected: the last pose is now where this correction puts it.
-  void SetCorrection(const Pose2& map_from_slam) { map_from_slam_ = map_from_slam; }
+  void SetCorrection(const Pose2& map_from_slam);
 
   const Pose2& map_from_slam() const { return map_from_slam_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }
@@ -39,12 +40,16 @@ class CorrectionFilter {
     double stamp_s = 0.0;
   };
 
+  bool Learns() const;
   Eigen::Vector3d AdaptedGain(const Eigen::Vector3d& innovation);
 
   FusionOptions options_;
   Pose2 map_from_slam_;
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the last pose, its base axes
   std::optional<Last> last_;
+  // `learned`
+  DriftTracker tracker_;
+  MatchResult last_match_;  // that Fuse() took
   // `adaptive`
   std::array<double, 3> gain_;
   std::optional<Eigen::Vector3d> last_innovation_;

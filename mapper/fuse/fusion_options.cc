@@ -17,6 +17,7 @@ void FusionOptions::Visit(OptionsVisitor& v) {
   v.Choice("mode", mode,
            {{FusionMode::kFixed, "fixed"},
             {FusionMode::kKalman, "kalman"},
+            {FusionMode::kLearned, "learned"},
             {FusionMode::kAdaptive, "adaptive"},
             {FusionMode::kOracle, "oracle"}},
            "who sets the gain");

@@ -15,6 +15,7 @@ enum class PriorMode {
 enum class FusionMode {
   kFixed,     // K is a setting
   kKalman,    // K from SLAM's covariance (a setting) and the match's (from the matcher)
+  kLearned,   // K as with kalman, SLAM's covariance learnt from the matches as well
   kAdaptive,  // K per axis such that the innovations become white
   kOracle,    // K given from outside, for experiments that know the truth
 };

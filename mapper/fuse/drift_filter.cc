@@ -1,0 +1,65 @@
+#include "mapper/fuse/drift_filter.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
+  return sigma.cwiseProduct(sigma).asDiagonal();
+}
+
+}  // namespace
+
+DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionNoise& noise) {
+  DriftState next;
+  const Pose2 corrected = motion * Pose2::FromVector(state.bias);
+  next.map_from_base = state.map_from_base * corrected;
+  next.bias = noise.bias_kept.cwiseProduct(state.bias);
+  const Pose2 inverse = Inverse(corrected);
+  const double c = std::cos(inverse.yaw_rad);
+  const double s = std::sin(inverse.yaw_rad);
+  Matrix6 f = Matrix6::Zero();
+  f.topLeftCorner<3, 3>() << c, -s, inverse.y_m,  //
+      s, c, -inverse.x_m,                         //
+      0, 0, 1;
+  f.topRightCorner<3, 3>().setIdentity();
+  f.bottomRightCorner<3, 3>() = noise.bias_kept.asDiagonal();
+  const Eigen::Vector3d renewed =
+      (1.0 - noise.bias_kept.array().square()).sqrt().matrix().cwiseProduct(noise.bias);
+  next.covariance = f * state.covariance * f.transpose();
+  next.covariance.topLeftCorner<3, 3>() += Squared(noise.walk);
+  next.covariance.bottomRightCorner<3, 3>() += Squared(renewed);
+  return next;
+}
+
+Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise) {
+  Prediction prediction;
+  prediction.map_from_base = predicted.map_from_base;
+  prediction.covariance = predicted.covariance.topLeftCorner<3, 3>() + Squared(noise.jitter);
+  return prediction;
+}
+
+DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
+                    const MotionNoise& noise) {
+  DriftUpdate update;
+  update.fused = FuseKalman(PredictionOf(predicted, noise), match);
+  // The match sees the camera, SLAM's pose is off by its jitter J: information (L^-1 + J)^-1.
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d seen =
+      (identity + match.information * Squared(noise.jitter)).inverse() * match.information;
+  const Eigen::Matrix3d pose_covariance = predicted.covariance.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d weight = (identity + seen * pose_covariance).inverse() * seen;
+  const Eigen::Matrix<double, 6, 3> gain = predicted.covariance.leftCols<3>() * weight;
+  const Eigen::Matrix<double, 6, 1> step = gain * update.fused.innovation;
+  update.state.map_from_base = predicted.map_from_base * Pose2::FromVector(step.head<3>());
+  update.state.bias = predicted.bias + step.tail<3>();
+  const Matrix6 covariance = predicted.covariance - gain * predicted.covariance.topRows<3>();
+  update.state.covariance = 0.5 * (covariance + covariance.transpose());
+  return update;
+}
+
+}  // namespace depthgrid

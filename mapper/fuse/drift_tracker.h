@@ -1,0 +1,40 @@
+// The learning Kalman filter from frame to frame: DriftFilter's equations with the noise that
+// MotionNoiseLearner finds.
+#pragma once
+
+#include <optional>
+
+#include "mapper/fuse/drift_filter.h"
+#include "mapper/fuse/motion_noise.h"
+
+namespace depthgrid {
+
+class DriftTracker {
+ public:
+  DriftTracker();
+
+  Prediction Predict(const Pose2& slam_from_base) const;
+  FusedPose Fuse(const Pose2& slam_from_base, const MatchResult& match) const;
+  // The pose that SLAM's newest was given. When it is not what Fuse() returns for the match, it was
+  // set from outside and the filter starts from it.
+  void Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
+              const Eigen::Matrix3d& covariance, const MatchResult& match);
+
+  const MotionNoise& noise() const { return noise_; }
+
+ private:
+  struct Last {
+    Pose2 slam_from_base;
+    std::optional<MatchResult> match;
+  };
+  DriftState StateAt(const Pose2& slam_from_base) const;
+  void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
+
+  MotionNoise noise_;
+  MotionNoiseLearner learner_;
+  int next_fit_;
+  DriftState state_;
+  std::optional<Last> last_;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,145 @@
+#include "mapper/fuse/motion_noise.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace depthgrid {
+namespace {
+
+// An axis that the match knows worse than this is not looked at.
+const Eigen::Vector3d kSeenSigma(0.03, 0.03, 0.02);
+// Times the bias may take to change, in frames.
+constexpr std::array<double, 4> kBiasFrames = {10.0, 40.0, 160.0, 640.0};
+// A lag counts when at least so many independent stretches of it were seen.
+constexpr double kMinStretches = 3.0;
+constexpr int kParts = 3;
+
+// The variance that each part, at unit size, gives the error summed over `lag` frames.
+std::array<double, kParts> UnitVariances(double lag, double kept) {
+  const double gone = 1.0 - kept;
+  const double bias =
+      lag * (1.0 + kept) / gone - 2.0 * kept * (1.0 - std::pow(kept, lag)) / (gone * gone);
+  return {2.0, lag, bias};
+}
+
+struct Fit3 {
+  std::array<double, kParts> variance{};
+  double misfit = 0.0;
+};
+
+// Non-negative least squares of the variances over all lags, by trying every subset of the parts.
+Fit3 FitParts(const std::vector<double>& lag, const std::vector<double>& variance,
+              const std::vector<double>& weight, double kept) {
+  Fit3 best;
+  best.misfit = std::numeric_limits<double>::infinity();
+  for (unsigned subset = 1; subset < (1U << kParts); ++subset) {
+    Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    const auto columns = [&](double l) {
+      const std::array<double, kParts> unit = UnitVariances(l, kept);
+      Eigen::Vector3d row = Eigen::Vector3d::Zero();
+      for (int p = 0; p < kParts; ++p) {
+        if (subset & (1U << p)) row[p] = unit[static_cast<std::size_t>(p)];
+      }
+      return row;
+    };
+    for (std::size_t i = 0; i < lag.size(); ++i) {
+      const Eigen::Vector3d row = columns(lag[i]);
+      h += weight[i] * row * row.transpose();
+      g += weight[i] * variance[i] * row;
+    }
+    for (int p = 0; p < kParts; ++p) {
+      if (!(subset & (1U << p))) h(p, p) = 1.0;
+    }
+    const Eigen::Vector3d solution = h.fullPivLu().solve(g);
+    if ((solution.array() < 0.0).any()) continue;
+    double misfit = 0.0;
+    for (std::size_t i = 0; i < lag.size(); ++i) {
+      const double error = variance[i] - columns(lag[i]).dot(solution);
+      misfit += weight[i] * error * error;
+    }
+    if (misfit >= best.misfit) continue;
+    best.misfit = misfit;
+    for (int p = 0; p < kParts; ++p) best.variance[static_cast<std::size_t>(p)] = solution[p];
+  }
+  return best;
+}
+
+}  // namespace
+
+void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma) {
+  ++motions_;
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (!(match_sigma[i] < kSeenSigma[i])) {
+      axis.run = 0;
+      continue;
+    }
+    axis.match_variance += match_sigma[i] * match_sigma[i];
+    axis.matches += 1.0;
+    axis.summed_error[static_cast<std::size_t>(axis.run % kRing)] = axis.total;
+    axis.total += error[i];
+    ++axis.run;
+    for (int lag = 0; lag < kLags; ++lag) {
+      const int frames = 1 << lag;
+      if (axis.run < frames) break;
+      const double before =
+          axis.summed_error[static_cast<std::size_t>((axis.run - frames) % kRing)];
+      const double summed = axis.total - before;
+      axis.sum_squares[static_cast<std::size_t>(lag)] += summed * summed;
+      axis.count[static_cast<std::size_t>(lag)] += 1.0;
+    }
+  }
+}
+
+void MotionNoiseLearner::Break() {
+  for (Axis& axis : axes_) axis.run = 0;
+}
+
+MotionNoiseLearner::AxisNoise MotionNoiseLearner::FitAxis(const Axis& axis) const {
+  std::vector<double> lags;
+  std::vector<double> variances;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < kLags; ++i) {
+    const double lag = std::pow(2.0, static_cast<double>(i));
+    const double stretches = axis.count[i] / lag;
+    if (stretches < kMinStretches) continue;
+    const double variance = std::max(axis.sum_squares[i] / axis.count[i], 1e-14);
+    lags.push_back(lag);
+    variances.push_back(variance);
+    weights.push_back(stretches / (variance * variance));
+  }
+  AxisNoise noise;
+  if (lags.empty()) return noise;
+  Fit3 best;
+  best.misfit = std::numeric_limits<double>::infinity();
+  for (const double frames : kBiasFrames) {
+    const double kept = std::exp(-1.0 / frames);
+    const Fit3 fit = FitParts(lags, variances, weights, kept);
+    if (fit.misfit >= best.misfit) continue;
+    best = fit;
+    noise.kept = kept;
+  }
+  // The matches jitter too.
+  const double match_variance = axis.match_variance / std::max(axis.matches, 1.0);
+  noise.jitter = std::sqrt(std::max(best.variance[0] - match_variance, 0.0));
+  noise.walk = std::sqrt(best.variance[1]);
+  noise.bias = std::sqrt(best.variance[2]);
+  return noise;
+}
+
+MotionNoise MotionNoiseLearner::Fit() const {
+  MotionNoise noise;
+  for (int i = 0; i < 3; ++i) {
+    const AxisNoise axis = FitAxis(axes_[static_cast<std::size_t>(i)]);
+    noise.jitter[i] = axis.jitter;
+    noise.walk[i] = axis.walk;
+    noise.bias[i] = axis.bias;
+    noise.bias_kept[i] = axis.kept;
+  }
+  return noise;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,57 @@
+// How SLAM's motion errs, learnt from the matches (docs/math.md, "Prior noise").
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace depthgrid {
+
+// The error of SLAM's motion from one frame to the next, per base axis (forward m, left m, yaw
+// rad): white jitter of each pose (which enters two motions with opposite signs), a random walk,
+// and a bias that changes slowly. Standard deviations.
+struct MotionNoise {
+  Eigen::Vector3d jitter = Eigen::Vector3d::Zero();
+  Eigen::Vector3d walk = Eigen::Vector3d::Zero();  // a frame
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // a frame
+  // What is left of the bias after a frame.
+  Eigen::Vector3d bias_kept = Eigen::Vector3d::Constant(0.98);
+};
+
+// Variances of the summed error over 1, 2, 4, ... frames tell the three parts apart: jitter's stays
+// the same, that of a walk grows with the number of frames, that of a bias with its square until
+// the bias has changed.
+class MotionNoiseLearner {
+ public:
+  // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma` is that of
+  // the match; an axis that the match hardly sees says nothing.
+  void Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
+  // The next motion does not follow the last.
+  void Break();
+
+  int motions() const { return motions_; }
+  MotionNoise Fit() const;
+
+ private:
+  static constexpr int kLags = 11;  // up to 1024 frames
+  static constexpr int kRing = 1 << (kLags - 1);
+
+  struct Axis {
+    std::array<double, kLags> sum_squares{};
+    std::array<double, kLags> count{};
+    std::vector<double> summed_error = std::vector<double>(kRing, 0.0);  // of the last frames
+    double total = 0.0;
+    int run = 0;  // motions without a break
+    double match_variance = 0.0;
+    double matches = 0.0;
+  };
+  struct AxisNoise {
+    double jitter = 0.0, walk = 0.0, bias = 0.0, kept = 0.0;
+  };
+  AxisNoise FitAxis(const Axis& axis) const;
+
+  std::array<Axis, 3> axes_;
+  int motions_ = 0;
+};
+
+}  // namespace depthgrid
