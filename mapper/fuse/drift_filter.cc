@@ -19,13 +19,8 @@ DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionN
   const Pose2 corrected = motion * Pose2::FromVector(state.bias);
   next.map_from_base = state.map_from_base * corrected;
   next.bias = noise.bias_kept.cwiseProduct(state.bias);
-  const Pose2 inverse = Inverse(corrected);
-  const double c = std::cos(inverse.yaw_rad);
-  const double s = std::sin(inverse.yaw_rad);
   Matrix6 f = Matrix6::Zero();
-  f.topLeftCorner<3, 3>() << c, -s, inverse.y_m,  //
-      s, c, -inverse.x_m,                         //
-      0, 0, 1;
+  f.topLeftCorner<3, 3>() = AdjointOf(Inverse(corrected));
   f.topRightCorner<3, 3>().setIdentity();
   f.bottomRightCorner<3, 3>() = noise.bias_kept.asDiagonal();
   const Eigen::Vector3d renewed =

@@ -9,19 +9,13 @@ namespace {
 // Until something is learnt matches are believed: a prior that drifts would drag the young map
 // along, and what the first frames draw is never put right online.
 const Eigen::Vector3d kFirstWalk(0.01, 0.01, 0.01);
+// The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
+// SLAM's motion is believed this much less than learnt, so that it does not drag the map along
+// (docs/results.md, "Laser logs").
+constexpr double kCaution = 2.0;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
-// Directions that the match does not see are uncertain by this.
-constexpr double kUnseenInformation = 1.0;
-
-// Standard deviations of a match, axis by axis.
-Eigen::Vector3d SigmaOf(const MatchResult& match) {
-  const Eigen::Matrix3d information =
-      match.information + kUnseenInformation * Eigen::Matrix3d::Identity();
-  return information.inverse().diagonal().cwiseSqrt();
-}
-
 }  // namespace
 
 DriftTracker::DriftTracker() : next_fit_(kFirstFit) { noise_.walk = kFirstWalk; }
@@ -72,10 +66,11 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
 }
 
 void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now) {
-  const Pose2 matched_motion = Between(before.map_from_base, now.map_from_base);
-  learner_.Add(Between(motion, matched_motion).vector(), SigmaOf(now));
+  learner_.AddMatches(motion, before, now);
   if (learner_.motions() < next_fit_) return;
   noise_ = learner_.Fit();
+  noise_.walk *= kCaution;
+  noise_.bias *= kCaution;
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }
 

@@ -66,15 +66,18 @@ double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& infor
   return innovation.dot(weight * innovation);
 }
 
-Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion) {
-  // A small motion d before is Ad(motion^-1) d after.
-  const Pose2 inverse = Inverse(motion);
-  const double c = std::cos(inverse.yaw_rad);
-  const double s = std::sin(inverse.yaw_rad);
+Eigen::Matrix3d AdjointOf(const Pose2& b_from_a) {
+  const double c = std::cos(b_from_a.yaw_rad);
+  const double s = std::sin(b_from_a.yaw_rad);
   Eigen::Matrix3d adjoint;
-  adjoint << c, -s, inverse.y_m,  //
-      s, c, -inverse.x_m,         //
+  adjoint << c, -s, b_from_a.y_m,  //
+      s, c, -b_from_a.x_m,         //
       0, 0, 1;
+  return adjoint;
+}
+
+Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion) {
+  const Eigen::Matrix3d adjoint = AdjointOf(Inverse(motion));
   return adjoint * covariance * adjoint.transpose();
 }
 

@@ -38,6 +38,9 @@ FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
 double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,
                       const Eigen::Vector3d& innovation);
 
+// A small motion d before `b_from_a` is AdjointOf(b_from_a) d after it.
+Eigen::Matrix3d AdjointOf(const Pose2& b_from_a);
+
 // The covariance of a pose in the base axes it has after `motion` (base_before_from_base_after).
 Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion);
 

@@ -8,6 +8,8 @@
 namespace depthgrid {
 namespace {
 
+// Directions that a match does not see are uncertain by a metre, or a radian.
+constexpr double kUnseenInformation = 1.0;
 // An axis that the match knows worse than this is not looked at.
 const Eigen::Vector3d kSeenSigma(0.03, 0.03, 0.02);
 // Times the bias may take to change, in frames.
@@ -92,6 +94,14 @@ void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d
       axis.count[static_cast<std::size_t>(lag)] += 1.0;
     }
   }
+}
+
+void MotionNoiseLearner::AddMatches(const Pose2& motion, const MatchResult& before,
+                                    const MatchResult& now) {
+  const Pose2 matched_motion = Between(before.map_from_base, now.map_from_base);
+  const Eigen::Matrix3d information =
+      now.information + kUnseenInformation * Eigen::Matrix3d::Identity();
+  Add(Between(motion, matched_motion).vector(), information.inverse().diagonal().cwiseSqrt());
 }
 
 void MotionNoiseLearner::Break() {

@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+#include "mapper/frame_report.h"
+
 namespace depthgrid {
 
 // The error of SLAM's motion from one frame to the next, per base axis (forward m, left m, yaw
@@ -26,6 +28,8 @@ class MotionNoiseLearner {
   // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma` is that of
   // the match; an axis that the match hardly sees says nothing.
   void Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
+  // The same from two matches in a row and SLAM's motion between them.
+  void AddMatches(const Pose2& motion, const MatchResult& before, const MatchResult& now);
   // The next motion does not follow the last.
   void Break();
 

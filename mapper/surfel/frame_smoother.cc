@@ -1,58 +1,183 @@
 #include "mapper/surfel/frame_smoother.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
-#include "mapper/surfel/group_links.h"
+#include "mapper/core/error.h"
+#include "mapper/fuse/fusion.h"
+#include "mapper/surfel/skyline_matrix.h"
 
 namespace depthgrid {
 namespace {
 
 // The problem is nearly linear: guesses are within centimetres.
 constexpr int kIterations = 2;
+// Unknowns of a frame: small motion of SLAM's pose in the map (forward, left, yaw), its bias.
+constexpr int kUnknowns = 6;
 // Where neither match nor motion says anything, a frame stays: far below any real information.
 constexpr double kStayInformation = 1e-3;
+// No prior is better, a frame; also keeps weights finite for perfect ones.
+const Eigen::Vector3d kLeastWalk(1e-5, 1e-5, 2e-6);
+const Eigen::Vector3d kLeastBias(1e-6, 1e-6, 2e-7);
 
-void AddMatch(const SmootherFrame& frame, const Pose2& map_from_base, int place, SkylineMatrix& h,
-              Eigen::VectorXd& g) {
-  const Eigen::Vector3d error = Between(map_from_base, frame.match.map_from_base).vector();
-  const Eigen::Matrix3d& information = frame.match.information;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column <= row; ++column) {
-      *h.At(place + row, place + column) += information(row, column);
+struct State {
+  std::vector<Pose2> map_from_base;  // where SLAM's pose lies, jitter included
+  std::vector<Eigen::Vector3d> bias;
+};
+
+Eigen::Vector3d Inverted(const Eigen::Vector3d& sigma) {
+  return sigma.cwiseProduct(sigma).cwiseInverse();
+}
+
+// The match sees the camera; SLAM's pose is off by its jitter J: information (L^-1 + J)^-1.
+Eigen::Matrix3d InformationOf(const MatchResult& match, const MotionNoise& noise) {
+  const Eigen::Matrix3d jitter = noise.jitter.cwiseProduct(noise.jitter).asDiagonal();
+  return (Eigen::Matrix3d::Identity() + match.information * jitter).inverse() * match.information;
+}
+
+class Equations {
+ public:
+  explicit Equations(std::size_t frames)
+      : h_(Envelope(frames)), g_(Eigen::VectorXd::Zero(h_.size())) {}
+
+  void AddMatch(int frame, const Pose2& map_from_base, const MatchResult& match,
+                const Eigen::Matrix3d& information) {
+    AddBlock(kUnknowns * frame, information);
+    g_.segment<3>(kUnknowns * frame) +=
+        information * InnovationOf(map_from_base, match.map_from_base);
+  }
+
+  // error = relative pose against motion * bias; weight is diagonal.
+  void AddMotion(int frame, const State& state, const Pose2& motion,
+                 const Eigen::Vector3d& weight) {
+    const auto k = static_cast<std::size_t>(frame);
+    const Pose2 relative = Between(state.map_from_base[k - 1], state.map_from_base[k]);
+    const Eigen::Vector3d error = InnovationOf(motion, relative) - state.bias[k];
+    const Eigen::Matrix3d by_before = -AdjointOf(Inverse(relative));
+    const int before = kUnknowns * (frame - 1);
+    const int pose = kUnknowns * frame;
+    const int bias = pose + 3;
+    const Eigen::Matrix3d w = weight.asDiagonal();
+    const Eigen::Matrix3d w_before = w * by_before;
+    AddBlock(before, by_before.transpose() * w_before);
+    AddBlock(pose, w);
+    AddBlock(bias, w);
+    AddOff(pose, before, w_before);
+    AddOff(bias, before, -w_before);
+    AddOff(bias, pose, -w);
+    g_.segment<3>(before) -= w_before.transpose() * error;
+    g_.segment<3>(pose) -= weight.cwiseProduct(error);
+    g_.segment<3>(bias) += weight.cwiseProduct(error);
+  }
+
+  // bias = kept * bias before + renewed.
+  void AddBias(int frame, const State& state, const MotionNoise& noise) {
+    const auto k = static_cast<std::size_t>(frame);
+    const Eigen::Vector3d sigma = noise.bias.cwiseMax(kLeastBias);
+    const int bias = kUnknowns * frame + 3;
+    if (frame == 0) {
+      const Eigen::Vector3d weight = Inverted(sigma);
+      AddBlock(bias, weight.asDiagonal());
+      g_.segment<3>(bias) -= weight.cwiseProduct(state.bias[k]);
+      return;
+    }
+    const Eigen::Vector3d kept = noise.bias_kept;
+    const Eigen::Vector3d renewed = (1.0 - kept.array().square()).sqrt().matrix();
+    const Eigen::Vector3d weight = Inverted(renewed.cwiseProduct(sigma));
+    const Eigen::Vector3d error = state.bias[k] - kept.cwiseProduct(state.bias[k - 1]);
+    const Eigen::Vector3d weighted = weight.cwiseProduct(error);
+    AddBlock(bias, weight.asDiagonal());
+    AddBlock(bias - kUnknowns, kept.cwiseProduct(kept).cwiseProduct(weight).asDiagonal());
+    AddOff(bias, bias - kUnknowns, (-kept.cwiseProduct(weight)).asDiagonal());
+    g_.segment<3>(bias) -= weighted;
+    g_.segment<3>(bias - kUnknowns) += kept.cwiseProduct(weighted);
+  }
+
+  // Applies the step; false when nothing could be solved.
+  bool SolveInto(State& state) {
+    for (int i = 0; i < h_.size(); ++i) *h_.At(i, i) += kStayInformation;
+    if (!h_.Factor()) return false;
+    const Eigen::VectorXd step = h_.Solve(std::move(g_));
+    for (std::size_t k = 0; k < state.map_from_base.size(); ++k) {
+      const auto row = kUnknowns * static_cast<Eigen::Index>(k);
+      state.map_from_base[k] = state.map_from_base[k] * Pose2::FromVector(step.segment<3>(row));
+      state.bias[k] += step.segment<3>(row + 3);
+    }
+    return true;
+  }
+
+ private:
+  static std::vector<int> Envelope(std::size_t frames) {
+    std::vector<int> first;
+    for (int k = 0; k < static_cast<int>(frames); ++k) {
+      first.insert(first.end(), kUnknowns, kUnknowns * std::max(k - 1, 0));
+    }
+    return first;
+  }
+  void AddBlock(int place, const Eigen::Matrix3d& block) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column <= row; ++column) {
+        *h_.At(place + row, place + column) += block(row, column);
+      }
     }
   }
-  g.segment<3>(place) += information * error;
-}
+  void AddOff(int row_place, int column_place, const Eigen::Matrix3d& block) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        *h_.At(row_place + row, column_place + column) += block(row, column);
+      }
+    }
+  }
+
+  SkylineMatrix h_;
+  Eigen::VectorXd g_;
+};
 
 }  // namespace
 
-std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames,
-                            const Eigen::Vector3d& motion_sigma) {
-  std::vector<Pose2> poses;
-  std::vector<int> first;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    poses.push_back(frames[i].map_from_base);
-    first.insert(first.end(), 3, std::max(3 * (static_cast<int>(i) - 1), 0));
+MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames) {
+  MotionNoiseLearner learner;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    if (frames[k].motion && frames[k].match.found && frames[k - 1].match.found) {
+      learner.AddMatches(*frames[k].motion, frames[k - 1].match, frames[k].match);
+    } else {
+      learner.Break();
+    }
   }
+  return learner.Fit();
+}
+
+std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise) {
+  State state;
+  for (const SmootherFrame& frame : frames) state.map_from_base.push_back(frame.map_from_base);
+  state.bias.assign(frames.size(), Eigen::Vector3d::Zero());
+  const Eigen::Vector3d motion_weight = Inverted(noise.walk.cwiseMax(kLeastWalk));
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    SkylineMatrix h(first);
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(h.size());
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      const int index = static_cast<int>(i);
-      for (int k = 0; k < 3; ++k) *h.At(3 * index + k, 3 * index + k) += kStayInformation;
-      if (frames[i].match.found) AddMatch(frames[i], poses[i], 3 * index, h, g);
-      if (i == 0 || !frames[i].motion) continue;
-      AddLink({index - 1, index, *frames[i].motion, motion_sigma, 0.0}, poses, h, g);
+    Equations equations(frames.size());
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const int frame = static_cast<int>(k);
+      const MatchResult& match = frames[k].match;
+      if (match.found) {
+        equations.AddMatch(frame, state.map_from_base[k], match, InformationOf(match, noise));
+      }
+      equations.AddBias(frame, state, noise);
+      if (k > 0 && frames[k].motion) {
+        equations.AddMotion(frame, state, *frames[k].motion, motion_weight);
+      }
     }
-    if (!h.Factor()) return poses;
-    const Eigen::VectorXd step = h.Solve(std::move(g));
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const Eigen::Vector3d motion = step.segment<3>(3 * static_cast<Eigen::Index>(i));
-      poses[i] = poses[i] * Pose2::FromVector(motion);
-    }
+    if (!equations.SolveInto(state)) break;
   }
-  return poses;
+  // The camera: between where SLAM's jittering pose lies and what its own scan says.
+  const Eigen::Matrix3d jitter = noise.jitter.cwiseProduct(noise.jitter).asDiagonal();
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (!frames[k].match.found) continue;
+    Prediction prediction;
+    prediction.map_from_base = state.map_from_base[k];
+    prediction.covariance = jitter;
+    state.map_from_base[k] = FuseKalman(prediction, frames[k].match).map_from_base;
+  }
+  return state.map_from_base;
 }
 
 }  // namespace depthgrid

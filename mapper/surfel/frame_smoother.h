@@ -2,11 +2,11 @@
 // (docs/math.md, "Joint adjustment").
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
 #include "mapper/frame_report.h"
+#include "mapper/fuse/motion_noise.h"
 
 namespace depthgrid {
 
@@ -16,10 +16,11 @@ struct SmootherFrame {
   std::optional<Pose2> motion;  // the prior's, from the frame before
 };
 
-// The most likely poses given all matches and motions; `motion_sigma` (forward m, left m, yaw rad)
-// is that of the motion of one frame. Frames without motion hang on their match, frames with
-// neither stay.
-std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames,
-                            const Eigen::Vector3d& motion_sigma);
+// How the prior's motion errs, as the matches tell.
+MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames);
+
+// The most likely poses given all matches and motions. The prior's bias of each frame is unknown
+// too, and its jitter is told from the camera's own motion.
+std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise);
 
 }  // namespace depthgrid

@@ -1,6 +1,6 @@
 #include "mapper/surfel/group_links.h"
 
-#include <cmath>
+#include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
 namespace {
@@ -28,12 +28,7 @@ void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, Sk
   if (link.huber_sigmas > 0.0 && sigmas > link.huber_sigmas) weight *= link.huber_sigmas / sigmas;
   // A small motion of `first` moves second_from_first's far end by minus its adjoint.
   const Pose2 second_from_first = Inverse(RelativePose(link, map_from_group));
-  const double c = std::cos(second_from_first.yaw_rad);
-  const double s = std::sin(second_from_first.yaw_rad);
-  Eigen::Matrix3d by_first;
-  by_first << -c, s, -second_from_first.y_m,  //
-      -s, -c, second_from_first.x_m,          //
-      0, 0, -1;
+  const Eigen::Matrix3d by_first = -AdjointOf(second_from_first);
   const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
   const Eigen::Matrix3d first_block = by_first.transpose() * weighted;
   const int i = 3 * link.first;

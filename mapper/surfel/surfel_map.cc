@@ -44,7 +44,6 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
   v.Group("scan", scan, "how a scan is cut into surfels");
   v.Group("match", match, "how they are matched against the map's");
   v.Group("joint", joint, "how poses and surfels are corrected together");
-  v.Number("smooth", smooth, {0.0, 1000.0}, "");
   v.Number("spacing_m", spacing_m, {0.005, 1.0}, "between the map's surfels along a wall");
   v.Number("merge_gate_m", merge_gate_m, {0.0, 1.0},
            "a surfel is changed by what lies this near along its normal");
@@ -113,10 +112,10 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     const Pose2& map_from_group = result.map_from_group[static_cast<std::size_t>(place.group)];
     const Pose2 pose = map_from_group * place.group_from_base;
     smoother.push_back({pose,
-                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov}),
+                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov, {}}),
                         frames[i].slam_motion});
   }
-  adjustment.map_from_base = Smoothed(smoother, options_.smooth * result.motion_sigma);
+  adjustment.map_from_base = Smoothed(smoother, NoiseOf(smoother));
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;

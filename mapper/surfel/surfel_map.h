@@ -21,7 +21,6 @@ struct SurfelOptions {
   JointOptions joint;
   // Between the map's surfels along a wall.
   double spacing_m = 0.05;
-  double smooth = 1.0;
   // A piece of scan changes a surfel that lies this near along the normal, and its own noise.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
