@@ -13,7 +13,6 @@ namespace depthgrid {
 struct Prediction {
   Pose2 map_from_base;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // base axes: forward m, left m, yaw rad
-  Pose2 slam_from_base;                                  // what it was made from
 };
 
 // A scan matched against what was mapped before. Not finding a match is an ordinary outcome.

@@ -154,9 +154,8 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
     Pose2 better = extrapolated;
     if (scan && !mapped.empty()) {
       const MatchResult at_extrapolated =
-          reference->Match(scan, {extrapolated, filter.covariance(), {}});
-      const MatchResult at_carried_on =
-          reference->Match(scan, {carried_on, filter.covariance(), {}});
+          reference->Match(scan, {extrapolated, filter.covariance()});
+      const MatchResult at_carried_on = reference->Match(scan, {carried_on, filter.covariance()});
       const auto worth = [](const MatchResult& match) { return match.found ? match.score : 0.0; };
       if (worth(at_carried_on) > worth(at_extrapolated)) better = carried_on;
     }
@@ -181,7 +180,8 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
   if (oracle && report.match.found) {
     outside_gain = oracle(record.index, prediction.map_from_base, report.match.map_from_base);
   }
-  const FusedPose fused = filter.Fuse(prediction, report.match, outside_gain);
+  const FusedPose fused =
+      filter.Fuse(BaseOf(*record.slam_from_camera), prediction, report.match, outside_gain);
   filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, fused.map_from_base,
                 fused.covariance);
   record.map_from_slam = filter.map_from_slam();

@@ -22,8 +22,7 @@ bool CorrectionFilter::Learns() const {
 Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s) const {
   if (Learns()) return tracker_.Predict(slam_from_base);
   const bool relative = options_.prior == PriorMode::kRelative;
-  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_,
-                        slam_from_base};
+  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_};
   if (!last_) return prediction;
   const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
   prediction.covariance = Transported(covariance_, motion) +
@@ -31,8 +30,8 @@ Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s
   return prediction;
 }
 
-FusedPose CorrectionFilter::Fuse(const Prediction& prediction, const MatchResult& match,
-                                 const Eigen::Vector3d& outside_gain) {
+FusedPose CorrectionFilter::Fuse(const Pose2& slam_from_base, const Prediction& prediction,
+                                 const MatchResult& match, const Eigen::Vector3d& outside_gain) {
   FusedPose unmatched;
   unmatched.map_from_base = prediction.map_from_base;
   unmatched.covariance = prediction.covariance;
@@ -50,8 +49,7 @@ FusedPose CorrectionFilter::Fuse(const Prediction& prediction, const MatchResult
   switch (options_.mode) {
     case FusionMode::kLearned:
       last_match_ = humble;
-      return Learns() ? tracker_.Fuse(prediction.slam_from_base, humble)
-                      : FuseKalman(prediction, humble);
+      return Learns() ? tracker_.Fuse(slam_from_base, humble) : FuseKalman(prediction, humble);
     case FusionMode::kKalman:
       return FuseKalman(prediction, humble);
     case FusionMode::kAdaptive:

@@ -19,9 +19,10 @@ class CorrectionFilter {
   // committed: the difference of the two is taken as a motion.
   Prediction Predict(const Pose2& slam_from_base, double stamp_s) const;
 
-  // Eq. 3. Without a match, the prediction. `outside_gain` is what mode `oracle` takes.
-  FusedPose Fuse(const Prediction& prediction, const MatchResult& match,
-                 const Eigen::Vector3d& outside_gain);
+  // Eq. 3 for the prediction of this pose. Without a match, the prediction. `outside_gain` is what
+  // mode `oracle` takes.
+  FusedPose Fuse(const Pose2& slam_from_base, const Prediction& prediction,
+                 const MatchResult& match, const Eigen::Vector3d& outside_gain);
 
   // Makes the fused pose the state: correction := map_from_base * slam_from_base^-1. The correction
   // is left as it is, bit for bit, when the pose is where it already puts SLAM's.

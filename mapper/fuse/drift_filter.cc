@@ -32,10 +32,8 @@ DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionN
 }
 
 Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise) {
-  Prediction prediction;
-  prediction.map_from_base = predicted.map_from_base;
-  prediction.covariance = predicted.covariance.topLeftCorner<3, 3>() + Squared(noise.jitter);
-  return prediction;
+  return {predicted.map_from_base,
+          predicted.covariance.topLeftCorner<3, 3>() + Squared(noise.jitter)};
 }
 
 DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,

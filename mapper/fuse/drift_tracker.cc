@@ -25,11 +25,8 @@ DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
 }
 
 Prediction DriftTracker::Predict(const Pose2& slam_from_base) const {
-  Prediction prediction;
-  prediction.map_from_base = slam_from_base;
-  if (last_) prediction = PredictionOf(StateAt(slam_from_base), noise_);
-  prediction.slam_from_base = slam_from_base;
-  return prediction;
+  if (!last_) return {slam_from_base, Eigen::Matrix3d::Zero()};
+  return PredictionOf(StateAt(slam_from_base), noise_);
 }
 
 FusedPose DriftTracker::Fuse(const Pose2& slam_from_base, const MatchResult& match) const {

@@ -112,7 +112,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     const Pose2& map_from_group = result.map_from_group[static_cast<std::size_t>(place.group)];
     const Pose2 pose = map_from_group * place.group_from_base;
     smoother.push_back({pose,
-                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov, {}}),
+                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov}),
                         frames[i].slam_motion});
   }
   adjustment.map_from_base = Smoothed(smoother, NoiseOf(smoother));

@@ -167,7 +167,7 @@ TEST(CorrectionFilter, StaysTheIdentityWhenNothingIsTaken) {
     const Pose2 slam = RandomPose(random);
     const Prediction prediction = filter.Predict(slam, 0.1 * i);
     EXPECT_EQ(prediction.map_from_base, slam);
-    const FusedPose fused = filter.Fuse(prediction, MatchResult{}, Eigen::Vector3d::Zero());
+    const FusedPose fused = filter.Fuse(slam, prediction, MatchResult{}, Eigen::Vector3d::Zero());
     filter.Commit(slam, 0.1 * i, fused.map_from_base, fused.covariance);
     EXPECT_EQ(filter.map_from_slam(), Pose2{});
   }
@@ -184,11 +184,11 @@ TEST(CorrectionFilter, TheGateRefusesWildMatchesOnly) {
   const Eigen::Matrix3d information = 1e4 * Eigen::Matrix3d::Identity();
   // sigma of the innovation is 1.41 cm.
   const FusedPose taken =
-      filter.Fuse(prediction, MatchAt({0.04, 0, 0}, information), Eigen::Vector3d::Zero());
+      filter.Fuse({}, prediction, MatchAt({0.04, 0, 0}, information), Eigen::Vector3d::Zero());
   EXPECT_FALSE(taken.rejected);
   EXPECT_NEAR(taken.map_from_base.x_m, 0.02, 1e-12);
   const FusedPose refused =
-      filter.Fuse(prediction, MatchAt({0.05, 0, 0}, information), Eigen::Vector3d::Zero());
+      filter.Fuse({}, prediction, MatchAt({0.05, 0, 0}, information), Eigen::Vector3d::Zero());
   EXPECT_TRUE(refused.rejected);
   EXPECT_EQ(refused.map_from_base, Pose2{});
   EXPECT_NEAR(refused.innovation.x(), 0.05, 1e-12);
@@ -211,7 +211,7 @@ TEST(CorrectionFilter, AdaptiveFindsTheBestConstantGain) {
       true_x += std::sqrt(q) * random.Normal();
       const Prediction prediction = filter.Predict({}, i);
       const FusedPose fused = filter.Fuse(
-          prediction, MatchAt({true_x + random.Normal(), 0, 0}, Eigen::Matrix3d::Identity()),
+          {}, prediction, MatchAt({true_x + random.Normal(), 0, 0}, Eigen::Matrix3d::Identity()),
           Eigen::Vector3d::Zero());
       filter.Commit({}, i, fused.map_from_base, fused.covariance);
       if (i >= kFrames / 2) gain_sum += fused.gain(0, 0);
