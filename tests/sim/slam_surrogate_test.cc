@@ -323,6 +323,22 @@ TEST(SlamSurrogate, TheCorrectedHistoryIsBetterThanTheLivePoses) {
   EXPECT_LT(final_m, 0.6 * live_m);
 }
 
+TEST(SlamSurrogate, ALaterLoopLeavesWhatAnEarlierOneCorrected) {
+  const Trajectory truth = Circling(1.8);
+  const SlamOutput all = DisturbTrajectory(truth, DriftingWithLoops(LoopScenario::kTrue), 1);
+  ASSERT_EQ(all.loops.size(), 2U);
+  const auto corrected = static_cast<std::size_t>(all.loops[0].second_frame);
+  const auto later = static_cast<std::size_t>(all.loops[1].reported_at_frame);
+  const Trajectory before_later(truth.begin(), truth.begin() + static_cast<std::ptrdiff_t>(later));
+  const SlamOutput early =
+      DisturbTrajectory(before_later, DriftingWithLoops(LoopScenario::kTrue), 1);
+  for (std::size_t i = 0; i < later; ++i) {
+    EXPECT_EQ(early.live[i], all.live[i]);
+    if (i <= corrected) EXPECT_EQ(early.final[i], all.final[i]);
+  }
+  EXPECT_NE(early.final.back(), all.final[later - 1]);
+}
+
 TEST(SlamSurrogate, ALateLoopCorrectsLate) {
   const Trajectory truth = Circling(1.4);
   const SlamOutput now = DisturbTrajectory(truth, DriftingWithLoops(LoopScenario::kTrue), 1);
