@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTableStepS = 0.02;     // of the timing table, in units of u (nominal seconds)
 constexpr int kSmoothingSteps = 20;      // half-width of the timing's smoothing: 0.4 s
+constexpr double kTableMargin = 1.01;    // of the bounds, for peaks between the table's samples
 constexpr double kFastestTiming = 0.25;  // no stretch is run through faster than 4 times nominal
 constexpr double kSteepestPitchRad = RadFromDeg(80.0);  // above, yaw has no meaning
 constexpr double kTurnOnTheSpotRad = RadFromDeg(30.0);  // of a planar path within one table step
@@ -137,21 +138,20 @@ PathPose CameraPath::PoseAt(double u) const {
 
 double CameraPath::SecondsPerUnit(double u, const TrajectoryOptions& options) const {
   const Eigen::VectorXd slope = curve_->Slope(u);
-  double turn_rad = 0.0;  // a unit of u; yaw and pitch axes are perpendicular
+  double turn_rad = 0.0;  // a unit of u
   if (planar_) {
-    const PathPose before = PoseAt(u - 0.5 * kTableStepS);
-    const PathPose after = PoseAt(u + 0.5 * kTableStepS);
-    turn_rad = std::abs(WrapAngle(after.yaw_rad - before.yaw_rad));
-    if (turn_rad > kTurnOnTheSpotRad) {
-      throw InputError(options.place, "the path turns on the spot near " + Shown(after.position_m) +
+    const Eigen::VectorXd bend = curve_->Bend(u);
+    const double speed_square = slope.head<2>().squaredNorm();
+    turn_rad = std::abs(slope.x() * bend.y() - slope.y() * bend.x()) / speed_square;
+    if (!(turn_rad * kTableStepS < kTurnOnTheSpotRad)) {
+      throw InputError(options.place, "the path turns on the spot near " + Shown(curve_->Value(u)) +
                                           ": move its waypoints apart");
     }
-    turn_rad /= kTableStepS;
   } else {
-    turn_rad = slope.tail<2>().norm();
+    turn_rad = slope.tail<2>().norm();  // yaw and pitch axes are perpendicular
   }
-  return std::max({slope.head<3>().norm() / options.speed_mps,
-                   DegFromRad(turn_rad) / options.turn_rate_dps, kFastestTiming});
+  return std::max({kTableMargin * slope.head<3>().norm() / options.speed_mps,
+                   kTableMargin * DegFromRad(turn_rad) / options.turn_rate_dps, kFastestTiming});
 }
 
 void CameraPath::BuildTiming(const TrajectoryOptions& options) {

@@ -71,4 +71,11 @@ Eigen::VectorXd CubicSpline::Slope(double u) const {
              (step / 6.0);
 }
 
+Eigen::VectorXd CubicSpline::Bend(double u) const {
+  const Eigen::Index k = IntervalOf(u);
+  const auto i = static_cast<std::size_t>(k);
+  const double b = (u - knots_[i]) / (knots_[i + 1] - knots_[i]);
+  return (1.0 - b) * second_derivatives_.col(k) + b * second_derivatives_.col(k + 1);
+}
+
 }  // namespace depthgrid

@@ -14,7 +14,8 @@ class CubicSpline {
   CubicSpline(std::vector<double> knots, Eigen::MatrixXd values);
 
   Eigen::VectorXd Value(double u) const;
-  Eigen::VectorXd Slope(double u) const;
+  Eigen::VectorXd Slope(double u) const;  // first derivative
+  Eigen::VectorXd Bend(double u) const;   // second derivative
   double FirstKnot() const { return knots_.front(); }
   double LastKnot() const { return knots_.back(); }
 
