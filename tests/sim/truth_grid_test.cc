@@ -49,7 +49,8 @@ TEST(SurfaceCells, OfAWallByHand) {
 }
 
 TEST(SurfaceCells, AWallOnABoundaryBelongsToTheCellAbove) {
-  // In single precision 0.7 lies below 14 cells and 4.9 above 98: neither may decide.
+  // In single precision 0.7 and 20.3 lie below their boundaries and 4.9 above: neither may decide,
+  // whether the band cuts the wall or holds it whole.
   for (const auto& [x, cell] : {std::pair{0.0F, 0},
                                 {0.7F, 14},
                                 {0.1F, 2},
@@ -57,9 +58,12 @@ TEST(SurfaceCells, AWallOnABoundaryBelongsToTheCellAbove) {
                                 {0.35F, 7},
                                 {4.9F, 98},
                                 {-0.7F, -14},
+                                {20.3F, 406},
                                 {25.35F, 507}}) {
-    EXPECT_EQ(OccupiedBy(Wall(x, 0.01F, x, 0.02F)), (CellPairs{{cell, 0}})) << x;
-    EXPECT_EQ(OccupiedBy(Wall(0.01F, x, 0.02F, x)), (CellPairs{{0, cell}})) << x;
+    for (const auto& [low, high] : {std::pair{0.0F, 2.5F}, {0.5F, 0.6F}}) {
+      EXPECT_EQ(OccupiedBy(Wall(x, 0.01F, x, 0.02F, low, high)), (CellPairs{{cell, 0}})) << x;
+      EXPECT_EQ(OccupiedBy(Wall(0.01F, x, 0.02F, x, low, high)), (CellPairs{{0, cell}})) << x;
+    }
   }
 }
 
@@ -186,11 +190,11 @@ TEST(TruthMap, FreeIsWhatThePathReaches) {
 
 TEST(TruthMap, DoesNotLeakThroughCorners) {
   StateMap map(GridGeometry{0.05, {0, 0}, 3, 3});
-  for (const Cell& cell : {Cell{1, 0}, Cell{0, 1}}) {
+  for (const Cell& cell : {Cell{1, 0}, Cell{0, 1}, Cell{2, 1}, Cell{1, 2}}) {
     map.states[map.geometry.Index(cell)] = CellState::kOccupied;
   }
-  FloodFree(map, {{0, 0}, {1, 0}, {7, 7}});
-  EXPECT_EQ(Cells(map, CellState::kFree), (CellPairs{{0, 0}}));
+  FloodFree(map, {{1, 1}, {1, 0}, {7, 7}});
+  EXPECT_EQ(Cells(map, CellState::kFree), (CellPairs{{1, 1}}));
 }
 
 TEST(TruthMap, HoldsThePathAndRefusesMillimetres) {
