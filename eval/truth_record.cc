@@ -23,6 +23,8 @@ TruthRecord MakeTruth(const World& world, const MapperOptions& options, int thre
   ObservableOptions seen;
   seen.min_range_m = options.scan.min_range_m;
   seen.max_range_m = options.scan.max_range_m;
+  seen.min_depth_m = world.depth_range.min_m;
+  seen.max_depth_m = world.depth_range.max_m;
   seen.threads = threads;
   const double floor_z_m = world.scene.floor_z_m;
   TruthRecord truth;

@@ -79,12 +79,14 @@ bool IsFile(const std::string& name) { return name.find('/') != std::string::npo
 
 World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
-  RayScene rays(scene.mesh, RayIsa::kAvx2, build_threads);
+  RayScene rays(scene.mesh, options.sensor.isa, build_threads);
   const PinholeCamera camera = SensorCamera(options.sensor);
   Trajectory trajectory =
       IsFile(options.trajectory) ? FromFile(options) : FromScene(scene, rays, options);
   std::string hash = HashOf(scene);
-  return {std::move(scene), std::move(hash), std::move(rays), camera, std::move(trajectory)};
+  return {
+      std::move(scene),     std::move(hash), std::move(rays), camera, SensorRange(options.sensor),
+      std::move(trajectory)};
 }
 
 }  // namespace depthgrid

@@ -17,6 +17,7 @@ struct World {
   std::string scene_hash;  // of triangles, floor and ceiling: what the depth camera can see
   RayScene rays;
   PinholeCamera camera;
+  DepthRange depth_range;
   Trajectory trajectory;
 };
 

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "mapper/core/angle.h"
@@ -21,30 +19,6 @@ namespace {
 using noise::DepthSamples;
 using noise::SampleSource;
 using noise::Values;
-
-struct Range {
-  double min_m;
-  double max_m;
-};
-
-// What the sensors' makers state (docs/sensors.md); Handa's model has no limits of its own.
-Range ModelRange(DepthNoiseModel model) {
-  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-  switch (model) {
-    case DepthNoiseModel::kNone:
-    case DepthNoiseModel::kHanda:
-      return {0.0, kUnlimited};
-    case DepthNoiseModel::kNguyen:
-      return {0.4, 8.0};
-    case DepthNoiseModel::kD435:
-      return {0.2, 10.0};
-    case DepthNoiseModel::kKinectV2:
-      return {0.5, 4.5};
-    case DepthNoiseModel::kAzure:
-      return {0.5, 3.86};
-  }
-  return {0.0, kUnlimited};
-}
 
 bool SamplesBetweenPixels(DepthNoiseModel model) {
   return model == DepthNoiseModel::kHanda || model == DepthNoiseModel::kAzure;
@@ -119,15 +93,11 @@ void ForEach(std::size_t count, int threads, const F& f) {
 }  // namespace
 
 DepthNoise::DepthNoise(const SensorOptions& options, int threads)
-    : options_(options), camera_(SensorCamera(options)), threads_(threads) {
-  const Range range = ModelRange(options.noise);
-  min_range_m_ = options.min_range_m > 0 ? options.min_range_m : range.min_m;
-  max_range_m_ = options.max_range_m > 0 ? options.max_range_m : range.max_m;
+    : options_(options),
+      camera_(SensorCamera(options)),
+      range_(SensorRange(options)),
+      threads_(threads) {
   Require(threads >= 1, "at least one thread");
-  if (min_range_m_ >= max_range_m_) {
-    throw InputError("sensor", "min_range_m is " + std::to_string(min_range_m_) +
-                                   ", must be below max_range_m, " + std::to_string(max_range_m_));
-  }
 }
 
 bool DepthNoise::NeedsIncidence() const {
@@ -156,7 +126,7 @@ DepthImage DepthNoise::Apply(const DepthFrame& clean, std::uint64_t seed,
 }
 
 void DepthNoise::ClampRange(DepthImage& depth) const {
-  const auto min_m = static_cast<float>(min_range_m_), max_m = static_cast<float>(max_range_m_);
+  const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
   for (float& z : depth.z_m) z = z >= min_m && z <= max_m ? z : kInvalidDepth;
 }
 
@@ -168,7 +138,7 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
                             static_cast<float>(std::min(camera_.fx_px, camera_.fy_px))};
   const auto scale = static_cast<float>(options_.noise_scale);
   const auto focal_px = static_cast<float>(camera_.fx_px);
-  const auto min_m = static_cast<float>(min_range_m_), max_m = static_cast<float>(max_range_m_);
+  const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
   const auto limit = static_cast<float>(RadFromDeg(options_.grazing_limit_deg));
   const auto softness = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
   const std::size_t pixels = lit.z_m.size();

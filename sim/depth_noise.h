@@ -21,8 +21,6 @@ class DepthNoise {
 
   // Whether Apply reads the frame's cosines; if not, they may be left out.
   bool NeedsIncidence() const;
-  double min_range_m() const { return min_range_m_; }
-  double max_range_m() const { return max_range_m_; }
 
  private:
   void ClampRange(DepthImage& depth) const;
@@ -31,9 +29,8 @@ class DepthNoise {
 
   SensorOptions options_;
   PinholeCamera camera_;
+  DepthRange range_;
   int threads_;
-  double min_range_m_;
-  double max_range_m_;
 };
 
 }  // namespace depthgrid

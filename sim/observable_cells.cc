@@ -122,7 +122,8 @@ class Observer {
         seen_(truth.geometry) {}
 
   void LookFrom(const Pose3& world_from_camera) {
-    const ViewPyramid view(camera_, world_from_camera);
+    const ViewPyramid view(camera_, world_from_camera,
+                           {options_.min_depth_m, options_.max_depth_m});
     const Span bearings = view.Bearings(BaseOf(world_from_camera).yaw_rad);
     const double half_cell_rad = 0.5 * truth_.geometry.resolution_m / options_.max_range_m;
     const double width_rad = bearings.high - bearings.low;

@@ -1,6 +1,8 @@
 // Which cells of the truth map the camera had a chance to tell the state of (docs/truth.md).
 #pragma once
 
+#include <limits>
+
 #include "mapper/core/camera.h"
 #include "mapper/core/cell_set.h"
 #include "sim/truth_grid.h"
@@ -10,6 +12,9 @@ namespace depthgrid {
 struct ObservableOptions {
   double min_range_m = 0.4;  // horizontal distances from the camera, as the mapper's scans
   double max_range_m = 6.0;
+  // z-depths the sensor measures (sim/sensor_options.h).
+  double min_depth_m = 0.0;
+  double max_depth_m = std::numeric_limits<double>::infinity();
   int threads = 1;
 };
 

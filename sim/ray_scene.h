@@ -8,16 +8,10 @@
 #include <optional>
 #include <span>
 
+#include "sim/ray_isa.h"
 #include "sim/triangle_mesh.h"
 
 namespace depthgrid {
-
-// The instruction set of the ray kernels. It is chosen, not detected: AVX2 and AVX-512 differ on a
-// tenth of all pixels by up to a micrometre, so results are the same bytes only on one of them.
-enum class RayIsa {
-  kAvx2,    // packets of 8
-  kAvx512,  // packets of 16, about a third faster; InputError on a machine without it
-};
 
 struct RayHit {
   float distance = 0.0F;       // in lengths of the ray's direction

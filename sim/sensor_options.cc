@@ -1,8 +1,10 @@
 #include "sim/sensor_options.h"
 
 #include <cmath>
+#include <string>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
@@ -45,6 +47,24 @@ PinholeCamera PresetCamera(CameraPreset preset) {
       return Nominal(640, 576, 65.0);
     case CameraPreset::kTof540x360:
       return Nominal(540, 360, 60.0);
+  }
+  return {};
+}
+
+// What the sensors' makers state (docs/sensors.md); Handa's model has no limits of its own.
+DepthRange ModelRange(DepthNoiseModel model) {
+  switch (model) {
+    case DepthNoiseModel::kNone:
+    case DepthNoiseModel::kHanda:
+      return {};
+    case DepthNoiseModel::kNguyen:
+      return {0.4, 8.0};
+    case DepthNoiseModel::kD435:
+      return {0.2, 10.0};
+    case DepthNoiseModel::kKinectV2:
+      return {0.5, 4.5};
+    case DepthNoiseModel::kAzure:
+      return {0.5, 3.86};
   }
   return {};
 }
@@ -92,6 +112,8 @@ void SensorOptions::Visit(OptionsVisitor& v) {
            "share of the pixels at depth edges that mix both sides");
   v.Number("shadow_baseline_m", shadow_baseline_m, {-1, 1},
            "pattern projector's distance to the camera's right, its shadow is invalid; 0: none");
+  v.Choice("isa", isa, {{RayIsa::kAvx2, "avx2"}, {RayIsa::kAvx512, "avx512"}},
+           "instruction set of the ray kernels: they differ by up to a micrometre");
 }
 
 PinholeCamera SensorCamera(const SensorOptions& options) {
@@ -113,6 +135,17 @@ PinholeCamera SensorCamera(const SensorOptions& options) {
   if (options.cy_px >= 0) camera.cy_px = options.cy_px;
   Validate(camera, "sensor");
   return camera;
+}
+
+DepthRange SensorRange(const SensorOptions& options) {
+  DepthRange range = ModelRange(options.noise);
+  if (options.min_range_m > 0) range.min_m = options.min_range_m;
+  if (options.max_range_m > 0) range.max_m = options.max_range_m;
+  if (range.min_m >= range.max_m) {
+    throw InputError("sensor", "min_range_m is " + std::to_string(range.min_m) +
+                                   ", must be below max_range_m, " + std::to_string(range.max_m));
+  }
+  return range;
 }
 
 }  // namespace depthgrid

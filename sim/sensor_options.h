@@ -1,8 +1,11 @@
 // The simulated depth sensor: which camera, which noise, which of a real sensor's weaknesses.
 #pragma once
 
+#include <limits>
+
 #include "mapper/core/camera.h"
 #include "mapper/core/options.h"
+#include "sim/ray_isa.h"
 
 namespace depthgrid {
 
@@ -56,10 +59,21 @@ struct SensorOptions {
   // a Kinect v1 has 0.075.
   double shadow_baseline_m = 0.0;
 
+  RayIsa isa = RayIsa::kAvx2;  // part of the result; AVX2 is on every machine of the last decade
+
   void Visit(OptionsVisitor& v);
+};
+
+// z-depths the sensor can measure.
+struct DepthRange {
+  double min_m = 0.0;
+  double max_m = std::numeric_limits<double>::infinity();
 };
 
 // The preset's camera with the overrides. Throws InputError for a camera nobody can build.
 PinholeCamera SensorCamera(const SensorOptions& options);
+
+// The noise model's range with the overrides. Throws InputError when nothing is left of it.
+DepthRange SensorRange(const SensorOptions& options);
 
 }  // namespace depthgrid

@@ -7,14 +7,17 @@ namespace depthgrid {
 
 using Eigen::Vector3d;
 
-ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera)
-    : centre_(world_from_camera.translation) {
+ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera,
+                         const Span& depth_m)
+    : centre_(world_from_camera.translation),
+      axis_(world_from_camera.rotation * Vector3d::UnitZ()),
+      depth_m_(depth_m) {
   const Vector3d top_left = Unproject(camera, -0.5, -0.5, 1.0);
   const Vector3d bottom_right =
       Unproject(camera, camera.width_px - 0.5, camera.height_px - 0.5, 1.0);
-  const std::array<Vector3d, 5> inward_in_camera = {
+  const std::array<Vector3d, 4> inward_in_camera = {
       Vector3d(1, 0, -top_left.x()), Vector3d(-1, 0, bottom_right.x()),
-      Vector3d(0, 1, -top_left.y()), Vector3d(0, -1, bottom_right.y()), Vector3d(0, 0, 1)};
+      Vector3d(0, 1, -top_left.y()), Vector3d(0, -1, bottom_right.y())};
   for (std::size_t k = 0; k < inward_.size(); ++k) {
     inward_[k] = world_from_camera.rotation * inward_in_camera[k];
   }
@@ -25,29 +28,31 @@ ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_ca
   }
 }
 
-bool ViewPyramid::Holds(const Vector3d& point) const {
-  return std::all_of(inward_.begin(), inward_.end(),
-                     [&](const Vector3d& inward) { return inward.dot(point - centre_) >= 0.0; });
-}
-
 std::optional<Span> ViewPyramid::Part(const Vector3d& origin, const Vector3d& direction,
                                       Span span) const {
+  // Keeps what has offset + t * slope >= 0; false when that is nothing.
+  const auto keep = [&span](double offset, double slope) {
+    if (slope > 0.0) span.low = std::max(span.low, -offset / slope);
+    if (slope < 0.0) span.high = std::min(span.high, -offset / slope);
+    return span.low <= span.high && (slope != 0.0 || offset >= 0.0);
+  };
+  const Vector3d from_centre = origin - centre_;
   for (const Vector3d& inward : inward_) {
-    const double offset = inward.dot(origin - centre_), slope = inward.dot(direction);
-    if (slope > 0.0) {
-      span.low = std::max(span.low, -offset / slope);
-    } else if (slope < 0.0) {
-      span.high = std::min(span.high, -offset / slope);
-    } else if (offset < 0.0) {
-      return std::nullopt;
-    }
+    if (!keep(inward.dot(from_centre), inward.dot(direction))) return std::nullopt;
   }
-  if (span.low > span.high) return std::nullopt;
+  const double depth_m = axis_.dot(from_centre), slope = axis_.dot(direction);
+  if (!keep(depth_m - depth_m_.low, slope) || !keep(depth_m_.high - depth_m, -slope)) {
+    return std::nullopt;
+  }
   return span;
 }
 
 Span ViewPyramid::Bearings(double heading_rad) const {
-  const auto sees = [&](const Vector3d& direction) { return Holds(centre_ + direction); };
+  const auto sees = [&](const Vector3d& direction) {
+    return axis_.dot(direction) > 0.0 &&
+           std::all_of(inward_.begin(), inward_.end(),
+                       [&](const Vector3d& inward) { return inward.dot(direction) >= 0.0; });
+  };
   if (sees(Vector3d::UnitZ()) || sees(-Vector3d::UnitZ())) {
     return {heading_rad - kPi, heading_rad + kPi};
   }

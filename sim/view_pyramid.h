@@ -1,4 +1,5 @@
-// What a camera's image covers of space: a pyramid of four planes through its centre.
+// What a camera's image covers of space: a pyramid of four planes through its centre, cut off where
+// the sensor's depth range begins and ends.
 #pragma once
 
 #include <array>
@@ -17,9 +18,8 @@ struct Span {
 
 class ViewPyramid {
  public:
-  ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera);
+  ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera, const Span& depth_m);
 
-  bool Holds(const Eigen::Vector3d& point) const;
   // The part of the line origin + t * direction, t within `span`, that lies in the pyramid, which
   // is convex; nothing when there is none.
   std::optional<Span> Part(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
@@ -30,7 +30,9 @@ class ViewPyramid {
 
  private:
   Eigen::Vector3d centre_;
-  std::array<Eigen::Vector3d, 5> inward_;   // normals of the four sides, and the optical axis
+  Eigen::Vector3d axis_;                    // of length 1
+  Span depth_m_;                            // along it
+  std::array<Eigen::Vector3d, 4> inward_;   // normals of the four sides
   std::array<Eigen::Vector3d, 4> corners_;  // directions
 };
 

@@ -61,6 +61,19 @@ TEST(ObservableCells, RangeLimits) {
   EXPECT_TRUE(Look(Room(), At(7.54, 3.0, 0.0)).Sees(8.03, 3.0));
 }
 
+TEST(ObservableCells, SensorsDepthLimits) {
+  // 3 m of depth is a plane across the view, not a circle: aside, it is further away.
+  ObservableOptions sensor;
+  sensor.max_depth_m = 3.0;
+  const World world = Look(Room(), At(4.0, 3.0, 0.0), sensor);
+  EXPECT_TRUE(world.Sees(6.9, 3.0));
+  EXPECT_TRUE(world.Sees(6.9, 3.0 + 2.9 * 0.6));
+  EXPECT_FALSE(world.Sees(7.1, 3.0));
+  EXPECT_FALSE(world.Sees(8.03, 3.0));
+  sensor.min_depth_m = 2.5;
+  EXPECT_FALSE(Look(Room(), At(4.0, 3.0, 0.0), sensor).Sees(6.3, 3.0));
+}
+
 TEST(ObservableCells, NothingBehindAnObstacleOfTheBand) {
   TriangleMesh mesh = Room();
   Append(mesh, test::Box({6.51F, 2.76F, 0}, {6.74F, 3.24F, 2.5F}));  // a pillar

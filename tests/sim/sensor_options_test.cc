@@ -60,5 +60,13 @@ TEST(SensorOptions, ExplicitIntrinsicsWin) {
   EXPECT_EQ(camera.cy_px, 7.5);
 }
 
+TEST(SensorOptions, RangesAreTheModelsUnlessOverridden) {
+  EXPECT_EQ(SensorRange(FromYaml("noise: kinect_v2")).max_m, 4.5);
+  EXPECT_EQ(SensorRange(FromYaml("{noise: kinect_v2, max_range_m: 3}")).max_m, 3.0);
+  EXPECT_EQ(SensorRange(FromYaml("{noise: kinect_v2, max_range_m: 3}")).min_m, 0.5);
+  EXPECT_TRUE(std::isinf(SensorRange(FromYaml("noise: handa")).max_m));
+  EXPECT_THROW(SensorRange(FromYaml("{noise: kinect_v2, max_range_m: 0.4}")), InputError);
+}
+
 }  // namespace
 }  // namespace depthgrid
