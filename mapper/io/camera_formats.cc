@@ -232,4 +232,13 @@ Pose3 FlipY(const Pose3& world_from_camera) {
   return {Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()), {t.x(), -t.y(), t.z()}};
 }
 
+SlamOutput FlipY(SlamOutput slam) {
+  for (SlamPose& pose : slam.live) {
+    if (pose.slam_from_camera) pose.slam_from_camera = FlipY(*pose.slam_from_camera);
+  }
+  for (StampedPose& pose : slam.final) pose.world_from_camera = FlipY(pose.world_from_camera);
+  for (LoopClosure& loop : slam.loops) loop.first_from_second = FlipY(loop.first_from_second);
+  return slam;
+}
+
 }  // namespace depthgrid

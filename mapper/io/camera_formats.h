@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "mapper/core/pose3.h"
+#include "mapper/core/slam_output.h"
 #include "mapper/io/camera_file.h"
 
 namespace depthgrid {
@@ -26,5 +26,6 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
 // The same motion as seen by a camera whose y axis points down, in a world whose y axis is turned
 // likewise: S T S with S = diag(1, -1, 1, 1).
 Pose3 FlipY(const Pose3& world_from_camera);
+SlamOutput FlipY(SlamOutput slam);
 
 }  // namespace depthgrid

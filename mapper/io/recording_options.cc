@@ -15,6 +15,8 @@ void RecordingOptions::Visit(OptionsVisitor& v) {
            "poses further apart than this are not interpolated");
   v.Numbers("invalid_units", invalid_units, {0, 65535},
             "depth image units that mean no measurement, besides 0");
+  v.Number("frame_rate_hz", frame_rate_hz, {1e-3, 1e4},
+           "images a second, for folders whose images are only numbered");
   v.Number("depth_scale", depth_scale_per_m, {0.0, 1e6},
            "depth image units a metre; 0 takes the camera file's");
 }

@@ -25,6 +25,9 @@ struct RecordingOptions {
   double max_interpolation_gap_s = 0.2;
   // Units of a depth image that mean "no measurement", besides 0.
   std::vector<double> invalid_units = {65535};
+  // Stamps of folders whose images are only numbered: number / rate. 7-Scenes, 3DMatch and ScanNet
+  // were recorded at 30 Hz.
+  double frame_rate_hz = 30.0;
   // Units a metre; 0 takes the camera file's.
   double depth_scale_per_m = 0.0;
 

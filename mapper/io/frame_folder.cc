@@ -1,0 +1,220 @@
+#include "mapper/io/frame_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/camera_formats.h"
+#include "mapper/io/matrix_poses.h"
+#include "mapper/io/png.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Exports of depth in millimetres (7-Scenes, 3DMatch, ScanNet) when no camera file says otherwise.
+constexpr double kMillimetres = 1000.0;
+
+// A numbered image: frame-000012.depth.png, or 12.png in a folder of depth images.
+struct NumberedImage {
+  long number = 0;
+  fs::path path;
+  fs::path stem;  // the path less its ".depth.png"
+};
+
+std::optional<long> TrailingNumber(const std::string& stem) {
+  const std::size_t begin = stem.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
+  long number = 0;
+  const char* end = stem.data() + stem.size();
+  const auto [stop, error] = std::from_chars(stem.data() + begin, end, number);
+  if (begin == stem.size() || error != std::errc{} || stop != end) return {};
+  return number;
+}
+
+std::vector<NumberedImage> ImagesIn(const fs::path& folder, const std::string& ending) {
+  std::vector<NumberedImage> images;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with(ending)) continue;
+    const std::string stem = name.substr(0, name.size() - ending.size());
+    if (const auto number = TrailingNumber(stem)) {
+      images.push_back({*number, entry.path(), folder / stem});
+    }
+  }
+  std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) {
+    return a.number != b.number ? a.number < b.number : a.path < b.path;
+  });
+  return images;
+}
+
+std::vector<NumberedImage> DepthImagesOf(const fs::path& folder) {
+  for (const char* ending : {".depth.png", "-depth.png", "_depth.png"}) {
+    auto images = ImagesIn(folder, ending);
+    if (!images.empty()) return images;
+  }
+  return ImagesIn(folder / "depth", ".png");
+}
+
+// The folder itself, or its only sequence (3DMatch keeps the intrinsics beside seq-01).
+fs::path FolderOfImages(const fs::path& folder) {
+  if (!DepthImagesOf(folder).empty()) return folder;
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_directory() && entry.path().filename().string().starts_with("seq") &&
+        !DepthImagesOf(entry.path()).empty()) {
+      found.push_back(entry.path());
+    }
+  }
+  if (found.size() > 1) {
+    throw InputError(
+        folder.string(),
+        fmt::format("holds {} sequences, name one of them such as {}", found.size(),
+                    std::min_element(found.begin(), found.end())->filename().string()));
+  }
+  return found.empty() ? folder : found.front();
+}
+
+std::optional<fs::path> FirstExisting(const std::vector<fs::path>& paths) {
+  for (const fs::path& path : paths) {
+    if (fs::is_regular_file(path)) return path;
+  }
+  return {};
+}
+
+std::optional<fs::path> PoseFileOf(const NumberedImage& image, const fs::path& folder) {
+  const std::string plain = std::to_string(image.number) + ".txt";
+  const std::string as_image = image.stem.filename().string() + ".txt";
+  return FirstExisting({fs::path(image.stem.string() + ".pose.txt"), folder / "pose" / as_image,
+                        folder / "pose" / plain, folder / "poses" / as_image,
+                        folder / "poses" / plain});
+}
+
+std::optional<fs::path> PoseListOf(const fs::path& folder) {
+  return FirstExisting({folder / "poses.txt", folder / "pose.txt", folder / "traj.txt"});
+}
+
+std::string CameraPathOf(const fs::path& folder) {
+  std::vector<fs::path> candidates;
+  for (const fs::path& place :
+       {folder, folder / "intrinsic", fs::absolute(folder).lexically_normal().parent_path()}) {
+    for (const char* name : {"camera.yaml", "camera_info.yaml", "camera-intrinsics.txt",
+                             "intrinsic_depth.txt", "intrinsics.txt"}) {
+      candidates.push_back(place / name);
+    }
+  }
+  const auto found = FirstExisting(candidates);
+  return found ? found->string() : "";
+}
+
+// Poses of the images in their order: a file each, or a line each in one file.
+std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& images,
+                                          const fs::path& folder, Recording& recording) {
+  if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
+    auto poses = ReadMatrixPoses(list->string());
+    if (poses.size() != images.size()) {
+      recording.warnings.push_back(fmt::format("{}: {} poses for {} images, paired from the first",
+                                               list->string(), poses.size(), images.size()));
+    }
+    poses.resize(images.size());
+    return poses;
+  }
+  std::vector<std::optional<Pose3>> poses;
+  int damaged = 0;
+  std::string first;
+  for (const NumberedImage& image : images) {
+    poses.emplace_back();
+    const auto path = PoseFileOf(image, folder);
+    if (!path) continue;
+    try {
+      poses.back() = ReadMatrixPose(path->string());
+    } catch (const InputError& error) {
+      if (damaged++ == 0) first = error.what();
+    }
+  }
+  if (damaged > 0) {
+    recording.warnings.push_back(
+        fmt::format("{}: {} pose files damaged (first: {})", recording.name, damaged, first));
+  }
+  return poses;
+}
+
+// A bare matrix says nothing of the image's size; the first readable image does.
+void CompleteSize(const Recording& recording, CameraDescription& camera) {
+  if (camera.has_size) return;
+  const DepthPngFormat format;
+  for (const RecordedImage& image : recording.images) {
+    try {
+      const DepthImage depth = ReadDepthPng(image.depth_path, format);
+      camera.file.camera.width_px = depth.width_px;
+      camera.file.camera.height_px = depth.height_px;
+      return;
+    } catch (const InputError&) {
+      continue;  // OpenRecording says what is wrong when none can be read
+    }
+  }
+}
+
+}  // namespace
+
+bool IsFrameFolder(const std::string& folder) {
+  const fs::path images_folder = FolderOfImages(folder);
+  const auto images = DepthImagesOf(images_folder);
+  return !images.empty() &&
+         (PoseFileOf(images.front(), images_folder) || PoseListOf(images_folder));
+}
+
+FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options) {
+  const fs::path images_folder = FolderOfImages(folder);
+  std::vector<NumberedImage> images = DepthImagesOf(images_folder);
+  if (images.empty()) {
+    throw InputError(folder,
+                     "holds no numbered depth images (frame-000000.depth.png, depth/0.png)");
+  }
+  FrameFolder listed;
+  Recording& recording = listed.recording;
+  recording.name = folder;
+  const auto same = [](const auto& a, const auto& b) { return a.number == b.number; };
+  const auto end = std::unique(images.begin(), images.end(), same);
+  if (end != images.end()) {
+    recording.warnings.push_back(fmt::format("{}: {} images with a number already given, ignored",
+                                             folder, images.end() - end));
+    images.erase(end, images.end());
+  }
+  const auto poses = PosesOf(images, images_folder, recording);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const double stamp_s = static_cast<double>(images[i].number) / options.frame_rate_hz;
+    recording.images.push_back({stamp_s, images[i].path.string(), ""});
+    listed.poses.live.push_back({stamp_s, poses[i], 0});
+    if (poses[i]) listed.poses.final.push_back({stamp_s, *poses[i]});
+  }
+  listed.camera_path = CameraPathOf(images_folder);
+  return listed;
+}
+
+std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
+                                             const std::optional<SlamOutput>& slam,
+                                             const RecordingOptions& options,
+                                             const std::string& camera_path) {
+  FrameFolder listed = ListFrameFolder(folder, options);
+  const std::string path = camera_path.empty() ? listed.camera_path : camera_path;
+  if (path.empty()) {
+    throw InputError(folder, "has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
+  }
+  CameraDescription camera = ReadCameraDescription(path);
+  if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;
+  CompleteSize(listed.recording, camera);
+  SlamOutput poses = slam ? *slam : std::move(listed.poses);
+  if (camera.y_up) poses = FlipY(std::move(poses));
+  listed.recording.camera = camera.file;
+  const DepthPngFormat format = DepthFormatOf(camera.file, options);
+  return OpenRecording(std::move(listed.recording), poses, options,
+                       [format](const std::string& image) { return ReadDepthPng(image, format); });
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,35 @@
+// Folders with a depth image and a pose a frame, as 7-Scenes, 3DMatch and ScanNet-like exports have
+// them (docs/formats.md, "Frame folder").
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "mapper/core/frame.h"
+#include "mapper/io/camera_file.h"
+#include "mapper/io/recording.h"
+#include "mapper/io/recording_options.h"
+
+namespace depthgrid {
+
+struct FrameFolder {
+  Recording recording;      // without a camera
+  SlamOutput poses;         // the folder's own
+  std::string camera_path;  // empty when the folder has none
+};
+
+// Whether the folder looks like one: numbered depth images, and matrix poses.
+bool IsFrameFolder(const std::string& folder);
+
+// Throws InputError when there are no depth images or no poses.
+FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
+
+// The frames with the folder's own poses, or with `slam`. `camera_path`, when not empty, replaces
+// the folder's camera file.
+std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
+                                             const std::optional<SlamOutput>& slam = {},
+                                             const RecordingOptions& options = {},
+                                             const std::string& camera_path = {});
+
+}  // namespace depthgrid

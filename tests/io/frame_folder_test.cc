@@ -1,0 +1,171 @@
+#include "mapper/io/frame_folder.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "tests/io/temporary_folder.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string MatrixAt(double x_m) {
+  return fmt::format("1 0 0 {}\n0 1 0 0\n0 0 1 0\n0 0 0 1\n", x_m);
+}
+
+class FrameFolderTest : public TemporaryFolderTest {
+ protected:
+  void WriteDepth(const std::string& name, int millimetres) const {
+    std::filesystem::create_directories(std::filesystem::path(Path(name)).parent_path());
+    DepthImage image(4, 3);
+    std::fill(image.z_m.begin(), image.z_m.end(), static_cast<float>(millimetres) / 1000.0F);
+    WriteDepthPng(Path(name), image, 1000.0);
+  }
+  // Frames 0, 1 and 4 as 7-Scenes and 3DMatch name them.
+  void WriteSevenScenes(const std::string& folder) const {
+    for (const int number : {0, 1, 4}) {
+      const std::string stem = fmt::format("{}frame-{:06}", folder, number);
+      WriteDepth(stem + ".depth.png", 1000 + number);
+      Write(stem + ".pose.txt", MatrixAt(number));
+      Write(stem + ".color.png", "not looked at");
+    }
+    Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  }
+  static std::vector<Frame> All(FrameSource& source) {
+    std::vector<Frame> frames;
+    while (auto frame = source.Next()) frames.push_back(std::move(*frame));
+    return frames;
+  }
+  std::string OpenError() const {
+    try {
+      OpenFrameFolder(folder_);
+    } catch (const InputError& error) {
+      return Short(error.what());
+    }
+    return "no error";
+  }
+  std::vector<std::string> WarningsOf(const FrameSource& source) const {
+    std::vector<std::string> warnings;
+    for (const std::string& warning : source.Warnings()) warnings.push_back(Short(warning));
+    return warnings;
+  }
+};
+
+TEST_F(FrameFolderTest, PoseFilesBesideTheImages) {
+  for (const std::string& inside : {std::string(), std::string("seq-01/")}) {
+    SetUp();
+    WriteSevenScenes(inside);
+    EXPECT_TRUE(IsFrameFolder(folder_));
+    const auto source = OpenFrameFolder(folder_);
+    EXPECT_EQ(source->Camera(), (PinholeCamera{4, 3, 500, 500, 1.5, 1, {}}));
+    const auto frames = All(*source);
+    ASSERT_EQ(frames.size(), 3U);
+    EXPECT_DOUBLE_EQ(frames[2].stamp_s, 4.0 / 30.0);  // gaps of the numbers stay gaps
+    EXPECT_EQ(frames[2].slam_from_camera->translation.x(), 4.0);
+    EXPECT_FLOAT_EQ(frames[2].depth->At(1, 1), 1.004F);  // millimetres unless a file says otherwise
+    EXPECT_THAT(source->Warnings(), ElementsAre());
+  }
+}
+
+TEST_F(FrameFolderTest, ScanNetsFolders) {
+  for (const int number : {0, 2, 10}) {
+    WriteDepth(fmt::format("depth/{}.png", number), 2000);
+    Write(fmt::format("pose/{}.txt", number),
+          number == 2 ? "-inf -inf -inf -inf\n0 0 0 0\n0 0 0 0\n0 0 0 1\n" : MatrixAt(number));
+  }
+  Write("intrinsic/intrinsic_depth.txt", "577 0 1.5 0\n0 578 1 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_TRUE(IsFrameFolder(folder_));
+  const auto source = OpenFrameFolder(folder_);
+  const auto frames = All(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_FALSE(frames[1].slam_from_camera);                      // lost
+  EXPECT_EQ(frames[2].slam_from_camera->translation.x(), 10.0);  // by number, not by name
+  EXPECT_THAT(WarningsOf(*source), ElementsAre("~: 1 of 3 frames have no pose"));
+}
+
+TEST_F(FrameFolderTest, OneFileOfPoses) {
+  for (int number = 0; number < 3; ++number) {
+    WriteDepth(fmt::format("frame-{:06}.depth.png", number), 1000);
+  }
+  Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  Write("intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  const auto source = OpenFrameFolder(folder_);
+  const auto frames = All(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1.0);
+  EXPECT_FALSE(frames[2].slam_from_camera);
+  EXPECT_THAT(WarningsOf(*source),
+              ElementsAre("~/poses.txt: 2 poses for 3 images, paired from the first",
+                          "~: 1 of 3 frames have no pose"));
+}
+
+TEST_F(FrameFolderTest, AnUpwardYAxisTurnsThePoses) {
+  WriteSevenScenes("");
+  Write("frame-000001.pose.txt", "1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
+  Write("camera-intrinsics.txt", "500 0 1.5\n0 -500 1\n0 0 1\n");
+  const auto source = OpenFrameFolder(folder_);
+  EXPECT_EQ(source->Camera()->fy_px, 500.0);
+  EXPECT_EQ(All(*source)[1].slam_from_camera->translation, Eigen::Vector3d(1, -2, 3));
+}
+
+TEST_F(FrameFolderTest, DamageIsCountedAndSurvived) {
+  WriteSevenScenes("");
+  Write("frame-000001.pose.txt", "1 2 3\n");
+  Write("frame-000004.depth.png", "no image");
+  const auto source = OpenFrameFolder(folder_);
+  const auto frames = All(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_FALSE(frames[1].slam_from_camera);
+  EXPECT_FALSE(frames[2].depth);
+  EXPECT_THAT(
+      WarningsOf(*source),
+      ElementsAre(HasSubstr("~: 1 pose files damaged (first: ~/frame-000001.pose.txt:1: has "
+                            "3 columns"),
+                  "~: 1 of 3 frames have no pose",
+                  HasSubstr("~: 1 depth images missing or damaged")));
+}
+
+TEST_F(FrameFolderTest, OneClearLineForEachFault) {
+  EXPECT_FALSE(IsFrameFolder(folder_));
+  EXPECT_EQ(OpenError(), "~: holds no numbered depth images (frame-000000.depth.png, depth/0.png)");
+  WriteSevenScenes("");
+  std::filesystem::remove(Path("camera-intrinsics.txt"));
+  EXPECT_EQ(OpenError(), "~: has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
+  Write("camera-intrinsics.txt", "500 0\n");
+  EXPECT_THAT(OpenError(), HasSubstr("~/camera-intrinsics.txt: the camera matrix must have"));
+  Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  for (const int number : {0, 1, 4}) {
+    std::filesystem::remove(Path(fmt::format("frame-{:06}.pose.txt", number)));
+  }
+  EXPECT_FALSE(IsFrameFolder(folder_));
+  EXPECT_THAT(OpenError(), HasSubstr("~: no pose within"));
+  std::filesystem::create_directories(Path("a"));
+  SetUp();
+  WriteSevenScenes("seq-01/");
+  WriteSevenScenes("seq-02/");
+  EXPECT_EQ(OpenError(), "~: holds 2 sequences, name one of them such as seq-01");
+}
+
+TEST_F(FrameFolderTest, ReadsTheSharedKinectFrames) {
+  const char* data = std::getenv("DEPTHGRID_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
+  const auto source = OpenFrameFolder(std::string(data) + "/depth_frames/nvblox_3dmatch");
+  EXPECT_NEAR(source->Camera()->fx_px, 570.342205, 1e-6);
+  const auto frames = All(*source);
+  ASSERT_EQ(frames.size(), 5U);
+  for (const Frame& frame : frames) {
+    ASSERT_TRUE(frame.depth);
+    ASSERT_TRUE(frame.slam_from_camera);
+  }
+  EXPECT_NEAR(frames.back().stamp_s, 422.0 / 30.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace depthgrid
