@@ -7,7 +7,13 @@
 
 namespace depthgrid {
 
+enum class InformationSource { kCurvature, kSurface };
+
 struct MatchInformationOptions {
+  // `curvature`: from derivatives at the match, the options down to wall_direction_sigma_rad.
+  // `surface`: from the scores of the poses around it (score_surface.h), the options after that.
+  // Both are calibrated on the laser testbed; the surface costs three times a match.
+  InformationSource source = InformationSource::kCurvature;
   // Beams that end within this distance of each other share their error: neighbours meet the same
   // cells. 0.05-0.2 m describe the errors on the laser testbed alike.
   double patch_m = 0.1;
@@ -19,6 +25,11 @@ struct MatchInformationOptions {
   // undetermined; 0 takes away nothing. Corridors oblique to the cells need 0.13 (0.2 at worst),
   // 95 % of the views of furnished rooms have more than that.
   double wall_direction_sigma_rad = 0.15;
+  // Half widths of the window whose scores are taken.
+  double surface_window_m = 0.2;
+  double surface_window_deg = 6.0;
+  // A pose weighs exp(surface_sharpness (sum of the points' probabilities - the best sum)).
+  double surface_sharpness = 1.0;
   // The covariance is multiplied by this; 1 is calibrated with the values above.
   double covariance_scale = 1.0;
 

@@ -54,7 +54,7 @@ MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
   }
   const InformationSums sums = cost_.SumUp(pose, options_.information);
   result.score = static_cast<double>(sums.explained) / points_.size();
-  result.information = MatchInformation(sums, pose, options_.information);
+  result.information = InformationAt(pose, map, sums);
   result.found = result.score >= options_.min_score && !result.information.isZero(0.0);
   if (!result.found) {
     result.information.setZero();
@@ -63,6 +63,19 @@ MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
   result.map_from_base =
       WithUndeterminedFrom(predicted_map_from_base, pose, result.information, cost_.arm_m());
   return result;
+}
+
+Eigen::Matrix3d ScanMatcher::InformationAt(const Pose2& map_from_base, const ProbabilityView& map,
+                                           const InformationSums& sums) {
+  const MatchInformationOptions& options = options_.information;
+  if (options.source == InformationSource::kCurvature) {
+    return MatchInformation(sums, map_from_base, options);
+  }
+  const SearchLattice lattice =
+      MakeLattice(map_from_base, options.surface_window_m, RadFromDeg(options.surface_window_deg),
+                  map.geometry.resolution_m, points_.farthest_m);
+  ScoreAll(lattice, points_, map, scorer_, surface_);
+  return SurfaceInformation(surface_, options.surface_sharpness) / options.covariance_scale;
 }
 
 }  // namespace depthgrid

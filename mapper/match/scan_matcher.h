@@ -7,6 +7,7 @@
 #include "mapper/match/correlative_search.h"
 #include "mapper/match/least_squares.h"
 #include "mapper/match/match_information.h"
+#include "mapper/match/score_surface.h"
 
 namespace depthgrid {
 
@@ -38,10 +39,15 @@ class ScanMatcher {
                     const Pose2& predicted_map_from_base);
 
  private:
+  Eigen::Matrix3d InformationAt(const Pose2& map_from_base, const ProbabilityView& map,
+                                const InformationSums& sums);
+
   ScanMatcherOptions options_;
   CorrelativeSearch search_;
-  MatchPoints points_;  // these two are kept for their memory
+  MatchPoints points_;  // all of these are kept for their memory
   FastMatchCost cost_;
+  LatticeScorer scorer_;
+  ScoreSurface surface_;
 };
 
 }  // namespace depthgrid

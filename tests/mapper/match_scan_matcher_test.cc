@@ -83,5 +83,90 @@ TEST(ScanMatcher, SurvivesWhatIsNotANumber) {
   EXPECT_FALSE(matcher.Match(clean, ViewOf(map), {0.0, nan, 0.0}).found);
 }
 
+TEST(ScanMatcher, WorksAcrossTheWrapOfYaw) {
+  const OccupancyMap map = RoomMap();
+  PlanarLaser laser;
+  laser.field_of_view_rad = kPi;
+  ScanMatcher matcher({});
+  int cases = 0;
+  for (const double truth_rad : {kPi, -kPi + 0.01, kPi - 0.02}) {
+    for (const double offset_rad : {-0.05, -0.005, 0.005, 0.05}) {
+      const Pose2 truth{3.0, 1.5, WrapAngle(truth_rad)};
+      const Pose2 predicted{3.02, 1.49, WrapAngle(truth_rad + offset_rad)};
+      const MatchResult match =
+          matcher.Match(ScanOf(FurnishedRoom(), truth, laser), ViewOf(map), predicted);
+      ASSERT_TRUE(match.found);
+      const Pose2 error = Between(truth, match.map_from_base);
+      EXPECT_LT(error.translation().norm(), 0.01);
+      EXPECT_LT(std::abs(error.yaw_rad), 0.005);
+      EXPECT_LE(std::abs(match.map_from_base.yaw_rad), kPi);
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 12);
+}
+
+TEST(ScanMatcher, EveryMethodFindsTheSamePose) {
+  const OccupancyMap map = RoomMap();
+  RandomStream random(4, RandomStage::kTest);
+  PlanarLaser laser;
+  laser.beams = 200;
+  laser.field_of_view_rad = kPi;
+  laser.sigma_of_range = 0.01;
+  ScanMatcher fast({});
+  ScanMatcherOptions options;
+  options.search.method = SearchMethod::kReference;
+  options.least_squares.method = SolverMethod::kCeres;
+  ScanMatcher reference(options);
+  int cases = 0;
+  for (; cases < 30; ++cases) {
+    const Pose2 truth = RandomFreePose(random);
+    const Scan scan = ScanOf(FurnishedRoom(), truth, laser, 7, static_cast<std::uint32_t>(cases));
+    const Pose2 predicted = truth * Pose2{random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1),
+                                          random.Uniform(-0.08, 0.08)};
+    const MatchResult a = fast.Match(scan, ViewOf(map), predicted);
+    const MatchResult b = reference.Match(scan, ViewOf(map), predicted);
+    ASSERT_TRUE(a.found && b.found);
+    const Pose2 difference = Between(a.map_from_base, b.map_from_base);
+    EXPECT_LT(difference.translation().norm(), 1e-4) << "case " << cases;
+    EXPECT_LT(std::abs(difference.yaw_rad), 1e-4) << "case " << cases;
+    EXPECT_EQ(a.score, b.score);
+  }
+  EXPECT_EQ(cases, 30);
+}
+
+TEST(ScanMatcher, RepeatsItselfWhateverCameBefore) {
+  const OccupancyMap map = RoomMap();
+  const Pose2 truth{3.0, 1.5, 0.3};
+  const Scan scan = ScanOf(FurnishedRoom(), truth, {});
+  const Pose2 predicted = truth * Pose2{0.05, -0.03, 0.02};
+  ScanMatcher fresh({});
+  const MatchResult expected = fresh.Match(scan, ViewOf(map), predicted);
+  ScanMatcher used({});
+  PlanarLaser other;
+  other.beams = 1000;
+  other.field_of_view_rad = 2.0 * kPi;
+  used.Match(ScanOf(FurnishedRoom(), {2.0, 1.0, 2.0}, other), ViewOf(map), {2.0, 1.0, 2.0});
+  const MatchResult again = used.Match(scan, ViewOf(map), predicted);
+  EXPECT_EQ(again.map_from_base, expected.map_from_base);
+  EXPECT_EQ(again.information, expected.information);
+  EXPECT_EQ(again.score, expected.score);
+}
+
+// One wall in front: forward and yaw are seen, sideways is not.
+TEST(ScanMatcher, ALoneWallLeavesTheWayAlongItToThePrediction) {
+  const PlanarWorld wall = {{{2.02, -20.0}, {2.02, 20.0}}};
+  const OccupancyMap map = SmoothMap(wall, {-1.0, -6.0}, {3.0, 6.0}, 0.05);
+  ScanMatcher matcher({});
+  const Pose2 truth{0.0, 0.0, 0.0};
+  const Pose2 predicted{0.05, 0.07, 0.02};
+  const MatchResult match = matcher.Match(ScanOf(wall, truth, {}), ViewOf(map), predicted);
+  ASSERT_TRUE(match.found);
+  EXPECT_NEAR(match.map_from_base.x_m, truth.x_m, 4e-3);  // of the interpolated ridge
+  EXPECT_NEAR(match.map_from_base.y_m, predicted.y_m, 3e-3);
+  EXPECT_NEAR(match.map_from_base.yaw_rad, truth.yaw_rad, 1e-3);
+  EXPECT_LT(match.information(1, 1), 1e-3 * match.information(0, 0));
+}
+
 }  // namespace
 }  // namespace depthgrid
