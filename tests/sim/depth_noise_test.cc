@@ -9,25 +9,15 @@
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "tests/sim/test_frames.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
 namespace {
 
-SensorOptions Options(DepthNoiseModel model) {
-  SensorOptions options;
-  options.noise = model;
-  return options;
-}
-
-// Every pixel at one depth, met at one incidence.
-DepthFrame Constant(double z_m, double incidence_deg) {
-  DepthFrame frame{DepthImage(640, 480), {}};
-  frame.depth.z_m.assign(frame.depth.z_m.size(), static_cast<float>(z_m));
-  frame.incidence_cos.assign(frame.depth.z_m.size(),
-                             static_cast<float>(std::cos(RadFromDeg(incidence_deg))));
-  return frame;
-}
+using test::Constant;
+using test::Options;
+using test::PlaneFrame;
 
 struct Moments {
   double mean = 0.0;
@@ -149,19 +139,6 @@ TEST(HandaNoise, FollowsItsFormulaStepByStep) {
     }
     EXPECT_EQ(covered, 640 * 480);
   }
-}
-
-// A plane that fills the view, its normal turned by `turn_deg` about the vertical, `distance_m`
-// from the camera along the optical axis.
-DepthFrame PlaneFrame(double distance_m, double turn_deg) {
-  const double turn = RadFromDeg(turn_deg);
-  const Eigen::Vector3f along(static_cast<float>(40 * std::sin(turn)),
-                              static_cast<float>(40 * std::cos(turn)), 0);
-  const Eigen::Vector3f middle(static_cast<float>(distance_m), 0, 0), up(0, 0, 40);
-  TriangleMesh mesh;
-  test::AddQuad(mesh, middle - along - up, middle + along - up, middle + along + up,
-                middle - along + up);
-  return DepthCamera(RayScene(mesh), PinholeCamera{}).RenderWithIncidence(CameraOf({0, 0, 0}, 0));
 }
 
 TEST(HandaNoise, HasNoBias) {
@@ -353,53 +330,6 @@ TEST(DepthNoise, AzureLosesDeepEdges) {
       ASSERT_EQ(deep.At(u, v) > 0.0F, u != 319 && u != 320) << u;
       ASSERT_GT(shallow.At(u, v), 0.0F);
     }
-  }
-}
-
-TEST(ProjectorShadow, IsAsWideAsTheDifferenceOfDisparities) {
-  // A near strip before a wall: what the projector, to the right, does not reach lies to its left.
-  SensorOptions options = Options(DepthNoiseModel::kNone);
-  options.shadow_baseline_m = 0.075;
-  DepthFrame clean = Constant(3.0, 0.0);
-  for (int v = 0; v < 480; ++v) std::fill_n(clean.depth.Row(v) + 300, 100, 1.0F);
-  const double band_px = 481.20 * 0.075 * (1.0 / 1.0 - 1.0 / 3.0);  // 24.06
-  const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
-  const auto dark_from = [&](int u) {
-    int count = 0;
-    while (u >= 0 && seen.At(u, 100) == kInvalidDepth) {
-      ++count;
-      --u;
-    }
-    return count;
-  };
-  EXPECT_NEAR(dark_from(299), band_px, 1.0);
-  EXPECT_EQ(std::count(seen.Row(100), seen.Row(100) + 640, kInvalidDepth), dark_from(299));
-  // The other way round the shadow falls to the right.
-  options.shadow_baseline_m = -0.075;
-  const DepthImage mirrored = DepthNoise(options).Apply(clean, 1, 0);
-  EXPECT_EQ(mirrored.At(400, 100), kInvalidDepth);
-  EXPECT_NE(mirrored.At(299, 100), kInvalidDepth);
-}
-
-TEST(ProjectorShadow, OfAThinPoleStandsApartFromIt) {
-  SensorOptions options = Options(DepthNoiseModel::kNone);
-  options.shadow_baseline_m = 0.075;
-  DepthFrame clean = Constant(3.0, 0.0);
-  for (int v = 0; v < 480; ++v) std::fill_n(clean.depth.Row(v) + 300, 6, 1.0F);
-  const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
-  EXPECT_NE(seen.At(299, 100), kInvalidDepth);  // lit past the pole
-  EXPECT_EQ(seen.At(279, 100), kInvalidDepth);
-  EXPECT_NEAR(static_cast<double>(std::count(seen.Row(100), seen.Row(100) + 640, kInvalidDepth)),
-              6.0, 1.0);
-}
-
-TEST(ProjectorShadow, LeavesSlantedSurfacesLit) {
-  SensorOptions options = Options(DepthNoiseModel::kNone);
-  options.shadow_baseline_m = 0.075;
-  for (const double turn_deg : {-60.0, 0.0, 60.0}) {
-    const DepthFrame clean = PlaneFrame(2.0, turn_deg);
-    const DepthImage seen = DepthNoise(options).Apply(clean, 1, 0);
-    EXPECT_EQ(seen.z_m, clean.depth.z_m) << turn_deg;
   }
 }
 

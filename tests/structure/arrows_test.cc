@@ -37,7 +37,8 @@ const std::map<std::string, std::set<std::string>>& Allowed() {
   return kAllowed;
 }
 
-// Libraries that are wrapped once: their headers may appear in .cc files only.
+// Libraries that are wrapped once: their headers may appear in .cc files only, and in *_impl.h,
+// which only .cc files include.
 const std::vector<std::string>& HiddenLibraries() {
   static const std::vector<std::string> kHidden = {
       "embree3/",  "GL/",      "SQLiteCpp/", "sqlite3",    "ceres/", "assimp/",
@@ -71,9 +72,12 @@ std::string Fault(const std::string& file, const Include& include) {
     const std::string target = RoomOf(include.path);
     if (target.empty()) return "includes are written from the source root";
     if (!Allowed().at(room).contains(target)) return room + " may not include " + target;
+    if (file.ends_with(".h") && include.path.ends_with("_impl.h")) {
+      return "only .cc files may include *_impl.h";
+    }
     return "";
   }
-  if (!file.ends_with(".h")) return "";
+  if (!file.ends_with(".h") || file.ends_with("_impl.h")) return "";
   for (const auto& library : HiddenLibraries()) {
     if (include.path.starts_with(library)) return "headers may not show " + library;
   }
