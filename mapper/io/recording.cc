@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 
 #include "mapper/core/error.h"
+#include "mapper/io/undistort.h"
 
 namespace depthgrid {
 namespace {
@@ -67,6 +69,7 @@ class RecordingSource final : public FrameSource {
     if (recording_.images.empty()) throw InputError(recording_.name, "holds no depth image");
     FindPoses(slam, options);
     Probe();
+    if (recording_.camera.camera.HasDistortion()) undistorter_.emplace(recording_.camera.camera);
   }
 
   std::optional<Frame> Next() override {
@@ -84,7 +87,9 @@ class RecordingSource final : public FrameSource {
     ++next_;
     return frame;
   }
-  std::optional<PinholeCamera> Camera() const override { return recording_.camera.camera; }
+  std::optional<PinholeCamera> Camera() const override {
+    return undistorter_ ? undistorter_->camera() : recording_.camera.camera;
+  }
   int FrameCount() const override { return static_cast<int>(recording_.images.size()); }
   std::vector<std::string> Warnings() const override {
     std::vector<std::string> warnings = recording_.warnings;
@@ -157,6 +162,7 @@ class RecordingSource final : public FrameSource {
     try {
       auto depth = std::make_shared<DepthImage>(reader_(image.depth_path));
       RequireCameraSize(*depth, image);
+      if (undistorter_) *depth = undistorter_->Apply(*depth);
       return depth;
     } catch (const SizeError& error) {
       wrong_size_.Add(error.what());
@@ -168,6 +174,7 @@ class RecordingSource final : public FrameSource {
 
   Recording recording_;
   DepthReader reader_;
+  std::optional<Undistorter> undistorter_;
   std::vector<PoseTrack::Found> poses_;
   std::vector<LoopClosure> loops_;
   std::size_t next_ = 0;

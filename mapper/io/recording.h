@@ -35,9 +35,10 @@ using DepthReader = std::function<DepthImage(const std::string& path)>;
 // How a recording's PNGs keep depth.
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
 
-// Frames in the recording's order. Images that are missing, damaged or of the wrong size become
-// frames with a pose only and are counted. Throws InputError when there is no image, when none of
-// the first images can be read, when their size is not the camera's, or when no image finds a pose.
+// Frames in the recording's order, without the camera's distortion. Images that are missing,
+// damaged or of the wrong size become frames with a pose only and are counted. Throws InputError
+// when there is no image, when none of the first images can be read, when their size is not the
+// camera's, or when no image finds a pose.
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader);
 

@@ -128,6 +128,16 @@ TEST_F(TumFolderTest, LoopsAndEpochsFollowTheirFrames) {
   EXPECT_EQ(frames[3].loops[0].second_frame, 3);
 }
 
+TEST_F(TumFolderTest, FramesComeWithoutTheCamerasDistortion) {
+  const Trajectory truth = WriteSequence();
+  CameraFile camera = SmallCamera();
+  camera.camera.distortion[0] = 2.0;  // moves the corners by more than a pixel
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth), {}, camera);
+  EXPECT_EQ(source->Camera(), SmallCamera().camera);
+  const auto frames = All(*source);
+  EXPECT_NE(frames[0].depth->z_m, QuantiseDepth(Image(0)).z_m);
+}
+
 TEST_F(TumFolderTest, DamagedFramesAreCountedAndSurvived) {
   const Trajectory truth = WriteSequence();
   std::filesystem::remove(Path("depth/0.125000.png"));
