@@ -1,0 +1,303 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "mapper/core/level.h"
+#include "mapper/fuse/motion_noise.h"
+#include "mapper/incremental_mapper.h"
+#include "mapper/surfel/debias.h"
+#include "mapper/surfel/group_links.h"
+#include "mapper/surfel/range_noise.h"
+#include "mapper/surfel/scan_surfels.h"
+#include "mapper/surfel/skyline_matrix.h"
+#include "mapper/surfel/surfel_matcher.h"
+#include "mapper/surfel/surfel_store.h"
+#include "tests/mapper/planar_world.h"
+
+namespace depthgrid {
+namespace {
+
+// A room with a box in it, seen from inside.
+PlanarWorld Room() {
+  PlanarWorld world = RectangleWorld(-2.0, -2.5, 3.0, 2.5);
+  for (const Wall& wall : RectangleWorld(1.5, 0.4, 2.2, 1.1)) world.push_back(wall);
+  return world;
+}
+
+PlanarLaser Noisy(double sigma_of_range) {
+  PlanarLaser laser;
+  laser.sigma_of_range = sigma_of_range;
+  return laser;
+}
+
+SurfelStore MapOf(const std::vector<Surfel>& surfels, const Pose2& map_from_base) {
+  SurfelStore map;
+  for (const Surfel& surfel : surfels) map.Add(Motion2(map_from_base) * surfel);
+  return map;
+}
+
+TEST(RangeNoise, LearnsSigmaInSpiteOfCorners) {
+  for (const double sigma : {0.003, 0.01, 0.03}) {
+    RangeNoise noise;
+    for (int frame = 0; frame < 20; ++frame) {
+      noise.Add(ScanOf(Room(), {0.0, 0.0, 0.3 * frame}, Noisy(sigma), 7,
+                       static_cast<std::uint32_t>(frame)));
+    }
+    EXPECT_NEAR(noise.RelativeSigma(2.5) / sigma, 1.0, 0.1) << sigma;
+  }
+}
+
+TEST(ScanSurfels, LieOnTheWallsAndFaceTheSensorWithoutNoise) {
+  const Scan scan = ScanOf(Room(), {}, {});
+  RangeNoise noise;
+  noise.Add(scan);
+  const std::vector<Surfel> surfels = ScanSurfelMaker({}).Make(scan, noise);
+  ASSERT_GT(surfels.size(), 40U);
+  for (const Surfel& surfel : surfels) {
+    const double off_east = std::abs(surfel.point_m.x() - 3.0);
+    const double off_box =
+        std::min(std::abs(surfel.point_m.x() - 1.5), std::abs(surfel.point_m.y() - 0.4));
+    EXPECT_LT(std::min(off_east, off_box), 1e-3);
+    EXPECT_LT(surfel.normal.dot(surfel.point_m), 0.0);
+  }
+}
+
+TEST(ScanSurfels, ErrHasTheDeclaredSigma) {
+  const PlanarWorld wall = {{{2.0, -4.0}, {2.0, 4.0}}};
+  RangeNoise noise;
+  ScanSurfelMaker maker({});
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::uint32_t frame = 0; frame < 300; ++frame) {
+    const Scan scan = ScanOf(wall, {0.0, 0.0, 0.4}, Noisy(0.01), 3, frame);
+    noise.Add(scan);
+    for (const Surfel& surfel : maker.Make(scan, noise)) {
+      const Eigen::Vector2d in_world = Motion2({0.0, 0.0, 0.4}) * surfel.point_m;
+      const double error_m = in_world.x() - 2.0;
+      squares += error_m * error_m * surfel.information;
+      count += 1.0;
+    }
+  }
+  EXPECT_GT(count, 20000.0);
+  EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.1);
+}
+
+TEST(SurfelStore, NearestAgreesWithLookingAtAll) {
+  RandomStream random(11, RandomStage::kTest);
+  const auto draw = [&] {
+    Surfel surfel;
+    surfel.point_m = {random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)};
+    const double angle_rad = random.Uniform(-kPi, kPi);
+    surfel.normal = {std::cos(angle_rad), std::sin(angle_rad)};
+    surfel.information = surfel.normal_information = 1.0;
+    return surfel;
+  };
+  SurfelStore store;
+  for (int i = 0; i < 3000; ++i) store.Add(draw());
+  const AssociationGate gate{0.08, 0.2, 0.7};
+  int found = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Surfel piece = draw();
+    int nearest = -1;
+    double nearest_distance2 = 2.0;
+    for (int k = 0; k < store.size(); ++k) {
+      const Surfel& surfel = store[k];
+      const Eigen::Vector2d d = piece.point_m - surfel.point_m;
+      const Eigen::Vector2d tangent(surfel.normal.y(), -surfel.normal.x());
+      const double along = d.dot(tangent) / gate.along_m;
+      const double off = d.dot(surfel.normal) / gate.off_m;
+      if (surfel.normal.dot(piece.normal) < gate.min_cosine) continue;
+      if (std::abs(along) > 1.0 || std::abs(off) > 1.0) continue;
+      if (along * along + off * off >= nearest_distance2) continue;
+      nearest_distance2 = along * along + off * off;
+      nearest = k;
+    }
+    // The grid looks in the piece's box, which misses corners of turned gates only.
+    const int by_place = store.Nearest(piece, gate);
+    found += nearest >= 0 ? 1 : 0;
+    if (nearest_distance2 < 0.5) {
+      EXPECT_EQ(by_place, nearest);
+    }
+  }
+  EXPECT_GT(found, 1000);
+}
+
+TEST(SurfelStore, MergingMovesAlongTheNormalByInformation) {
+  SurfelStore store;
+  store.Add({{1.0, 0.0}, {-1.0, 0.0}, 3.0, 1.0});
+  const int index = store.Merge({{1.04, 0.01}, {-1.0, 0.0}, 1.0, 1.0}, {0.05, 0.1, 0.7});
+  EXPECT_EQ(index, 0);
+  EXPECT_TRUE(store[0].point_m.isApprox(Eigen::Vector2d(1.01, 0.0), 1e-12));
+  EXPECT_EQ(store[0].information, 4.0);
+  // The other side of the wall is another surfel.
+  EXPECT_EQ(store.Merge({{1.0, 0.0}, {1.0, 0.0}, 1.0, 1.0}, {0.05, 0.1, 0.7}), 1);
+}
+
+TEST(SurfelMatcher, FindsTheWayBackAndIsAsSureAsItSays) {
+  RangeNoise noise;
+  ScanSurfelMaker maker({});
+  const Scan clean = ScanOf(Room(), {}, {});
+  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(Room(), {}, Noisy(0.01), 5, i));
+  SurfelStore map = MapOf(maker.Make(clean, noise), {});
+  // A map much better than the scan: the same surfel many times.
+  for (int i = 0; i < 100; ++i) {
+    for (const Surfel& s : maker.Make(clean, noise)) map.Merge(s, {0.03, 0.05, 0.7});
+  }
+  const SurfelMatcher matcher({});
+  Prediction prediction;
+  prediction.map_from_base = {0.04, -0.03, 0.02};
+  prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
+  double chi2 = 0.0;
+  int cases = 0;
+  for (std::uint32_t frame = 0; frame < 200; ++frame, ++cases) {
+    const std::vector<Surfel> pieces = maker.Make(ScanOf(Room(), {}, Noisy(0.01), 6, frame), noise);
+    const MatchResult match = matcher.Match(pieces, map, prediction);
+    ASSERT_TRUE(match.found);
+    const Eigen::Vector3d error = match.map_from_base.vector();
+    EXPECT_LT(error.head<2>().norm(), 0.03);
+    chi2 += error.dot(match.information * error);
+  }
+  EXPECT_EQ(cases, 200);
+  EXPECT_NEAR(chi2 / cases, 3.0, 1.0);  // three degrees of freedom
+}
+
+TEST(SurfelMatcher, InACorridorTheAxisStaysUnseen) {
+  const PlanarWorld corridor = {{{-20, 1}, {20, 1}}, {{-20, -1}, {20, -1}}};
+  RangeNoise noise;
+  ScanSurfelMaker maker({});
+  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(corridor, {}, Noisy(0.01), 5, i));
+  const SurfelStore map = MapOf(maker.Make(ScanOf(corridor, {}, Noisy(0.01), 5, 9), noise), {});
+  Prediction prediction;
+  prediction.map_from_base = {0.3, 0.02, 0.0};
+  prediction.covariance = Eigen::Vector3d(0.04, 0.01, 0.001).asDiagonal();
+  const MatchResult match = SurfelMatcher({}).Match(
+      maker.Make(ScanOf(corridor, {}, Noisy(0.01), 5, 10), noise), map, prediction);
+  ASSERT_TRUE(match.found);
+  EXPECT_GT(match.information(1, 1), 100.0 * match.information(0, 0));
+  EXPECT_NEAR(match.map_from_base.y_m, 0.0, 0.02);
+}
+
+TEST(Debias, TakesAwayWhatNormalsFeignAndNothingElse) {
+  NormalEquations equations;
+  equations.h = Eigen::Vector3d(1000.0, 2.0, 500.0).asDiagonal();
+  equations.g = {10.0, 1.0, 5.0};
+  equations.false_h = Eigen::Vector3d(1.0, 1.0, 1.0).asDiagonal();
+  const NormalEquations debiased = Debiased(equations, 3.0);
+  EXPECT_NEAR(debiased.h(0, 0), 997.0, 1e-3);  // h (1 - 3 / 1000)
+  EXPECT_NEAR(debiased.h(1, 1), 0.0, 1e-9);    // lambda 2 < 3
+  EXPECT_NEAR(debiased.g[1], 0.0, 1e-9);
+  EXPECT_NEAR(debiased.g[0] / debiased.h(0, 0), 0.01, 1e-6);  // the step stays
+  EXPECT_EQ(Debiased(equations, 0.0).h, equations.h);
+}
+
+TEST(SkylineMatrix, SolvesAsDenseCholeskyDoes) {
+  RandomStream random(12, RandomStage::kTest);
+  constexpr int kSize = 40;
+  std::vector<int> first;
+  for (int i = 0; i < kSize; ++i) {
+    first.push_back(static_cast<int>(random.Below(static_cast<std::uint64_t>(i) + 1)));
+  }
+  SkylineMatrix skyline(first);
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kSize, kSize);
+  Eigen::VectorXd b(kSize);
+  for (int i = 0; i < kSize; ++i) {
+    b[i] = random.Normal();
+    for (int j = first[static_cast<std::size_t>(i)]; j <= i; ++j) {
+      const double value = i == j ? 50.0 : random.Normal();
+      *skyline.At(i, j) = value;
+      dense(i, j) = dense(j, i) = value;
+    }
+  }
+  ASSERT_TRUE(skyline.Factor());
+  EXPECT_LT((dense * skyline.Solve(b) - b).norm(), 1e-10);
+  SkylineMatrix indefinite({0, 0});
+  *indefinite.At(0, 0) = 1.0;
+  *indefinite.At(1, 0) = 2.0;
+  *indefinite.At(1, 1) = 1.0;
+  EXPECT_FALSE(indefinite.Factor());
+}
+
+TEST(GroupLinks, NormalEquationsAreThoseOfNumericDerivatives) {
+  const std::vector<Pose2> poses = {{0.3, -0.2, 0.4}, {1.1, 0.5, 1.0}};
+  // Near its measurement, where the error is linear.
+  GroupLink link{
+      0, 1, Between(poses[0], poses[1]) * Pose2{1e-4, -2e-4, 1e-4}, {0.1, 0.2, 0.05}, 0.0};
+  Eigen::Matrix<double, 3, 6> jacobian;
+  for (int k = 0; k < 6; ++k) {
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    step[k % 3] = 1e-6;
+    std::vector<Pose2> moved = poses;
+    Pose2& pose = moved[static_cast<std::size_t>(k / 3)];
+    pose = pose * Pose2::FromVector(step);
+    jacobian.col(k) = (LinkError(link, moved) - LinkError(link, poses)) / 1e-6;
+  }
+  const Eigen::Matrix3d weight = link.sigma.cwiseProduct(link.sigma).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd expected = jacobian.transpose() * weight * jacobian;
+  SkylineMatrix h({0, 0, 0, 0, 0, 0});
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(6);
+  AddLink(link, poses, h, g);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) EXPECT_NEAR(*h.At(i, j), expected(i, j), 0.5) << i << j;
+  }
+  EXPECT_LT((g + jacobian.transpose() * weight * LinkError(link, poses)).norm(), 1e-3);
+}
+
+TEST(MotionNoiseLearner, TellsJitterWalkAndBiasApart) {
+  RandomStream random(13, RandomStage::kTest);
+  const double kept = std::exp(-1.0 / 40.0);
+  MotionNoiseLearner learner;
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+  double jitter_before = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const double jitter = 0.003 * random.Normal();
+    bias.x() = kept * bias.x() + std::sqrt(1.0 - kept * kept) * 0.001 * random.Normal();
+    const Eigen::Vector3d error(bias.x(), 0.002 * random.Normal(), jitter - jitter_before);
+    learner.Add(error, Eigen::Vector3d::Constant(1e-6));
+    jitter_before = jitter;
+  }
+  const MotionNoise noise = learner.Fit();
+  EXPECT_NEAR(noise.bias[0], 0.001, 3e-4);
+  EXPECT_NEAR(noise.walk[1], 0.002, 3e-4);
+  EXPECT_NEAR(noise.jitter[2], 0.003, 3e-4);
+  EXPECT_LT(noise.walk[2], 3e-4);
+  EXPECT_LT(noise.jitter[1], 5e-4);
+}
+
+// Once round the room with an odometry that turns a little too much.
+TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
+  MapperOptions options;
+  options.method = MapperMethod::kSurfel;
+  options.fusion.mode = FusionMode::kLearned;
+  IncrementalMapper mapper(options, std::nullopt);
+  std::vector<Pose2> truth;
+  Pose2 odometry;
+  double prior_error_m = 0.0;
+  constexpr int kFrames = 200;
+  for (int i = 0; i < kFrames; ++i) {
+    const double angle_rad = 2.0 * kPi * i / kFrames;
+    truth.push_back({0.5 * std::sin(angle_rad), -0.5 * std::cos(angle_rad), WrapAngle(angle_rad)});
+    odometry = i == 0 ? truth[0]
+                      : odometry * Between(truth[truth.size() - 2], truth.back()) *
+                            Pose2{0.003, -0.0015, 0.0024};
+    prior_error_m += (odometry.translation() - truth.back().translation()).norm() / kFrames;
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.slam_from_camera = CameraOf(odometry, 0.0);
+    frame.scan = std::make_shared<Scan>(
+        ScanOf(Room(), truth.back(), Noisy(0.01), 8, static_cast<std::uint32_t>(i)));
+    mapper.AddFrame(frame);
+  }
+  const MapperResult result = mapper.Finish();
+  double error_m = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Pose2 estimate = BaseOf(*result.map_from_camera[i]);
+    error_m += (estimate.translation() - truth[i].translation()).norm() / kFrames;
+  }
+  EXPECT_GT(prior_error_m, 0.1);
+  // Between corners only one plain wall is in view, and the way along it is the prior's.
+  EXPECT_LT(error_m, 0.25 * prior_error_m);
+}
+
+}  // namespace
+}  // namespace depthgrid
