@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
 #include "mapper/core/error.h"
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/matrix_poses.h"
+#include "mapper/io/numbered_images.h"
 #include "mapper/io/png.h"
 
 namespace depthgrid {
@@ -19,45 +19,12 @@ namespace fs = std::filesystem;
 // Exports of depth in millimetres (7-Scenes, 3DMatch, ScanNet) when no camera file says otherwise.
 constexpr double kMillimetres = 1000.0;
 
-// A numbered image: frame-000012.depth.png, or 12.png in a folder of depth images.
-struct NumberedImage {
-  long number = 0;
-  fs::path path;
-  fs::path stem;  // the path less its ".depth.png"
-};
-
-std::optional<long> TrailingNumber(const std::string& stem) {
-  const std::size_t begin = stem.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
-  long number = 0;
-  const char* end = stem.data() + stem.size();
-  const auto [stop, error] = std::from_chars(stem.data() + begin, end, number);
-  if (begin == stem.size() || error != std::errc{} || stop != end) return {};
-  return number;
-}
-
-std::vector<NumberedImage> ImagesIn(const fs::path& folder, const std::string& ending) {
-  std::vector<NumberedImage> images;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.ends_with(ending)) continue;
-    const std::string stem = name.substr(0, name.size() - ending.size());
-    if (const auto number = TrailingNumber(stem)) {
-      images.push_back({*number, entry.path(), folder / stem});
-    }
-  }
-  std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) {
-    return a.number != b.number ? a.number < b.number : a.path < b.path;
-  });
-  return images;
-}
-
 std::vector<NumberedImage> DepthImagesOf(const fs::path& folder) {
   for (const char* ending : {".depth.png", "-depth.png", "_depth.png"}) {
-    auto images = ImagesIn(folder, ending);
+    auto images = NumberedImagesIn(folder, ending);
     if (!images.empty()) return images;
   }
-  return ImagesIn(folder / "depth", ".png");
+  return NumberedImagesIn(folder / "depth", ".png");
 }
 
 // The folder itself, or its only sequence (3DMatch keeps the intrinsics beside seq-01).

@@ -1,0 +1,153 @@
+#include "mapper/io/icl_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/matrix_poses.h"
+#include "mapper/io/number_rows.h"
+#include "mapper/io/numbered_images.h"
+#include "mapper/io/png.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRayEnding = ".depth";
+// A median above this cannot be metres in a room: the office's files are in centimetres.
+constexpr float kCentimetresAbove = 50.0F;
+
+// The first file (by name) with the ending, empty when there is none.
+std::string FileWith(const std::string& folder, const std::string& ending) {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename().string().ends_with(ending)) found.push_back(entry.path().string());
+  }
+  std::sort(found.begin(), found.end());
+  return found.empty() ? "" : found.front();
+}
+
+// .gt.sim has no stamps: one matrix an image, or one for each but the first.
+SlamOutput PairInOrder(const std::vector<std::optional<Pose3>>& poses, const Recording& recording,
+                       const std::string& path) {
+  const std::size_t images = recording.images.size();
+  const std::size_t skipped = poses.size() + 1 == images ? 1 : 0;
+  if (poses.size() + skipped < images) {
+    throw InputError(path, fmt::format("holds {} poses for {} images", poses.size(), images));
+  }
+  SlamOutput slam;
+  for (std::size_t i = skipped; i < images; ++i) {
+    const auto& pose = poses[i - skipped];
+    slam.live.push_back({recording.images[i].stamp_s, pose, 0});
+    if (pose) slam.final.push_back({recording.images[i].stamp_s, *pose});
+  }
+  return slam;
+}
+
+}  // namespace
+
+bool IsIclFolder(const std::string& folder) {
+  const bool truth =
+      !FileWith(folder, ".gt.freiburg").empty() || !FileWith(folder, ".gt.sim").empty();
+  return !NumberedImagesIn(folder, kRayEnding).empty() ||
+         (truth && !NumberedImagesIn(fs::path(folder) / "depth", ".png").empty());
+}
+
+Recording ListIclFolder(const std::string& folder) {
+  Recording recording;
+  recording.name = folder;
+  auto images = NumberedImagesIn(fs::path(folder) / "depth", ".png");
+  if (images.empty()) images = NumberedImagesIn(folder, kRayEnding);
+  for (const NumberedImage& image : images) {
+    const auto stamp_s = static_cast<double>(image.number);
+    if (!recording.images.empty() && recording.images.back().stamp_s == stamp_s) continue;
+    recording.images.push_back({stamp_s, image.path.string(), ""});
+  }
+  if (recording.images.empty()) {
+    throw InputError(folder, "holds neither depth/<n>.png nor *_<n>.depth");
+  }
+  return recording;
+}
+
+SlamOutput ReadIclPoses(const std::string& folder, const Recording& recording) {
+  if (const std::string path = FileWith(folder, ".gt.freiburg"); !path.empty()) {
+    return SlamOutputOf(ReadTrajectory(path));
+  }
+  if (const std::string path = FileWith(folder, ".gt.sim"); !path.empty()) {
+    return PairInOrder(ReadMatrixPoses(path), recording, path);
+  }
+  throw InputError(folder, "holds no poses (*.gt.freiburg or *.gt.sim)");
+}
+
+CameraDescription IclCamera(const std::string& folder) {
+  const std::string path = (fs::path(folder) / "camera.yaml").string();
+  if (fs::exists(path)) return ReadCameraDescription(path);
+  CameraDescription camera;
+  camera.kind = "ICL-NUIM";
+  camera.file.camera = PinholeCamera{640, 480, 481.20, 480.00, 319.5, 239.5, {}};
+  camera.y_up = true;  // its fy is -480
+  return camera;
+}
+
+DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
+                           const std::string& place) {
+  DepthImage image(camera.width_px, camera.height_px);
+  std::size_t count = 0;
+  for (const TextRow& row : SplitRows(text)) {
+    for (const std::string_view field : row.fields) {
+      const auto number = ParseNumber(field);
+      if (!number) {
+        throw InputError(PlaceOfLine(place, row.line),
+                         fmt::format("'{}' is not a number", field.substr(0, 40)));
+      }
+      if (count < image.z_m.size()) {
+        image.z_m[count] =
+            std::isfinite(*number) && *number > 0.0 ? static_cast<float>(*number) : kInvalidDepth;
+      }
+      ++count;
+    }
+  }
+  if (count != image.z_m.size()) {
+    throw InputError(place, fmt::format("holds {} ray lengths, must hold {} ({}x{})", count,
+                                        image.z_m.size(), camera.width_px, camera.height_px));
+  }
+  std::vector<float> sorted = image.z_m;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double unit_m = sorted[sorted.size() / 2] > kCentimetresAbove ? 0.01 : 1.0;
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      const double stretch = Unproject(camera, u, v, 1.0).norm();
+      image.Row(v)[u] = static_cast<float>(image.At(u, v) * unit_m / stretch);
+    }
+  }
+  return image;
+}
+
+std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
+                                           const std::optional<SlamOutput>& slam,
+                                           const RecordingOptions& options,
+                                           const std::string& camera_path) {
+  Recording recording = ListIclFolder(folder);
+  SlamOutput poses = slam ? *slam : ReadIclPoses(folder, recording);
+  const CameraDescription camera =
+      camera_path.empty() ? IclCamera(folder) : ReadCameraDescription(camera_path);
+  if (camera.y_up) poses = FlipY(std::move(poses));
+  recording.camera = camera.file;
+  const DepthPngFormat format = DepthFormatOf(camera.file, options);
+  const PinholeCamera pinhole = camera.file.camera;
+  return OpenRecording(
+      std::move(recording), poses, options, [format, pinhole](const std::string& path) {
+        return path.ends_with(kRayEnding) ? ParseRayLengths(ReadFile(path), pinhole, path)
+                                          : ReadDepthPng(path, format);
+      });
+}
+
+}  // namespace depthgrid
