@@ -1,9 +1,23 @@
 #include "eval/experiment.h"
 
 #include "eval/synthetic_source.h"
+#include "mapper/core/level.h"
+#include "mapper/fuse/fusion.h"
 #include "sim/slam_surrogate.h"
 
 namespace depthgrid {
+namespace {
+
+// The surrogate's frame is the true world's, so the true pose of a frame is its pose in the map.
+GainOracle OracleOf(const Trajectory& truth) {
+  return [&truth](int frame, const Pose2& predicted, const Pose2& matched) {
+    const Pose3& true_pose = truth[static_cast<std::size_t>(frame)].world_from_camera;
+    return OracleGain(BaseOf(true_pose), predicted, matched);
+  };
+}
+
+}  // namespace
+
 RunScores Score(const MappingRun& run, const TruthRecord& truth) {
   RunScores scores;
   scores.slam = ScoreTrajectory(truth.trajectory, SlamTrajectory(run));
@@ -25,7 +39,8 @@ ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& co
   TruthRecord truth = MakeTruth(world, options.mapper, context.threads);
   const SyntheticSensor sensor(world, options, context.cache_folder);
   SyntheticSource source(sensor, slam, context.threads);
-  MappingRun mapping = MapFrames(source, options.mapper, slam.final, context.progress);
+  MappingRun mapping =
+      MapFrames(source, options.mapper, slam.final, context.progress, OracleOf(world.trajectory));
   RunScores scores = Score(mapping, truth);
   return {options,          std::move(world), std::move(slam), std::move(mapping),
           std::move(truth), std::move(scores)};

@@ -33,8 +33,9 @@ void ExperimentOptions::Visit(OptionsVisitor& v) {
   v.Group("mapper", mapper, "the mapper");
 }
 
-ExperimentOptions ReadExperiment(const Config& config, const std::string& base_folder) {
+ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {
   ExperimentOptions options;
+  config.Take("provenance");  // a run.yaml may be run again
   config.Read(options);
   if (options.scene.empty()) throw InputError(config.Place(), "key 'scene' is missing");
   ResolveFile(options.scene, base_folder);

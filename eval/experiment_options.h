@@ -36,6 +36,6 @@ struct ExperimentOptions {
 
 // Reads an experiment and resolves its file names: those in `config` are relative to
 // `base_folder`. Throws InputError.
-ExperimentOptions ReadExperiment(const Config& config, const std::string& base_folder);
+ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);
 
 }  // namespace depthgrid

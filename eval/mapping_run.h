@@ -34,9 +34,11 @@ struct MappingRun {
   double cpu_s = 0.0;  // of the mapper's thread, sources excluded where they have their own
 };
 
-// `final_poses`: SLAM's own final trajectory, empty if there is none.
+// `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
+// fusion.mode `oracle` only.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
-                     const Trajectory& final_poses, const Progress& progress);
+                     const Trajectory& final_poses, const Progress& progress,
+                     const GainOracle& oracle = {});
 
 // Poses as the run's trajectory files have them; frames without a pose are absent.
 Trajectory SlamTrajectory(const MappingRun& run);    // the input, live

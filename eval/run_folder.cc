@@ -54,11 +54,8 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
 
 void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
   std::vector<StoredScan> stored;
-  std::size_t report = 0;
   for (const MappedFrame& mapped : run.result.mapped) {
-    while (run.reports[report].index != mapped.frame) ++report;
-    stored.push_back(
-        {mapped.frame, run.reports[report].stamp_s, mapped.map_from_base, *mapped.scan});
+    stored.push_back({mapped.frame, mapped.stamp_s, mapped.map_from_base, *mapped.obstacles});
   }
   WriteScans(folder.File("scans.bin"), stored);
 }

@@ -32,8 +32,8 @@ RgbImage PictureOf(const SampleFrame& sample, const MappingRun& run, const ScanO
   if (mapped == nullptr || report == nullptr || !report->slam_from_camera || !run.camera) {
     return DepthPicture(*sample.depth, options.max_range_m);
   }
-  return DepthPictureWithBeams(*sample.depth, *run.camera, *report->slam_from_camera, *mapped->scan,
-                               options);
+  return DepthPictureWithBeams(*sample.depth, *run.camera, *report->slam_from_camera,
+                               *mapped->obstacles, options);
 }
 
 }  // namespace

@@ -35,6 +35,8 @@ struct RunArguments {
   CommonArguments common;
 };
 void Run(const RunArguments& arguments);
+// Every key of an experiment: default, allowed values, meaning.
+std::string ExperimentKeys();
 
 struct MapArguments {
   std::string input;
@@ -44,6 +46,7 @@ struct MapArguments {
   CommonArguments common;
 };
 void Map(const MapArguments& arguments);
+std::string MapKeys();
 
 struct SlamArguments {
   std::string sequence;

@@ -58,7 +58,11 @@ void Warn(const std::vector<std::string>& warnings) {
 }
 
 void CatchInterrupts() {
-  const auto remember = [](int) { interrupted = 1; };
+  // A second signal ends the program at once, whatever it is doing.
+  const auto remember = [](int signal) {
+    interrupted = 1;
+    std::signal(signal, SIG_DFL);
+  };
   std::signal(SIGINT, remember);
   std::signal(SIGTERM, remember);
 }

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 ExperimentOptions Read(Config config, const std::vector<std::string>& set,
                        const std::string& base_folder) {
   for (const std::string& assignment : set) config.Set(assignment);
-  return ReadExperiment(config, base_folder);
+  return ReadExperiment(std::move(config), base_folder);
 }
 
 }  // namespace

@@ -40,6 +40,17 @@ void AddCache(CLI::App& app, CommonArguments& common) {
   app.add_flag("--no-cache", common.no_cache, "Render everything anew");
 }
 
+// --keys prints and ends, whatever else is given, like --help.
+void AddKeys(CLI::App& app, std::string (*keys)()) {
+  app.add_flag_callback(
+      "--keys",
+      [keys] {
+        fmt::print("{}", keys());
+        throw CLI::Success();
+      },
+      "List every key that --set takes, with default, allowed values and meaning");
+}
+
 struct Program {
   CLI::App app{"depthgrid: 2D navigation maps from RGB-D cameras, simulated and recorded",
                "depthgrid"};
@@ -90,6 +101,7 @@ void AddMap(Program& program) {
       ->type_name("FILE");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common);
+  AddKeys(*app, &MapKeys);
 }
 
 void AddRun(Program& program) {
@@ -102,6 +114,7 @@ void AddRun(Program& program) {
   AddSet(*app, arguments->common);
   AddThreads(*app, arguments->common);
   AddCache(*app, arguments->common);
+  AddKeys(*app, &ExperimentKeys);
 }
 
 void AddSlam(Program& program) {

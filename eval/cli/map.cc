@@ -94,4 +94,6 @@ void Map(const MapArguments& arguments) {
   Warn(run.warnings);
 }
 
+std::string MapKeys() { return ListKeys(MapSettings{}); }
+
 }  // namespace depthgrid::cli

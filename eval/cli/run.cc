@@ -75,4 +75,6 @@ void Run(const RunArguments& arguments) {
   PrintScores(run.scores);
 }
 
+std::string ExperimentKeys() { return ListKeys(ExperimentOptions{}); }
+
 }  // namespace depthgrid::cli

@@ -1,0 +1,116 @@
+// Drives the depthgrid program as a user would: arguments in; exit code, output and files out.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+// A folder of its own for each test, with a tiny room and an experiment in it, and the program.
+class ProgramTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    root_ = std::filesystem::path(::testing::TempDir()) /
+            (std::string("depthgrid_") + info->test_suite_name() + "_" + info->name());
+    std::filesystem::remove_all(root_);
+    std::filesystem::create_directories(root_);
+    Write("room.yaml", kRoom);
+    Write("small.yaml", kExperiment);
+  }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+
+  std::string Path(const std::string& name) const { return (root_ / name).string(); }
+  void Write(const std::string& name, const std::string& text) const {
+    WriteFile(Path(name), text);
+  }
+
+  // `arguments` as in a shell whose working folder is the test's.
+  Outcome Program(const std::string& arguments) const {
+    const std::string out = Path(".stdout");
+    const std::string err = Path(".stderr");
+    const std::string command = "cd '" + root_.string() + "' && '" DEPTHGRID_PROGRAM "' " +
+                                arguments + " >'" + out + "' 2>'" + err + "'";
+    const int status = std::system(command.c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};
+    std::filesystem::remove(out);
+    std::filesystem::remove(err);
+    return outcome;
+  }
+  void Succeed(const std::string& arguments) const {
+    const Outcome outcome = Program(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+  }
+
+  // Every file below a folder, by relative name.
+  std::vector<std::string> FilesIn(const std::string& name) const {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root_ / name)) {
+      if (entry.is_regular_file()) {
+        files.push_back(std::filesystem::relative(entry.path(), root_ / name).string());
+      }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  // Not EXPECT_EQ of the contents: a failure would print them.
+  bool SameFile(const std::string& a, const std::string& b) const {
+    return ReadFile(Path(a)) == ReadFile(Path(b));
+  }
+  // The same files with the same bytes, timing files aside.
+  void ExpectSameBytes(const std::string& a, const std::string& b) const {
+    ASSERT_EQ(FilesIn(a), FilesIn(b));
+    int compared = 0;
+    for (const std::string& file : FilesIn(a)) {
+      if (file.starts_with("timing")) continue;
+      EXPECT_TRUE(SameFile(a + "/" + file, b + "/" + file)) << file;
+      ++compared;
+    }
+    EXPECT_GT(compared, 10);
+  }
+
+  // 3 x 4 m with a cupboard, and a way round it; the camera is small to be quick.
+  static constexpr const char* kRoom = R"(
+name: test_room
+floor_z_m: 0
+shapes:
+  - {shape: box, size: [3, 4, 0.1], at: [1.5, 2, -0.1]}
+  - {shape: wall, from: [0, 0], to: [3, 0], side: right}
+  - {shape: wall, from: [3, 0], to: [3, 4], side: right}
+  - {shape: wall, from: [3, 4], to: [0, 4], side: right}
+  - {shape: wall, from: [0, 4], to: [0, 0], side: right}
+  - {shape: box, size: [0.5, 0.5, 1.5], at: [0.4, 2.0, 0]}
+trajectories:
+  look_around:
+    kind: handheld
+    waypoints:
+      - {at: [1.5, 1.0, 1.1], look_at: [1.5, 4.0, 1.0]}
+      - {at: [1.9, 2.0, 1.1], look_at: [0.0, 3.0, 1.0]}
+      - {at: [1.5, 2.6, 1.1], look_at: [0.0, 2.0, 1.0]}
+)";
+  static constexpr const char* kExperiment = R"(
+scene: ./room.yaml
+frames: 12
+sensor: {width: 80, height: 60, noise: handa}
+slam: {profile: orb_slam2}
+mapper: {fusion: {mode: fixed, gain: 0.5}}
+)";
+
+  std::filesystem::path root_;
+};
+
+}  // namespace depthgrid

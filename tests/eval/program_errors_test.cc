@@ -1,0 +1,126 @@
+// Bad input of every kind: one clear line, exit code 2, and nothing left behind.
+#include <gmock/gmock.h>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class ProgramErrors : public ProgramTest {
+ protected:
+  // One line on standard error that holds all of `says`; no file appears or goes.
+  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
+    SCOPED_TRACE(arguments);
+    const auto before = FilesIn("");
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, StartsWith("depthgrid: "));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    for (const std::string& text : says) EXPECT_THAT(outcome.err, HasSubstr(text));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(FilesIn(""), before);
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  }
+};
+
+TEST_F(ProgramErrors, WrongKeysNameTheNearestRightOne) {
+  Write("wrong.yaml", std::string(kExperiment) + "framse: 3\n");
+  ExpectRefusal("run ./wrong.yaml -o out", {"wrong.yaml:7", "'framse'", "'frames'"});
+  Write("nested.yaml", "scene: ./room.yaml\nmapper: {fusion: {gian: 0.5}}\n");
+  ExpectRefusal("run ./nested.yaml -o out",
+                {"nested.yaml:2", "'mapper.fusion.gian'", "'mapper.fusion.gain'"});
+  ExpectRefusal("run ./small.yaml --set mapper.fusoin.gain=1 -o out",
+                {"'mapper.fusoin'", "'mapper.fusion'"});
+  ExpectRefusal("render ./room.yaml --set sensr.noise=none -o out", {"'sensr'", "'sensor'"});
+  ExpectRefusal("map . --poses x --set mapper.methd=paper -o out", {"'mapper.method'"});
+}
+
+TEST_F(ProgramErrors, ValuesOutOfRangeOrOfTheWrongKind) {
+  ExpectRefusal("run ./small.yaml --set mapper.fusion.gain=1.5 -o out",
+                {"mapper.fusion.gain", "1.5", "from 0 to 1"});
+  ExpectRefusal("run ./small.yaml --set frames=-3 -o out", {"frames", "-3"});
+  ExpectRefusal("run ./small.yaml --set frames=many -o out", {"frames", "many", "whole number"});
+  ExpectRefusal("run ./small.yaml --set sensor.noise=hnada -o out", {"'handa'"});
+  ExpectRefusal("run ./small.yaml --set frames -o out", {"key.path=value"});
+  ExpectRefusal("run ./small.yaml --set mapper=3 -o out", {"mapper", "map of keys"});
+}
+
+TEST_F(ProgramErrors, MissingAndEmptyFiles) {
+  ExpectRefusal("run ./nothing.yaml -o out", {"nothing.yaml", "no such file"});
+  Write("empty.yaml", "");
+  ExpectRefusal("run ./empty.yaml -o out", {"empty.yaml", "is empty"});
+  Write("comment.yaml", "# nothing\n");
+  ExpectRefusal("run ./comment.yaml -o out", {"comment.yaml", "is empty"});
+  ExpectRefusal("render ./empty.yaml -o out", {"empty.yaml", "is empty"});
+  Write("broken.yaml", "scene: [1\n");
+  ExpectRefusal("run ./broken.yaml -o out", {"broken.yaml", "YAML"});
+  Write("no_scene.yaml", "frames: 3\n");
+  ExpectRefusal("run ./no_scene.yaml -o out", {"no_scene.yaml", "'scene'"});
+  ExpectRefusal("run living_rom -o out", {"living_rom", "'living_room'"});
+  ExpectRefusal("run ./small.yaml --set scene=office_rom -o out", {"'office_room'"});
+  ExpectRefusal("map nowhere --poses x -o out", {"nowhere"});
+  ExpectRefusal("report nowhere", {"nowhere"});
+  ExpectRefusal("regrid . --resolution 0.05", {"run.yaml"});
+}
+
+TEST_F(ProgramErrors, ScenesThatCannotBeUsed) {
+  Write("empty_scene.yaml", "name: void\nshapes: []\n");
+  ExpectRefusal("render ./empty_scene.yaml -o out", {"empty_scene.yaml"});
+  Write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n");
+  ExpectRefusal("render ./broken.ply -o out", {"broken.ply"});
+  Write("noise.obj", "v 1 2\nf 1 2 3\n");
+  ExpectRefusal("render ./noise.obj -o out", {"noise.obj"});
+  Write("no_floor.yaml",
+        "shapes:\n  - {shape: wall, from: [0, 0], to: [3, 0]}\n"
+        "  - {shape: wall, from: [3, 0], to: [3, 4]}\n  - {shape: wall, from: [3, 4], to: [0, 4]}\n"
+        "trajectories:\n  t: {kind: planar, waypoints: [{at: [1, 1]}, {at: [2, 1]}]}\n");
+  ExpectRefusal("render ./no_floor.yaml -o out", {"no_floor.yaml", "floor"});
+}
+
+TEST_F(ProgramErrors, TrajectoriesThatDoNotFit) {
+  ExpectRefusal("run ./small.yaml --set trajectory=look_arund -o out", {"'look_around'"});
+  ExpectRefusal("run ./small.yaml --set trajectory=./nothing.txt -o out", {"nothing.txt"});
+  std::string through_wall = kRoom;
+  through_wall.replace(through_wall.find("[1.9, 2.0, 1.1]"), 15, "[0.4, 2.0, 1.1]");
+  Write("room.yaml", through_wall);
+  ExpectRefusal("run ./small.yaml --set frames=0 -o out", {"look_around", "from geometry"});
+}
+
+TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
+  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  Write("b.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n");
+  ExpectRefusal("eval trajectory a.txt b.txt", {"b.txt", "a.txt", "stamp"});
+  Write("bad.txt", "1 0 0 zero 0 0 0 1\n");
+  ExpectRefusal("eval trajectory a.txt bad.txt", {"bad.txt:1"});
+  Write("none.txt", "# stamp tx ty tz qx qy qz qw\n");
+  ExpectRefusal("eval trajectory a.txt none.txt", {"none.txt"});
+  Succeed("render ./small.yaml --no-colour -o seq");
+  ExpectRefusal("map seq --poses b.txt -o out", {"pose"});
+  ExpectRefusal("map seq -o out", {"--poses"});
+}
+
+TEST_F(ProgramErrors, BadUsage) {
+  ExpectRefusal("", {"--help"});
+  ExpectRefusal("runn ./small.yaml -o out", {"--help"});
+  ExpectRefusal("run ./small.yaml", {"--output"});
+  ExpectRefusal("run ./small.yaml -o out --thread 3", {"--help"});
+  ExpectRefusal("run ./small.yaml -o out --threads=-1", {"--threads"});
+  ExpectRefusal("eval", {"--help"});
+}
+
+TEST_F(ProgramErrors, AFolderThatIsNotEmptyStaysAsItIs) {
+  std::filesystem::create_directory(Path("mine"));
+  Write("mine/map.pgm", "precious");
+  for (const char* command : {"run ./small.yaml -o mine", "render ./small.yaml -o mine"}) {
+    ExpectRefusal(command, {"mine", "--force"});
+  }
+  ExpectRefusal("run ./small.yaml -o small.yaml --force", {"small.yaml", "file"});
+  EXPECT_EQ(ReadFile(Path("mine/map.pgm")), "precious");
+}
+
+}  // namespace
+}  // namespace depthgrid

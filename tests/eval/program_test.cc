@@ -1,0 +1,162 @@
+// The program end to end: what a run leaves behind, and that it is always the same.
+#include "tests/eval/program.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+class ProgramRun : public ProgramTest {};
+
+TEST_F(ProgramRun, WritesTheWholeFolder) {
+  Succeed("run ./small.yaml -o out");
+  EXPECT_THAT(
+      FilesIn("out"),
+      IsSupersetOf({"run.yaml", "map.pgm", "map.yaml", "map.png", "truth_map.pgm", "truth_map.yaml",
+                    "observable.pgm", "trajectory_truth.txt", "trajectory_slam.txt",
+                    "trajectory_est.txt", "trajectory_online.txt", "loops.csv", "frames.csv",
+                    "metrics.json", "timing.json", "timing.csv", "report.html"}));
+  EXPECT_EQ(ReadTrajectory(Path("out/trajectory_est.txt")).size(), 12U);
+  const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
+  for (const char* which : {"slam", "est"}) {
+    for (const char* key : {"mean_euclidean_m", "ate_rmse_se2_m", "mean_euclidean_xyz_m"}) {
+      EXPECT_TRUE(metrics["trajectory"][which][key].is_number()) << which << key;
+    }
+  }
+  for (const char* cells : {"observable", "all"}) {
+    for (const char* key : {"precision", "recall", "f1"}) {
+      EXPECT_TRUE(metrics["map"][cells]["occupied"][key].is_number()) << cells << key;
+    }
+  }
+  EXPECT_TRUE(metrics["map"]["chamfer_m"].is_number());
+  EXPECT_TRUE(metrics["map"]["coverage"].is_number());
+  const auto timing = nlohmann::json::parse(ReadFile(Path("out/timing.json")));
+  EXPECT_EQ(timing["frames"], 12);
+  for (const char* key : {"cpu_us_per_frame_median", "cpu_us_per_frame_p95", "cpu_s_total",
+                          "wall_s_total", "peak_rss_mib"}) {
+    EXPECT_GT(timing[key].get<double>(), 0.0) << key;
+  }
+}
+
+TEST_F(ProgramRun, TruePosesGiveTheTrueMap) {
+  Succeed(
+      "run ./small.yaml --set slam.profile=ground_truth --set sensor.noise=none "
+      "--set mapper.fusion.gain=0 --set frames=0 -o out");
+  const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
+  EXPECT_EQ(metrics["trajectory"]["est"]["mean_euclidean_xyz_m"], 0.0);
+  EXPECT_GE(metrics["map"]["observable"]["occupied"]["f1"], 0.97);
+  EXPECT_GE(metrics["map"]["coverage"], 0.9);  // 80 x 60 pixels leave gaps at the room's far end
+  EXPECT_TRUE(SameFile("out/trajectory_est.txt", "out/trajectory_truth.txt"));
+}
+
+TEST_F(ProgramRun, IsTheSameBytesAtAnyThreadCountAndTwice) {
+  Succeed("run ./small.yaml --threads 1 -o one");
+  Succeed("run ./small.yaml --threads 1 -o again");
+  Succeed("run ./small.yaml --threads 3 -o three");
+  ExpectSameBytes("one", "again");
+  ExpectSameBytes("one", "three");
+}
+
+TEST_F(ProgramRun, IsTheSameBytesWithAColdAWarmAndADamagedCache) {
+  Succeed("run ./small.yaml --no-cache -o none");
+  Succeed("run ./small.yaml --cache cache -o cold");
+  const auto entries = FilesIn("cache");
+  ASSERT_EQ(entries.size(), 12U);
+  Succeed("run ./small.yaml --cache cache -o warm");
+  EXPECT_EQ(FilesIn("cache"), entries);
+  std::string damaged = ReadFile(Path("cache/" + entries[0]));
+  damaged[damaged.size() / 2] ^= 1;
+  Write("cache/" + entries[0], damaged);
+  Write("cache/" + entries[1], ReadFile(Path("cache/" + entries[1])).substr(0, 1000));
+  Write("cache/" + entries[2], "");
+  Succeed("run ./small.yaml --cache cache -o damaged");
+  for (const char* run : {"cold", "warm", "damaged"}) ExpectSameBytes("none", run);
+  EXPECT_TRUE(ReadFile(Path("cache/" + entries[0])) != damaged);  // rendered and stored anew
+}
+
+TEST_F(ProgramRun, ItsOwnSettingsGiveItAgain) {
+  Succeed("run ./small.yaml --set seed=5 -o out");
+  Succeed("run out/run.yaml -o again");
+  ExpectSameBytes("out", "again");
+}
+
+TEST_F(ProgramRun, RenderSlamAndMapGiveWhatRunGives) {
+  Succeed("run ./small.yaml -o run");
+  Succeed("render ./small.yaml -o seq");
+  Succeed("slam seq --profile orb_slam2 --seed 1 -o slam");
+  Succeed(
+      "map seq --poses slam/slam.txt --final-poses slam/slam_final.txt --loops slam/loops.csv "
+      "--set mapper.fusion.mode=fixed --set mapper.fusion.gain=0.5 -o map");
+  for (const char* file : {"map.pgm", "map.yaml", "trajectory_slam.txt", "trajectory_est.txt",
+                           "trajectory_online.txt", "scans.bin"}) {
+    EXPECT_TRUE(SameFile(std::string("run/") + file, std::string("map/") + file)) << file;
+  }
+  EXPECT_TRUE(SameFile("seq/truth_map.pgm", "run/truth_map.pgm"));
+  EXPECT_TRUE(SameFile("seq/observable.pgm", "run/observable.pgm"));
+}
+
+TEST_F(ProgramRun, EvalPrintsTheKeysOfMetricsJson) {
+  Succeed("run ./small.yaml -o out");
+  const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
+  const auto trajectory = nlohmann::json::parse(
+      Program("eval trajectory out/trajectory_truth.txt out/trajectory_est.txt --json").out);
+  EXPECT_EQ(trajectory["trajectory"]["est"], metrics["trajectory"]["est"]);
+  const auto map =
+      nlohmann::json::parse(Program("eval map out/truth_map.yaml out/map.yaml --json").out);
+  EXPECT_EQ(map["map"], metrics["map"]);
+  EXPECT_THAT(Program("eval map out/truth_map.yaml out/map.yaml").out, HasSubstr("chamfer"));
+}
+
+TEST_F(ProgramRun, RegridAtTheSameResolutionGivesTheSameMap) {
+  Succeed("run ./small.yaml -o out");
+  Succeed("regrid out --resolution 0.05");
+  EXPECT_TRUE(SameFile("out/map_0.05.pgm", "out/map.pgm"));
+  Succeed("regrid out --resolution 0.02");
+  EXPECT_GT(ReadFile(Path("out/map_0.02.pgm")).size(), 4 * ReadFile(Path("out/map.pgm")).size());
+}
+
+TEST_F(ProgramRun, ReportWritesTheSamePageAgain) {
+  Succeed("run ./small.yaml -o out");
+  const std::string page = ReadFile(Path("out/report.html"));
+  std::filesystem::remove(Path("out/report.html"));
+  Succeed("report out");
+  EXPECT_TRUE(ReadFile(Path("out/report.html")) == page);
+}
+
+TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
+  std::filesystem::create_directory(Path("out"));
+  Write("out/notes.txt", "mine");
+  Write("out/map.pgm", "old");
+  Succeed("run ./small.yaml --force -o out");
+  EXPECT_EQ(ReadFile(Path("out/notes.txt")), "mine");
+  EXPECT_NE(ReadFile(Path("out/map.pgm")), "old");
+}
+
+TEST_F(ProgramRun, IsQuietInAPipe) { EXPECT_EQ(Program("run ./small.yaml -o out").err, ""); }
+
+TEST_F(ProgramRun, EveryCommandHasHelpWithAnExample) {
+  for (const char* command : {"scenes", "render", "slam", "slam-calibrate", "slam-fit", "map",
+                              "run", "regrid", "report", "eval trajectory", "eval map"}) {
+    const Outcome help = Program(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Example:\n  depthgrid " + std::string(command)));
+  }
+}
+
+TEST_F(ProgramRun, ShippedNamesWorkFromAnywhere) {
+  const Outcome outcome = Program("scenes");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* name : {"living_room", "office_room", "office_floor", "handheld"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(name));
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
