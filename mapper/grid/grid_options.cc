@@ -15,6 +15,10 @@ void GridOptions::Visit(OptionsVisitor& v) {
            "counts: cells seen by fewer scans stay unknown");
   v.Number("clear_margin_cells", clear_margin_cells, {0.0, 10.0},
            "finished map: clearing stops this many cells before a hit");
+  v.Number("min_surface_share", min_surface_share, {0.0, 1.0},
+           "finished map: cells with less of the surface around them are not wall; 0 keeps all");
+  v.Number("surface_radius_m", surface_radius_m, {0.0, 1.0},
+           "finished map: how far around a cell its surface may spread, metres");
 }
 
 }  // namespace depthgrid

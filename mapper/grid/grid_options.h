@@ -27,6 +27,13 @@ struct GridOptions {
   // The finished map: a beam stops clearing this many cells before its hit, so that noisy and
   // grazing beams do not carve walls.
   double clear_margin_cells = 0.0;
+  // The finished map: noise spreads the hits of one surface over several cells along the beams, and
+  // behind it nothing passes to clear them. A cell with less surface than this share of the most
+  // within the radius, along the direction it was seen, is not wall. 0 keeps every cell. Measured
+  // with true poses (docs/results.md, "Finished map"): 1 % range noise, occupied F1 0.911 -> 0.998
+  // and 0.929 -> 0.997; depth images with Handa noise 0.990 -> 0.988.
+  double min_surface_share = 0.35;
+  double surface_radius_m = 0.1;
 
   void Visit(OptionsVisitor& v);
 };

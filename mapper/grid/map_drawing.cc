@@ -2,10 +2,19 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "mapper/grid/log_odds.h"
 
 namespace depthgrid {
+namespace {
+
+std::size_t CellInTile(const Cell& cell) {
+  return static_cast<std::size_t>((cell.y & (kWordCells - 1)) * kWordCells +
+                                  (cell.x & (kWordCells - 1)));
+}
+
+}  // namespace
 
 MapDrawing::MapDrawing(const GridOptions& options)
     : options_(options),
@@ -20,6 +29,29 @@ void MapDrawing::Add(const Scan& scan, const Pose2& map_from_base) {
       rasterizer_.Rasterize(scan, map_from_base, options_.resolution_m, clear_margin_m);
   AddMask(cells.hit, true);
   AddMask(cells.passed, false);
+  if (options_.min_surface_share > 0.0) AddSurface(scan, map_from_base);
+}
+
+// A beam stands for the length of wall between it and its neighbour, at most a cell, and weighs as
+// its range is known: sigma grows at least with r.
+void MapDrawing::AddSurface(const Scan& scan, const Pose2& map_from_base) {
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    const Beam& beam = scan.beams[i];
+    if (!beam.hit) continue;
+    const Beam& neighbour = scan.beams[i > 0 ? i - 1 : std::min(i + 1, scan.beams.size() - 1)];
+    const double range_m = beam.range_m;
+    const double length_cells =
+        range_m * std::abs(beam.bearing_rad - neighbour.bearing_rad) / options_.resolution_m;
+    const auto surface =
+        static_cast<float>(std::min(length_cells, 1.0) / std::max(range_m * range_m, 1.0));
+    const Eigen::Vector2d point = map_from_base * EndPoint(beam);
+    const Eigen::Vector2d direction = (point - map_from_base.translation()) / range_m;
+    const Cell cell = CellOf(point, options_.resolution_m);
+    CellRecord& record = TileAt({WordOf(cell.y), WordOf(cell.x)}).cells[CellInTile(cell)];
+    record.surface += surface;
+    record.surface_x += surface * static_cast<float>(direction.x());
+    record.surface_y += surface * static_cast<float>(direction.y());
+  }
 }
 
 MapDrawing::Tile& MapDrawing::TileAt(const TileIndex& index) {
@@ -84,7 +116,49 @@ OccupancyMap MapDrawing::Map() const {
           Probability(tile->cells[static_cast<std::size_t>(i)]);
     }
   }
+  if (options_.min_surface_share > 0.0) ThinWalls(map);
   return map;
+}
+
+// Null where no tile is.
+const MapDrawing::CellRecord* MapDrawing::RecordOf(const Cell& cell) const {
+  const auto tile = tiles_.find({WordOf(cell.y), WordOf(cell.x)});
+  return tile == tiles_.end() ? nullptr : &tile->second->cells[CellInTile(cell)];
+}
+
+// Looks along the direction a cell was seen from, before and behind it, for the most surface: where
+// the beams that ended here would have ended with other noise.
+MapDrawing::Peak MapDrawing::PeakAlong(const Cell& cell, const CellRecord& record) const {
+  Peak peak{record.surface, 0};
+  const float longer = std::max(std::abs(record.surface_x), std::abs(record.surface_y));
+  if (longer == 0.0F) return peak;
+  const float step_x = record.surface_x / longer;
+  const float step_y = record.surface_y / longer;
+  const int reach =
+      static_cast<int>(std::lround(options_.surface_radius_m / options_.resolution_m));
+  for (int step = -reach; step <= reach; ++step) {
+    const auto along = static_cast<float>(step);
+    const CellRecord* other = RecordOf({cell.x + static_cast<int>(std::lround(along * step_x)),
+                                        cell.y + static_cast<int>(std::lround(along * step_y))});
+    if (other != nullptr && other->surface > peak.surface) peak = {other->surface, step};
+  }
+  return peak;
+}
+
+// A cell next to a surface that has little of it keeps only what the beams passing it say. Behind
+// the surface, beams that passed because of their noise must not make a free cell: there it takes
+// many.
+void MapDrawing::ThinWalls(OccupancyMap& map) const {
+  for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
+    if (!(map.occupied_prob[i] > 0.0F)) continue;
+    const Cell cell = map.geometry.CellAt(i);
+    const CellRecord& record = *RecordOf(cell);
+    const Peak peak = PeakAlong(cell, record);
+    if (record.surface >= options_.min_surface_share * peak.surface) continue;
+    const bool is_behind = peak.step < 0;
+    const double needed = record.hits * (is_behind ? options_.hit_weight : 1.0);
+    map.occupied_prob[i] = record.passes > needed ? 0.0F : kUnknownProb;
+  }
 }
 
 }  // namespace depthgrid

@@ -27,6 +27,15 @@ class MapDrawing {
     std::uint32_t hits = 0;
     std::uint32_t passes = 0;
     int log_odds_units = 0;
+    // How much of a surface the cell holds, and the same times the direction it was seen along.
+    float surface = 0.0F;
+    float surface_x = 0.0F;
+    float surface_y = 0.0F;
+  };
+  // The most surface near a cell, and how many cells farther from the sensor it lies.
+  struct Peak {
+    float surface = 0.0F;
+    int step = 0;
   };
   struct Tile {
     std::array<CellRecord, kWordCells * kWordCells> cells;  // row by row
@@ -35,6 +44,10 @@ class MapDrawing {
 
   Tile& TileAt(const TileIndex& index);
   void AddMask(const CellMask& mask, bool hit);
+  void AddSurface(const Scan& scan, const Pose2& map_from_base);
+  const CellRecord* RecordOf(const Cell& cell) const;
+  Peak PeakAlong(const Cell& cell, const CellRecord& record) const;
+  void ThinWalls(OccupancyMap& map) const;
   float Probability(const CellRecord& cell) const;
   GridGeometry SeenRectangle() const;
 

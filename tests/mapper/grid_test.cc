@@ -203,9 +203,44 @@ TEST(MapDrawing, CountsWeighHits) {
   EXPECT_NEAR(drawing.Map().At({4, 0}), 5.0 / 8.0, 1e-6);
 }
 
+// A wall 5 m away, seen with a sigma of 1 % a hundred times: its hits spread over five cells.
+TEST(MapDrawing, NoisyWallsAreAsThickAsTheirSurface) {
+  const PlanarWorld wall = {{{5.025, -3.0}, {5.025, 3.0}}};  // the middle of column 100
+  const auto column_counts = [&](double min_surface_share) {
+    GridOptions options;
+    options.min_surface_share = min_surface_share;
+    MapDrawing drawing(options);
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      drawing.Add(ScanOf(wall, {}, {.sigma_of_range = 0.01}, 3, i), {});
+    }
+    const StateMap states = StatesOf(drawing.Map());
+    int occupied = 0, far = 0, found = 0, free_behind = 0;
+    for (int y = -40; y < 40; ++y) {
+      bool found_here = false;
+      for (int x = 90; x <= 115; ++x) {
+        const CellState state = states.At({x, y});
+        free_behind += state == CellState::kFree && x > 103 ? 1 : 0;
+        if (state != CellState::kOccupied) continue;
+        ++occupied;
+        far += std::abs(x - 100) > 1 ? 1 : 0;
+        found_here = found_here || std::abs(x - 100) <= 1;
+      }
+      found += found_here ? 1 : 0;
+    }
+    EXPECT_EQ(found, 80);
+    EXPECT_LE(free_behind, 4);
+    return std::pair(occupied, far);
+  };
+  EXPECT_GT(column_counts(0.0).second, 120);
+  const auto [occupied, far] = column_counts(0.35);
+  EXPECT_LE(occupied, 240);
+  EXPECT_LE(far, 8);
+}
+
 TEST(MapDrawing, TheLogOddsRuleIsTheGridsRule) {
   GridOptions options;
   options.raster = RasterRule::kLogOdds;
+  options.min_surface_share = 0.0;
   MapDrawing drawing(options);
   ProbabilityGrid grid(options);
   const PlanarWorld world = RectangleWorld(-2.45, -2.5, 2.45, 2.5);
