@@ -1,5 +1,5 @@
-// Accuracy of `depthgrid map` on laser worlds over many seeds: the tables of docs/results.md, "Laser
-// logs". Results, not times.
+// Accuracy of `depthgrid map` on laser worlds over many seeds: the tables of docs/results.md,
+// "Laser logs". Results, not times.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -69,7 +69,8 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     line.first_bearing_rad = laser.FirstBearingRad();
     line.bearing_step_rad = laser.BearingStepRad();
     line.max_range_m = laser.max_range_m;
-    line.range_m = DisturbScan(CastScan(world, truth[k], laser), laser, static_cast<std::uint64_t>(seed), static_cast<int>(k));
+    line.range_m = DisturbScan(CastScan(world, truth[k], laser), laser,
+                               static_cast<std::uint64_t>(seed), static_cast<int>(k));
     Frame frame;
     frame.index = static_cast<int>(k);
     frame.stamp_s = static_cast<double>(k) / 30.0;
@@ -82,10 +83,12 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     run.insert_us += report.times.insert_us;
     if (verbose && k % 30 == 0) {
       const Pose2 e = Between(truth[k], online[k]);
-      std::printf("%4zu err %.4f %.4f %.2fdeg sig %.4f %.4f %.3f score %.2f it %d innov %.4f %.4f %.3f\n", k, e.x_m, e.y_m,
-                  DegFromRad(e.yaw_rad), std::sqrt(report.covariance(0, 0)), std::sqrt(report.covariance(1, 1)),
-                  DegFromRad(std::sqrt(report.covariance(2, 2))), report.match.score, report.match.iterations,
-                  report.innovation[0], report.innovation[1], DegFromRad(report.innovation[2]));
+      std::printf(
+          "%4zu err %.4f %.4f %.2fdeg sig %.4f %.4f %.3f score %.2f it %d innov %.4f %.4f %.3f\n",
+          k, e.x_m, e.y_m, DegFromRad(e.yaw_rad), std::sqrt(report.covariance(0, 0)),
+          std::sqrt(report.covariance(1, 1)), DegFromRad(std::sqrt(report.covariance(2, 2))),
+          report.match.score, report.match.iterations, report.innovation[0], report.innovation[1],
+          DegFromRad(report.innovation[2]));
     }
   }
   const double t = NowUs();
@@ -110,7 +113,7 @@ int main(int argc, char** argv) {
   OdometryOptions odo;
   int first_seed = 1, seeds = 3, threads = 2;
   bool verbose = false;
-  app.add_option("--worlds", worlds);
+  app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
   app.add_option("--seeds", seeds);
   app.add_option("--first-seed", first_seed);
   app.add_option("--threads", threads);
@@ -134,7 +137,6 @@ int main(int argc, char** argv) {
   Config config;
   for (const auto& s : sets) config.Set(s);
   config.Read(options);
-  if (worlds.empty()) worlds = {"/work/shared/data/laser/living_s1", "/work/shared/data/laser/office_s1"};
   for (const std::string& name : worlds) {
     const LaserWorld world = ReadLaserWorld(name + ".world.txt");
     std::vector<Pose2> truth;
@@ -147,7 +149,9 @@ int main(int argc, char** argv) {
     std::vector<std::future<void>> jobs;
     for (int t = 0; t < threads; ++t) {
       jobs.push_back(std::async(std::launch::async, [&, t] {
-        for (int i = t; i < seeds; i += threads) runs[static_cast<std::size_t>(i)] = Map(world, truth, laser, odo, options, first_seed + i, verbose);
+        for (int i = t; i < seeds; i += threads)
+          runs[static_cast<std::size_t>(i)] =
+              Map(world, truth, laser, odo, options, first_seed + i, verbose);
       }));
     }
     for (auto& j : jobs) j.get();
@@ -156,8 +160,12 @@ int main(int argc, char** argv) {
     double won = 0, wfn = 0, wat = 0, worse_on = -1e9, worse_fn = -1e9;
     for (int i = 0; i < seeds; ++i) {
       const Run& r = runs[static_cast<std::size_t>(i)];
-      std::printf("%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us frame %.0f match %.0f insert %.0f finish %.0f\n", shown.c_str(), first_seed + i,
-                  r.prior.mean, r.prior.ate, r.online.mean, r.online.ate, r.online.max, r.final.mean, r.final.ate, r.final.max, r.frame_us, r.match_us, r.insert_us, r.finish_us);
+      std::printf(
+          "%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us "
+          "frame %.0f match %.0f insert %.0f finish %.0f\n",
+          shown.c_str(), first_seed + i, r.prior.mean, r.prior.ate, r.online.mean, r.online.ate,
+          r.online.max, r.final.mean, r.final.ate, r.final.max, r.frame_us, r.match_us, r.insert_us,
+          r.finish_us);
       mean.online.mean += r.online.mean / seeds;
       mean.online.ate += r.online.ate / seeds;
       mean.final.mean += r.final.mean / seeds;
@@ -168,7 +176,10 @@ int main(int argc, char** argv) {
       worse_on = std::max(worse_on, r.online.mean - r.prior.mean);
       worse_fn = std::max(worse_fn, r.final.mean - r.prior.mean);
     }
-    std::printf("%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f/%.4f  minus prior %.4f %.4f\n", shown.c_str(), mean.online.mean,
-                mean.online.ate, won, mean.final.mean, mean.final.ate, wfn, wat, worse_on, worse_fn);
+    std::printf(
+        "%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f/%.4f  minus prior %.4f "
+        "%.4f\n",
+        shown.c_str(), mean.online.mean, mean.online.ate, won, mean.final.mean, mean.final.ate, wfn,
+        wat, worse_on, worse_fn);
   }
 }

@@ -50,7 +50,9 @@ class CsvTest : public ::testing::Test {
     return ReadCsv(path_);
   }
   void TearDown() override { std::remove(path_.c_str()); }
-  std::string path_ = ::testing::TempDir() + "csv_test.csv";
+  std::string path_ = ::testing::TempDir() +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                      "_csv_test.csv";
 };
 
 TEST_F(CsvTest, ReadsColumnsByName) {

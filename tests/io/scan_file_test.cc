@@ -30,7 +30,9 @@ std::vector<StoredScan> SomeScans() {
 
 class ScanFileTest : public ::testing::Test {
  protected:
-  std::string path_ = ::testing::TempDir() + "scan_file_test.bin";
+  std::string path_ = ::testing::TempDir() +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+                      "_scan_file_test.bin";
   void TearDown() override { std::remove(path_.c_str()); }
 };
 
