@@ -107,7 +107,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         ASSERT_EQ(returns[k].hit, plain.hit) << i << " " << k;
         ASSERT_EQ(returns[k].range_m, plain.range_m) << i << " " << k;
         ASSERT_EQ(returns[k].seen, plain.seen) << i << " " << k;
-        ASSERT_EQ(returns[k].gap_below, plain.gap_below) << i << " " << k ;
+        ASSERT_EQ(returns[k].gap_below, plain.gap_below) << i << " " << k;
         ASSERT_EQ(returns[k].gap_above, plain.gap_above) << i << " " << k;
         ++cases;
         hits += plain.hit ? 1 : 0;
