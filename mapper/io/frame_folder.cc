@@ -111,22 +111,6 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
   return poses;
 }
 
-// A bare matrix says nothing of the image's size; the first readable image does.
-void CompleteSize(const Recording& recording, CameraDescription& camera) {
-  if (camera.has_size) return;
-  const DepthPngFormat format;
-  for (const RecordedImage& image : recording.images) {
-    try {
-      const DepthImage depth = ReadDepthPng(image.depth_path, format);
-      camera.file.camera.width_px = depth.width_px;
-      camera.file.camera.height_px = depth.height_px;
-      return;
-    } catch (const InputError&) {
-      continue;  // OpenRecording says what is wrong when none can be read
-    }
-  }
-}
-
 }  // namespace
 
 bool IsFrameFolder(const std::string& folder) {
@@ -164,24 +148,35 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
   return listed;
 }
 
+CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path) {
+  const std::string path = camera_path.empty() ? folder.camera_path : camera_path;
+  if (path.empty()) {
+    throw InputError(folder.recording.name,
+                     "has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
+  }
+  CameraDescription camera = ReadCameraDescription(path);
+  if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;
+  CompleteSize(folder.recording, camera);
+  return camera;
+}
+
+std::unique_ptr<FrameSource> OpenFrameImages(Recording recording, const SlamOutput& slam,
+                                             const CameraFile& camera,
+                                             const RecordingOptions& options) {
+  recording.camera = camera;
+  return OpenRecording(std::move(recording), slam, options,
+                       PngDepthReader(DepthFormatOf(camera, options)));
+}
+
 std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
                                              const std::optional<SlamOutput>& slam,
                                              const RecordingOptions& options,
                                              const std::string& camera_path) {
   FrameFolder listed = ListFrameFolder(folder, options);
-  const std::string path = camera_path.empty() ? listed.camera_path : camera_path;
-  if (path.empty()) {
-    throw InputError(folder, "has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
-  }
-  CameraDescription camera = ReadCameraDescription(path);
-  if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;
-  CompleteSize(listed.recording, camera);
+  const CameraDescription camera = FrameFolderCamera(listed, camera_path);
   SlamOutput poses = slam ? *slam : std::move(listed.poses);
   if (camera.y_up) poses = FlipY(std::move(poses));
-  listed.recording.camera = camera.file;
-  const DepthPngFormat format = DepthFormatOf(camera.file, options);
-  return OpenRecording(std::move(listed.recording), poses, options,
-                       [format](const std::string& image) { return ReadDepthPng(image, format); });
+  return OpenFrameImages(std::move(listed.recording), poses, camera.file, options);
 }
 
 }  // namespace depthgrid

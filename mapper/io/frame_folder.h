@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mapper/core/frame.h"
-#include "mapper/io/camera_file.h"
+#include "mapper/io/camera_formats.h"
 #include "mapper/io/recording.h"
 #include "mapper/io/recording_options.h"
 
@@ -24,6 +24,15 @@ bool IsFrameFolder(const std::string& folder);
 
 // Throws InputError when there are no depth images or no poses.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
+
+// The folder's camera, or that of `camera_path` when not empty, with what its file leaves open
+// (image size, depth scale) filled in. Throws InputError when there is none.
+CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path);
+
+// The frames with poses of a camera whose y axis points down.
+std::unique_ptr<FrameSource> OpenFrameImages(Recording recording, const SlamOutput& slam,
+                                             const CameraFile& camera,
+                                             const RecordingOptions& options);
 
 // The frames with the folder's own poses, or with `slam`. `camera_path`, when not empty, replaces
 // the folder's camera file.

@@ -131,6 +131,13 @@ DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
   return image;
 }
 
+DepthReader IclDepthReader(const CameraFile& camera, const RecordingOptions& options) {
+  return [png = PngDepthReader(DepthFormatOf(camera, options)),
+          pinhole = camera.camera](const std::string& path) {
+    return path.ends_with(kRayEnding) ? ParseRayLengths(ReadFile(path), pinhole, path) : png(path);
+  };
+}
+
 std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
                                            const std::optional<SlamOutput>& slam,
                                            const RecordingOptions& options,
@@ -141,13 +148,7 @@ std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
       camera_path.empty() ? IclCamera(folder) : ReadCameraDescription(camera_path);
   if (camera.y_up) poses = FlipY(std::move(poses));
   recording.camera = camera.file;
-  const DepthPngFormat format = DepthFormatOf(camera.file, options);
-  const PinholeCamera pinhole = camera.file.camera;
-  return OpenRecording(
-      std::move(recording), poses, options, [format, pinhole](const std::string& path) {
-        return path.ends_with(kRayEnding) ? ParseRayLengths(ReadFile(path), pinhole, path)
-                                          : ReadDepthPng(path, format);
-      });
+  return OpenRecording(std::move(recording), poses, options, IclDepthReader(camera.file, options));
 }
 
 }  // namespace depthgrid

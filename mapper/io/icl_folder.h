@@ -29,6 +29,9 @@ CameraDescription IclCamera(const std::string& folder);
 DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
                            const std::string& place);
 
+// Reads either kind of depth image.
+DepthReader IclDepthReader(const CameraFile& camera, const RecordingOptions& options);
+
 // The frames with the folder's own poses or with `slam`, which are turned by FlipY when the camera
 // has a negative fy, so that the world's up is -y.
 std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,

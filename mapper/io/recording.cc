@@ -189,6 +189,24 @@ std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput
   return std::make_unique<RecordingSource>(std::move(recording), slam, options, std::move(reader));
 }
 
+DepthReader PngDepthReader(const DepthPngFormat& format) {
+  return [format](const std::string& path) { return ReadDepthPng(path, format); };
+}
+
+void CompleteSize(const Recording& recording, CameraDescription& camera) {
+  if (camera.has_size) return;
+  for (const RecordedImage& image : recording.images) {
+    try {
+      const DepthImage depth = ReadDepthPng(image.depth_path);
+      camera.file.camera.width_px = depth.width_px;
+      camera.file.camera.height_px = depth.height_px;
+      return;
+    } catch (const InputError&) {
+      continue;  // OpenRecording says what is wrong when none can be read
+    }
+  }
+}
+
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options) {
   DepthPngFormat format;
   format.scale_per_m =

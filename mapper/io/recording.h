@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
-#include "mapper/io/camera_file.h"
+#include "mapper/io/camera_formats.h"
 #include "mapper/io/png.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/recording_options.h"
@@ -32,8 +32,14 @@ struct Recording {
 // Reads one depth image; throws InputError.
 using DepthReader = std::function<DepthImage(const std::string& path)>;
 
+// 16-bit PNG images.
+DepthReader PngDepthReader(const DepthPngFormat& format);
+
 // How a recording's PNGs keep depth.
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
+
+// A camera file that does not say the image's size takes it from the first readable PNG.
+void CompleteSize(const Recording& recording, CameraDescription& camera);
 
 // Frames in the recording's order, without the camera's distortion. Images that are missing,
 // damaged or of the wrong size become frames with a pose only and are counted. Throws InputError

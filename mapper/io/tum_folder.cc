@@ -39,15 +39,6 @@ std::optional<CameraFile> TumCamera(const std::string& folder) {
   return file;
 }
 
-CameraFile CameraOf(const std::string& folder, std::vector<std::string>& warnings) {
-  const std::string path = Joined(folder, "camera.yaml");
-  if (fs::exists(path)) return ReadCameraFile(path);
-  const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
-  if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");
-  warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");
-  return *known;
-}
-
 StampedFileList ReadFileList(const std::string& path) {
   return ParseFileList(ReadFile(path), path);
 }
@@ -120,6 +111,15 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   return list;
 }
 
+CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings) {
+  const std::string path = Joined(folder, "camera.yaml");
+  if (fs::exists(path)) return ReadCameraFile(path);
+  const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
+  if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");
+  warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");
+  return *known;
+}
+
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options) {
   Recording recording;
   recording.name = folder;
@@ -137,7 +137,7 @@ std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const Slam
                                            const RecordingOptions& options,
                                            const std::optional<CameraFile>& camera) {
   Recording recording = ListTumFolder(folder, options);
-  recording.camera = camera ? *camera : CameraOf(folder, recording.warnings);
+  recording.camera = camera ? *camera : TumFolderCamera(folder, recording.warnings);
   const DepthPngFormat format = DepthFormatOf(recording.camera, options);
   return OpenRecording(std::move(recording), slam, options,
                        [format](const std::string& path) { return ReadDepthPng(path, format); });

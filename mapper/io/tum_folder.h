@@ -29,9 +29,12 @@ struct StampedFileList {
 // Throws InputError for a row that is not a finite stamp and a file name.
 StampedFileList ParseFileList(const std::string& text, const std::string& place);
 
-// Without camera.yaml, a folder named as TUM names its sequences (freiburg1, 2, 3) gets that
-// camera, with a warning. Throws InputError for a missing depth.txt or camera.
+// Throws InputError for a missing depth.txt. The camera is not filled in.
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options = {});
+
+// camera.yaml; without it, a folder named as TUM names its sequences (freiburg1, 2, 3) gets that
+// camera, with a warning. Throws InputError when neither says it.
+CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings);
 
 // The frames of the folder with these poses. `camera`, when given, replaces the folder's own.
 std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const SlamOutput& slam,

@@ -1,0 +1,40 @@
+// Which way is up in a recording whose world is not level: the floor's plane in some of its depth
+// images, seen through their poses (docs/formats.md, "World conventions").
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
+#include "mapper/core/pose3.h"
+
+namespace depthgrid {
+
+struct Gravity {
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
+  double floor_m = 0.0;          // of the floor along `up`: up . point
+  double camera_height_m = 0.0;  // median over the frames
+};
+
+class GravityFinder {
+ public:
+  // An undistorted image of the recording; a dozen spread over it are enough.
+  void Add(const DepthImage& image, const PinholeCamera& camera, const Pose3& world_from_camera);
+
+  // Nothing when no plane below the cameras is large enough. Assumes that images are upright
+  // within 50 degrees on average (not portrait).
+  std::optional<Gravity> Find() const;
+
+ private:
+  struct Patch {
+    Eigen::Vector3d point;   // in the world
+    Eigen::Vector3d normal;  // towards the camera
+  };
+  std::vector<Patch> patches_;
+  std::vector<Eigen::Vector3d> cameras_;                // positions
+  Eigen::Vector3d image_up_ = Eigen::Vector3d::Zero();  // sum over the frames, in the world
+};
+
+}  // namespace depthgrid

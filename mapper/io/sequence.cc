@@ -1,0 +1,223 @@
+#include "mapper/io/sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/error.h"
+#include "mapper/io/frame_folder.h"
+#include "mapper/io/gravity.h"
+#include "mapper/io/icl_folder.h"
+#include "mapper/io/trajectory_file.h"
+#include "mapper/io/tum_folder.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Images looked at for gravity.
+constexpr int kGravityViews = 24;
+// A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
+constexpr double kFloorIsZeroM = 0.02;
+
+// One folder before its world is level. The camera's y axis points down.
+struct DepthSequence {
+  Recording recording;
+  DepthReader reader;
+  SlamOutput slam;
+  WorldUp usual_up = WorldUp::kZ;
+};
+
+DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
+                          const std::optional<SlamOutput>& slam, std::vector<std::string>& notes) {
+  DepthSequence sequence;
+  if (slam) {
+    sequence.slam = *slam;
+  } else {
+    const std::string truth = (fs::path(path) / "groundtruth.txt").string();
+    if (!fs::exists(truth)) {
+      throw InputError(path,
+                       "a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
+    }
+    sequence.slam = SlamOutputOf(ReadTrajectory(truth));
+    notes.push_back("poses: groundtruth.txt of the folder");
+  }
+  sequence.recording = ListTumFolder(path, options.recording);
+  if (options.camera.empty()) {
+    sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
+  } else {
+    CameraDescription camera = ReadCameraDescription(options.camera);
+    CompleteSize(sequence.recording, camera);
+    sequence.recording.camera = camera.file;
+    if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  }
+  sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
+  return sequence;
+}
+
+DepthSequence IclSequence(const std::string& path, const SequenceOptions& options,
+                          const std::optional<SlamOutput>& slam) {
+  DepthSequence sequence;
+  sequence.recording = ListIclFolder(path);
+  sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
+  const CameraDescription camera =
+      options.camera.empty() ? IclCamera(path) : ReadCameraDescription(options.camera);
+  if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
+  sequence.recording.camera = camera.file;
+  sequence.reader = IclDepthReader(camera.file, options.recording);
+  return sequence;
+}
+
+DepthSequence FrameSequence(const std::string& path, const SequenceOptions& options,
+                            const std::optional<SlamOutput>& slam) {
+  FrameFolder listed = ListFrameFolder(path, options.recording);
+  const CameraDescription camera = FrameFolderCamera(listed, options.camera);
+  DepthSequence sequence;
+  sequence.recording = std::move(listed.recording);
+  sequence.recording.camera = camera.file;
+  sequence.slam = slam ? *slam : std::move(listed.poses);
+  if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
+  return sequence;
+}
+
+// From a few images spread over the recording.
+std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
+  Recording spread = sequence.recording;
+  spread.images.clear();
+  const auto& images = sequence.recording.images;
+  const std::size_t every = std::max<std::size_t>(1, images.size() / kGravityViews);
+  for (std::size_t i = 0; i < images.size(); i += every) spread.images.push_back(images[i]);
+  GravityFinder finder;
+  try {
+    const auto source = OpenRecording(std::move(spread), sequence.slam, options, sequence.reader);
+    while (const auto frame = source->Next()) {
+      if (!frame->depth || !frame->slam_from_camera) continue;
+      finder.Add(*frame->depth, *source->Camera(), *frame->slam_from_camera);
+    }
+  } catch (const InputError&) {
+    return {};  // what is wrong with the recording is said when the whole of it is opened
+  }
+  return finder.Find();
+}
+
+// Which way is up, and what is to be said about it.
+Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& options,
+                       Sequence& result) {
+  const auto gravity = FindGravity(sequence, options);
+  if (!gravity) {
+    result.notes.push_back(
+        fmt::format("no floor seen in the images, taking {} as up", NameOf(sequence.usual_up)));
+    return AxisOf(sequence.usual_up);
+  }
+  const WorldUp axis = NearestAxis(gravity->up_in_world);
+  const Eigen::Vector3d up = axis == WorldUp::kAuto ? gravity->up_in_world : AxisOf(axis);
+  result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
+  const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));
+  result.notes.push_back(
+      axis == WorldUp::kAuto
+          ? fmt::format("up is ({:.3f}, {:.3f}, {:.3f}), removed {:.1f} degrees", up.x(), up.y(),
+                        up.z(), removed_deg)
+          : fmt::format("up is {}, removed {:.1f} degrees", NameOf(axis), removed_deg));
+  result.notes.push_back(
+      fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
+                  gravity->camera_height_m, *result.floor_z_m));
+  return up;
+}
+
+}  // namespace
+
+void SequenceOptions::Visit(OptionsVisitor& v) {
+  v.Choice("format", format,
+           {{SequenceFormat::kAuto, "auto"},
+            {SequenceFormat::kTum, "tum"},
+            {SequenceFormat::kIcl, "icl"},
+            {SequenceFormat::kFrames, "frames"},
+            {SequenceFormat::kCarmen, "carmen"}},
+           "kind of the recorded sequence");
+  v.Choice("world_up", world_up,
+           {{WorldUp::kAuto, "auto"},
+            {WorldUp::kX, "x"},
+            {WorldUp::kMinusX, "-x"},
+            {WorldUp::kY, "y"},
+            {WorldUp::kMinusY, "-y"},
+            {WorldUp::kZ, "z"},
+            {WorldUp::kMinusZ, "-z"}},
+           "axis of the poses' world that points up; auto finds it from the floor");
+  v.Text("camera", camera, "a camera file in place of the folder's own");
+  v.Group("recording", recording, "depth images and how poses are found for them");
+  v.Group("laser", laser, "laser logs");
+}
+
+SequenceFormat DetectFormat(const std::string& path) {
+  if (!fs::exists(path)) throw InputError(path, "no such file or folder");
+  if (!fs::is_directory(path)) return SequenceFormat::kCarmen;
+  if (fs::exists(fs::path(path) / "depth.txt")) return SequenceFormat::kTum;
+  if (IsIclFolder(path)) return SequenceFormat::kIcl;
+  if (IsFrameFolder(path)) return SequenceFormat::kFrames;
+  throw InputError(path,
+                   "is no kind of sequence that is known (docs/formats.md): no depth.txt, no "
+                   "*.gt.freiburg, no numbered depth images with poses");
+}
+
+std::string NameOf(SequenceFormat format) {
+  switch (format) {
+    case SequenceFormat::kTum:
+      return "TUM RGB-D folder";
+    case SequenceFormat::kIcl:
+      return "ICL-NUIM folder";
+    case SequenceFormat::kFrames:
+      return "folder of frames";
+    case SequenceFormat::kCarmen:
+      return "CARMEN laser log";
+    case SequenceFormat::kAuto:
+      break;
+  }
+  return "unknown";
+}
+
+std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options) {
+  const SequenceFormat format =
+      options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+  Recording recording;
+  if (format == SequenceFormat::kTum) recording = ListTumFolder(path, options.recording);
+  if (format == SequenceFormat::kIcl) recording = ListIclFolder(path);
+  if (format == SequenceFormat::kFrames) {
+    recording = ListFrameFolder(path, options.recording).recording;
+  }
+  std::vector<double> stamps_s;
+  for (const RecordedImage& image : recording.images) stamps_s.push_back(image.stamp_s);
+  return stamps_s;
+}
+
+Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
+                      const std::optional<SlamOutput>& slam) {
+  const SequenceFormat format =
+      options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+  Sequence result;
+  result.kind = NameOf(format);
+  if (format == SequenceFormat::kCarmen) {
+    if (slam) throw InputError(path, "a laser log brings its own poses");
+    result.source = OpenCarmenLog(path, options.laser);
+    return result;
+  }
+  DepthSequence sequence = format == SequenceFormat::kTum
+                               ? TumSequence(path, options, slam, result.notes)
+                           : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
+                                                            : FrameSequence(path, options, slam);
+  const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
+                                 ? FindUp(sequence, options.recording, result)
+                                 : AxisOf(options.world_up);
+  SlamOutput level = Rotated(std::move(sequence.slam), LevelFromWorld(up));
+  result.source = OpenRecording(std::move(sequence.recording), level, options.recording,
+                                std::move(sequence.reader));
+  result.final_poses = std::move(level.final);
+  return result;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,52 @@
+// One door for every recorded sequence: what kind it is, its poses in a level world, and its
+// frames.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/frame.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/recording_options.h"
+#include "mapper/io/world_up.h"
+
+namespace depthgrid {
+
+enum class SequenceFormat { kAuto, kTum, kIcl, kFrames, kCarmen };
+
+struct SequenceOptions {
+  SequenceFormat format = SequenceFormat::kAuto;
+  // The axis of the poses' world that points up. `auto` finds it from the floor seen in the images
+  // and, where none is seen, takes z (-y for ICL-NUIM).
+  WorldUp world_up = WorldUp::kAuto;
+  std::string camera;  // a camera file in place of the folder's own
+  RecordingOptions recording;
+  CarmenLogOptions laser;
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct Sequence {
+  std::unique_ptr<FrameSource> source;
+  std::string kind;                // "TUM RGB-D folder"
+  std::vector<std::string> notes;  // what was found out about it, a line each
+  // z of the floor in the poses' level world, where it was found; 0 when it is within 2 cm of 0.
+  std::optional<double> floor_z_m;
+  Trajectory final_poses;  // SLAM's own, in the level world; empty when unknown
+};
+
+// The kind a path looks like. Throws InputError when it is none that is known.
+SequenceFormat DetectFormat(const std::string& path);
+std::string NameOf(SequenceFormat format);
+
+// Stamps of the frames, as poses given for them are to have; none for a laser log.
+std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options = {});
+
+// `slam` replaces the folder's own poses; a TUM folder has none but groundtruth.txt, which is taken
+// with a note. Throws InputError.
+Sequence OpenSequence(const std::string& path, const SequenceOptions& options = {},
+                      const std::optional<SlamOutput>& slam = {});
+
+}  // namespace depthgrid

@@ -1,0 +1,97 @@
+#include "mapper/io/gravity.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/rng.h"
+#include "mapper/io/world_up.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kHeightM = 1.3;
+
+AnalyticRoom FurnishedRoom() {
+  AnalyticRoom room;
+  room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.45}}, {{-2.6, 0.8, 0.0}, {-1.4, 2.2, 0.75}}};
+  return room;
+}
+
+// A dozen views turning round in a room, whose poses are told in a world turned by `turned_by`.
+GravityFinder Views(const AnalyticRoom& room, const Eigen::Quaterniond& turned_by, double pitch_rad,
+                    double noise) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  RandomStream random(8, RandomStage::kTest);
+  GravityFinder finder;
+  for (int i = 0; i < 12; ++i) {
+    const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.3 * std::sin(i), kPi * i / 6.0}, kHeightM,
+                                    pitch_rad + 0.1 * std::sin(2.0 * i), 0.15 * std::cos(3.0 * i));
+    DepthImage image = room.Render(camera, pose);
+    for (float& z_m : image.z_m) z_m *= static_cast<float>(1.0 + noise * random.Normal());
+    finder.Add(image, camera, Pose3{turned_by, Eigen::Vector3d(4, 5, 6)} * pose);
+  }
+  return finder;
+}
+
+double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return DegFromRad(std::acos(std::min(1.0, a.dot(b))));
+}
+
+TEST(Gravity, FindsUpInAnyTurnedWorld) {
+  RandomStream random(3, RandomStage::kTest);
+  int cases = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::Quaterniond turned =
+        i == 0 ? Eigen::Quaterniond::Identity()
+        : i == 1
+            ? Eigen::Quaterniond(Eigen::AngleAxisd(RadFromDeg(26.0), Eigen::Vector3d::UnitX()))
+            : Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal())
+                  .normalized();
+    const Eigen::Vector3d up = turned * Eigen::Vector3d::UnitZ();
+    const auto gravity = Views(FurnishedRoom(), turned, 0.3, i % 2 == 0 ? 0.0 : 0.01).Find();
+    ASSERT_TRUE(gravity) << i;
+    EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3) << i;
+    EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02) << i;
+    EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)), 0.02) << i;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 12);
+}
+
+TEST(Gravity, SaysNothingWithoutAFloor) {
+  // Looking up at walls and ceiling.
+  EXPECT_FALSE(Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), -0.7, 0.0).Find());
+  EXPECT_FALSE(GravityFinder().Find());
+}
+
+TEST(WorldUp, RotationsMakeTheAxisZ) {
+  int axes = 0;
+  for (const WorldUp up : {WorldUp::kX, WorldUp::kMinusX, WorldUp::kY, WorldUp::kMinusY,
+                           WorldUp::kZ, WorldUp::kMinusZ}) {
+    const Eigen::Quaterniond level = LevelFromWorld(AxisOf(up));
+    EXPECT_TRUE((level * AxisOf(up)).isApprox(Eigen::Vector3d::UnitZ(), 1e-12)) << NameOf(up);
+    EXPECT_EQ(NearestAxis(AxisOf(up)), up);
+    ++axes;
+  }
+  EXPECT_EQ(axes, 6);
+  const auto tilted = [](double deg) {
+    return Eigen::Vector3d(std::sin(RadFromDeg(deg)), 0.0, std::cos(RadFromDeg(deg)));
+  };
+  EXPECT_EQ(NearestAxis(tilted(0.9)), WorldUp::kZ);
+  EXPECT_EQ(NearestAxis(tilted(1.1)), WorldUp::kAuto);
+}
+
+TEST(WorldUp, TheIdentityReturnsPosesBitForBit) {
+  SlamOutput slam;
+  const Pose3 pose{Eigen::Quaterniond(0.6, 0.0, 0.8, 1e-9), {1, 2, 3}};  // not quite a unit
+  slam.live = {{0.0, pose, 0}, {1.0, {}, 0}};
+  slam.final = {{0.0, pose}};
+  EXPECT_EQ(Rotated(slam, LevelFromWorld(Eigen::Vector3d::UnitZ())).live, slam.live);
+  const SlamOutput turned = Rotated(slam, LevelFromWorld(-Eigen::Vector3d::UnitY()));
+  EXPECT_TRUE(turned.live[0].slam_from_camera->translation.isApprox(Eigen::Vector3d(1, 3, -2)));
+  EXPECT_FALSE(turned.live[1].slam_from_camera);
+  EXPECT_EQ(turned.final[0].world_from_camera, *turned.live[0].slam_from_camera);
+}
+
+}  // namespace
+}  // namespace depthgrid

@@ -1,0 +1,155 @@
+#include "mapper/io/sequence.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/tum_folder.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kHeightM = 1.2;
+
+class SequenceTest : public TemporaryFolderTest {
+ protected:
+  static CameraFile Camera() { return {{80, 60, 60.2, 60.0, 39.5, 29.5, {}}, 5000.0}; }
+
+  // Twelve frames in a room; returns the true poses.
+  Trajectory WriteRoom() const {
+    AnalyticRoom room;
+    room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.45}}};
+    const TumFolderWriter writer(folder_, Camera());
+    Trajectory truth;
+    std::vector<double> stamps_s;
+    for (int i = 0; i < 12; ++i) {
+      const double stamp_s = 0.125 * i;
+      const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.0, kPi * i / 6.0}, kHeightM, 0.35, 0.1);
+      writer.WriteFrame(stamp_s, room.Render(Camera().camera, pose), nullptr);
+      stamps_s.push_back(stamp_s);
+      truth.push_back({stamp_s, pose});
+    }
+    writer.Finish(stamps_s, false, truth);
+    return truth;
+  }
+  static Trajectory Turned(const Trajectory& poses, const Pose3& by) {
+    Trajectory turned = poses;
+    for (StampedPose& pose : turned) pose.world_from_camera = by * pose.world_from_camera;
+    return turned;
+  }
+  template <typename Action>
+  std::string ErrorOf(Action action) const {
+    try {
+      action();
+    } catch (const InputError& error) {
+      return Short(error.what());
+    }
+    return "no error";
+  }
+};
+
+TEST_F(SequenceTest, ALevelWorldStaysBitForBit) {
+  const Trajectory truth = WriteRoom();
+  const Sequence sequence = OpenSequence(folder_);
+  EXPECT_EQ(sequence.kind, "TUM RGB-D folder");
+  EXPECT_EQ(sequence.floor_z_m, 0.0);
+  EXPECT_THAT(sequence.notes, Contains("poses: groundtruth.txt of the folder"));
+  EXPECT_THAT(sequence.notes, Contains("up is z, removed 0.0 degrees"));
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("camera is 1.20 m above the floor")));
+  for (const StampedPose& pose : truth) {
+    EXPECT_EQ(sequence.source->Next()->slam_from_camera, pose.world_from_camera);
+  }
+}
+
+TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
+  const Trajectory truth = WriteRoom();
+  const Pose3 tilted{Eigen::Quaterniond(Eigen::AngleAxisd(RadFromDeg(26.0),
+                                                          Eigen::Vector3d(1, 2, 0).normalized())),
+                     {1, 2, 3}};
+  // As a SLAM system says it: the first camera is the world.
+  const Pose3 first = Inverse(truth.front().world_from_camera);
+  int cases = 0;
+  for (const Pose3& by : {tilted, first}) {
+    const Trajectory given = Turned(truth, by);
+    const Sequence sequence = OpenSequence(folder_, {}, SlamOutputOf(given));
+    ASSERT_TRUE(sequence.floor_z_m);
+    ASSERT_EQ(sequence.final_poses.size(), truth.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const Pose3 pose = *sequence.source->Next()->slam_from_camera;
+      EXPECT_NEAR(pose.translation.z() - *sequence.floor_z_m, kHeightM, 0.03);
+      // The camera leans by as much as it truly does.
+      const auto down = [](const Pose3& p) { return (p.rotation * Eigen::Vector3d::UnitZ()).z(); };
+      EXPECT_NEAR(down(pose), down(truth[i].world_from_camera), 0.01);
+      EXPECT_EQ(sequence.final_poses[i].world_from_camera, pose);
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, 2);
+}
+
+TEST_F(SequenceTest, AFixedAxisIsTakenAsSaid) {
+  const Trajectory truth = WriteRoom();
+  SequenceOptions options;
+  options.world_up = WorldUp::kMinusY;
+  const Sequence sequence = OpenSequence(folder_, options, SlamOutputOf(truth));
+  const Eigen::Vector3d before = truth.front().world_from_camera.translation;
+  EXPECT_TRUE(sequence.source->Next()->slam_from_camera->translation.isApprox(
+      Eigen::Vector3d(before.x(), before.z(), -before.y()), 1e-12));
+  EXPECT_FALSE(sequence.floor_z_m);
+}
+
+TEST_F(SequenceTest, KindsAreDetected) {
+  WriteRoom();
+  EXPECT_EQ(DetectFormat(folder_), SequenceFormat::kTum);
+  EXPECT_EQ(SequenceStamps(folder_).size(), 12U);
+  std::filesystem::create_directories(Path("a/depth"));
+  const std::string png = Path("depth/0.000000.png");
+  std::filesystem::copy_file(png, Path("a/depth/1.png"));
+  Write("a/room.gt.freiburg", "1 0 0 -2.25 0 0 0 1\n");
+  EXPECT_EQ(DetectFormat(Path("a")), SequenceFormat::kIcl);
+  EXPECT_EQ(SequenceStamps(Path("a")), std::vector<double>{1.0});
+  std::filesystem::create_directories(Path("b"));
+  std::filesystem::copy_file(png, Path("b/frame-000003.depth.png"));
+  Write("b/frame-000003.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_EQ(DetectFormat(Path("b")), SequenceFormat::kFrames);
+  EXPECT_EQ(SequenceStamps(Path("b")), std::vector<double>{0.1});
+  Write("log.txt", "FLASER 3 1.0 2.0 3.0 0 0 0 0 0 0 1.5 host 1.5\n");
+  EXPECT_EQ(DetectFormat(Path("log.txt")), SequenceFormat::kCarmen);
+  EXPECT_EQ(OpenSequence(Path("log.txt")).kind, "CARMEN laser log");
+}
+
+TEST_F(SequenceTest, OneClearLineForEachFault) {
+  EXPECT_EQ(ErrorOf([&] { OpenSequence(Path("nothing")); }), "~/nothing: no such file or folder");
+  EXPECT_THAT(ErrorOf([&] { OpenSequence(folder_); }),
+              HasSubstr("~: is no kind of sequence that is known"));
+  WriteRoom();
+  std::filesystem::remove(Path("groundtruth.txt"));
+  EXPECT_EQ(ErrorOf([&] { OpenSequence(folder_); }),
+            "~: a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
+  SequenceOptions options;
+  EXPECT_THROW(Config::FromText("world_up: w", "x").Read(options), InputError);
+}
+
+TEST_F(SequenceTest, SharedKinectFramesFindTheirFloor) {
+  const char* data = std::getenv("DEPTHGRID_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
+  const Sequence sequence = OpenSequence(std::string(data) + "/depth_frames/nvblox_3dmatch");
+  EXPECT_EQ(sequence.kind, "folder of frames");
+  EXPECT_EQ(sequence.source->FrameCount(), 5);
+  // The recording's world has y up; the Kinect was carried at about a person's chest.
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("up is (-0.0")));
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("the camera is 1.4")));
+}
+
+}  // namespace
+}  // namespace depthgrid
