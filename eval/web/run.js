@@ -3,6 +3,8 @@
 const RUN = JSON.parse(byId("data").textContent);
 const frames = RUN.frames;
 const frameCount = frames.frame.length;
+// The map is light in both themes, so what is drawn on it keeps its colours.
+const MAP_COLOURS = { truth: "#009e73", slam: "#d98c00", online: "#56b4e9", est: "#0072b2", scan: "#d4002a", missed: "#d55e00", invented: "#cc79a7" };
 let currentFrame = 0;
 let currentLayer = "estimate";
 
@@ -138,11 +140,11 @@ function drawMap() {
   context.fillRect(0, 0, canvas.width, canvas.height);
   const image = images[currentLayer];
   if (image?.complete) context.drawImage(image, view.x, view.y, RUN.map.width * cellSize(), RUN.map.height * cellSize());
-  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, RUN.paths[name], colour(tone));
+  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, RUN.paths[name], MAP_COLOURS[tone]);
   const scan = scanNear(currentFrame);
   const estimate = RUN.paths.est ?? RUN.paths.online;
-  drawScan(context, scan, estimate, colour("missed"));
-  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, colour(tone));
+  drawScan(context, scan, estimate, MAP_COLOURS.scan);
+  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
   drawScaleBar(context);
 }
 
@@ -188,7 +190,7 @@ function initMap() {
       requestDraw();
     });
     byId("paths").append(make("label", { for: `path-${name}` }, input,
-      make("span", { class: "swatch", style: `background: var(--${tone})` }), label));
+      make("span", { class: "swatch", style: `background: ${MAP_COLOURS[tone]}` }), label));
   }
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && !event.shiftKey) return;
@@ -207,13 +209,12 @@ function initMap() {
   });
   canvas.addEventListener("pointerup", () => { drag = null; });
   window.addEventListener("resize", resizeMap);
-  themeListeners.push(requestDraw);
   const zoomButtons = make("div", { class: "no-print" },
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1.4) }, "Zoom in"), " ",
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4) }, "Zoom out"), " ",
     make("button", { type: "button", onclick: resetView }, "Whole map"));
   byId("map-note").before(zoomButtons);
-  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell. Orange dots: the scan of the chosen frame at its final pose. Drag to move, Ctrl + wheel to zoom.`;
+  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell. Red dots: the scan of the chosen frame at its final pose. Drag to move, Ctrl + wheel to zoom.`;
   selectLayer(currentLayer);
   resizeMap();
 }
@@ -221,7 +222,7 @@ function initMap() {
 const LAYER_KEYS = {
   estimate: [["#000", "occupied"], ["#fff", "free"], ["#cdcdcd", "unknown"]],
   truth: [["#000", "surface in the obstacle band"], ["#fff", "reachable"], ["#cdcdcd", "neither"]],
-  difference: [["#000", "wall, found"], ["var(--missed)", "wall, missed"], ["var(--invented)", "no wall there"], ["#fff", "free"], ["#cdcdcd", "unknown; paler: could not be seen"]],
+  difference: [["#000", "wall, found"], [MAP_COLOURS.missed, "wall, missed"], [MAP_COLOURS.invented, "no wall there"], ["#fff", "free"], ["#cdcdcd", "unknown; paler: could not be seen"]],
   observable: [["#fff", "could be seen"], ["#cdcdcd", "could not"]],
 };
 function selectLayer(name) {

@@ -157,6 +157,12 @@ TEST(ScoreMap, CoverageIsTheKnownShareOfObservableCells) {
   EXPECT_EQ(score.observable->scored_cells, 4);
 }
 
+TEST(ScoreMap, CoverageAsksForObservableCellsWhateverTheirTruth) {
+  const MapScore score = ScoreMap(Drawn({"#.??"}), Drawn({"#..?"}), MaskDrawn({"####"}));
+  EXPECT_EQ(score.observable->coverage, 0.75);
+  EXPECT_EQ(score.all.coverage, 1.0);
+}
+
 TEST(ScoreMap, MapsNeedNotShareARectangle) {
   const StateMap truth = Drawn({"###", "..."}, {0, 0});
   const StateMap estimate = Drawn({"????", "###?", "...?"}, {0, 0});

@@ -178,6 +178,15 @@ TEST(Rpe, PathStepsStartAtTheFirstPointReached) {
   EXPECT_EQ(steps[0].to, 4U);
 }
 
+TEST(Rpe, WhatAStepWentBeyondItsDeltaIsNotCarriedOn) {
+  const Trajectory walk =
+      Positions({{0, 0, 0}, {.7, 0, 0}, {1.4, 0, 0}, {2.1, 0, 0}, {2.8, 0, 0}, {3.5, 0, 0}});
+  const auto steps = StepsOfPath(Associate(walk, walk), 1.0);
+  ASSERT_EQ(steps.size(), 1U);  // 2 to 4; with the 0.4 m carried on it would be 2, 3, 5
+  EXPECT_EQ(steps[0].from, 2U);
+  EXPECT_EQ(steps[0].to, 4U);
+}
+
 TEST(Rpe, DoesNotSeeAGlobalTransform) {
   RandomStream random(6, RandomStage::kTest);
   for (int i = 0; i < 50; ++i) {
