@@ -1,0 +1,47 @@
+// Feeds the mapper frame by frame, as a live SLAM system would, and keeps the map.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+
+using namespace depthgrid;
+
+// What a level camera at `base` sees of a square room of 5 x 5 m around the origin. A real system
+// gives frame.depth instead, and its camera to the mapper.
+Scan Look(const Pose2& base) {
+  Scan scan{.beams = {}, .max_range_m = 6.0};
+  for (int i = -160; i < 160; ++i) {
+    const double bearing = i * RadFromDeg(0.2);
+    const double x = std::cos(base.yaw_rad + bearing), y = std::sin(base.yaw_rad + bearing);
+    const double to_x = (std::copysign(2.5, x) - base.x_m) / x;
+    const double to_y = (std::copysign(2.5, y) - base.y_m) / y;
+    const auto range = static_cast<float>(std::min(to_x, to_y));
+    scan.beams.push_back({static_cast<float>(bearing), range, 0.4F, range, true});
+  }
+  return scan;
+}
+
+int main() {
+  MapperOptions options;
+  options.fusion.gain = {0.25, 0.25, 0.25};
+  IncrementalMapper mapper(options, std::nullopt);
+  for (int i = 0; i < 300; ++i) {  // a turn on the spot, 30 frames a second
+    const Pose2 base{0.3, -0.2, WrapAngle(RadFromDeg(1.2) * i)};
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.slam_from_camera = CameraOf(base, 1.15);  // SLAM's pose; empty while it is lost
+    frame.slam_epoch = 0;                           // counts SLAM's corrections of itself
+    frame.scan = std::make_shared<Scan>(Look(base));
+    const FrameReport report = mapper.AddFrame(frame);  // the pose to navigate by, at once
+    if (!report.map_from_camera) return 1;
+  }
+  const MapperResult result = mapper.Finish();
+  const StateMap states = StatesOf(result.map);
+  const auto walls = std::count(states.states.begin(), states.states.end(), CellState::kOccupied);
+  std::printf("%zu poses, %d x %d cells, %d of them wall\n", result.map_from_camera.size(),
+              states.geometry.width_cells, states.geometry.height_cells, static_cast<int>(walls));
+  return walls > 300 ? 0 : 1;
+}
