@@ -11,7 +11,7 @@ int main() {
   scan.max_range_m = 6.0;
   for (int i = -30; i <= 30; ++i) {
     const float bearing_rad = 0.01F * static_cast<float>(i);
-    const float range_m = 2.0F / std::cos(bearing_rad);  // a wall two metres ahead
+    const float range_m = 2.02F / std::cos(bearing_rad);  // a wall ahead, within a column of cells
     scan.beams.push_back({bearing_rad, range_m, 0.0F, range_m, true});
   }
   IncrementalMapper mapper(MapperOptions{}, std::nullopt);
