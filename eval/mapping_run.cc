@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "eval/metrics/association.h"
+#include "mapper/core/level.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
@@ -32,7 +33,8 @@ Trajectory Collect(const MappingRun& run, PoseOf pose_of) {
   Trajectory trajectory;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     const std::optional<Pose3> pose = pose_of(i);
-    if (pose) trajectory.push_back({run.reports[i].stamp_s, *pose});
+    if (!pose) continue;
+    trajectory.push_back({run.reports[i].stamp_s, run.camera ? *pose : Lift(BaseOf(*pose))});
   }
   return trajectory;
 }

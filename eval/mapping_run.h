@@ -40,7 +40,9 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle = {});
 
-// Poses as the run's trajectory files have them; frames without a pose are absent.
+// Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
+// source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own
+// odometry is.
 Trajectory SlamTrajectory(const MappingRun& run);    // the input, live
 Trajectory OnlineTrajectory(const MappingRun& run);  // estimates as known at the time
 Trajectory FinalTrajectory(const MappingRun& run);   // estimates after all corrections

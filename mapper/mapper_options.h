@@ -16,7 +16,9 @@ namespace depthgrid {
 enum class MapperMethod { kPaper, kSurfel };
 
 struct MapperOptions {
-  MapperMethod method = MapperMethod::kPaper;
+  // Surfels err by a fifth to a fiftieth of what the paper's chain errs by (docs/results.md, "Laser
+  // logs").
+  MapperMethod method = MapperMethod::kSurfel;
   ScanOptions scan;
   GridOptions grid;
   SubmapOptions submap;

@@ -24,8 +24,7 @@ Scan Look(const Pose2& base) {
 }
 
 int main() {
-  MapperOptions options;
-  options.fusion.gain = {0.25, 0.25, 0.25};
+  const MapperOptions options;  // the most accurate; mapper_options.h has them all
   IncrementalMapper mapper(options, std::nullopt);
   for (int i = 0; i < 300; ++i) {  // a turn on the spot, 30 frames a second
     const Pose2 base{0.3, -0.2, WrapAngle(RadFromDeg(1.2) * i)};

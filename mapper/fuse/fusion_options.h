@@ -36,7 +36,8 @@ struct SlamNoiseOptions {
 
 struct FusionOptions {
   PriorMode prior = PriorMode::kRelative;
-  FusionMode mode = FusionMode::kFixed;
+  // The most accurate (docs/results.md); `fixed` makes the gain a knob.
+  FusionMode mode = FusionMode::kLearned;
   // K of Eq. 3: the share of the innovation taken, per base axis (forward, left, yaw). With
   // `fixed`, all zero takes SLAM's poses as they are and matches nothing, and all one takes the
   // matched pose whole. `adaptive` starts from it.

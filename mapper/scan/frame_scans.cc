@@ -1,5 +1,10 @@
 #include "mapper/scan/frame_scans.h"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -10,6 +15,21 @@ ScanOptions SliceOptions(ScanOptions options) {
   options.band_low_m = 0.0;
   options.band_high_m = 2.0 * options.slice_half_height_m;
   return options;
+}
+
+// One sum tells of three numbers whether all are finite.
+bool IsSound(const Beam& beam) {
+  const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
+  if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
+  return !beam.hit || (std::isfinite(beam.range_m) && beam.range_m >= 0.0F);
+}
+
+std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
+  if (std::all_of(scan->beams.begin(), scan->beams.end(), IsSound)) return scan;
+  Scan sound;
+  sound.max_range_m = scan->max_range_m;
+  std::copy_if(scan->beams.begin(), scan->beams.end(), std::back_inserter(sound.beams), IsSound);
+  return std::make_shared<const Scan>(std::move(sound));
 }
 
 }  // namespace
@@ -25,7 +45,10 @@ FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const Sca
 }
 
 FrameScans FrameScanner::ScansOf(const Frame& frame) const {
-  if (frame.scan) return {frame.scan, frame.scan};
+  if (frame.scan) {
+    const std::shared_ptr<const Scan> scan = SoundPart(frame.scan);
+    return {scan, scan};
+  }
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(obstacles_.has_value(), "a source of depth images has a camera");
   FrameScans scans;

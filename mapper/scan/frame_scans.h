@@ -23,7 +23,8 @@ class FrameScanner {
   // The camera may be absent when every frame brings a ready scan.
   FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options);
 
-  // Of a ready scan both are that scan; without image, scan or pose both are null.
+  // Of a ready scan both are that scan, less beams that are not finite numbers or start behind the
+  // sensor: those say nothing. Without image, scan or pose both are null.
   FrameScans ScansOf(const Frame& frame) const;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mapper/io/trajectory_file.h"
@@ -100,6 +101,22 @@ TEST_F(ProgramRun, RenderSlamAndMapGiveWhatRunGives) {
   }
   EXPECT_TRUE(SameFile("seq/truth_map.pgm", "run/truth_map.pgm"));
   EXPECT_TRUE(SameFile("seq/observable.pgm", "run/observable.pgm"));
+}
+
+// A planar sensor's poses are the log's own: x, y and the yaw about z, at height 0.
+TEST_F(ProgramRun, ALaserLogsTrajectoriesAreInTheLogsConvention) {
+  Write("robot.log",
+        "ROBOTLASER1 0 -0.2 0.4 0.1 6.0 0.01 0 5 2 2 2 2 2 0 1.5 -2 0.25 1.5 -2 0.25 0 0 0 0 0 "
+        "10.5 host 10.5\n");
+  Succeed("map robot.log -o out");
+  for (const char* file : {"trajectory_slam.txt", "trajectory_online.txt", "trajectory_est.txt"}) {
+    const Trajectory poses = ReadTrajectory(Path(std::string("out/") + file));
+    ASSERT_EQ(poses.size(), 1U);
+    EXPECT_EQ(poses[0].stamp_s, 10.5);
+    EXPECT_LT((poses[0].world_from_camera.translation - Eigen::Vector3d(1.5, -2, 0)).norm(), 1e-9);
+    EXPECT_NEAR(poses[0].world_from_camera.rotation.z(), std::sin(0.125), 1e-9);
+    EXPECT_NEAR(poses[0].world_from_camera.rotation.w(), std::cos(0.125), 1e-9);
+  }
 }
 
 TEST_F(ProgramRun, EvalPrintsTheKeysOfMetricsJson) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mapper/core/level.h"
 
@@ -71,6 +72,25 @@ TEST(FrameScanner, WithoutImageOrPoseThereIsNoScan) {
   frame.slam_from_camera.reset();
   EXPECT_EQ(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(frame).matched, nullptr);
   EXPECT_EQ(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(Frame{}).obstacles, nullptr);
+}
+
+TEST(FrameScanner, BeamsOfAReadyScanThatAreNotFiniteSayNothing) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  auto scan = std::make_shared<Scan>();
+  scan->max_range_m = 6.0;
+  scan->beams = {{0.0F, 2.0F, 0.0F, 2.0F, true},      {0.1F, -infinity, 0.0F, 2.0F, true},
+                 {0.2F, infinity, 0.0F, 2.0F, true},  {0.3F, nan, 0.0F, 2.0F, true},
+                 {0.4F, 2.0F, 0.0F, infinity, true},  {nan, 2.0F, 0.0F, 2.0F, true},
+                 {0.5F, 2.0F, -infinity, 2.0F, true}, {0.6F, nan, 0.0F, 5.0F, false}};
+  Frame frame;
+  frame.scan = scan;
+  const FrameScans scans = FrameScanner(std::nullopt, ScanOptions{}).ScansOf(frame);
+  EXPECT_EQ(scans.matched, scans.obstacles);
+  ASSERT_EQ(scans.matched->beams.size(), 2U);
+  EXPECT_EQ(scans.matched->beams[0], scan->beams.front());
+  EXPECT_EQ(scans.matched->beams[1].clear_to_m, 5.0F);
+  EXPECT_EQ(scans.matched->max_range_m, 6.0);
 }
 
 }  // namespace

@@ -161,7 +161,9 @@ TEST(CorrectionFilter, RelativeCarriesTheCorrectionOnAndAbsoluteDoesNot) {
 }
 
 TEST(CorrectionFilter, StaysTheIdentityWhenNothingIsTaken) {
-  CorrectionFilter filter(FusionOptions{});
+  FusionOptions options;
+  options.mode = FusionMode::kFixed;
+  CorrectionFilter filter(options);
   RandomStream random(4, RandomStage::kTest);
   for (int i = 0; i < 1000; ++i) {
     const Pose2 slam = RandomPose(random);

@@ -179,6 +179,7 @@ class Drifting : public ::testing::Test {
   }
   static MapperOptions Options(FusionMode mode, double gain) {
     MapperOptions options;
+    options.method = MapperMethod::kPaper;
     options.fusion.mode = mode;
     options.fusion.gain = {gain, gain, gain};
     return options;
