@@ -20,6 +20,8 @@ struct Frame {
   double stamp_s = 0.0;
   std::shared_ptr<const DepthImage> depth;
   std::shared_ptr<const Scan> scan;
+  // With `scan`: what is matched where that is another one (mapper/scan/frame_scans.h).
+  std::shared_ptr<const Scan> matched_scan;
   std::optional<Pose3> slam_from_camera;  // empty while SLAM is lost
   int slam_epoch = 0;
   std::vector<LoopClosure>

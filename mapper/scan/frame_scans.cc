@@ -47,7 +47,7 @@ FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const Sca
 FrameScans FrameScanner::ScansOf(const Frame& frame) const {
   if (frame.scan) {
     const std::shared_ptr<const Scan> scan = SoundPart(frame.scan);
-    return {scan, scan};
+    return {scan, frame.matched_scan ? SoundPart(frame.matched_scan) : scan};
   }
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(obstacles_.has_value(), "a source of depth images has a camera");

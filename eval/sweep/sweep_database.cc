@@ -1,0 +1,325 @@
+#include "eval/sweep/sweep_database.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+// Another program may be reading the table; it never takes this long.
+constexpr int kBusyTimeoutMs = 60'000;
+// Rows and columns of the tables below; another number is another layout.
+constexpr const char* kSchema = "1";
+
+constexpr const char* kTables = R"(
+CREATE TABLE environment (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE runs (run INTEGER PRIMARY KEY, point INTEGER NOT NULL, state TEXT NOT NULL);
+CREATE TABLE parameters (run INTEGER PRIMARY KEY);
+CREATE TABLE metrics (run INTEGER PRIMARY KEY);
+CREATE TABLE times (run INTEGER PRIMARY KEY);
+CREATE TABLE failures (run INTEGER PRIMARY KEY, reason TEXT NOT NULL);
+)";
+
+std::string Quoted(const std::string& name) {
+  std::string quoted(1, '"');
+  for (const char c : name) quoted.append(c == '"' ? 2 : 1, c);
+  quoted += '"';
+  return quoted;
+}
+
+std::string DatabasePath(const std::string& folder) {
+  return (fs::path(folder) / kSweepDatabaseName).string();
+}
+
+// What is the shortest text of a number goes in as that number, so that SQL and pandas see it as
+// such, and comes out as the same text.
+void BindYaml(SQLite::Statement& statement, int index, const std::string& text) {
+  constexpr double kExactIntegers = 9007199254740992.0;  // 2^53
+  const auto number = ParseNumber(text);
+  if (!number || !std::isfinite(*number) || fmt::format("{}", *number) != text) {
+    statement.bind(index, text);
+  } else if (std::trunc(*number) == *number && std::abs(*number) < kExactIntegers) {
+    statement.bind(index, static_cast<std::int64_t>(*number));
+  } else {
+    statement.bind(index, *number);
+  }
+}
+
+std::string YamlOf(const SQLite::Column& column) {
+  if (column.isInteger()) return fmt::format("{}", column.getInt64());
+  if (column.isFloat()) return fmt::format("{}", column.getDouble());
+  return column.getString();
+}
+
+double NumberOf(const SQLite::Column& column) {
+  return column.isNull() ? kNone : column.getDouble();
+}
+
+std::vector<std::string> ColumnsOf(SQLite::Database& database, const std::string& table) {
+  std::vector<std::string> names;
+  SQLite::Statement query(database, "SELECT name FROM pragma_table_info('" + table + "')");
+  while (query.executeStep()) {
+    const std::string name = query.getColumn(0).getString();
+    if (name != "run") names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+struct SweepDatabase::Impl {
+  std::string folder;
+  std::unique_ptr<SQLite::Database> database;
+  std::set<std::string> known_columns;  // "table.column"
+
+  Impl(const std::string& of_folder, const std::string& path, int flags)
+      : folder(of_folder),
+        database(std::make_unique<SQLite::Database>(path, flags, kBusyTimeoutMs)) {}
+
+  // One row of a table with a column a name, which it gets when it is new.
+  void InsertWide(const std::string& table, int run, const NamedValues& values) {
+    std::string names = "run";
+    std::string marks = "?";
+    for (const auto& [name, value] : values) {
+      if (!known_columns.contains(table + "." + name)) AddColumn(table, name);
+      names += ", " + Quoted(name);
+      marks += ", ?";
+    }
+    SQLite::Statement insert(*database,
+                             fmt::format("INSERT INTO {} ({}) VALUES ({})", table, names, marks));
+    insert.bind(1, run);
+    int index = 2;
+    for (const auto& [name, value] : values) insert.bind(index++, value);  // NaN becomes NULL
+    insert.exec();
+  }
+
+  void AddColumn(const std::string& table, const std::string& name) {
+    const auto columns = ColumnsOf(*database, table);
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
+      database->exec(fmt::format("ALTER TABLE {} ADD COLUMN {} REAL", table, Quoted(name)));
+    }
+    known_columns.insert(table + "." + name);
+  }
+
+  void Insert(const RunOutcome& outcome) {
+    const bool failed = !outcome.failure.empty();
+    SQLite::Statement state(*database, "UPDATE runs SET state = ? WHERE run = ?");
+    state.bind(1, failed ? "failed" : "done");
+    state.bind(2, outcome.run);
+    Require(state.exec() == 1, "only planned runs have an outcome");
+    if (failed) {
+      SQLite::Statement reason(*database, "INSERT INTO failures VALUES (?, ?)");
+      reason.bind(1, outcome.run);
+      reason.bind(2, outcome.failure);
+      reason.exec();
+    } else {
+      InsertWide("metrics", outcome.run, outcome.metrics);
+    }
+    InsertWide("times", outcome.run, outcome.times);
+  }
+
+  // Columns of a table of numbers for all finished runs, sorted by name.
+  std::vector<SweepColumn> WideColumns(const std::string& table) const {
+    std::vector<std::string> names = ColumnsOf(*database, table);
+    std::sort(names.begin(), names.end());
+    std::vector<SweepColumn> columns;
+    for (const std::string& name : names) columns.push_back({name, {}});
+    if (columns.empty()) return columns;
+    std::string selected;
+    for (const std::string& name : names) selected += ", t." + Quoted(name);
+    SQLite::Statement query(
+        *database, fmt::format("SELECT r.run{} FROM runs r LEFT JOIN {} t ON t.run = r.run "
+                               "WHERE r.state <> 'planned' ORDER BY r.run",
+                               selected, table));
+    while (query.executeStep()) {
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        columns[i].values.push_back(NumberOf(query.getColumn(static_cast<int>(i) + 1)));
+      }
+    }
+    return columns;
+  }
+
+  std::vector<SweepParameter> Parameters() const {
+    std::vector<SweepParameter> parameters;
+    std::string selected;
+    for (const std::string& key : ColumnsOf(*database, "parameters")) {
+      parameters.push_back({key, {}, {}});
+      selected += ", p." + Quoted(key);
+    }
+    SQLite::Statement query(
+        *database, fmt::format("SELECT r.run{} FROM runs r JOIN parameters p ON p.run = r.run "
+                               "WHERE r.state <> 'planned' ORDER BY r.run",
+                               selected));
+    while (query.executeStep()) {
+      for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const std::string text = YamlOf(query.getColumn(static_cast<int>(i) + 1));
+        parameters[i].texts.push_back(text);
+        parameters[i].numbers.push_back(ParseNumber(text).value_or(kNone));
+      }
+    }
+    return parameters;
+  }
+};
+
+SweepDatabase::SweepDatabase(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SweepDatabase::SweepDatabase(SweepDatabase&&) noexcept = default;
+SweepDatabase& SweepDatabase::operator=(SweepDatabase&&) noexcept = default;
+SweepDatabase::~SweepDatabase() = default;
+
+bool SweepDatabase::Exists(const std::string& folder) { return fs::exists(DatabasePath(folder)); }
+
+SweepDatabase SweepDatabase::Create(const std::string& folder,
+                                    const std::map<std::string, std::string>& environment,
+                                    const std::vector<std::string>& parameter_keys,
+                                    const std::vector<PlannedRun>& plan) {
+  // Under another name until it is whole: a kill in between leaves no half plan.
+  const std::string partial = DatabasePath(folder) + ".partial";
+  fs::remove(partial);
+  {
+    Impl impl(folder, partial, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    SQLite::Database& database = *impl.database;
+    SQLite::Transaction transaction(database);
+    database.exec(kTables);
+    const auto note = [&](const std::string& key, const std::string& value) {
+      SQLite::Statement insert(database, "INSERT INTO environment VALUES (?, ?)");
+      insert.bind(1, key);
+      insert.bind(2, value);
+      insert.exec();
+    };
+    note("schema", kSchema);
+    for (const auto& [key, value] : environment) note(key, value);
+    std::string marks = "?";
+    for (const std::string& key : parameter_keys) {
+      database.exec("ALTER TABLE parameters ADD COLUMN " + Quoted(key));
+      marks += ", ?";
+    }
+    SQLite::Statement run(database, "INSERT INTO runs VALUES (?, ?, 'planned')");
+    SQLite::Statement values(database, "INSERT INTO parameters VALUES (" + marks + ")");
+    for (const PlannedRun& planned : plan) {
+      Require(planned.values.size() == parameter_keys.size(), "each parameter has a value");
+      run.bind(1, planned.run);
+      run.bind(2, planned.point);
+      run.exec();
+      run.reset();
+      values.bind(1, planned.run);
+      int index = 2;
+      for (const std::string& value : planned.values) BindYaml(values, index++, value);
+      values.exec();
+      values.reset();
+    }
+    transaction.commit();
+  }
+  fs::rename(partial, DatabasePath(folder));
+  return Open(folder);
+}
+
+SweepDatabase SweepDatabase::Open(const std::string& folder) {
+  if (!Exists(folder)) {
+    throw InputError(folder, fmt::format("is no sweep's folder: it has no {}", kSweepDatabaseName));
+  }
+  std::string schema;
+  try {
+    auto impl = std::make_unique<Impl>(folder, DatabasePath(folder), SQLite::OPEN_READWRITE);
+    SweepDatabase opened(std::move(impl));
+    schema = opened.Environment()["schema"];
+    if (schema == kSchema) {
+      // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
+      opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+      return opened;
+    }
+  } catch (const SQLite::Exception& error) {
+    throw InputError(DatabasePath(folder), std::string("cannot be read: ") + error.what());
+  }
+  throw InputError(DatabasePath(folder),
+                   fmt::format("has layout '{}', must have {}", schema, kSchema));
+}
+
+std::map<std::string, std::string> SweepDatabase::Environment() const {
+  std::map<std::string, std::string> environment;
+  SQLite::Statement query(*impl_->database, "SELECT key, value FROM environment");
+  while (query.executeStep()) {
+    environment[query.getColumn(0).getString()] = query.getColumn(1).getString();
+  }
+  return environment;
+}
+
+std::vector<int> SweepDatabase::FinishedRuns() const {
+  std::vector<int> runs;
+  SQLite::Statement query(*impl_->database,
+                          "SELECT run FROM runs WHERE state <> 'planned' ORDER BY run");
+  while (query.executeStep()) runs.push_back(query.getColumn(0).getInt());
+  return runs;
+}
+
+void SweepDatabase::Record(const RunOutcome& outcome) { Record(std::vector{outcome}); }
+
+void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
+  SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+  for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
+  transaction.commit();
+}
+
+void SweepDatabase::Drop(const std::vector<int>& runs) {
+  SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+  for (const char* table : {"runs", "parameters", "metrics", "times", "failures"}) {
+    SQLite::Statement remove(*impl_->database, fmt::format("DELETE FROM {} WHERE run = ?", table));
+    for (const int run : runs) {
+      remove.bind(1, run);
+      remove.exec();
+      remove.reset();
+    }
+  }
+  transaction.commit();
+}
+
+std::vector<double> SweepDatabase::MetricOf(const std::string& name,
+                                            const std::vector<int>& runs) const {
+  const auto columns = ColumnsOf(*impl_->database, "metrics");
+  std::vector<double> values(runs.size(), kNone);
+  if (std::find(columns.begin(), columns.end(), name) == columns.end()) return values;
+  SQLite::Statement query(*impl_->database,
+                          "SELECT " + Quoted(name) + " FROM metrics WHERE run = ?");
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    query.bind(1, runs[i]);
+    if (query.executeStep()) values[i] = NumberOf(query.getColumn(0));
+    query.reset();
+  }
+  return values;
+}
+
+SweepResults SweepDatabase::Results() const {
+  // One view of the table, whoever writes meanwhile.
+  const SQLite::Transaction snapshot(*impl_->database);
+  SweepResults results;
+  results.folder = impl_->folder;
+  results.environment = Environment();
+  SQLite::Statement planned(*impl_->database, "SELECT count(*) FROM runs");
+  if (planned.executeStep()) results.planned_runs = planned.getColumn(0).getInt();
+  SQLite::Statement query(*impl_->database,
+                          "SELECT r.run, r.point, f.reason FROM runs r LEFT JOIN failures f "
+                          "ON f.run = r.run WHERE r.state <> 'planned' ORDER BY r.run");
+  while (query.executeStep()) {
+    results.runs.push_back(query.getColumn(0).getInt());
+    results.points.push_back(query.getColumn(1).getInt());
+    results.failures.push_back(query.getColumn(2).getString());
+  }
+  results.parameters = impl_->Parameters();
+  results.metrics = impl_->WideColumns("metrics");
+  results.times = impl_->WideColumns("times");
+  return results;
+}
+
+}  // namespace depthgrid

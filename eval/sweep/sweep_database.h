@@ -1,0 +1,64 @@
+// The one file that holds a sweep: what was planned, what came out, what failed, where
+// (docs/sweeps.md, "The database"). Every call is one transaction, so that a sweep killed at any
+// moment has each run either whole or not at all.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eval/sweep/sweep_results.h"
+
+namespace depthgrid {
+
+struct PlannedRun {
+  int run = 0;
+  int point = 0;
+  std::vector<std::string> values;  // one a parameter key, YAML
+};
+
+using NamedValues = std::vector<std::pair<std::string, double>>;  // NaN: not defined
+
+// What a finished run leaves.
+struct RunOutcome {
+  int run = 0;
+  std::string failure;  // the reason; empty when it succeeded
+  NamedValues metrics;
+  NamedValues times;
+};
+
+class SweepDatabase {
+ public:
+  static bool Exists(const std::string& folder);
+  // All of the plan, or nothing, is in the file afterwards.
+  static SweepDatabase Create(const std::string& folder,
+                              const std::map<std::string, std::string>& environment,
+                              const std::vector<std::string>& parameter_keys,
+                              const std::vector<PlannedRun>& plan);
+  // Throws InputError when there is none or it is something else.
+  static SweepDatabase Open(const std::string& folder);
+  SweepDatabase(SweepDatabase&&) noexcept;
+  SweepDatabase& operator=(SweepDatabase&&) noexcept;
+  ~SweepDatabase();
+
+  std::map<std::string, std::string> Environment() const;
+  // Numbers of the runs that are done or failed, ascending.
+  std::vector<int> FinishedRuns() const;
+  void Record(const RunOutcome& outcome);
+  // All outcomes in one transaction.
+  void Record(const std::vector<RunOutcome>& outcomes);
+  // Takes these runs out of the plan, with what they gave.
+  void Drop(const std::vector<int>& runs);
+  // One metric of some runs, in their order; NaN where it is missing.
+  std::vector<double> MetricOf(const std::string& name, const std::vector<int>& runs) const;
+  SweepResults Results() const;
+
+ private:
+  struct Impl;
+  explicit SweepDatabase(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace depthgrid

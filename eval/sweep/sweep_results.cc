@@ -1,0 +1,86 @@
+#include "eval/sweep/sweep_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "eval/sweep/sweep_database.h"
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+namespace {
+
+// RFC 4180: quotes only where a comma, a quote or a line end asks for them.
+std::string Cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted(1, '"');
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  quoted += '"';
+  return quoted;
+}
+
+std::string Cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+[[noreturn]] void FailFinding(const std::string& folder, const char* what, const std::string& name,
+                              const std::vector<std::string>& names) {
+  const std::string nearest = NearestWord(name, names);
+  throw InputError(folder, fmt::format("has no {} '{}'{}", what, name,
+                                       nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+}
+
+}  // namespace
+
+bool IsSeedKey(const std::string& key) {
+  return key == "seed" || key == "depth_seed" || key == "slam_seed" || key == "trajectory_seed";
+}
+
+bool SweepParameter::IsSeed() const { return IsSeedKey(key); }
+
+bool SweepParameter::IsNumeric() const {
+  return std::none_of(numbers.begin(), numbers.end(), [](double v) { return std::isnan(v); });
+}
+
+const SweepParameter& SweepResults::Parameter(const std::string& key) const {
+  std::vector<std::string> keys;
+  for (const SweepParameter& parameter : parameters) {
+    if (parameter.key == key) return parameter;
+    keys.push_back(parameter.key);
+  }
+  FailFinding(folder, "axis", key, keys);
+}
+
+const std::vector<double>& SweepResults::Metric(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const SweepColumn& metric : metrics) {
+    if (metric.name == name) return metric.values;
+    names.push_back(metric.name);
+  }
+  FailFinding(folder, "metric", name, names);
+}
+
+SweepResults ReadSweep(const std::string& folder) { return SweepDatabase::Open(folder).Results(); }
+
+std::string ResultsCsv(const SweepResults& results) {
+  std::vector<std::string> cells = {"run", "point"};
+  for (const SweepParameter& parameter : results.parameters) cells.push_back(Cell(parameter.key));
+  cells.emplace_back("failed");
+  for (const SweepColumn& column : results.metrics) cells.push_back(Cell(column.name));
+  for (const SweepColumn& column : results.times) cells.push_back(Cell(column.name));
+  std::string csv = fmt::format("{}\n", fmt::join(cells, ","));
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    cells = {fmt::format("{}", results.runs[row]), fmt::format("{}", results.points[row])};
+    for (const SweepParameter& parameter : results.parameters) {
+      cells.push_back(Cell(parameter.texts[row]));
+    }
+    cells.emplace_back(results.failures[row].empty() ? "0" : "1");
+    for (const SweepColumn& column : results.metrics) cells.push_back(Cell(column.values[row]));
+    for (const SweepColumn& column : results.times) cells.push_back(Cell(column.values[row]));
+    fmt::format_to(std::back_inserter(csv), "{}\n", fmt::join(cells, ","));
+  }
+  return csv;
+}
+
+}  // namespace depthgrid
