@@ -1,72 +1,61 @@
-// Speed of the rendered depth camera: 640x480, ICL-NUIM's camera, a cluttered room of so many
-// triangles. Floor: Embree's packets alone over the same rays, set up beforehand.
-#include <benchmark/benchmark.h>
-
+// The rendered depth camera and its noise. Floors: Embree's packets alone over the same rays, set
+// up beforehand; the frame copied.
+#include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
+#include "bench/bench_data.h"
+#include "bench/bench_table.h"
 #include "mapper/core/level.h"
-#include "sim/depth_camera.h"
+#include "sim/depth_noise.h"
 #include "sim/ray_scene_impl.h"
 #include "tests/sim/test_meshes.h"
 
-namespace depthgrid {
+namespace depthgrid::bench {
 namespace {
+
+constexpr int kPoses = 9;
 
 const RayScene& Room(int triangles, RayIsa isa) {
   static std::map<std::pair<int, RayIsa>, RayScene> rooms;
-  const auto [room, is_new] =
-      rooms.try_emplace({triangles, isa}, test::ClutteredRoom(triangles), isa);
-  return room->second;
+  const auto room = rooms.find({triangles, isa});
+  if (room != rooms.end()) return room->second;
+  return rooms.try_emplace({triangles, isa}, test::ClutteredRoom(triangles), isa).first->second;
 }
 
-bool HasAvx512() { return __builtin_cpu_supports("avx512vl") != 0; }
-
-Pose3 PoseOf(int k) { return CameraOf({2.0 + 0.05 * (k % 10), 2.0, 0.7 * (k % 9)}, 1.15); }
-
-void Counters(benchmark::State& state, double pixels_per_frame) {
-  state.counters["frames/s"] =
-      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-  state.counters["Mray/s"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * pixels_per_frame * 1e-6,
-                         benchmark::Counter::kIsRate);
+bool Runs(RayIsa isa, benchmark::State& state) {
+  if (isa != RayIsa::kAvx512 || __builtin_cpu_supports("avx512vl") != 0) return true;
+  state.SkipWithError("no AVX-512");
+  return false;
 }
 
-// Arguments: triangles, instruction set, threads.
-void RenderDepth(benchmark::State& state) {
-  const auto isa = static_cast<RayIsa>(state.range(1));
-  if (isa == RayIsa::kAvx512 && !HasAvx512()) return state.SkipWithError("no AVX-512");
-  const DepthCamera camera(Room(static_cast<int>(state.range(0)), isa), PinholeCamera{},
-                           static_cast<int>(state.range(2)));
-  int k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(camera.Render(PoseOf(k++)));
-  Counters(state, 640.0 * 480.0);
+Pose3 PoseOf(int k) { return CameraOf({2.0 + 0.05 * (k % 10), 2.0, 0.7 * (k % kPoses)}, 1.15); }
+
+PinholeCamera CameraOfSize(int width_px) {
+  SensorOptions sensor;
+  sensor.width_px = width_px;
+  sensor.height_px = width_px * 3 / 4;
+  return SensorCamera(sensor);
 }
 
-void RenderDepthAndIncidence(benchmark::State& state) {
-  const auto isa = static_cast<RayIsa>(state.range(1));
-  if (isa == RayIsa::kAvx512 && !HasAvx512()) return state.SkipWithError("no AVX-512");
-  const DepthCamera camera(Room(static_cast<int>(state.range(0)), isa), PinholeCamera{},
-                           static_cast<int>(state.range(2)));
-  int k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(camera.RenderWithIncidence(PoseOf(k++)));
-  Counters(state, 640.0 * 480.0);
-}
-
-// The rays of one frame as packets in 4-wide tiles.
+// The rays of a frame as packets in 4-wide tiles.
 template <int kWidth>
-std::vector<typename RayPacket<kWidth>::RayHits> FramePackets(const Pose3& pose) {
-  const PinholeCamera camera;
+using Packets = std::vector<typename RayPacket<kWidth>::RayHits>;
+
+template <int kWidth>
+Packets<kWidth> PacketsOf(const PinholeCamera& camera, const Pose3& pose) {
   const Eigen::Matrix3f r = pose.rotation.toRotationMatrix().cast<float>();
-  std::vector<typename RayPacket<kWidth>::RayHits> packets;
+  const Eigen::Vector3f origin = pose.translation.cast<float>();
+  Packets<kWidth> packets;
   for (int v0 = 0; v0 < camera.height_px; v0 += kWidth / 4) {
     for (int u0 = 0; u0 < camera.width_px; u0 += 4) {
       auto& packet = packets.emplace_back();
       for (int i = 0; i < kWidth; ++i) {
         const Eigen::Vector3f d = r * Unproject(camera, u0 + i % 4, v0 + i / 4, 1.0).cast<float>();
-        packet.ray.org_x[i] = static_cast<float>(pose.translation.x());
-        packet.ray.org_y[i] = static_cast<float>(pose.translation.y());
-        packet.ray.org_z[i] = static_cast<float>(pose.translation.z());
+        packet.ray.org_x[i] = origin.x();
+        packet.ray.org_y[i] = origin.y();
+        packet.ray.org_z[i] = origin.z();
         packet.ray.dir_x[i] = d.x();
         packet.ray.dir_y[i] = d.y();
         packet.ray.dir_z[i] = d.z();
@@ -77,18 +66,18 @@ std::vector<typename RayPacket<kWidth>::RayHits> FramePackets(const Pose3& pose)
   return packets;
 }
 
+// The frames of kPoses poses an iteration, as RenderFrames.
 template <int kWidth>
-void EmbreeAlone(benchmark::State& state) {
-  const auto isa = static_cast<RayIsa>(state.range(1));
-  if (isa == RayIsa::kAvx512 && !HasAvx512()) return state.SkipWithError("no AVX-512");
-  RTCScene scene = Room(static_cast<int>(state.range(0)), isa).impl().scene;
+void TracePackets(const PinholeCamera& camera, int triangles, RayIsa isa, benchmark::State& state) {
+  if (!Runs(isa, state)) return;
+  RTCScene scene = Room(triangles, isa).impl().scene;
   alignas(64) int valid[kWidth];
   std::fill_n(valid, kWidth, -1);
   RTCIntersectContext context = CoherentContext();
   for (auto _ : state) {
-    for (int k = 0; k < 9; ++k) {
+    for (int k = 0; k < kPoses; ++k) {
       state.PauseTiming();
-      auto packets = FramePackets<kWidth>(PoseOf(k));
+      Packets<kWidth> packets = PacketsOf<kWidth>(camera, PoseOf(k));
       state.ResumeTiming();
       for (auto& packet : packets) {
         RayPacket<kWidth>::Intersect(valid, scene, &context, &packet);
@@ -96,34 +85,89 @@ void EmbreeAlone(benchmark::State& state) {
       benchmark::DoNotOptimize(packets.data());
     }
   }
-  Counters(state, 9.0 * 640.0 * 480.0);
-  state.counters["frames/s"] = benchmark::Counter(9.0 * static_cast<double>(state.iterations()),
-                                                  benchmark::Counter::kIsRate);
 }
 
-constexpr auto kAvx2 = static_cast<int64_t>(RayIsa::kAvx2);
-constexpr auto kAvx512 = static_cast<int64_t>(RayIsa::kAvx512);
+void RenderFrames(const PinholeCamera& camera, int triangles, RayIsa isa, bool incidence,
+                  benchmark::State& state) {
+  if (!Runs(isa, state)) return;
+  const DepthCamera depth_camera(Room(triangles, isa), camera);
+  for (auto _ : state) {
+    for (int k = 0; k < kPoses; ++k) {
+      if (incidence) {
+        benchmark::DoNotOptimize(depth_camera.RenderWithIncidence(PoseOf(k)));
+      } else {
+        benchmark::DoNotOptimize(depth_camera.Render(PoseOf(k)));
+      }
+    }
+  }
+}
 
-BENCHMARK(RenderDepth)
-    ->ArgNames({"triangles", "isa", "threads"})
-    ->ArgsProduct({{12, 10'000, 100'000, 1'000'000}, {kAvx2, kAvx512}, {1, 2}})
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
-BENCHMARK(RenderDepthAndIncidence)
-    ->ArgNames({"triangles", "isa", "threads"})
-    ->ArgsProduct({{100'000}, {kAvx2, kAvx512}, {1, 2}})
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
-BENCHMARK(EmbreeAlone<8>)
-    ->ArgNames({"triangles", "isa"})
-    ->Args({100'000, kAvx2})
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(EmbreeAlone<16>)
-    ->ArgNames({"triangles", "isa"})
-    ->Args({100'000, kAvx512})
-    ->Unit(benchmark::kMillisecond);
+void AddCameraCase(int width_px, int triangles, RayIsa isa, bool incidence, bool slow) {
+  const PinholeCamera camera = CameraOfSize(width_px);
+  const std::string lanes = isa == RayIsa::kAvx512 ? "16 wide" : "8 wide";
+  const std::string size = std::to_string(camera.width_px) + "x" +
+                           std::to_string(camera.height_px) + ", " + std::to_string(triangles) +
+                           " triangles, " + lanes;
+  const std::string floor = "Embree's packets alone @ " + std::to_string(width_px) + ", " +
+                            std::to_string(triangles / 1000) + "k, " + lanes;
+  AddFloor(floor, [=](benchmark::State& state) {
+    if (isa == RayIsa::kAvx512) {
+      TracePackets<16>(camera, triangles, isa, state);
+    } else {
+      TracePackets<8>(camera, triangles, isa, state);
+    }
+  });
+  AddCase({"depth camera, 9 frames", size + (incidence ? ", angles" : ""), floor,
+           [=](benchmark::State& state) { RenderFrames(camera, triangles, isa, incidence, state); },
+           slow});
+}
+
+void AddNoiseCase(const std::string& name, const SensorOptions& options) {
+  AddFloor("640x480 image copied", [](benchmark::State& state) {
+    const DepthWalk& walk = DepthWalkOf(640, 480);
+    std::size_t k = 0;
+    DepthImage copy = walk.noisy[0];
+    for (auto _ : state) {
+      copy.z_m = walk.noisy[k++ % walk.noisy.size()].z_m;
+      benchmark::ClobberMemory();
+    }
+  });
+  AddCase({"depth noise", name, "640x480 image copied", [=](benchmark::State& state) {
+             const DepthNoise noise(options);
+             const DepthWalk& walk = DepthWalkOf(640, 480);
+             std::uint32_t frame = 0;
+             for (auto _ : state) {
+               benchmark::DoNotOptimize(
+                   noise.Apply(walk.clean[frame % walk.clean.size()], 1, frame));
+               ++frame;
+             }
+           }});
+}
+
+[[maybe_unused]] const bool added = [] {
+  for (const RayIsa isa : {RayIsa::kAvx2, RayIsa::kAvx512}) {
+    for (const int triangles : {10'000, 100'000, 1'000'000}) {
+      AddCameraCase(640, triangles, isa, false, triangles == 1'000'000);
+    }
+    AddCameraCase(320, 100'000, isa, false, false);
+    AddCameraCase(1280, 100'000, isa, false, true);
+    AddCameraCase(640, 100'000, isa, true, false);
+  }
+  for (const auto& [name, model] : {std::pair{"Nguyen", DepthNoiseModel::kNguyen},
+                                    {"Handa", DepthNoiseModel::kHanda},
+                                    {"D435", DepthNoiseModel::kD435},
+                                    {"Kinect v2", DepthNoiseModel::kKinectV2},
+                                    {"Azure", DepthNoiseModel::kAzure}}) {
+    SensorOptions options;
+    options.noise = model;
+    AddNoiseCase(name, options);
+  }
+  SensorOptions artifacts;
+  artifacts.flying_pixels = 0.5;
+  artifacts.shadow_baseline_m = 0.075;
+  AddNoiseCase("flying pixels and shadow", artifacts);
+  return true;
+}();
 
 }  // namespace
-}  // namespace depthgrid
+}  // namespace depthgrid::bench

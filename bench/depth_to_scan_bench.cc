@@ -1,69 +1,110 @@
-// Depth image to scan at 640x480, full image, tilted; beside a copy of the image, which is the
-// fastest anything can read and write it. Target: 0.2 ms at 4 GHz with 16-wide vectors.
-#include <benchmark/benchmark.h>
-
-#include <cstring>
-
+// Depth images to scans: hand-held tilt, Handa's noise. Floor: the image copied, the fastest
+// anything can read and write it.
+#include "bench/bench_data.h"
+#include "bench/bench_table.h"
 #include "mapper/core/rng.h"
-#include "mapper/scan/depth_to_scan.h"
-#include "tests/mapper/analytic_room.h"
+#include "mapper/scan/frame_scans.h"
 
-namespace depthgrid {
+namespace depthgrid::bench {
 namespace {
 
-const PinholeCamera kCamera;
+std::string SizeText(int width_px) {
+  return std::to_string(width_px) + "x" + std::to_string(width_px * 3 / 4);
+}
 
-Pose3 Pose() { return TiltedCamera({-1.0, 0.0, 0.2}, 1.15, RadFromDeg(12.0), RadFromDeg(4.0)); }
+std::string AddCopy(int width_px) {
+  const std::string name = SizeText(width_px) + " image copied";
+  AddFloor(name, [=](benchmark::State& state) {
+    const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
+    std::size_t k = 0;
+    DepthImage copy = walk.noisy[0];
+    for (auto _ : state) {
+      copy.z_m = walk.noisy[k++ % walk.noisy.size()].z_m;
+      benchmark::ClobberMemory();
+    }
+  });
+  return name;
+}
 
-DepthImage Image(double missing_share) {
-  AnalyticRoom room;
-  room.boxes.push_back({{1.0, -1.0, 0.0}, {1.5, -0.3, 0.5}});
-  DepthImage image = room.Render(kCamera, Pose());
+std::vector<DepthImage> WithHoles(std::vector<DepthImage> images, double share) {
   RandomStream random(1, RandomStage::kTest);
-  for (float& z_m : image.z_m) {
-    if (random.Uniform() < missing_share) z_m = kInvalidDepth;
+  for (DepthImage& image : images) {
+    for (float& z_m : image.z_m) {
+      if (random.Uniform() < share) z_m = kInvalidDepth;
+    }
   }
-  return image;
+  return images;
 }
 
-void CopyImage(benchmark::State& state) {
-  const DepthImage image = Image(0.0);
-  DepthImage copy = image;
-  for (auto _ : state) {
-    std::memcpy(copy.z_m.data(), image.z_m.data(), image.z_m.size() * sizeof(float));
-    benchmark::ClobberMemory();
+struct ScanCase {
+  std::string name;
+  ScanOptions options;
+  int width_px = 640;
+  double missing_share = 0.0;
+  bool clean = false;
+  bool slow = false;
+};
+
+void AddScanCase(const ScanCase& c) {
+  AddCase({"depth to scan", SizeText(c.width_px) + ", " + c.name, AddCopy(c.width_px),
+           [=](benchmark::State& state) {
+             const DepthWalk& walk = DepthWalkOf(c.width_px, c.width_px * 3 / 4);
+             std::vector<DepthImage> images = walk.noisy;
+             if (c.clean) {
+               for (std::size_t k = 0; k < images.size(); ++k) images[k] = walk.clean[k].depth;
+             }
+             images = WithHoles(std::move(images), c.missing_share);
+             const DepthToScan converter(walk.camera, c.options);
+             std::size_t k = 0;
+             for (auto _ : state) {
+               const std::size_t i = k++ % images.size();
+               benchmark::DoNotOptimize(converter.Convert(images[i], walk.poses[i]));
+             }
+           },
+           c.slow});
+}
+
+// Obstacle scan and level slice: what a frame costs.
+void AddFrameScansCase(int width_px, const std::string& name, const ScanOptions& options) {
+  AddCase({"depth to scan", SizeText(width_px) + ", " + name, AddCopy(width_px),
+           [=](benchmark::State& state) {
+             const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
+             std::vector<Frame> frames(walk.noisy.size());
+             for (std::size_t k = 0; k < frames.size(); ++k) {
+               frames[k].depth = std::make_shared<const DepthImage>(walk.noisy[k]);
+               frames[k].slam_from_camera = walk.poses[k];
+             }
+             FrameScanner scanner(walk.camera, options);
+             std::size_t k = 0;
+             for (auto _ : state) {
+               benchmark::DoNotOptimize(scanner.ScansOf(frames[k++ % frames.size()]));
+             }
+           }});
+}
+
+[[maybe_unused]] const bool added = [] {
+  const ScanOptions full;
+  ScanOptions centre_row;
+  centre_row.mode = ScanMode::kCentreRow;
+  ScanOptions row_band;
+  row_band.mode = ScanMode::kRowBand;
+  ScanOptions floor;
+  floor.floor = FloorSource::kImage;
+  for (const int width_px : {320, 640, 1280}) AddFrameScansCase(width_px, "both scans", full);
+  AddFrameScansCase(640, "both scans, floor seen", floor);
+  AddScanCase({"obstacles", full});
+  AddScanCase({"obstacles, no noise", full, 640, 0.0, true});
+  AddScanCase({"obstacles, 1 % missing", full, 640, 0.01});
+  AddScanCase({"obstacles, 33 % missing", full, 640, 0.33});
+  for (const int beams : {160, 1280}) {
+    ScanOptions options;
+    options.beams = beams;
+    AddScanCase({"obstacles, " + std::to_string(beams) + " beams", options});
   }
-}
-BENCHMARK(CopyImage)->Unit(benchmark::kMicrosecond);
-
-// Argument: percent of pixels missing at random.
-void ConvertFull(benchmark::State& state) {
-  const DepthImage image = Image(static_cast<double>(state.range(0)) / 100.0);
-  const DepthToScan converter(kCamera, {});
-  const Pose3 pose = Pose();
-  for (auto _ : state) benchmark::DoNotOptimize(converter.Convert(image, pose));
-}
-BENCHMARK(ConvertFull)->Arg(0)->Arg(1)->Arg(33)->Unit(benchmark::kMicrosecond);
-
-void ConvertCentreRow(benchmark::State& state) {
-  const DepthImage image = Image(0.0);
-  ScanOptions options;
-  options.mode = ScanMode::kCentreRow;
-  const DepthToScan converter(kCamera, options);
-  const Pose3 pose = Pose();
-  for (auto _ : state) benchmark::DoNotOptimize(converter.Convert(image, pose));
-}
-BENCHMARK(ConvertCentreRow)->Unit(benchmark::kMicrosecond);
-
-void FloorHeight(benchmark::State& state) {
-  const DepthImage image = Image(0.0);
-  ScanOptions options;
-  options.floor = FloorSource::kImage;
-  const DepthToScan converter(kCamera, options);
-  const Pose3 pose = Pose();
-  for (auto _ : state) benchmark::DoNotOptimize(converter.CameraHeightM(image, pose));
-}
-BENCHMARK(FloorHeight)->Unit(benchmark::kMicrosecond);
+  AddScanCase({"row band", row_band});
+  AddScanCase({"centre row", centre_row});
+  return true;
+}();
 
 }  // namespace
-}  // namespace depthgrid
+}  // namespace depthgrid::bench

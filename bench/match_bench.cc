@@ -1,121 +1,161 @@
-// Speed of scan matching: a furnished room mapped from 90 noisy scans, 58 degrees, 6 m, 5 cm cells.
-// Floors: the plain exhaustive search and Ceres in the same process.
-#include <benchmark/benchmark.h>
-
-#include <vector>
-
+// Scan matching: a furnished room mapped from its walk, 58 degrees, 6 m. References: the plain
+// exhaustive search and Ceres.
+#include "bench/bench_data.h"
+#include "bench/bench_table.h"
+#include "mapper/core/rng.h"
 #include "mapper/grid/probability_grid.h"
 #include "mapper/grid/scan_rasterizer.h"
 #include "mapper/match/correlative_search.h"
 #include "mapper/match/least_squares.h"
 #include "mapper/match/scan_matcher.h"
-#include "tests/mapper/match_world.h"
+#include "mapper/surfel/surfel_map.h"
 
-namespace depthgrid {
+namespace depthgrid::bench {
 namespace {
 
-PlanarLaser LaserOf(int beams) {
-  PlanarLaser laser;
-  laser.beams = beams;
-  laser.field_of_view_rad = RadFromDeg(58.0);
-  laser.sigma_of_range = 0.01;
-  return laser;
-}
+// Every sixth scan of the walk is matched, the others are mapped.
+constexpr std::size_t kMatchedEvery = 6;
 
-Pose2 PathPose(int k) { return {2.2 + 0.012 * k, 1.2 + 0.005 * k, 0.4 + 0.02 * k}; }
-
-const OccupancyMap& RoomMap() {
-  static ProbabilityGrid grid = [] {
-    ProbabilityGrid built({});
-    for (int k = 0; k < 90; ++k) {
-      const Scan scan =
-          ScanOf(FurnishedRoom(), PathPose(k), LaserOf(640), 1, static_cast<std::uint32_t>(k));
-      built.Insert(ScanRasterizer().Rasterize(scan, PathPose(k), 0.05));
+const OccupancyMap& RoomMap(double resolution_m) {
+  static std::map<double, ProbabilityGrid> grids;
+  auto grid = grids.find(resolution_m);
+  if (grid == grids.end()) {
+    GridOptions options;
+    options.resolution_m = resolution_m;
+    grid = grids.try_emplace(resolution_m, options).first;
+    const LaserWalk& walk = LaserWalkOf(640);
+    ScanRasterizer rasterizer;
+    for (std::size_t k = 0; k < walk.scans.size(); ++k) {
+      if (k % kMatchedEvery == 0) continue;
+      grid->second.Insert(rasterizer.Rasterize(*walk.scans[k], walk.truth[k], resolution_m));
     }
-    return built;
-  }();
-  return grid.map();
+  }
+  return grid->second.map();
 }
 
-struct Case {
-  Scan scan;
+struct MatchCase {
+  std::shared_ptr<const Scan> scan;
   MatchPoints points;
-  Pose2 predicted;
+  Pose2 predicted;  // some centimetres off
 };
 
-// Scans the map has not seen, each with a prediction some centimetres off.
-std::vector<Case> CasesOf(int beams) {
+const std::vector<MatchCase>& CasesOf(int beams) {
+  static std::map<int, std::vector<MatchCase>> all;
+  std::vector<MatchCase>& cases = all[beams];
+  if (!cases.empty()) return cases;
+  const LaserWalk& walk = LaserWalkOf(beams);
   RandomStream random(2, RandomStage::kTest);
-  std::vector<Case> cases(16);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Pose2 truth = PathPose(static_cast<int>(5 * i + 5));
-    cases[i].scan =
-        ScanOf(FurnishedRoom(), truth, LaserOf(beams), 3, static_cast<std::uint32_t>(i));
-    cases[i].points.Assign(cases[i].scan);
-    cases[i].predicted = truth * Pose2{random.Uniform(-0.03, 0.03), random.Uniform(-0.03, 0.03),
-                                       random.Uniform(-0.02, 0.02)};
+  for (std::size_t k = 0; k < walk.scans.size(); k += kMatchedEvery) {
+    MatchCase& c = cases.emplace_back();
+    c.scan = walk.scans[k];
+    c.points.Assign(*c.scan);
+    c.predicted = walk.truth[k] * Pose2{random.Uniform(-0.03, 0.03), random.Uniform(-0.03, 0.03),
+                                        random.Uniform(-0.02, 0.02)};
   }
   return cases;
 }
 
-// Arguments: beams, half window in degrees, half window in centimetres.
-void Correlative(benchmark::State& state, SearchMethod method) {
-  const std::vector<Case> cases = CasesOf(static_cast<int>(state.range(0)));
-  CorrelativeSearch search({.method = method,
-                            .window_m = 0.01 * static_cast<double>(state.range(2)),
-                            .window_deg = static_cast<double>(state.range(1))});
-  std::size_t i = 0;
-  for (auto _ : state) {
-    const Case& c = cases[i++ % cases.size()];
-    benchmark::DoNotOptimize(search.Search(c.points, ViewOf(RoomMap()), c.predicted));
-  }
-}
-void CorrelativeWindows(benchmark::internal::Benchmark* b) {
-  for (const int beams : {160, 320, 640}) b->Args({beams, 5, 10})->Args({beams, 20, 10});
-  b->Args({640, 20, 50});
-  b->Unit(benchmark::kMicrosecond);
-}
-BENCHMARK_CAPTURE(Correlative, fast, SearchMethod::kFast)->Apply(CorrelativeWindows);
-BENCHMARK_CAPTURE(Correlative, reference, SearchMethod::kReference)->Apply(CorrelativeWindows);
+struct Window {
+  int beams = 640;
+  int degrees = 20;
+  int centimetres = 10;
+  double resolution_m = 0.05;
+  bool slow = false;
+};
 
-// Argument: beams.
-void Bicubic(benchmark::State& state, SolverMethod method) {
-  const std::vector<Case> cases = CasesOf(static_cast<int>(state.range(0)));
-  const LeastSquaresOptions options{.method = method};
-  FastMatchCost cost;
-  std::size_t i = 0;
-  int iterations = 0;
-  for (auto _ : state) {
-    const Case& c = cases[i++ % cases.size()];
-    cost.Prepare(c.points, ViewOf(RoomMap()), c.predicted);
-    const LeastSquaresMatch match = SolveLeastSquares(options, cost, c.predicted, c.predicted);
-    iterations += match.iterations;
-    benchmark::DoNotOptimize(match);
-  }
-  state.counters["iterations"] = benchmark::Counter(iterations, benchmark::Counter::kAvgIterations);
+void AddSearchCase(const Window& w) {
+  const std::string size = std::to_string(w.beams) + " beams, +-" + std::to_string(w.degrees) +
+                           " deg, +-" + std::to_string(w.centimetres) + " cm, " +
+                           std::to_string(static_cast<int>(1000.0 * w.resolution_m)) + " mm";
+  const auto search = [=](SearchMethod method) {
+    return [=](benchmark::State& state) {
+      const auto& cases = CasesOf(w.beams);
+      const ProbabilityView view = ViewOf(RoomMap(w.resolution_m));
+      CorrelativeSearch correlative({.method = method,
+                                     .window_m = 0.01 * w.centimetres,
+                                     .window_deg = static_cast<double>(w.degrees)});
+      std::size_t i = 0;
+      for (auto _ : state) {
+        const MatchCase& c = cases[i++ % cases.size()];
+        benchmark::DoNotOptimize(correlative.Search(c.points, view, c.predicted));
+      }
+    };
+  };
+  AddFloor("exhaustive search @ " + size, search(SearchMethod::kReference));
+  AddCase({"correlative search", size, "exhaustive search @ " + size, search(SearchMethod::kFast),
+           w.slow});
 }
-BENCHMARK_CAPTURE(Bicubic, fast, SolverMethod::kFast)
-    ->Arg(160)
-    ->Arg(320)
-    ->Arg(640)
-    ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(Bicubic, ceres, SolverMethod::kCeres)
-    ->Arg(160)
-    ->Arg(320)
-    ->Arg(640)
-    ->Unit(benchmark::kMicrosecond);
 
-// The whole matcher at its defaults. Argument: beams.
-void MatchScan(benchmark::State& state) {
-  const std::vector<Case> cases = CasesOf(static_cast<int>(state.range(0)));
-  ScanMatcher matcher({});
-  std::size_t i = 0;
-  for (auto _ : state) {
-    const Case& c = cases[i++ % cases.size()];
-    benchmark::DoNotOptimize(matcher.Match(c.scan, ViewOf(RoomMap()), c.predicted));
-  }
+// Counts its cases from the start in every repetition, so that all do the same work.
+Loop SolveLoop(int beams, SolverMethod method) {
+  return [=](benchmark::State& state) {
+    const auto& cases = CasesOf(beams);
+    const ProbabilityView view = ViewOf(RoomMap(0.05));
+    const LeastSquaresOptions options{.method = method};
+    FastMatchCost cost;
+    std::size_t i = 0;
+    for (auto _ : state) {
+      const MatchCase& c = cases[i++ % cases.size()];
+      cost.Prepare(c.points, view, c.predicted);
+      benchmark::DoNotOptimize(SolveLeastSquares(options, cost, c.predicted, c.predicted));
+    }
+  };
 }
-BENCHMARK(MatchScan)->Arg(160)->Arg(320)->Arg(640)->Unit(benchmark::kMicrosecond);
+
+std::string AddCeres(int beams) {
+  const std::string name = "Ceres, bicubic, same scan @ " + std::to_string(beams);
+  AddFloor(name, SolveLoop(beams, SolverMethod::kCeres));
+  return name;
+}
+
+void AddSurfelCase(int beams) {
+  AddCase({"surfel match", std::to_string(beams) + " beams, with cutting the scan", AddCeres(beams),
+           [=](benchmark::State& state) {
+             const LaserWalk& walk = LaserWalkOf(640);
+             SurfelMap map({});
+             for (std::size_t k = 0; k < walk.scans.size(); ++k) {
+               if (k % kMatchedEvery == 0) continue;
+               map.Insert(walk.scans[k], walk.truth[k], Eigen::Matrix3d::Zero());
+             }
+             const auto& cases = CasesOf(beams);
+             Prediction prediction;
+             prediction.covariance = Eigen::Vector3d(4e-4, 4e-4, 1e-4).asDiagonal();
+             std::size_t i = 0;
+             for (auto _ : state) {
+               const MatchCase& c = cases[i++ % cases.size()];
+               prediction.map_from_base = c.predicted;
+               benchmark::DoNotOptimize(map.Match(c.scan, prediction));
+             }
+           }});
+}
+
+[[maybe_unused]] const bool added = [] {
+  for (const int beams : {160, 320, 640}) {
+    AddSearchCase({beams, 5});
+    AddSearchCase({beams, 20});
+  }
+  AddSearchCase({640, 20, 10, 0.025});
+  AddSearchCase({640, 20, 50, 0.05, true});
+  for (const int beams : {160, 320, 640}) {
+    AddCase({"least squares", std::to_string(beams) + " beams", AddCeres(beams),
+             SolveLoop(beams, SolverMethod::kFast)});
+  }
+  for (const int beams : {160, 320, 640}) {
+    AddCase({"paper match, search and solver", std::to_string(beams) + " beams", AddCeres(beams),
+             [=](benchmark::State& state) {
+               const auto& cases = CasesOf(beams);
+               const ProbabilityView view = ViewOf(RoomMap(0.05));
+               ScanMatcher matcher({});
+               std::size_t i = 0;
+               for (auto _ : state) {
+                 const MatchCase& c = cases[i++ % cases.size()];
+                 benchmark::DoNotOptimize(matcher.Match(*c.scan, view, c.predicted));
+               }
+             }});
+  }
+  for (const int beams : {160, 320, 640}) AddSurfelCase(beams);
+  return true;
+}();
 
 }  // namespace
-}  // namespace depthgrid
+}  // namespace depthgrid::bench

@@ -1,0 +1,73 @@
+#include "bench/bench_data.h"
+
+#include <map>
+#include <utility>
+
+#include "mapper/core/level.h"
+#include "sim/depth_noise.h"
+#include "tests/mapper/analytic_room.h"
+#include "tests/mapper/match_world.h"
+#include "tests/sim/test_meshes.h"
+
+namespace depthgrid::bench {
+namespace {
+
+constexpr int kTriangles = 100'000;
+constexpr int kDepthFrames = 12;
+constexpr int kLaserFrames = 600;
+
+DepthWalk MakeDepthWalk(int width_px, int height_px) {
+  static const RayScene room(test::ClutteredRoom(kTriangles));
+  DepthWalk walk;
+  SensorOptions sensor;
+  sensor.noise = DepthNoiseModel::kHanda;
+  sensor.width_px = width_px;
+  sensor.height_px = height_px;
+  walk.camera = SensorCamera(sensor);
+  const DepthCamera camera(room, walk.camera);
+  const DepthNoise noise(sensor);
+  for (int k = 0; k < kDepthFrames; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kDepthFrames;
+    const Pose2 base{2.45 + 0.4 * std::cos(turn_rad), 2.5 + 0.4 * std::sin(turn_rad), turn_rad};
+    walk.poses.push_back(TiltedCamera(base, 1.15, RadFromDeg(8.0 + 4.0 * std::sin(3.0 * turn_rad)),
+                                      RadFromDeg(4.0 * std::cos(2.0 * turn_rad))));
+    walk.clean.push_back(camera.RenderWithIncidence(walk.poses.back()));
+    walk.noisy.push_back(noise.Apply(walk.clean.back(), 1, static_cast<std::uint32_t>(k)));
+  }
+  return walk;
+}
+
+LaserWalk MakeLaserWalk(int beams) {
+  const PlanarWorld room = FurnishedRoom();
+  PlanarLaser laser;
+  laser.beams = beams;
+  laser.field_of_view_rad = RadFromDeg(58.0);
+  laser.sigma_of_range = 0.01;
+  LaserWalk walk;
+  for (int k = 0; k < kLaserFrames; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kLaserFrames;
+    walk.truth.push_back({3.0 + 0.8 * std::cos(turn_rad), 1.9 + 0.6 * std::sin(turn_rad),
+                          WrapAngle(turn_rad + 0.5 * kPi)});
+    walk.scans.push_back(std::make_shared<const Scan>(
+        ScanOf(room, walk.truth.back(), laser, 1, static_cast<std::uint32_t>(k))));
+  }
+  return walk;
+}
+
+}  // namespace
+
+const DepthWalk& DepthWalkOf(int width_px, int height_px) {
+  static std::map<std::pair<int, int>, DepthWalk> walks;
+  const auto [walk, is_new] = walks.try_emplace({width_px, height_px});
+  if (is_new) walk->second = MakeDepthWalk(width_px, height_px);
+  return walk->second;
+}
+
+const LaserWalk& LaserWalkOf(int beams) {
+  static std::map<int, LaserWalk> walks;
+  const auto [walk, is_new] = walks.try_emplace(beams);
+  if (is_new) walk->second = MakeLaserWalk(beams);
+  return walk->second;
+}
+
+}  // namespace depthgrid::bench

@@ -1,0 +1,45 @@
+// What the benchmarks work on, made once a run.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
+#include "mapper/core/frame.h"
+#include "sim/depth_camera.h"
+
+namespace depthgrid::bench {
+
+// A hand-held camera in a cluttered room of 100,000 triangles, tilted by up to 12 degrees. The
+// images are more than a second-level cache holds, as those from a camera are.
+struct DepthWalk {
+  PinholeCamera camera;
+  std::vector<Pose3> poses;
+  std::vector<DepthFrame> clean;
+  std::vector<DepthImage> noisy;  // Handa's model
+};
+// ICL-NUIM's field of view at this many pixels.
+const DepthWalk& DepthWalkOf(int width_px, int height_px);
+
+// A laser or levelled camera walking a closed round in a furnished room of 6 x 5 m: 1 % noise.
+struct LaserWalk {
+  std::vector<std::shared_ptr<const Scan>> scans;
+  std::vector<Pose2> truth;
+};
+const LaserWalk& LaserWalkOf(int beams);
+
+// Goes round and round a walk: the k-th motion, with an odometry that drifts slowly.
+class DriftingOdometry {
+ public:
+  Pose2 Next(const Pose2& motion) {
+    constexpr double kBiasM = 1e-4, kBiasRad = 1e-4;  // a frame: 3 mm and 0.2 degrees a second
+    pose_ = pose_ * motion * Pose2{kBiasM, -0.5 * kBiasM, kBiasRad};
+    return pose_;
+  }
+  void Start(const Pose2& pose) { pose_ = pose; }
+
+ private:
+  Pose2 pose_;
+};
+
+}  // namespace depthgrid::bench

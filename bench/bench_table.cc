@@ -1,0 +1,145 @@
+#include "bench/bench_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+namespace depthgrid::bench {
+namespace {
+
+// Filled by the static initialisers of the benchmark files, hence functions.
+std::vector<Case>& Cases() {
+  static std::vector<Case> cases;
+  return cases;
+}
+
+std::map<std::string, Loop>& Floors() {
+  static std::map<std::string, Loop> floors;
+  return floors;
+}
+
+std::string NameOf(const Case& row) { return row.stage + "/" + row.size; }
+std::string NameOfFloor(const std::string& floor) { return "floor/" + floor; }
+
+std::optional<double> Find(const Times& times, const std::string& name) {
+  const auto found = times.find(name);
+  return found == times.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<double> Find(const Ratios& ratios, const Case& row) {
+  const auto stage = ratios.find(row.stage);
+  if (stage == ratios.end()) return std::nullopt;
+  const auto found = stage->second.find(row.size);
+  return found == stage->second.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<double> RatioOf(const Times& times, const Case& row) {
+  const auto time = Find(times, NameOf(row));
+  const auto floor = Find(times, NameOfFloor(row.floor));
+  if (!time || !floor) return std::nullopt;
+  return *time / *floor;
+}
+
+std::string TimeText(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", seconds * 1e6);
+  if (seconds < 1.0) return fmt::format("{:.3g} ms", seconds * 1e3);
+  return fmt::format("{:.3g} s", seconds);
+}
+
+// Three digits are more than the measurement holds.
+double Rounded(double ratio) {
+  const double unit = std::pow(10.0, std::floor(std::log10(ratio)) - 2.0);
+  return std::round(ratio / unit) * unit;
+}
+
+// The part of a floor's name that says what it is; behind '@' stands for which case.
+std::string LabelOf(const std::string& floor) { return floor.substr(0, floor.find(" @")); }
+
+std::string ChangeText(double ratio, const std::optional<double>& before, double band) {
+  if (!before) return "new";
+  const double change = ratio / *before - 1.0;
+  if (change > band) return fmt::format("**{:+.0f} %**", 100.0 * change);
+  return fmt::format("{:+.0f} %", 100.0 * change);
+}
+
+}  // namespace
+
+void AddFloor(const std::string& name, const Loop& loop) { Floors().emplace(name, loop); }
+
+// Beside the other cases of its stage.
+void AddCase(const Case& row) {
+  const auto same_stage = [&](const Case& other) { return other.stage == row.stage; };
+  const auto last = std::find_if(Cases().rbegin(), Cases().rend(), same_stage);
+  Cases().insert(last == Cases().rend() ? Cases().end() : last.base(), row);
+}
+
+void RegisterCases(const std::string& filter, bool with_slow) {
+  std::set<std::string> floors;
+  for (const Case& row : Cases()) {
+    if (NameOf(row).find(filter) == std::string::npos || (row.slow && !with_slow)) continue;
+    benchmark::RegisterBenchmark(NameOf(row).c_str(), row.loop);
+    floors.insert(row.floor);
+  }
+  for (const std::string& floor : floors) {
+    benchmark::RegisterBenchmark(NameOfFloor(floor).c_str(), Floors().at(floor));
+  }
+}
+
+Ratios RatiosOf(const Times& times) {
+  Ratios ratios;
+  for (const Case& row : Cases()) {
+    if (const auto ratio = RatioOf(times, row)) ratios[row.stage][row.size] = Rounded(*ratio);
+  }
+  return ratios;
+}
+
+Ratios ReadRatios(const std::string& path) {
+  std::ifstream file(path);
+  return file ? nlohmann::json::parse(file).get<Ratios>() : Ratios();
+}
+
+void WriteRatios(const std::string& path, const Ratios& ratios) {
+  Ratios all = ReadRatios(path);
+  for (const auto& [stage, sizes] : ratios) {
+    for (const auto& [size, ratio] : sizes) all[stage][size] = ratio;
+  }
+  std::ofstream(path) << nlohmann::json(all).dump(2) << "\n";
+}
+
+std::string TablesOf(const Times& times, const Ratios& baseline, double band) {
+  std::string text;
+  std::string slower;
+  std::string faster;
+  std::string stage;
+  for (const Case& row : Cases()) {
+    const auto ratio = RatioOf(times, row);
+    if (!ratio) continue;
+    if (row.stage != stage) {
+      stage = row.stage;
+      text += fmt::format("\n| {:46} | {:>9} | {:>7} | {:32} | {:>8} |\n", stage, "time", "times",
+                          "its floor or reference", "change");
+      text += fmt::format("|{:-<48}|{:-<10}:|{:-<8}:|{:-<34}|{:-<9}:|\n", "", "", "", "", "");
+    }
+    const auto before = Find(baseline, row);
+    text += fmt::format("| {:46} | {:>9} | {:>7.3g} | {:32} | {:>8} |\n", row.size,
+                        TimeText(times.at(NameOf(row))), *ratio, LabelOf(row.floor),
+                        ChangeText(*ratio, before, band));
+    if (!before) continue;
+    const std::string line =
+        fmt::format("  {}, {}: {:.3g} -> {:.3g} times\n", row.stage, row.size, *before, *ratio);
+    if (*ratio > (1.0 + band) * *before) slower += line;
+    if (*ratio < *before / (1.0 + band)) faster += line;
+  }
+  text += fmt::format("\nSlower than the baseline by more than {:.0f} %:{}", 100.0 * band,
+                      slower.empty() ? " nothing\n" : "\n" + slower);
+  text += fmt::format("Faster than the baseline by more than {:.0f} %:{}", 100.0 * band,
+                      faster.empty() ? " nothing\n" : "\n" + faster);
+  return text;
+}
+
+}  // namespace depthgrid::bench
