@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 
 // A room's name from a path below the source root: the longest listed prefix.
 std::string RoomOf(const std::string& path) {
-  static const std::vector<std::string> kRooms = {"mapper/core/",  "mapper/io/", "mapper/", "sim/",
-                                                  "eval/metrics/", "eval/cli/",  "eval/"};
+  static const std::vector<std::string> kRooms = {
+      "mapper/core/",  "mapper/io/",       "mapper/",   "sim/",
+      "eval/metrics/", "eval/statistics/", "eval/cli/", "eval/"};
   for (const auto& room : kRooms) {
     if (path.starts_with(room)) return room;
   }
@@ -30,9 +31,13 @@ const std::map<std::string, std::set<std::string>>& Allowed() {
       {"mapper/", {"mapper/core/", "mapper/"}},
       {"sim/", {"mapper/core/", "mapper/io/", "sim/"}},
       {"eval/metrics/", {"mapper/core/", "eval/metrics/"}},
-      {"eval/", {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/"}},
+      {"eval/statistics/", {"mapper/core/", "eval/metrics/", "eval/statistics/"}},
+      {"eval/",
+       {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/statistics/",
+        "eval/"}},
       {"eval/cli/",
-       {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/", "eval/cli/"}},
+       {"mapper/core/", "mapper/io/", "mapper/", "sim/", "eval/metrics/", "eval/statistics/",
+        "eval/", "eval/cli/"}},
   };
   return kAllowed;
 }

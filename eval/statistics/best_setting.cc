@@ -1,0 +1,108 @@
+#include "eval/statistics/best_setting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/metrics/statistics.h"
+#include "eval/statistics/holm.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// So that smaller is always better.
+double Loss(double value, Better better) { return better == Better::kLower ? value : -value; }
+
+std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::uint32_t> seeds,
+                   Better better) {
+  std::size_t best = 0;
+  double best_sum = INFINITY;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    double sum = 0.0;
+    for (const std::uint32_t seed : seeds) sum += Loss(runs[k].by_seed[seed], better);
+    if (sum < best_sum) {
+      best_sum = sum;
+      best = k;
+    }
+  }
+  return best;
+}
+
+std::size_t BestOfAll(const std::vector<SettingRuns>& runs, Better better) {
+  std::vector<std::uint32_t> seeds(runs.front().by_seed.size());
+  for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = static_cast<std::uint32_t>(i);
+  return BestAt(runs, seeds, better);
+}
+
+// Quantiles that are members of the list: the one below at the low end, the one above at the high.
+ConfidenceInterval IntervalOfMembers(std::vector<double> settings, double confidence) {
+  std::sort(settings.begin(), settings.end());
+  const auto last = static_cast<double>(settings.size() - 1);
+  const double low = std::floor(0.5 * (1.0 - confidence) * last);
+  const double high = std::ceil(0.5 * (1.0 + confidence) * last);
+  return {settings[static_cast<std::size_t>(low)], settings[static_cast<std::size_t>(high)]};
+}
+
+std::vector<double> AdjustedAgainst(const std::vector<SettingRuns>& runs, std::size_t best) {
+  std::vector<double> p_values;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (k == best) continue;
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < runs[k].by_seed.size(); ++i) {
+      differences.push_back(runs[k].by_seed[i] - runs[best].by_seed[i]);
+    }
+    p_values.push_back(Wilcoxon(differences).p_value);
+  }
+  std::vector<double> adjusted = HolmAdjusted(p_values);
+  adjusted.insert(adjusted.begin() + static_cast<std::ptrdiff_t>(best), 1.0);
+  return adjusted;
+}
+
+}  // namespace
+
+BestSetting FindBestSetting(const std::vector<SettingRuns>& runs, Better better,
+                            const Resamples& resamples) {
+  Require(!runs.empty(), "the best is one of at least one setting");
+  for (const SettingRuns& r : runs) {
+    Require(r.by_seed.size() == resamples.size(), "every setting has the same seeds");
+  }
+  BestSetting best;
+  best.index = BestOfAll(runs, better);
+  best.setting = runs[best.index].setting;
+  best.share_best.assign(runs.size(), 0.0);
+  std::vector<double> winners;
+  for (int i = 0; i < resamples.count(); ++i) {
+    const std::size_t winner = BestAt(runs, resamples[i], better);
+    winners.push_back(runs[winner].setting);
+    best.share_best[winner] += 1.0 / resamples.count();
+  }
+  best.setting_interval = IntervalOfMembers(std::move(winners), resamples.confidence());
+  best.p_as_good = AdjustedAgainst(runs, best.index);
+  for (const SettingRuns& r : runs) {
+    best.regret_mean.push_back(Summarise(Regret(r.by_seed, runs[best.index].by_seed, better)).mean);
+  }
+  return best;
+}
+
+std::vector<double> BestOfEachSeed(const std::vector<SettingRuns>& runs, Better better) {
+  Require(!runs.empty(), "the best is one of at least one setting");
+  std::vector<double> best = runs.front().by_seed;
+  for (const SettingRuns& r : runs) {
+    for (std::size_t i = 0; i < best.size(); ++i) {
+      if (Loss(r.by_seed[i], better) < Loss(best[i], better)) best[i] = r.by_seed[i];
+    }
+  }
+  return best;
+}
+
+std::vector<double> Regret(const std::vector<double>& by_seed,
+                           const std::vector<double>& oracle_by_seed, Better better) {
+  Require(by_seed.size() == oracle_by_seed.size(), "both sides have the same seeds");
+  std::vector<double> regret;
+  for (std::size_t i = 0; i < by_seed.size(); ++i) {
+    regret.push_back(Loss(by_seed[i], better) - Loss(oracle_by_seed[i], better));
+  }
+  return regret;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,54 @@
+#include "eval/statistics/distributions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// Logarithm of the density of S, S^2 a chi-square over its degrees.
+double LogDensity(double s, double degrees) {
+  const double half = 0.5 * degrees;
+  return std::log(2.0) + half * std::log(half) - std::lgamma(half) + (degrees - 1.0) * std::log(s) -
+         half * s * s;
+}
+
+}  // namespace
+
+double NormalCdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+double StudentTCdf(double t, double degrees, double noncentrality) {
+  Require(degrees >= 1.0, "degrees of freedom are at least 1");
+  // S has a standard deviation below 1 / sqrt(2 degrees); twelve times sqrt(2) of it leave nothing.
+  const double reach = 12.0 / std::sqrt(degrees);
+  const double low = std::max(1e-12, 1.0 - reach);
+  const double high = 1.0 + reach;
+  constexpr int kIntervals = 2000;  // even; Simpson's rule, error below 1e-9 for all degrees
+  const double step = (high - low) / kIntervals;
+  double sum = 0.0;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double s = low + step * i;
+    const double weight = i == 0 || i == kIntervals ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
+    sum += weight * std::exp(LogDensity(s, degrees)) * NormalCdf(t * s - noncentrality);
+  }
+  return std::clamp(sum * step / 3.0, 0.0, 1.0);
+}
+
+double StudentTQuantile(double probability, double degrees) {
+  Require(probability > 0.0 && probability < 1.0, "a probability is between 0 and 1");
+  constexpr double kFarthest = 1e12;  // where the integral's own error would end the search
+  double low = -1.0;
+  double high = 1.0;
+  while (low > -kFarthest && StudentTCdf(low, degrees) > probability) low *= 2.0;
+  while (high < kFarthest && StudentTCdf(high, degrees) < probability) high *= 2.0;
+  constexpr int kHalvings = 60;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (StudentTCdf(middle, degrees) < probability ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace depthgrid

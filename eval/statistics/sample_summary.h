@@ -1,0 +1,23 @@
+// One grid point of a sweep in a few numbers: a metric over the seeds.
+#pragma once
+
+#include "eval/statistics/resamples.h"
+
+namespace depthgrid {
+
+struct SampleSummary {
+  int count = 0;
+  double mean = 0.0;
+  double median = 0.0;
+  double std = 0.0;  // of the sample (divided by n - 1); 0 for one value
+  double min = 0.0;
+  double max = 0.0;
+  // Bootstrap; empty for one value.
+  std::optional<ConfidenceInterval> mean_interval;
+  std::optional<ConfidenceInterval> median_interval;
+};
+
+// Finite values, at least one, as many as the resamples are of.
+SampleSummary SummariseSample(const std::vector<double>& values, const Resamples& resamples);
+
+}  // namespace depthgrid

@@ -1,0 +1,94 @@
+#include "eval/statistics/wilcoxon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "eval/statistics/distributions.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// Twice the ranks of the sizes of `differences`, in their order: mean ranks of ties are halves, so
+// these are whole numbers. Also the tie correction: the sum of t^3 - t over groups of t equal
+// sizes.
+struct Ranks {
+  std::vector<int> doubled;
+  double tie_sum = 0.0;
+};
+Ranks RanksOf(const std::vector<double>& differences) {
+  std::vector<std::size_t> order(differences.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto size_at = [&](std::size_t i) { return std::abs(differences[i]); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return size_at(a) < size_at(b); });
+  Ranks ranks;
+  ranks.doubled.resize(differences.size());
+  for (std::size_t first = 0; first < order.size();) {
+    std::size_t end = first + 1;
+    while (end < order.size() && size_at(order[end]) == size_at(order[first])) ++end;
+    // Ranks first + 1 .. end: twice their mean.
+    for (std::size_t i = first; i < end; ++i) {
+      ranks.doubled[order[i]] = static_cast<int>(first + 1 + end);
+    }
+    const auto tied = static_cast<double>(end - first);
+    ranks.tie_sum += tied * tied * tied - tied;
+    first = end;
+  }
+  return ranks;
+}
+
+// The share of all sign patterns whose doubled W+ is at most `limit`: the distribution is built by
+// adding one rank after the other.
+double ShareUpTo(const std::vector<int>& doubled_ranks, int limit) {
+  const int total = std::accumulate(doubled_ranks.begin(), doubled_ranks.end(), 0);
+  std::vector<double> share(static_cast<std::size_t>(total) + 1, 0.0);
+  share[0] = 1.0;
+  int reached = 0;
+  for (const int rank : doubled_ranks) {
+    reached += rank;
+    for (int sum = reached; sum >= 0; --sum) {
+      const auto at = static_cast<std::size_t>(sum);
+      const double with = sum >= rank ? share[static_cast<std::size_t>(sum - rank)] : 0.0;
+      share[at] = 0.5 * (share[at] + with);
+    }
+  }
+  return std::accumulate(share.begin(), share.begin() + limit + 1, 0.0);
+}
+
+double NormalPValue(int n, double statistic, double tie_sum) {
+  const double mean = 0.25 * n * (n + 1.0);
+  const double variance = (n * (n + 1.0) * (2.0 * n + 1.0) - 0.5 * tie_sum) / 24.0;
+  return 2.0 * NormalCdf(-std::abs(statistic - mean) / std::sqrt(variance));
+}
+
+}  // namespace
+
+WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod method) {
+  std::vector<double> ranked;
+  for (const double d : differences) {
+    Require(std::isfinite(d), "differences are finite");
+    if (d != 0.0) ranked.push_back(d);
+  }
+  WilcoxonResult result;
+  result.pairs = static_cast<int>(ranked.size());
+  result.zeros = static_cast<int>(differences.size() - ranked.size());
+  if (ranked.empty()) return result;
+  const Ranks ranks = RanksOf(ranked);
+  int plus = 0;
+  for (std::size_t i = 0; i < ranked.size(); ++i) plus += ranked[i] > 0.0 ? ranks.doubled[i] : 0;
+  const int total = result.pairs * (result.pairs + 1);
+  const int smaller = std::min(plus, total - plus);
+  result.rank_sum = 0.5 * plus;
+  result.statistic = 0.5 * smaller;
+  result.rank_biserial = (2.0 * plus - total) / total;
+  result.exact = method == WilcoxonMethod::kExact ||
+                 (method == WilcoxonMethod::kAuto && result.pairs <= kWilcoxonExactPairs);
+  result.p_value = result.exact ? std::min(1.0, 2.0 * ShareUpTo(ranks.doubled, smaller))
+                                : NormalPValue(result.pairs, result.statistic, ranks.tie_sum);
+  return result;
+}
+
+}  // namespace depthgrid
