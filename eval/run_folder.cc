@@ -89,10 +89,10 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);
   WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.scene, truth);
-  WriteRunReport(folder.work().string());
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
+  WriteRunReport(folder.work().string());  // of what the folder holds by now
 }
 
 }  // namespace depthgrid

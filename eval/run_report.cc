@@ -5,59 +5,42 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "eval/base64.h"
 #include "eval/map_picture.h"
+#include "eval/report_json.h"
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
+#include "eval/worst_frames.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
-#include "mapper/io/png.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = ReportJson;
 
 constexpr int kMapMarginCells = 4;
 constexpr double kSameStampS = 1e-6;  // as files write stamps
 
-// As many digits as a picture can show; NaN is null.
-Json Rounded(double value, int decimals) {
-  if (!std::isfinite(value)) return nullptr;
-  const double scale = std::pow(10.0, decimals);
-  return std::round(value * scale) / scale;
-}
-
-Json RoundedAll(const std::vector<double>& values, int decimals) {
-  Json json = Json::array();
-  for (const double value : values) json.push_back(Rounded(value, decimals));
-  return json;
-}
-
-std::string PngUri(const std::string& png) { return "data:image/png;base64," + Base64(png); }
-
 Json MapJson(const RunFiles& run) {
   GridGeometry part = KnownPart(run.map, kMapMarginCells);
   if (run.truth_map) part = Union(part, KnownPart(*run.truth_map, kMapMarginCells));
-  const auto uri = [](const RgbImage& image) { return PngUri(EncodeRgbPng(image)); };
   Json json;
   json["resolution"] = part.resolution_m;
   json["origin"] = {part.OriginM().x(), part.OriginM().y()};
   json["width"] = part.width_cells;
   json["height"] = part.height_cells;
-  json["layers"]["estimate"] = uri(PictureOf(run.map, part));
+  json["layers"]["estimate"] = PngUri(PictureOf(run.map, part));
   if (run.truth_map) {
-    json["layers"]["truth"] = uri(PictureOf(*run.truth_map, part));
+    json["layers"]["truth"] = PngUri(PictureOf(*run.truth_map, part));
     json["layers"]["difference"] =
-        uri(DifferencePicture(*run.truth_map, run.map, run.observable, part));
+        PngUri(DifferencePicture(*run.truth_map, run.map, run.observable, part));
   }
-  if (run.observable) json["layers"]["observable"] = uri(PictureOf(*run.observable, part));
+  if (run.observable) json["layers"]["observable"] = PngUri(PictureOf(*run.observable, part));
   return json;
 }
 
@@ -85,6 +68,13 @@ Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
   return json;
 }
 
+std::vector<std::optional<Pose2>> BasesOf(const std::vector<std::optional<Pose3>>& poses) {
+  std::vector<std::optional<Pose2>> bases;
+  for (const auto& pose : poses)
+    bases.push_back(pose ? std::optional(BaseOf(*pose)) : std::nullopt);
+  return bases;
+}
+
 std::vector<double> FinalErrors(const std::vector<std::optional<Pose3>>& est,
                                 const std::vector<std::optional<Pose3>>& truth) {
   std::vector<double> errors_m;
@@ -109,29 +99,6 @@ Json FramesJson(const CsvTable& frames, const std::vector<double>& final_errors_
     json["est_error_m"] = RoundedAll(final_errors_m, 5);
   }
   return json;
-}
-
-// Rows with the largest values, none nearer to another than a fiftieth of the run: neighbours of a
-// bad frame are bad for the same reason.
-std::vector<std::size_t> WorstRows(const std::vector<double>& badness) {
-  constexpr std::size_t kHowMany = 10;
-  constexpr std::size_t kApartShare = 50;
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < badness.size(); ++i) {
-    if (std::isfinite(badness[i])) order.push_back(i);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return badness[a] > badness[b]; });
-  const std::size_t apart = std::max<std::size_t>(1, badness.size() / kApartShare);
-  std::vector<std::size_t> worst;
-  for (const std::size_t row : order) {
-    const bool near = std::any_of(worst.begin(), worst.end(), [&](std::size_t other) {
-      return (row > other ? row - other : other - row) < apart;
-    });
-    if (!near) worst.push_back(row);
-    if (worst.size() == kHowMany) break;
-  }
-  return worst;
 }
 
 // Hits of some scans in base axes, whole centimetres: an even spread, and the worst frames'.
@@ -213,6 +180,16 @@ std::string SubtitleOf(const Config& settings, std::size_t frames) {
   return text;
 }
 
+// All else of run.yaml does not matter to what a frame was matched against.
+std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings) {
+  GridOptions grid;
+  SubmapOptions submap;
+  Config mapper = settings.Take("mapper");
+  mapper.Take("grid").Read(grid);
+  mapper.Take("submap").Read(submap);
+  return {grid, submap};
+}
+
 Json RunJson(const RunFiles& run, const Config& settings) {
   const std::vector<double>& stamps_s = run.frames.Column("stamp_s");
   const auto est = PosesAt(run.est, stamps_s);
@@ -226,10 +203,12 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["paths"]["online"] = PathJson(PosesAt(run.online, stamps_s));
   json["paths"]["est"] = PathJson(est);
   std::vector<double> final_errors_m;
+  std::vector<std::optional<Pose2>> true_bases;
   if (run.truth) {
     const auto truth = PosesAt(*run.truth, stamps_s);
     json["paths"]["truth"] = PathJson(truth);
     final_errors_m = FinalErrors(est, truth);
+    true_bases = BasesOf(truth);
   }
   json["frames"] = FramesJson(run.frames, final_errors_m);
   std::vector<double> badness = final_errors_m;
@@ -237,12 +216,23 @@ Json RunJson(const RunFiles& run, const Config& settings) {
     for (const double score : run.frames.Column("match_score")) badness.push_back(1.0 - score);
   }
   const std::vector<std::size_t> worst = WorstRows(badness);
-  json["worst"] = worst;
+  const auto [grid, submap] = GridSettingsOf(settings);
+  json["worst"] = WorstFramesJson(run, worst, true_bases, grid, submap);
   json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
                                : "By the match score, the lowest first.";
   json["scans"] = ScansJson(run, worst);
   json["samples"] = SamplesJson(run.folder);
   return json;
+}
+
+// timing.csv as a script beside the page: times differ from run to run, the page does not.
+void WriteTimesScript(const std::string& folder) {
+  if (!fs::exists(folder + "/timing.csv")) return;
+  Json json;
+  for (const auto& [name, values] : ReadCsv(folder + "/timing.csv").columns) {
+    if (name != "frame") json[name] = RoundedAll(values, 1);
+  }
+  WriteFile(folder + "/timing.js", "window.RUN_TIMES = " + json.dump() + ";\n");
 }
 
 }  // namespace
@@ -256,6 +246,7 @@ void WriteRunReport(const std::string& folder) {
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "is not valid JSON");
   }
+  WriteTimesScript(folder);
   WriteFile(folder + "/report.html", FillPage("run.html", TitleOf(settings), json.dump()));
 }
 

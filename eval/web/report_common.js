@@ -14,29 +14,42 @@ function make(tag, attributes = {}, ...children) {
 }
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
-const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits) : "–");
+const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
+// As many digits as tell something: 4 significant ones, no trailing zeros.
+const compact = (value) => (isNumber(value) ? String(Number(value.toPrecision(4))) : "–");
 // Metres as a person says them.
 function metres(value) {
   if (!isNumber(value)) return "–";
   const size = Math.abs(value);
-  if (size < 0.01) return `${(value * 1000).toFixed(1)} mm`;
-  if (size < 1) return `${(value * 100).toFixed(1)} cm`;
-  return `${value.toFixed(2)} m`;
+  if (size < 0.01) return `${fixed(value * 1000, 1)} mm`;
+  if (size < 1) return `${fixed(value * 100, 1)} cm`;
+  return `${fixed(value, 2)} m`;
 }
 const percent = (value) => (isNumber(value) ? `${(value * 100).toFixed(1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-const themeListeners = [];
+// ---- theme ----
+const themeListeners = [];  // redraw what is painted in the theme's colours
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
+  const button = byId("theme");
+  if (button) button.textContent = theme === "dark" ? "Light" : "Dark";
   for (const listener of themeListeners) listener();
 }
 function initTheme() {
   const wanted = window.matchMedia("(prefers-color-scheme: dark)");
+  const current = () => document.documentElement.dataset.theme;
   setTheme(wanted.matches ? "dark" : "light");
   wanted.addEventListener("change", () => setTheme(wanted.matches ? "dark" : "light"));
-  byId("theme").addEventListener("click", () =>
-    setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+  byId("theme").addEventListener("click", () => setTheme(current() === "dark" ? "light" : "dark"));
+  // Paper is white, and nothing on it can be opened.
+  let onScreen = null;
+  window.addEventListener("beforeprint", () => {
+    onScreen = current();
+    setTheme("light");
+    for (const details of document.querySelectorAll("details")) details.open = true;
+  });
+  window.addEventListener("afterprint", () => { if (onScreen) setTheme(onScreen); });
 }
 
 function tableOf(head, rows) {
@@ -45,31 +58,167 @@ function tableOf(head, rows) {
     make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((cell) => make("td", {}, cell))))));
 }
 
+// ---- painting on a canvas ----
+// Stops of matplotlib's viridis (CC0): even in brightness, readable without colour vision.
+const VIRIDIS = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81], [253, 231, 37]];
+function viridis(share) {
+  const position = Math.max(0, Math.min(1, share)) * (VIRIDIS.length - 1);
+  const below = Math.min(Math.floor(position), VIRIDIS.length - 2);
+  return VIRIDIS[below].map((low, i) => Math.round(low + (position - below) * (VIRIDIS[below + 1][i] - low)));
+}
+const rgb = (parts) => `rgb(${parts.join(",")})`;
+
+// A canvas of that many CSS pixels; paint(context, width, height) is called now and whenever the
+// theme changes.
+function paintedCanvas(width, height, label, paint) {
+  const canvas = make("canvas", { role: "img", "aria-label": label });
+  const redraw = () => {
+    canvas.width = Math.round(width * devicePixelRatio);
+    canvas.height = Math.round(height * devicePixelRatio);
+    const context = canvas.getContext("2d");
+    context.scale(devicePixelRatio, devicePixelRatio);
+    context.font = "11px system-ui, sans-serif";
+    paint(context, width, height);
+  };
+  canvas.style.width = `${width}px`;
+  canvas.style.maxWidth = "100%";
+  themeListeners.push(redraw);
+  canvas.redraw = redraw;
+  redraw();
+  return canvas;
+}
+
+// ---- plots ----
+const allPlots = [];
+
+function seriesOf(s) {
+  return {
+    label: s.label, stroke: colour(s.colour), width: 1.6, dash: s.dash, show: s.show !== false,
+    points: { show: Boolean(s.points), size: 7, fill: colour(s.colour) }, spanGaps: Boolean(s.spanGaps), paths: s.onlyPoints ? () => null : undefined,
+    value: (u, v) => (isNumber(v) ? `${s.digits === undefined ? compact(v) : v.toFixed(s.digits)}${s.unit ? ` ${s.unit}` : ""}` : "–"),
+  };
+}
+
+// Whiskers from low to high at every point of the series that have them.
+function drawIntervals(u, series) {
+  series.forEach((s, k) => {
+    if (!s.low || !u.series[k + 1].show) return;
+    u.ctx.save();
+    u.ctx.beginPath();
+    u.ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+    u.ctx.clip();
+    u.ctx.strokeStyle = colour(s.colour);
+    u.ctx.lineWidth = 1.5 * devicePixelRatio;
+    u.ctx.beginPath();
+    u.data[0].forEach((x, i) => {
+      if (!isNumber(s.low[i]) || !isNumber(s.high[i])) return;
+      const px = u.valToPos(x, "x", true);
+      const [low, high] = [u.valToPos(s.low[i], "y", true), u.valToPos(s.high[i], "y", true)];
+      const cap = 3 * devicePixelRatio;
+      u.ctx.moveTo(px, low); u.ctx.lineTo(px, high);
+      u.ctx.moveTo(px - cap, low); u.ctx.lineTo(px + cap, low);
+      u.ctx.moveTo(px - cap, high); u.ctx.lineTo(px + cap, high);
+    });
+    u.ctx.stroke();
+    u.ctx.restore();
+  });
+}
+
+// The y range must hold the whiskers too, not only the points.
+function rangeWithIntervals(series) {
+  return (u, low, high) => {
+    series.forEach((s, k) => {
+      if (!s.low || !u.series[k + 1].show) return;
+      for (const v of [...s.low, ...s.high]) if (isNumber(v)) { low = Math.min(low, v); high = Math.max(high, v); }
+    });
+    return uPlot.rangeNum(low, high, 0.1, true);
+  };
+}
+
+// The legend's names can be reached and switched without a mouse.
+function openLegendToKeys(u, title) {
+  u.root.querySelectorAll(".u-legend .u-series").forEach((row, k) => {
+    if (k === 0) return;
+    const label = row.querySelector("th");
+    label.tabIndex = 0;
+    label.setAttribute("role", "button");
+    const say = () => label.setAttribute("aria-label", `${u.series[k].label}: ${u.series[k].show ? "shown" : "hidden"} in ${title}`);
+    label.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      u.setSeries(k, { show: !u.series[k].show });
+      say();
+    });
+    say();
+  });
+}
+
+function zoomPlot(u, x, factor) {
+  const { min, max } = u.scales.x;
+  const at = u.cursor.idx != null ? x[u.cursor.idx] : (min + max) / 2;
+  const [all_min, all_max] = [x[0], x[x.length - 1]];
+  u.setScale("x", { min: Math.max(all_min, at - (at - min) * factor), max: Math.min(all_max, at + (max - at) * factor) });
+}
+
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash,
-// digits, unit}. Lines stop where a value is null. Plots of one `sync` key share their cursor.
-function drawPlot(container, { title, x, xLabel, series, height = 190, sync, onCursor }) {
-  const box = make("div", { class: "plot" }, make("h3", {}, title));
+// digits, unit, points, low, high (ends of intervals)}. Lines stop where a value is null. Plots of
+// one `sync` key share their cursor. `xNames` replaces the numbers of the x axis, one a value of x.
+// Keys: left and right move the cursor, + and - zoom, 0 shows everything.
+function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX }) {
+  const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
+  const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title));
   container.append(box);
   let plot = null;
+  let quiet = false;  // the cursor moves because somebody else moved it
+  const width = () => Math.max(280, container.clientWidth || 1100);
+  const options = () => {
+    const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), size: 5 } };
+    return {
+      width: width(), height,
+      cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
+      scales: { x: { time: false, distr: logX ? 3 : 1 }, y: series.some((s) => s.low) ? { range: rangeWithIntervals(series) } : {} },
+      axes: [
+        { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
+          ...(xNames ? { splits: () => x, values: () => xNames } : {}) },
+        { ...axis, label: yLabel, labelSize: yLabel ? 18 : 0, labelGap: 2, size: 52 }],
+      series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map(seriesOf)],
+      hooks: {
+        setCursor: onCursor ? [(u) => { if (!quiet && u.cursor.event && u.cursor.idx != null) { shown = u.cursor.idx; onCursor(shown); } }] : [],
+        draw: [(u) => drawIntervals(u, series)],
+        ready: [() => { if (shown !== null) setTimeout(() => show(shown)); }],
+      },
+    };
+  };
   const draw = () => {
     if (plot) plot.destroy();
-    const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid") } };
-    plot = new uPlot({
-      width: Math.max(280, container.clientWidth || 1100),
-      height,
-      cursor: sync ? { sync: { key: sync } } : {},
-      scales: { x: { time: false } },
-      axes: [{ ...axis, label: xLabel, labelSize: 22, size: 40 }, { ...axis, size: 64 }],
-      series: [{ label: xLabel, value: (u, v) => fixed(v, 2) }, ...series.map((s) => ({
-        label: s.label, stroke: colour(s.colour), width: 1.6, dash: s.dash, show: s.show !== false,
-        points: { show: false }, spanGaps: false,
-        value: (u, v) => (isNumber(v) ? `${v.toFixed(s.digits ?? 3)}${s.unit ? ` ${s.unit}` : ""}` : "–"),
-      }))],
-      hooks: onCursor ? { setCursor: [(u) => { if (u.cursor.event && u.cursor.idx != null) onCursor(u.cursor.idx); }] } : {},
-    }, [x, ...series.map((s) => s.values)], box);
+    plot = new uPlot(options(), [x, ...series.map((s) => s.values)], box);
+    openLegendToKeys(plot, title);
+  };
+  let shown = null;
+  const show = (i) => {
+    if (!isNumber(x[i])) return;
+    shown = i;
+    quiet = true;
+    plot.setCursor({ left: plot.valToPos(x[i], "x"), top: plot.over.clientHeight / 2 }, false);
+    quiet = false;
   };
   draw();
+  box.addEventListener("keydown", (event) => {
+    if (event.target !== box) return;
+    const step = { ArrowRight: 1, ArrowLeft: -1, PageUp: 30, PageDown: -30 }[event.key];
+    if (step) {
+      const i = Math.max(0, Math.min(x.length - 1, (shown ?? plot.cursor.idx ?? 0) + step));
+      show(i);
+      if (onCursor) onCursor(i);
+    } else if (event.key === "+" || event.key === "=") zoomPlot(plot, x, 0.7);
+    else if (event.key === "-") zoomPlot(plot, x, 1 / 0.7);
+    else if (event.key === "0") plot.setScale("x", { min: x[0], max: x[x.length - 1] });
+    else return;
+    event.preventDefault();
+  });
   themeListeners.push(draw);
-  new ResizeObserver(() => plot.setSize({ width: Math.max(280, container.clientWidth), height })).observe(container);
+  new ResizeObserver(() => plot.setSize({ width: width(), height })).observe(container);
+  allPlots.push({ box, show });
   return box;
 }

@@ -1,0 +1,82 @@
+#include "eval/frame_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/grid/scan_rasterizer.h"
+
+namespace depthgrid {
+namespace {
+
+// frames.csv has a row an input frame; scans.bin names frames by the same index.
+std::optional<std::size_t> RowOf(const CsvTable& frames, int frame) {
+  const std::vector<double>& index = frames.Column("frame");
+  const auto found = std::lower_bound(index.begin(), index.end(), frame);
+  if (found == index.end() || *found != frame) return std::nullopt;
+  return static_cast<std::size_t>(found - index.begin());
+}
+
+std::optional<Pose2> PoseAt(const CsvTable& frames, std::size_t row) {
+  const Pose2 pose = {frames.Column("map_x_m")[row], frames.Column("map_y_m")[row],
+                      frames.Column("map_yaw_rad")[row]};
+  if (!std::isfinite(pose.x_m)) return std::nullopt;
+  return pose;
+}
+
+bool LoopsBetween(const CsvTable& frames, std::size_t first_row, std::size_t last_row) {
+  const std::vector<double>& loops = frames.Column("loops_accepted");
+  return std::any_of(loops.begin() + static_cast<std::ptrdiff_t>(first_row),
+                     loops.begin() + static_cast<std::ptrdiff_t>(last_row) + 1,
+                     [](double accepted) { return accepted > 0.0; });
+}
+
+}  // namespace
+
+std::optional<FrameAtTheTime> FrameAtRow(const CsvTable& frames, std::size_t row) {
+  const std::optional<Pose2> estimate = PoseAt(frames, row);
+  if (!estimate) return std::nullopt;
+  FrameAtTheTime frame;
+  frame.map_from_base = *estimate;
+  const Eigen::Vector3d innovation = {frames.Column("innovation_forward_m")[row],
+                                      frames.Column("innovation_left_m")[row],
+                                      frames.Column("innovation_yaw_rad")[row]};
+  if (!innovation.allFinite()) return frame;
+  const Eigen::Vector3d gain = {frames.Column("gain_forward")[row], frames.Column("gain_left")[row],
+                                frames.Column("gain_yaw")[row]};
+  // Eq. 3 backwards: estimate = prediction * (K innovation), match = prediction * innovation. Of a
+  // full gain matrix the table has the diagonal only.
+  const Pose2 taken = Pose2::FromVector(gain.cwiseProduct(innovation));
+  frame.predicted_map_from_base = *estimate * Inverse(taken);
+  frame.matched_map_from_base = *frame.predicted_map_from_base * Pose2::FromVector(innovation);
+  return frame;
+}
+
+OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const GridOptions& grid,
+                         const SubmapOptions& submap) {
+  Require(scan_index < run.scans.size(), "a scan of the run");
+  const auto scans = static_cast<std::size_t>(submap.scans);
+  const std::size_t submap_index = scan_index / scans;
+  const std::size_t first = submap_index > 0 ? (submap_index - 1) * scans : 0;
+  const std::optional<std::size_t> first_row = RowOf(run.frames, run.scans[first].frame);
+  const std::optional<std::size_t> row = RowOf(run.frames, run.scans[scan_index].frame);
+  const std::optional<Pose2> pose_then = row ? PoseAt(run.frames, *row) : std::nullopt;
+  if (!first_row || !pose_then) return {};
+  const bool corrected = LoopsBetween(run.frames, *first_row, *row);
+  const Pose2 then_from_final = *pose_then * Inverse(run.scans[scan_index].map_from_base);
+
+  ActiveSubmaps submaps(submap, grid);
+  submaps.RestartAt(static_cast<int>(first));
+  ScanRasterizer rasterizer;
+  for (std::size_t i = first; i < scan_index; ++i) {
+    const StoredScan& stored = run.scans[i];
+    const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
+    const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
+    const Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
+    submaps.Insert(rasterizer.Rasterize(stored.scan, pose, grid.resolution_m));
+  }
+  ProbabilityGrid* matching = submaps.matching();
+  return matching != nullptr ? matching->map() : OccupancyMap{};
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,19 @@
+// What the parts of a run's page share: its data and what is chosen.
+"use strict";
+const RUN = JSON.parse(byId("data").textContent);
+const frames = RUN.frames;
+const frameCount = frames.frame.length;
+// The map is light in both themes, so what is drawn on it keeps its colours.
+const MAP_COLOURS = { truth: "#009e73", slam: "#d98c00", online: "#56b4e9", est: "#0072b2", scan: "#d4002a", missed: "#d55e00", invented: "#cc79a7" };
+let currentFrame = 0;
+let currentLayer = "estimate";
+
+const LAYERS = [
+  ["estimate", "Estimate"], ["truth", "Truth"], ["difference", "Difference"],
+  ["observable", "Observable"],
+].filter(([name]) => RUN.map.layers[name]);
+const PATHS = [
+  ["truth", "Truth", "truth"], ["slam", "SLAM, as it came in", "slam"],
+  ["online", "Estimate at the time", "online"], ["est", "Estimate at the end", "est"],
+].filter(([name]) => RUN.paths[name]);
+const shownPaths = new Set(["scan", ...PATHS.map(([name]) => name).filter((name) => name !== "online")]);

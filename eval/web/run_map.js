@@ -1,0 +1,248 @@
+// The map of a run: layers, trajectories, the chosen frame.
+"use strict";
+const canvas = byId("map");
+const images = {};
+const view = { zoom: 1, x: 0, y: 0 };  // pan in canvas pixels
+
+function cellSize() { return (canvas.width / RUN.map.width) * view.zoom; }
+function toCanvas(x, y) {
+  const size = cellSize();
+  const column = (x - RUN.map.origin[0]) / RUN.map.resolution;
+  const row = RUN.map.height - (y - RUN.map.origin[1]) / RUN.map.resolution;
+  return [view.x + column * size, view.y + row * size];
+}
+
+function drawPath(context, path, stroke) {
+  context.strokeStyle = stroke;
+  context.lineWidth = 2 * devicePixelRatio;
+  context.lineJoin = "round";
+  context.beginPath();
+  let pen = false;
+  for (let i = 0; i < path.x.length; ++i) {
+    if (path.x[i] === null) { pen = false; continue; }
+    const [u, v] = toCanvas(path.x[i], path.y[i]);
+    if (pen) context.lineTo(u, v); else context.moveTo(u, v);
+    pen = true;
+  }
+  context.stroke();
+}
+
+function drawPose(context, path, i, fill) {
+  if (!path || path.x[i] === null) return;
+  const [u, v] = toCanvas(path.x[i], path.y[i]);
+  const yaw = path.yaw[i];
+  const length = 11 * devicePixelRatio;
+  const corner = (angle, reach) => [u + reach * Math.cos(yaw + angle), v - reach * Math.sin(yaw + angle)];
+  context.beginPath();
+  context.moveTo(...corner(0, length));
+  context.lineTo(...corner(2.5, length * 0.8));
+  context.lineTo(...corner(-2.5, length * 0.8));
+  context.closePath();
+  context.fillStyle = fill;
+  context.fill();
+  context.strokeStyle = "#fff";
+  context.lineWidth = devicePixelRatio;
+  context.stroke();
+}
+
+// The scan nearest to a frame: not every frame's is kept.
+function scanNear(i) {
+  let best = -1;
+  for (let k = 0; k < RUN.scans.length; ++k) {
+    if (best < 0 || Math.abs(RUN.scans[k].row - i) < Math.abs(RUN.scans[best].row - i)) best = k;
+  }
+  return best < 0 ? null : RUN.scans[best];
+}
+
+function drawScan(context, scan, path, fill) {
+  if (!scan || !path || path.x[scan.row] === null) return;
+  const c = Math.cos(path.yaw[scan.row]);
+  const s = Math.sin(path.yaw[scan.row]);
+  const radius = 1.8 * devicePixelRatio;
+  context.fillStyle = fill;
+  for (let k = 0; k + 1 < scan.cm.length; k += 2) {
+    const forward = scan.cm[k] / 100;
+    const left = scan.cm[k + 1] / 100;
+    const [u, v] = toCanvas(path.x[scan.row] + c * forward - s * left, path.y[scan.row] + s * forward + c * left);
+    context.fillRect(u - radius, v - radius, 2 * radius, 2 * radius);
+  }
+}
+
+function drawScaleBar(context) {
+  const pixelsPerMetre = cellSize() / RUN.map.resolution;
+  const wanted = canvas.width / 4 / pixelsPerMetre;
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const length = [5, 2, 1].map((f) => f * power).find((l) => l <= wanted) ?? power;
+  const pixels = length * pixelsPerMetre;
+  const d = devicePixelRatio;
+  const left = 12 * d;
+  const bottom = canvas.height - 14 * d;
+  context.fillStyle = "rgba(255,255,255,0.85)";
+  context.fillRect(left - 6 * d, bottom - 22 * d, pixels + 12 * d, 30 * d);
+  context.fillStyle = "#111";
+  context.fillRect(left, bottom, pixels, 3 * d);
+  context.font = `${13 * d}px system-ui, sans-serif`;
+  context.fillText(length >= 1 ? `${length} m` : `${Math.round(length * 100)} cm`, left, bottom - 6 * d);
+}
+
+let drawPending = false;
+function requestDraw() {
+  if (drawPending) return;
+  drawPending = true;
+  requestAnimationFrame(() => { drawPending = false; drawMap(); });
+}
+
+function drawMap() {
+  const context = canvas.getContext("2d");
+  context.imageSmoothingEnabled = false;
+  context.fillStyle = "#cdcdcd";
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  const image = images[currentLayer];
+  if (image?.complete) context.drawImage(image, view.x, view.y, RUN.map.width * cellSize(), RUN.map.height * cellSize());
+  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, RUN.paths[name], MAP_COLOURS[tone]);
+  if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame), RUN.paths.est ?? RUN.paths.online, MAP_COLOURS.scan);
+  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
+  drawScaleBar(context);
+}
+
+function resizeMap() {
+  const width = canvas.clientWidth * devicePixelRatio;
+  const most = Math.max(320, window.innerHeight * 0.85) * devicePixelRatio;
+  canvas.width = Math.round(width);
+  canvas.height = Math.round(Math.min(most, width * RUN.map.height / RUN.map.width));
+  canvas.style.aspectRatio = `${canvas.width} / ${canvas.height}`;
+  resetView();
+}
+function resetView() {
+  view.zoom = Math.min(1, (canvas.height / canvas.width) * (RUN.map.width / RUN.map.height));
+  view.x = (canvas.width - RUN.map.width * cellSize()) / 2;
+  view.y = 0;
+  requestDraw();
+}
+
+function zoomAt(u, v, factor) {
+  const before = view.zoom;
+  view.zoom = Math.min(40, Math.max(0.2, view.zoom * factor));
+  const ratio = view.zoom / before;
+  view.x = u - (u - view.x) * ratio;
+  view.y = v - (v - view.y) * ratio;
+  requestDraw();
+}
+
+// The map without a mouse: arrows move, + and - zoom, 0 shows all.
+function moveByKey(event) {
+  const step = 0.1 * canvas.width;
+  const move = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+  if (move) { view.x += move[0]; view.y += move[1]; requestDraw(); }
+  else if (event.key === "+" || event.key === "=") zoomAt(canvas.width / 2, canvas.height / 2, 1.4);
+  else if (event.key === "-") zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4);
+  else if (event.key === "0") resetView();
+  else return;
+  event.preventDefault();
+}
+
+function initMap() {
+  for (const [name, label] of LAYERS) {
+    images[name] = new Image();
+    images[name].onload = requestDraw;
+    images[name].src = RUN.map.layers[name];
+    const input = make("input", { type: "radio", name: "layer", value: name, id: `layer-${name}` });
+    input.checked = name === currentLayer;
+    input.addEventListener("change", () => selectLayer(name));
+    byId("layers").append(make("label", { for: `layer-${name}` }, input, ` ${label}`));
+  }
+  for (const [name, label, tone] of [...PATHS, ["scan", "Scan of the frame", "scan"]]) {
+    const input = make("input", { type: "checkbox", id: `path-${name}` });
+    input.checked = shownPaths.has(name);
+    input.addEventListener("change", () => {
+      if (input.checked) shownPaths.add(name); else shownPaths.delete(name);
+      requestDraw();
+    });
+    byId("paths").append(make("label", { for: `path-${name}` }, input,
+      make("span", { class: "swatch", style: `background: ${MAP_COLOURS[tone]}` }), label));
+  }
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.shiftKey) return;
+    event.preventDefault();
+    zoomAt(event.offsetX * devicePixelRatio, event.offsetY * devicePixelRatio, event.deltaY < 0 ? 1.2 : 1 / 1.2);
+  }, { passive: false });
+  canvas.addEventListener("dblclick", resetView);
+  let drag = null;
+  canvas.addEventListener("pointerdown", (event) => { drag = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!drag) return;
+    view.x += (event.clientX - drag[0]) * devicePixelRatio;
+    view.y += (event.clientY - drag[1]) * devicePixelRatio;
+    drag = [event.clientX, event.clientY];
+    requestDraw();
+  });
+  canvas.addEventListener("pointerup", () => { drag = null; });
+  canvas.addEventListener("pointermove", (event) => {
+    const column = (event.offsetX * devicePixelRatio - view.x) / cellSize();
+    const row = (event.offsetY * devicePixelRatio - view.y) / cellSize();
+    const [x, y] = [RUN.map.origin[0] + column * RUN.map.resolution, RUN.map.origin[1] + (RUN.map.height - row) * RUN.map.resolution];
+    byId("map-position").textContent = `x ${fixed(x, 2)} m, y ${fixed(y, 2)} m`;
+  });
+  canvas.addEventListener("pointerleave", () => { byId("map-position").textContent = ""; });
+  canvas.addEventListener("keydown", moveByKey);
+  window.addEventListener("resize", resizeMap);
+  const zoomButtons = make("div", { class: "no-print map-buttons" },
+    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1.4) }, "Zoom in"), " ",
+    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4) }, "Zoom out"), " ",
+    make("button", { type: "button", onclick: resetView }, "Whole map"), make("span", { id: "map-position", class: "muted" }));
+  byId("map-note").before(zoomButtons);
+  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. Red dots: the scan of the chosen frame at its final pose; arrowheads: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
+  selectLayer(currentLayer);
+  resizeMap();
+}
+
+const LAYER_KEYS = {
+  estimate: [["#000", "occupied"], ["#fff", "free"], ["#cdcdcd", "unknown"]],
+  truth: [["#000", "surface in the obstacle band"], ["#fff", "reachable"], ["#cdcdcd", "neither"]],
+  difference: [["#000", "wall, found"], [MAP_COLOURS.missed, "wall, missed"], [MAP_COLOURS.invented, "no wall there"], ["#fff", "free"], ["#cdcdcd", "unknown; paler: could not be seen"]],
+  observable: [["#fff", "could be seen"], ["#cdcdcd", "could not"]],
+};
+function selectLayer(name) {
+  currentLayer = name;
+  const input = byId(`layer-${name}`);
+  if (input) input.checked = true;
+  canvas.dataset.layer = name;
+  byId("legend").replaceChildren(...LAYER_KEYS[name].map(([tone, text]) =>
+    make("div", {}, make("i", { style: `background:${tone}` }), text)));
+  requestDraw();
+}
+
+// ---- frame ----
+function selectFrame(i) {
+  currentFrame = Math.max(0, Math.min(frameCount - 1, i));
+  byId("frame").value = String(currentFrame);
+  const row = (name, value) => make("tr", {}, make("td", {}, name), make("td", {}, value));
+  const at = (column) => (frames[column] ? frames[column][currentFrame] : null);
+  const rows = [row("frame", String(frames.frame[currentFrame])), row("time", `${fixed(frames.stamp_s[currentFrame] - frames.stamp_s[0], 2)} s`)];
+  if (frames.slam_error_m) rows.push(row("SLAM's error", metres(at("slam_error_m"))), row("error at the time", metres(at("map_error_m"))), row("error at the end", metres(at("est_error_m"))));
+  if (at("match_score") !== null) rows.push(row("match score", fixed(at("match_score"), 2)));
+  if (at("innovation_forward_m") !== null) {
+    rows.push(row("innovation forward, left", `${metres(at("innovation_forward_m"))}, ${metres(at("innovation_left_m"))}`));
+    rows.push(row("innovation in heading", `${fixed(at("innovation_yaw_rad") * 180 / Math.PI, 2)}°`));
+    rows.push(row("gain forward, left, yaw", `${fixed(at("gain_forward"), 2)}, ${fixed(at("gain_left"), 2)}, ${fixed(at("gain_yaw"), 2)}`));
+  }
+  byId("frame-values").replaceChildren(...rows);
+  for (const plot of allPlots) plot.show(currentFrame);
+  requestDraw();
+}
+
+function initFrames() {
+  const slider = byId("frame");
+  slider.max = String(Math.max(0, frameCount - 1));
+  slider.addEventListener("input", () => selectFrame(Number(slider.value)));
+  let timer = null;
+  byId("play").addEventListener("click", () => {
+    if (timer) { clearInterval(timer); timer = null; } else {
+      timer = setInterval(() => selectFrame(currentFrame + 1 < frameCount ? currentFrame + Math.ceil(frameCount / 600) : 0), 33);
+    }
+    byId("play").textContent = timer ? "Stop" : "Play";
+    byId("play").setAttribute("aria-pressed", String(Boolean(timer)));
+  });
+  selectFrame(RUN.worst.length ? RUN.worst[0].row : 0);
+}
+

@@ -1,0 +1,136 @@
+#include "eval/worst_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "eval/match_surface.h"
+
+namespace depthgrid {
+namespace {
+
+// A wall along x at y = 2 m, as long as the map is wide, and if wanted one along y at x = 2 m.
+OccupancyMap Walls(bool corner) {
+  OccupancyMap map({0.05, {-60, -60}, 120, 120});
+  std::fill(map.occupied_prob.begin(), map.occupied_prob.end(), 0.1F);
+  for (int i = -60; i < 60; ++i) {
+    map.occupied_prob[map.geometry.Index({i, 40})] = 0.9F;
+    if (corner) map.occupied_prob[map.geometry.Index({40, i})] = 0.9F;
+  }
+  return map;
+}
+
+// What is seen of it from the origin: the middles of its cells.
+MatchPoints PointsOf(bool corner) {
+  MatchPoints points;
+  for (int i = -10; i <= 10; ++i) {
+    points.x_m.push_back(0.1F * static_cast<float>(i));
+    points.y_m.push_back(2.025F);
+    if (!corner) continue;
+    points.x_m.push_back(2.025F);
+    points.y_m.push_back(0.1F * static_cast<float>(i));
+  }
+  points.farthest_m = 2.3F;
+  return points;
+}
+
+TEST(MatchSurface, IsLowestAtTheTruePose) {
+  const OccupancyMap map = Walls(true);
+  // Seen from 3 cm to the right of the truth and 2 cm below it, turned by one step of yaw.
+  const MatchSurfaceOptions options;
+  const Pose2 shifted = {0.03, -0.02, 0.0};
+  const MatchSurface surface = MatchSurfaceAround(PointsOf(true), ViewOf(map), shifted, options);
+  ASSERT_EQ(surface.half_steps, 20);
+  ASSERT_EQ(surface.residual.size(), 41U * 41U);
+  const auto best = std::min_element(surface.residual.begin(), surface.residual.end());
+  const auto index = best - surface.residual.begin();
+  EXPECT_EQ(index % 41 - 20, -3);
+  EXPECT_EQ(index / 41 - 20, 2);
+  EXPECT_NEAR(*best, 0.1, 1e-3);  // 1 - 0.9
+
+  const MatchSurface turned = MatchSurfaceAround(PointsOf(true), ViewOf(map),
+                                                 {0.0, 0.0, 2 * options.yaw_step_rad}, options);
+  const auto least = std::min_element(turned.yaw_residual.begin(), turned.yaw_residual.end());
+  EXPECT_EQ(least - turned.yaw_residual.begin(), 20 - 2);
+}
+
+TEST(MatchSurface, IsFlatAlongASingleWall) {
+  const OccupancyMap map = Walls(false);
+  const MatchSurface surface = MatchSurfaceAround(PointsOf(false), ViewOf(map), {}, {});
+  for (int x = 0; x < 41; ++x) {
+    EXPECT_NEAR(surface.residual[20 * 41 + static_cast<std::size_t>(x)], 0.1, 1e-3);
+    EXPECT_GT(surface.residual[static_cast<std::size_t>(x)], 0.5);  // 20 cm beside the wall
+  }
+}
+
+TEST(WorstRows, AreTheLargestApartFromEachOther) {
+  std::vector<double> badness(200, 0.0);
+  badness[50] = 5.0;
+  badness[52] = 4.9;  // nearer than 200 / 50 rows to a worse one
+  badness[54] = 4.8;
+  badness[120] = std::numeric_limits<double>::quiet_NaN();
+  badness[130] = 9.0;
+  const std::vector<std::size_t> rows = WorstRows(badness);
+  ASSERT_EQ(rows.size(), 10U);
+  EXPECT_EQ(rows[0], 130U);
+  EXPECT_EQ(rows[1], 50U);
+  EXPECT_EQ(rows[2], 54U);
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), 120U), 0);
+}
+
+// Three rows of frames.csv: one without a match, one with, one that closed a loop.
+CsvTable Frames() {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  CsvTable frames;
+  frames.rows = 3;
+  frames.columns = {{"frame", {0, 1, 2}},
+                    {"map_x_m", {0.0, 1.0, 2.0}},
+                    {"map_y_m", {0.0, 0.0, 0.0}},
+                    {"map_yaw_rad", {0.0, 0.0, 0.0}},
+                    {"innovation_forward_m", {none, 0.04, 0.0}},
+                    {"innovation_left_m", {none, -0.02, 0.0}},
+                    {"innovation_yaw_rad", {none, 0.0, 0.0}},
+                    {"gain_forward", {none, 0.25, 0.5}},
+                    {"gain_left", {none, 0.5, 0.5}},
+                    {"gain_yaw", {none, 0.5, 0.5}},
+                    {"loops_accepted", {0, 0, 1}}};
+  return frames;
+}
+
+TEST(FrameAtRow, UndoesTheFusion) {
+  const auto first = FrameAtRow(Frames(), 0);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->predicted_map_from_base);
+  const auto second = FrameAtRow(Frames(), 1);
+  ASSERT_TRUE(second && second->predicted_map_from_base);
+  // A quarter of 4 cm forward and half of 2 cm to the right were taken.
+  EXPECT_NEAR(second->predicted_map_from_base->x_m, 0.99, 1e-12);
+  EXPECT_NEAR(second->predicted_map_from_base->y_m, 0.01, 1e-12);
+  EXPECT_NEAR(second->matched_map_from_base->x_m, 1.03, 1e-12);
+  EXPECT_NEAR(second->matched_map_from_base->y_m, -0.01, 1e-12);
+}
+
+Scan OneHit() {
+  return {.beams = {{.range_m = 1.01F, .clear_to_m = 1.0F, .hit = true}}, .max_range_m = 5.0};
+}
+
+TEST(ReferenceOf, HoldsTheScansBeforeAtTheirPosesOfTheTime) {
+  RunFiles run;
+  run.frames = Frames();
+  for (int i = 0; i < 3; ++i)
+    run.scans.push_back({i, 0.1 * i, {5.0 + 2.0 * i, 3.0, 0.0}, OneHit()});
+  EXPECT_EQ(ReferenceOf(run, 0, {}, {}).geometry.size(), 0U);
+  // The first scan lay at the origin then, wherever it lies in the end.
+  const OccupancyMap second = ReferenceOf(run, 1, {}, {});
+  EXPECT_GT(second.At({20, 0}), 0.5F);
+  EXPECT_TRUE(std::isnan(second.At({40, 0})));
+  // With a loop in between: as in the finished map, the third scan where it lay then, at x = 2 m.
+  const OccupancyMap third = ReferenceOf(run, 2, {}, {});
+  EXPECT_GT(third.At({-20, 0}), 0.5F);
+  EXPECT_GT(third.At({20, 0}), 0.5F);
+  EXPECT_TRUE(std::isnan(third.At({40, 0})));
+}
+
+}  // namespace
+}  // namespace depthgrid
