@@ -8,6 +8,7 @@
 
 #include "mapper/core/error.h"
 #include "sim/ray_scene_impl.h"
+#include "sim/usable_threads.h"
 
 namespace depthgrid {
 namespace {
@@ -106,7 +107,9 @@ void RenderImage(RTCScene scene, const View& view, int threads, const Output& ou
   if (threads == 1) {
     for (int tile_row = 0; tile_row < tile_rows; ++tile_row) render_row(tile_row);
   } else {
-    tbb::task_arena(threads).execute([&] { tbb::parallel_for(0, tile_rows, render_row); });
+    tbb::task_arena(UsableThreads(threads)).execute([&] {
+      tbb::parallel_for(0, tile_rows, render_row);
+    });
   }
 }
 

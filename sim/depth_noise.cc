@@ -12,6 +12,7 @@
 #include "sim/depth_noise_models.h"
 #include "sim/depth_samples.h"
 #include "sim/sensor_artifacts.h"
+#include "sim/usable_threads.h"
 
 namespace depthgrid {
 namespace {
@@ -86,7 +87,9 @@ void ForEach(std::size_t count, int threads, const F& f) {
   if (threads == 1) {
     for (std::size_t k = 0; k < count; ++k) f(k);
   } else {
-    tbb::task_arena(threads).execute([&] { tbb::parallel_for(std::size_t{0}, count, f); });
+    tbb::task_arena(UsableThreads(threads)).execute([&] {
+      tbb::parallel_for(std::size_t{0}, count, f);
+    });
   }
 }
 

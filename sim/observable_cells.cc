@@ -14,6 +14,7 @@
 #include "mapper/core/level.h"
 #include "sim/band_polygon.h"
 #include "sim/ray_scene.h"
+#include "sim/usable_threads.h"
 #include "sim/view_pyramid.h"
 
 namespace depthgrid {
@@ -218,7 +219,7 @@ CellSet ObservableCells(const TriangleMesh& mesh, double floor_z_m, const StateM
   if (threads == 1) {
     observe(0);
   } else {
-    tbb::task_arena(options.threads).execute([&] {
+    tbb::task_arena(UsableThreads(options.threads)).execute([&] {
       tbb::parallel_for(std::size_t{0}, threads, observe);
     });
   }

@@ -1,5 +1,6 @@
 #include "sim/ray_scene.h"
 
+#include <fmt/format.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -8,11 +9,15 @@
 
 #include "mapper/core/error.h"
 #include "sim/ray_scene_impl.h"
+#include "sim/usable_threads.h"
 
 namespace depthgrid {
 namespace {
 
-const char* DeviceConfig(RayIsa isa) { return isa == RayIsa::kAvx512 ? "isa=avx512" : "isa=avx2"; }
+std::string DeviceConfig(RayIsa isa) {
+  const char* const name = isa == RayIsa::kAvx512 ? "avx512" : "avx2";
+  return fmt::format("isa={},threads={}", name, UsableThreads());
+}
 
 void CheckMachine(RayIsa isa) {
   const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
@@ -118,7 +123,7 @@ RayScene::Impl::Impl(const TriangleMesh& mesh, RayIsa chosen_isa, int build_thre
     : isa(chosen_isa) {
   CheckMachine(isa);
   CheckMesh(mesh);
-  device = rtcNewDevice(DeviceConfig(isa));
+  device = rtcNewDevice(DeviceConfig(isa).c_str());
   if (device == nullptr) throw std::runtime_error("Embree could not start");
   scene = rtcNewScene(device);
   // Without ROBUST about one ray in a million passes through the edge between two triangles. HIGH
@@ -142,7 +147,7 @@ RayScene::Impl::Impl(const TriangleMesh& mesh, RayIsa chosen_isa, int build_thre
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
   }
-  tbb::task_arena(std::max(1, build_threads)).execute([&] { rtcJoinCommitScene(scene); });
+  tbb::task_arena(UsableThreads(build_threads)).execute([&] { rtcJoinCommitScene(scene); });
   CheckDevice(device);
 }
 

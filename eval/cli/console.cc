@@ -8,7 +8,8 @@
 #include <cstdio>
 #include <iterator>
 #include <stdexcept>
-#include <thread>
+
+#include "sim/usable_threads.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -92,9 +93,6 @@ std::string Table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-int ThreadsOr(int requested) {
-  return requested > 0 ? requested
-                       : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
+int ThreadsOr(int requested) { return requested > 0 ? requested : UsableThreads(); }
 
 }  // namespace depthgrid::cli

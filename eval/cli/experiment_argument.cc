@@ -12,10 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A file named on the command line is meant from the working directory, one named in an experiment
+// from the experiment's folder.
 ExperimentOptions Read(Config config, const std::vector<std::string>& set,
                        const std::string& base_folder) {
   for (const std::string& assignment : set) config.Set(assignment);
-  return ReadExperiment(std::move(config), base_folder);
+  ExperimentOptions options = ReadExperiment(config, base_folder);
+  const ExperimentOptions from_here = ReadExperiment(std::move(config), "");
+  for (const std::string& assignment : set) {
+    if (assignment.starts_with("scene=")) options.scene = from_here.scene;
+    if (assignment.starts_with("trajectory=")) options.trajectory = from_here.trajectory;
+  }
+  return options;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mapper/io/file.h"
+#include "tests/paths.h"
 
 namespace depthgrid {
 
@@ -43,7 +44,7 @@ class ProgramTest : public ::testing::Test {
   Outcome Program(const std::string& arguments) const {
     const std::string out = Path(".stdout");
     const std::string err = Path(".stderr");
-    const std::string command = "cd '" + root_.string() + "' && '" DEPTHGRID_PROGRAM "' " +
+    const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile + "' " +
                                 arguments + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};

@@ -99,6 +99,38 @@ TEST(Config, SetOverridesAndCreatesPaths) {
   EXPECT_EQ(outer.frames, 5);
 }
 
+std::string ErrorAfterSet(const std::string& assignment) {
+  Config config = Config::FromText("frames: 10\nfusion: {mode: kalman}\n", "run.yaml");
+  config.Set(assignment);
+  try {
+    Outer outer;
+    config.Read(outer);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Config, ErrorsOfASetKeyNameTheAssignment) {
+  EXPECT_EQ(ErrorAfterSet("fusion.gian=0.3"),
+            "--set fusion.gian=0.3: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
+  EXPECT_EQ(ErrorAfterSet("fusion={gain: 2}"),
+            "--set fusion={gain: 2}: fusion.gain is '2', must be from 0 to 1");
+  EXPECT_THAT(ErrorAfterSet("frames=-1"), ::testing::StartsWith("--set frames=-1: frames is '-1'"));
+}
+
+TEST(Config, ASubtreeStillKnowsWhatWasSet) {
+  Config config = Config::FromText("fusion: {mode: kalman}\n", "run.yaml");
+  config.Set("fusion.gain=7");
+  Inner inner;
+  try {
+    config.Take("fusion").Read(inner);
+    FAIL() << "a gain of 7 was taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::StartsWith("--set fusion.gain=7: gain is '7'"));
+  }
+}
+
 TEST(Config, ACopyIsIndependent) {
   const Config original = Config::FromText("frames: 3", "x");
   Config copy = original;

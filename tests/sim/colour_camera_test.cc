@@ -9,11 +9,12 @@
 #include "sim/box.h"
 #include "sim/depth_camera.h"
 #include "sim/revolve.h"
+#include "tests/paths.h"
 
 namespace depthgrid {
 namespace {
 
-const std::string kScenes = std::string(DEPTHGRID_SOURCE_DIR) + "/scenes/";
+const std::string kScenes = std::string(kSourceFolder) + "/scenes/";
 
 // Unlike focal lengths, principal point off the middle, sides that are not multiples of a tile.
 PinholeCamera OddCamera() {

@@ -8,13 +8,14 @@
 #include "sim/ray_scene.h"
 #include "sim/trajectory.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/paths.h"
 
 namespace depthgrid {
 namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kScenes = std::string(DEPTHGRID_SOURCE_DIR) + "/scenes/";
+const std::string kScenes = std::string(kSourceFolder) + "/scenes/";
 // A floor for scenes whose point is something else.
 const std::string kFloor = "  - {shape: box, size: [4, 4, 0.5], at: [0, 0, -0.5]}\n";
 

@@ -8,6 +8,7 @@
 #include "sim/slam_calibration.h"
 #include "sim/slam_surrogate.h"
 #include "sim/trajectory.h"
+#include "tests/paths.h"
 
 namespace depthgrid {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr int kFrames = 900;
 
 Trajectory HandHeld(const std::string& room) {
-  const Scene scene = LoadScene(std::string(DEPTHGRID_SOURCE_DIR) + "/scenes/" + room + ".yaml");
+  const Scene scene = LoadScene(std::string(kSourceFolder) + "/scenes/" + room + ".yaml");
   return MakeTrajectory(scene.trajectories.at("handheld"), kFrames, kFrameRateHz, 1);
 }
 

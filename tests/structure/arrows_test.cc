@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/paths.h"
+
 namespace depthgrid {
 namespace {
 
@@ -90,7 +92,7 @@ std::string Fault(const std::string& file, const Include& include) {
 }
 
 TEST(Arrows, EveryIncludePointsTheAllowedWay) {
-  const fs::path root = DEPTHGRID_SOURCE_DIR;
+  const fs::path root = kSourceFolder;
   int files = 0;
   int includes = 0;
   for (const std::string top : {"mapper", "sim", "eval"}) {
@@ -123,7 +125,7 @@ TEST(Arrows, AWrongIncludeIsFound) {
 }
 
 TEST(Arrows, NoFileIsLongerThan400Lines) {
-  const fs::path root = DEPTHGRID_SOURCE_DIR;
+  const fs::path root = kSourceFolder;
   for (const std::string top : {"mapper", "sim", "eval", "tests", "bench"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string extension = entry.path().extension();

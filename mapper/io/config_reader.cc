@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/io/config_text.h"
+#include "mapper/io/config_tree_impl.h"
+
+namespace depthgrid {
+namespace {
+
+class YamlReader final : public OptionsVisitor {
+ public:
+  explicit YamlReader(const Config::Tree& tree) : tree_(tree) {
+    levels_.push_back({tree.root, "", {}});
+  }
+
+  void Number(std::string_view key, double& value, Interval allowed, std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) value = NumberIn(node, key, allowed);
+  }
+  void Number(std::string_view key, int& value, Interval allowed, std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      int number = 0;
+      if (!node.IsScalar() || !YAML::convert<int>::decode(node, number))
+        Fail(node, key, "a whole number");
+      if (number < allowed.low || number > allowed.high) Fail(node, key, Shown(allowed));
+      value = number;
+    }
+  }
+  void Seed(std::string_view key, std::uint64_t& value, std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      std::uint64_t number = 0;
+      const bool negative = node.IsScalar() && node.Scalar().starts_with('-');
+      if (!node.IsScalar() || negative || !YAML::convert<std::uint64_t>::decode(node, number)) {
+        Fail(node, key, "a whole number, 0 or more");
+      }
+      value = number;
+    }
+  }
+  void Flag(std::string_view key, bool& value, std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value))
+        Fail(node, key, "true or false");
+    }
+  }
+  void Text(std::string_view key, std::string& value, std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      if (!node.IsScalar()) Fail(node, key, "a text");
+      value = node.Scalar();
+    }
+  }
+  void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
+               std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return;
+    if (!node.IsSequence()) Fail(node, key, "a list of numbers");
+    values.clear();
+    for (const auto& item : node) values.push_back(NumberIn(item, key, allowed));
+  }
+  void Tuple(std::string_view key, std::span<double> values, Interval allowed,
+             std::string_view) override {
+    if (const YAML::Node node = Lookup(key); node.IsDefined()) {
+      TupleIn(node, key, values, allowed);
+    }
+  }
+  void Rows(std::string_view key, std::vector<double>& values, std::size_t width, Interval allowed,
+            std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return;
+    if (!node.IsSequence()) Fail(node, key, fmt::format("a list of lists of {} numbers", width));
+    values.assign(width * node.size(), 0.0);
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      TupleIn(node[i], key, std::span(values).subspan(i * width, width), allowed);
+    }
+  }
+  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
+               std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return;
+    if (node.IsScalar()) {
+      values.fill(NumberIn(node, key, allowed));
+      return;
+    }
+    if (!node.IsSequence() || node.size() != 3)
+      Fail(node, key, "one number or [forward, left, yaw]");
+    for (std::size_t i = 0; i < 3; ++i) values[i] = NumberIn(node[i], key, allowed);
+  }
+
+  void RequireAllUsed() const { RequireUsed(levels_.back()); }
+
+ protected:
+  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
+                   std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return;
+    for (std::size_t i = 0; node.IsScalar() && i < names.size(); ++i) {
+      if (names[i] == node.Scalar()) {
+        index = static_cast<int>(i);
+        return;
+      }
+    }
+    const std::string nearest =
+        node.IsScalar() ? NearestWord(node.Scalar(), {names.begin(), names.end()}) : "";
+    Fail(node, key,
+         "one of " + Joined(names) + (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+  }
+  bool Begin(std::string_view key, std::string_view) override {
+    const YAML::Node node = Lookup(key);
+    if (!node.IsDefined()) return false;
+    if (!node.IsMap()) Fail(node, key, "a map of keys");
+    levels_.push_back({node, PathOf(key), {}});
+    return true;
+  }
+  void End() override {
+    RequireUsed(levels_.back());
+    levels_.pop_back();
+  }
+
+ private:
+  struct Level {
+    YAML::Node node;
+    std::string path;
+    std::vector<std::string> known;
+  };
+
+  std::string PathOf(std::string_view key) const {
+    const std::string& path = levels_.back().path;
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+  }
+  YAML::Node Lookup(std::string_view key) {
+    Level& level = levels_.back();
+    level.known.emplace_back(key);
+    return static_cast<const YAML::Node&>(level.node)[std::string(key)];
+  }
+  double NumberIn(const YAML::Node& node, std::string_view key, const Interval& allowed) const {
+    double number = 0.0;
+    if (!node.IsScalar() || !YAML::convert<double>::decode(node, number))
+      Fail(node, key, "a number");
+    if (!std::isfinite(number) || number < allowed.low || number > allowed.high) {
+      Fail(node, key, Shown(allowed));
+    }
+    return number;
+  }
+  void TupleIn(const YAML::Node& node, std::string_view key, std::span<double> values,
+               const Interval& allowed) const {
+    if (!node.IsSequence() || node.size() != values.size()) {
+      Fail(node, key, fmt::format("a list of {} numbers", values.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = NumberIn(node[i], key, allowed);
+  }
+  [[noreturn]] void Fail(const YAML::Node& node, std::string_view key,
+                         const std::string& rule) const {
+    throw InputError(tree_.PlaceOfKey(PathOf(key), node),
+                     fmt::format("{} is '{}', must be {}", PathOf(key), FlowText(node), rule));
+  }
+  void RequireUsed(const Level& level) const {
+    for (const auto& entry : level.node) {
+      const auto key = entry.first.Scalar();
+      bool used = false;
+      for (const auto& known : level.known) used = used || known == key;
+      if (used) continue;
+      const std::string nearest = NearestWord(key, level.known);
+      const std::string prefix = level.path.empty() ? "" : level.path + ".";
+      throw InputError(
+          tree_.PlaceOfKey(prefix + key, entry.first),
+          fmt::format("unknown key '{}{}'{}", prefix, key,
+                      nearest.empty() ? "" : ", did you mean '" + prefix + nearest + "'?"));
+    }
+  }
+
+  const Config::Tree& tree_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace
+
+std::string FlowText(const YAML::Node& node) {
+  YAML::Emitter emitter;
+  emitter << YAML::Flow << node;
+  return emitter.c_str();
+}
+
+std::string PlaceOf(const std::string& place, const YAML::Node& node) {
+  // Nodes of a copied tree have no mark of their own; yaml-cpp gives them that of the first letter.
+  const bool unmarked = node.Mark().pos <= 0;
+  return unmarked ? place : fmt::format("{}:{}", place, node.Mark().line + 1);
+}
+
+std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::Node& node) const {
+  const auto holds = [](const std::string& group, const std::string& key) {
+    return group == key || key.starts_with(group + ".");
+  };
+  // The last assignment counts: it may have set the key anew.
+  for (auto set = overrides.rbegin(); set != overrides.rend(); ++set) {
+    if (holds(set->key_path, key_path) || holds(key_path, set->key_path)) return set->place;
+  }
+  return PlaceOf(place, node);
+}
+
+std::vector<ConfigOverride> Config::Tree::OverridesBelow(const std::string& key) const {
+  std::vector<ConfigOverride> below;
+  for (const auto& set : overrides) {
+    if (set.key_path.starts_with(key + ".")) {
+      below.push_back({set.key_path.substr(key.size() + 1), set.place});
+    }
+  }
+  return below;
+}
+
+std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree) {
+  return std::make_unique<YamlReader>(tree);
+}
+
+void RequireAllKeysUsed(OptionsVisitor& reader) {
+  static_cast<YamlReader&>(reader).RequireAllUsed();
+}
+
+}  // namespace depthgrid

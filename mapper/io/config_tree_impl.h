@@ -1,0 +1,43 @@
+// The tree behind a Config, and how an options struct is filled from it (mapper/io/config.h).
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/core/options.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+
+// A key that was set after the file was read, and the words that set it.
+struct ConfigOverride {
+  std::string key_path;
+  std::string place;
+};
+
+struct Config::Tree {
+  YAML::Node root{YAML::NodeType::Map};
+  std::string place;
+  std::vector<ConfigOverride> overrides;
+
+  // Where a value came from, for errors: the assignment that set it, or one that set the group of
+  // keys it is in, else file and line.
+  std::string PlaceOfKey(const std::string& key_path, const YAML::Node& node) const;
+  // The overrides inside the subtree of a key, their paths counted from there.
+  std::vector<ConfigOverride> OverridesBelow(const std::string& key) const;
+};
+
+// One value as YAML on one line.
+std::string FlowText(const YAML::Node& node);
+// "file:line", or the file alone where the node's line is not known.
+std::string PlaceOf(const std::string& place, const YAML::Node& node);
+
+// Fills options from `tree`, which must outlive it.
+std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree);
+// Throws InputError for a key of the tree that a reader of MakeYamlReader was not asked for.
+void RequireAllKeysUsed(OptionsVisitor& reader);
+
+}  // namespace depthgrid
