@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 ExperimentOptions Read(Config config, const std::vector<std::string>& set,
                        const std::string& base_folder) {
   for (const std::string& assignment : set) config.Set(assignment);
-  ExperimentOptions options = ReadExperiment(config, base_folder);
-  const ExperimentOptions from_here = ReadExperiment(std::move(config), "");
+  const Config copy = config;  // which does not know the lines that errors name
+  ExperimentOptions options = ReadExperiment(std::move(config), base_folder);
+  const ExperimentOptions from_here = ReadExperiment(copy, "");
   for (const std::string& assignment : set) {
     if (assignment.starts_with("scene=")) options.scene = from_here.scene;
     if (assignment.starts_with("trajectory=")) options.trajectory = from_here.trajectory;

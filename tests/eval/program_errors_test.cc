@@ -41,7 +41,7 @@ TEST_F(ProgramErrors, WrongKeysNameTheNearestRightOne) {
 
 TEST_F(ProgramErrors, ValuesOutOfRangeOrOfTheWrongKind) {
   ExpectRefusal("run ./small.yaml --set mapper.fusion.gain=1.5 -o out",
-                {"mapper.fusion.gain", "1.5", "from 0 to 1"});
+                {"--set mapper.fusion.gain=1.5:", "from 0 to 1"});
   ExpectRefusal("run ./small.yaml --set frames=-3 -o out", {"frames", "-3"});
   ExpectRefusal("run ./small.yaml --set frames=many -o out", {"frames", "many", "whole number"});
   ExpectRefusal("run ./small.yaml --set sensor.noise=hnada -o out", {"'handa'"});
