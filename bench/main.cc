@@ -1,5 +1,7 @@
 // `./dev bench`: all benchmarks interleaved, the best of their repetitions, as tables of ratios
 // beside a committed baseline. It never fails for being slow: load decides too much.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -48,10 +50,11 @@ class Collector : public benchmark::BenchmarkReporter {
 
 void Run(const Arguments& arguments) {
   const Ratios baseline = ReadRatios(arguments.baseline);
-  std::vector<std::string> texts = {
-      "bench", "--benchmark_repetitions=" + std::to_string(arguments.repetitions),
-      "--benchmark_min_time=" + std::to_string(arguments.min_time_s),
-      "--benchmark_enable_random_interleaving=true"};
+  std::vector<std::string> texts;
+  texts.emplace_back("bench");
+  texts.push_back(fmt::format("--benchmark_repetitions={}", arguments.repetitions));
+  texts.push_back(fmt::format("--benchmark_min_time={}", arguments.min_time_s));
+  texts.emplace_back("--benchmark_enable_random_interleaving=true");
   std::vector<char*> argv;
   for (std::string& text : texts) argv.push_back(text.data());
   int argc = static_cast<int>(argv.size());

@@ -1,6 +1,7 @@
 #include "mapper/scan/bearing_block.h"
 
 #include <algorithm>
+#include <cmath>
 
 // x86-64-v3 has AVX2 without AES, which nothing here needs.
 #define HWY_DISABLE_PCLMUL_AES
@@ -69,6 +70,7 @@ HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start
 struct Strip {
   const DepthImage& image;
   const ReturnLimits& limits;
+  const SliceBand& slice;
   const BearingBlock& block;
   std::size_t lane;
   RowRange rows;
@@ -90,9 +92,8 @@ HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
   return hn::IfThenElse(same_surface, between, apart);
 }
 
-template <Fetch kFetch, bool kAllRows>
-HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
-                              BlockSamples& found) {
+template <Fetch kFetch, bool kAllRows, bool kSlice>
+HWY_NOINLINE void SampleStrip(const Strip& strip, const SampleRows& out, BlockSamples& found) {
   const Floats d;
   const BearingBlock& block = strip.block;
   const std::size_t i = strip.lane;
@@ -101,7 +102,6 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
   const Vec h0 = hn::Load(d, &block.h0[i]), h1 = hn::Load(d, &block.h1[i]);
   const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
   const Vec min_depth = hn::Set(d, strip.limits.min_depth_m);
-  const Vec max_range = hn::Set(d, strip.limits.max_range_m);
   const Vec low = hn::Set(d, strip.limits.low_m), high = hn::Set(d, strip.limits.high_m);
   const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
   const Vec max_column = hn::Set(d, LastColumn(strip.image.width_px));
@@ -109,7 +109,12 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
   Vec farthest = hn::Load(d, &found.farthest[i]);
   Vec row = hn::Set(d, static_cast<float>(strip.rows.first));
   const float* HWY_RESTRICT pixels = strip.image.Row(strip.rows.first);
-  samples += static_cast<std::size_t>(strip.rows.first - block.rows.first) * kBlockBearings + i;
+  const std::size_t at =
+      static_cast<std::size_t>(strip.rows.first - block.rows.first) * kBlockBearings + i;
+  float* HWY_RESTRICT samples = out.samples + at;
+  float* HWY_RESTRICT slice = kSlice ? out.slice + at : nullptr;
+  const Vec slice_low = hn::Set(d, strip.slice.low_m), slice_high = hn::Set(d, strip.slice.high_m);
+  Vec slice_nearest = hn::Load(d, &found.slice_nearest[i]);
   const std::size_t ahead = strip.rows.last + static_cast<int>(kChunkRows) < strip.image.height_px
                                 ? kChunkRows * width
                                 : 0;
@@ -121,8 +126,7 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
     const Vec z = DepthBetweenLanes(d, both, hn::Sub(u, column));
     const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
     const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
-    const Mask marks =
-        hn::And(hn::Le(range, max_range), hn::And(hn::Ge(height, low), hn::Le(height, high)));
+    const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
     Mask usable = hn::Ge(z, min_depth);
     if constexpr (!kAllRows) {
       usable = hn::And(usable, hn::And(hn::Ge(row, hn::Load(d, &block.first[i])),
@@ -132,6 +136,13 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
     hn::Store(sample, d, samples);
     nearest = hn::Min(nearest, sample);
     farthest = hn::Max(farthest, sample);
+    if constexpr (kSlice) {
+      const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
+      const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
+      hn::Store(level_sample, d, slice);
+      slice_nearest = hn::Min(slice_nearest, level_sample);
+      slice += kBlockBearings;
+    }
     // The next chunk of rows; the processor does not foresee steps of a whole image row.
     hwy::Prefetch(pixels + ahead + strip.start[r]);
     row = hn::Add(row, hn::Set(d, 1.0F));
@@ -140,6 +151,7 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, float* HWY_RESTRICT samples,
   }
   hn::Store(nearest, d, &found.nearest[i]);
   hn::Store(farthest, d, &found.farthest[i]);
+  if constexpr (kSlice) hn::Store(slice_nearest, d, &found.slice_nearest[i]);
 }
 
 // Columns are monotonic in the bearing while all rays look ahead, so the outer lanes bound them.
@@ -184,54 +196,81 @@ void FindStarts(Fetch fetch, Strip& strip) {
   }
 }
 
-void SampleChunk(Strip& strip, float* samples, BlockSamples& found) {
+template <Fetch kFetch>
+void SampleStripBy(const Strip& strip, const SampleRows& out, BlockSamples& found) {
+  const RowRange& shared = strip.block.shared_rows;
+  const RowRange& slice = strip.block.slice_rows;
+  const bool all_rows = strip.rows.first >= shared.first && strip.rows.last <= shared.last;
+  const bool sliced = strip.rows.first <= slice.last && strip.rows.last >= slice.first;
+  if (sliced) {
+    return all_rows ? SampleStrip<kFetch, true, true>(strip, out, found)
+                    : SampleStrip<kFetch, false, true>(strip, out, found);
+  }
+  return all_rows ? SampleStrip<kFetch, true, false>(strip, out, found)
+                  : SampleStrip<kFetch, false, false>(strip, out, found);
+}
+
+void SampleChunk(Strip& strip, const SampleRows& out, BlockSamples& found) {
   const Fetch fetch = FetchFor(strip);
   FindStarts(fetch, strip);
-  const RowRange& shared = strip.block.shared_rows;
-  const bool all_rows = strip.rows.first >= shared.first && strip.rows.last <= shared.last;
   switch (fetch) {
     case Fetch::kOneVector:
-      return all_rows ? SampleStrip<Fetch::kOneVector, true>(strip, samples, found)
-                      : SampleStrip<Fetch::kOneVector, false>(strip, samples, found);
+      return SampleStripBy<Fetch::kOneVector>(strip, out, found);
     case Fetch::kTwoVectors:
-      return all_rows ? SampleStrip<Fetch::kTwoVectors, true>(strip, samples, found)
-                      : SampleStrip<Fetch::kTwoVectors, false>(strip, samples, found);
+      return SampleStripBy<Fetch::kTwoVectors>(strip, out, found);
     case Fetch::kGather:
-      return all_rows ? SampleStrip<Fetch::kGather, true>(strip, samples, found)
-                      : SampleStrip<Fetch::kGather, false>(strip, samples, found);
+      return SampleStripBy<Fetch::kGather>(strip, out, found);
   }
 }
 
-void SampleAll(const DepthImage& image, const ReturnLimits& limits, const BearingBlock& block,
-               float* samples, BlockSamples& found) {
+void SampleAll(const DepthImage& image, const ReturnLimits& limits, const SliceBand& slice,
+               const BearingBlock& block, const SampleRows& out, BlockSamples& found) {
   const std::size_t lanes = hn::Lanes(Floats());
   constexpr int kStep = static_cast<int>(kChunkRows);
   for (int first = block.rows.first; first <= block.rows.last; first += kStep) {
     const RowRange rows{first, std::min(first + kStep - 1, block.rows.last)};
     for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
-      Strip strip{image, limits, block, lane, rows, {}, {}};
-      SampleChunk(strip, samples, found);
+      Strip strip{image, limits, slice, block, lane, rows, {}, {}};
+      SampleChunk(strip, out, found);
     }
   }
 }
 
+// Sum and number of a lane's samples in [from, to].
+struct Running {
+  Vec from, to, sum, count;
+
+  HWY_INLINE void Add(Floats d, Vec sample) {
+    const Mask inside = hn::And(hn::Ge(sample, from), hn::Le(sample, to));
+    sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
+    count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0F)));
+  }
+};
+
 void MeanLanes(const float* HWY_RESTRICT samples, std::size_t rows, const BlockLane& low,
                const BlockLane& high, const BlockLane& otherwise, BlockMean& out) {
   const Floats d;
-  const Vec one = hn::Set(d, 1.0F);
-  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
-    Vec sum = hn::Zero(d), count = hn::Zero(d);
-    const Vec from = hn::Load(d, &low[i]), to = hn::Load(d, &high[i]);
-    for (std::size_t r = 0; r < rows; ++r) {
-      const Vec sample = hn::Load(d, samples + r * kBlockBearings + i);
-      const Mask inside = hn::And(hn::Ge(sample, from), hn::Le(sample, to));
-      sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
-      count = hn::Add(count, hn::IfThenElseZero(inside, one));
-    }
-    const Mask any = hn::Gt(count, hn::Zero(d));
-    const Vec mean = hn::Div(sum, hn::Max(count, one));
+  const std::size_t lanes = hn::Lanes(d);
+  const auto start = [&](std::size_t i) HWY_ATTR {
+    return Running{hn::Load(d, &low[i]), hn::Load(d, &high[i]), hn::Zero(d), hn::Zero(d)};
+  };
+  const auto finish = [&](const Running& running, std::size_t i) HWY_ATTR {
+    const Mask any = hn::Gt(running.count, hn::Zero(d));
+    const Vec mean = hn::Div(running.sum, hn::Max(running.count, hn::Set(d, 1.0F)));
     hn::Store(hn::IfThenElse(any, mean, hn::Load(d, &otherwise[i])), d, &out.mean[i]);
-    hn::Store(count, d, &out.count[i]);
+    hn::Store(running.count, d, &out.count[i]);
+  };
+  // Two vectors at a time: the additions of one wait for each other, those of the other fill in.
+  static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
+  for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
+    Running a = start(i), b = start(i + lanes);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const float* HWY_RESTRICT row = samples + r * kBlockBearings + i;
+      a.Add(d, hn::Load(d, row));
+      b.Add(d, hn::Load(d, row + lanes));
+    }
+    finish(a, i);
+    finish(b, i + lanes);
   }
 }
 
@@ -244,10 +283,25 @@ HWY_INLINE Gap Longer(Mask here, Vec from, Vec to, const Gap& gap) {
   return {hn::IfThenElse(longer, from, gap.from), hn::IfThenElse(longer, to, gap.to)};
 }
 
-void ViewLanes(const BearingBlock& block, const float* HWY_RESTRICT samples, BlockViews& out) {
+// Lanes of which every row was usable.
+void SeeAll(const BearingBlock& block, std::size_t i, BlockViews& out) {
+  const Floats d;
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  hn::Store(hn::Set(d, static_cast<float>(block.rows.first)), d, &out.first[i]);
+  hn::Store(hn::Set(d, static_cast<float>(block.rows.last)), d, &out.last[i]);
+  for (BlockLane* from : {&out.below_from, &out.above_from}) hn::Store(zero, d, &(*from)[i]);
+  for (BlockLane* to : {&out.below_to, &out.above_to}) hn::Store(one, d, &(*to)[i]);
+}
+
+void ViewLanes(const BearingBlock& block, const BlockLane& farthest,
+               const float* HWY_RESTRICT samples, BlockViews& out) {
   const Floats d;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
   for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    if (hn::AllTrue(d, hn::Lt(hn::Load(d, &farthest[i]), hn::Set(d, kUnusable)))) {
+      SeeAll(block, i, out);
+      continue;
+    }
     const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
     Vec first = zero, last = hn::Set(d, -1.0F);
     // A run needs a row between: the difference of its ends exceeds one.
@@ -290,8 +344,37 @@ HWY_EXPORT(SampleAll);
 HWY_EXPORT(MeanLanes);
 HWY_EXPORT(ViewLanes);
 
+namespace {
+
+// The rows of which some lane can see a surface in the slice: from min_depth on, the slice is seen
+// within these slopes (heights are z (g0 + g1 v)).
+RowRange SliceRows(const BearingBlock& block, const ReturnLimits& limits, const SliceBand& slice) {
+  if (!(limits.min_depth_m > 0.0F)) return block.rows;
+  constexpr float kRowsToSpare = 1.0F;  // more than any rounding
+  constexpr float kLeastSlope = 1e-6F;  // a row; a camera's is a hundredth or more
+  const float low = slice.low_m / limits.min_depth_m;
+  const float high = slice.high_m / limits.min_depth_m;
+  float first = static_cast<float>(block.rows.last);
+  float last = static_cast<float>(block.rows.first);
+  for (std::size_t i = 0; i < block.bearings; ++i) {
+    if (!(std::abs(block.g1[i]) > kLeastSlope)) return block.rows;
+    const float per_slope = 1.0F / block.g1[i];
+    const float a = (low - block.g0[i]) * per_slope;
+    const float b = (high - block.g0[i]) * per_slope;
+    first = std::min(first, std::min(a, b));
+    last = std::max(last, std::max(a, b));
+  }
+  const auto within = [&](float row) {
+    return static_cast<int>(
+        std::clamp(row, static_cast<float>(block.rows.first), static_cast<float>(block.rows.last)));
+  };
+  return {within(first - kRowsToSpare), within(last + kRowsToSpare)};
+}
+
+}  // namespace
+
 BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
-                              const ReturnLimits& limits) {
+                              const ReturnLimits& limits, const std::optional<SliceBand>& slice) {
   BearingBlock block;
   block.bearings = std::min(kBlockBearings, lines.size() - begin);
   block.rows = {limits.last_row + 1, limits.first_row - 1};
@@ -318,15 +401,19 @@ BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t
       block.all_ahead = block.all_ahead && block.h0[i] + block.h1[i] * static_cast<float>(v) > 0.0F;
     }
   }
+  if (slice && block.RowCount() > 0) block.slice_rows = SliceRows(block, limits, *slice);
   return block;
 }
 
 BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
-                         const BearingBlock& block, float* samples) {
+                         const std::optional<SliceBand>& slice, const BearingBlock& block,
+                         const SampleRows& rows) {
   BlockSamples found;
   found.nearest.fill(kUnusable);
   found.farthest.fill(0.0F);
-  HWY_DYNAMIC_DISPATCH(SampleAll)(image, limits, block, samples, found);
+  found.slice_nearest.fill(kPassing);
+  HWY_DYNAMIC_DISPATCH(SampleAll)
+  (image, limits, slice.value_or(SliceBand{}), block, rows, found);
   return found;
 }
 
@@ -337,9 +424,9 @@ BlockMean MeanWithin(const float* samples, std::size_t rows, const BlockLane& lo
   return mean;
 }
 
-BlockViews FindViews(const BearingBlock& block, const float* samples) {
+BlockViews FindViews(const BearingBlock& block, const BlockLane& farthest, const float* samples) {
   BlockViews views;
-  HWY_DYNAMIC_DISPATCH(ViewLanes)(block, samples, views);
+  HWY_DYNAMIC_DISPATCH(ViewLanes)(block, farthest, samples, views);
   return views;
 }
 

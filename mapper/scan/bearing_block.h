@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mapper/scan/bearing_returns.h"
@@ -22,6 +23,7 @@ struct BearingBlock {
   std::size_t bearings = 0;  // lanes after these repeat the last one
   RowRange rows;             // in which any lane takes part
   RowRange shared_rows;      // in which all of them do
+  RowRange slice_rows;       // of `rows`, those that can see the slice
   bool all_ahead = true;     // no ray of these rows points backwards
   BlockLane u0, u1, h0, h1, g0, g1;
   BlockLane first, last;  // rows of each lane
@@ -32,16 +34,25 @@ struct BearingBlock {
 };
 
 BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
-                              const ReturnLimits& limits);
+                              const ReturnLimits& limits, const std::optional<SliceBand>& slice);
 
-struct BlockSamples {
-  BlockLane nearest;   // smallest sample
-  BlockLane farthest;  // largest: kUnusable when any sample is
+// samples[row - rows.first][lane], and the same of the slice: a range in it, or kPassing. Only its
+// rows `slice_rows` are filled, none without a slice. Unlike SampleAt's, ranges may exceed the
+// limit: that is one comparison less for each, and whoever reads them stops at it.
+struct SampleRows {
+  float* samples = nullptr;
+  float* slice = nullptr;
 };
 
-// Fills samples[row - rows.first][lane].
+struct BlockSamples {
+  BlockLane nearest;        // smallest sample
+  BlockLane farthest;       // largest: kUnusable when any sample is
+  BlockLane slice_nearest;  // smallest of the slice
+};
+
 BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
-                         const BearingBlock& block, float* samples);
+                         const std::optional<SliceBand>& slice, const BearingBlock& block,
+                         const SampleRows& rows);
 
 // Mean of the samples in [low, high] of each lane; `otherwise` where there is none. `count`: their
 // number.
@@ -51,11 +62,11 @@ struct BlockMean {
 BlockMean MeanWithin(const float* samples, std::size_t rows, const BlockLane& low,
                      const BlockLane& high, const BlockLane& otherwise);
 
-// Which rows are usable, and the longest gaps between them.
+// Which rows are usable, and the longest gaps between them. `farthest` as of SampleBlock.
 struct BlockViews {
   BlockLane first, last;                                 // usable rows; first > last when none
   BlockLane below_from, below_to, above_from, above_to;  // from == to when none
 };
-BlockViews FindViews(const BearingBlock& block, const float* samples);
+BlockViews FindViews(const BearingBlock& block, const BlockLane& farthest, const float* samples);
 
 }  // namespace depthgrid::internal

@@ -19,6 +19,7 @@ struct Linear {
 
 // Rows of [low, high] where `function` >= limit.
 void ClipBelow(const Linear& function, double limit, double& low, double& high) {
+  if (function(low) >= limit && function(high) >= limit) return;  // most: no division
   if (function.slope == 0.0) {
     if (function.at_zero < limit) high = low - 1.0;
     return;
@@ -67,15 +68,17 @@ BearingLine LineAt(const Axes& axes, const Bearing& bearing) {
   constexpr double kParallel = 1e-9;
   if (std::abs(off_plane.x()) < kParallel) return line;
   // off_plane . (a, b, 1) = 0, so a is linear in b and all else with it; b = (v - cy) / fy.
-  const double a_at_b0 = -off_plane.z() / off_plane.x();
-  const double a_slope = -off_plane.y() / off_plane.x();
+  const double inverse = -1.0 / off_plane.x();
+  const double a_at_b0 = off_plane.z() * inverse;
+  const double a_slope = off_plane.y() * inverse;
+  const double b_per_row = 1.0 / axes.fy_px;
   const auto along_rows = [&](const Eigen::RowVector3d& f) {
-    const double slope = (f.x() * a_slope + f.y()) / axes.fy_px;
+    const double slope = (f.x() * a_slope + f.y()) * b_per_row;
     return Linear{f.x() * a_at_b0 + f.z() - slope * axes.cy_px, slope};
   };
   const Linear horizontal = along_rows(along);
   const Linear height = along_rows(up);
-  const double u_slope = axes.fx_px * a_slope / axes.fy_px;
+  const double u_slope = axes.fx_px * a_slope * b_per_row;
   const Linear column{axes.cx_px + axes.fx_px * a_at_b0 - u_slope * axes.cy_px, u_slope};
 
   double low = 0.0;
@@ -103,7 +106,8 @@ bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& le
 }
 
 std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
-                                  const Eigen::Quaterniond& level_from_camera, int beams) {
+                                  const Eigen::Quaterniond& level_from_camera, int beams,
+                                  std::vector<Bearing> memory) {
   const bool transposed = LinesRunAlongRows(camera, level_from_camera);
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
   // The image's borders are half a pixel beyond the outer pixels' centres; left is positive, and
@@ -118,7 +122,8 @@ std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
   const double step_cosine = std::cos(step_rad);
   const double step_sine = std::sin(step_rad);
   Bearing bearing{first_angle_rad, std::cos(first_angle_rad), std::sin(first_angle_rad)};
-  std::vector<Bearing> bearings;
+  std::vector<Bearing> bearings = std::move(memory);
+  bearings.clear();
   bearings.reserve(static_cast<std::size_t>(beams));
   for (int k = 0; k < beams; ++k) {
     bearings.push_back(bearing);
@@ -131,9 +136,11 @@ std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
 
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
                                       const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<Bearing>& bearings, bool transposed) {
+                                      const std::vector<Bearing>& bearings, bool transposed,
+                                      std::vector<BearingLine> memory) {
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
-  std::vector<BearingLine> lines;
+  std::vector<BearingLine> lines = std::move(memory);
+  lines.clear();
   lines.reserve(bearings.size());
   for (const Bearing& bearing : bearings) lines.push_back(LineAt(axes, bearing));
   return lines;

@@ -33,13 +33,16 @@ struct Bearing {
 };
 
 // Bearings of `beams` bins of equal angle over the field of view the camera would have if it were
-// level (rolled to the nearest quarter turn), increasing (counter-clockwise).
+// level (rolled to the nearest quarter turn), increasing (counter-clockwise). `memory`: of an
+// earlier result, to be used again.
 std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
-                                  const Eigen::Quaterniond& level_from_camera, int beams);
+                                  const Eigen::Quaterniond& level_from_camera, int beams,
+                                  std::vector<Bearing> memory = {});
 
 // `transposed`: rows and columns of the image are exchanged; `camera` is still the original one.
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
                                       const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<Bearing>& bearings, bool transposed);
+                                      const std::vector<Bearing>& bearings, bool transposed,
+                                      std::vector<BearingLine> memory = {});
 
 }  // namespace depthgrid

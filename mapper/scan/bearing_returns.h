@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct ReturnLimits {
   int min_returns = 1;
   int first_row = 0;  // rows that take part
   int last_row = 0;
+};
+
+// A second band around the camera's own height, thin against the obstacle band.
+struct SliceBand {
+  float low_m = 0.0F;   // relative to the camera, not positive
+  float high_m = 0.0F;  // not negative
 };
 
 // Rows are counted as in the image; first > last stands for none.
@@ -72,9 +79,28 @@ RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                  const NoiseWindow& window, BearingReturns& returns);
 
-// All of the above for every line at once, vectorised; the same values bit for bit.
-std::vector<BearingReturns> FindReturns(const DepthImage& image,
-                                        const std::vector<BearingLine>& lines,
-                                        const ReturnLimits& limits, const NoiseWindow& window);
+// What an image says of every line. The slice's lines are seen as the others are: only the nearest
+// surface differs.
+struct ImageReturns {
+  std::vector<BearingReturns> obstacles;
+  std::vector<BearingReturns> slice;  // empty when not asked for
+};
+
+// Memory for FindReturns, kept from frame to frame.
+struct ReturnsMemory {
+  struct alignas(64) Lanes {
+    float lane[16];
+  };
+  std::vector<Lanes> samples;
+  std::vector<Lanes> slice_samples;
+  std::vector<float> column;
+  ImageReturns returns;
+};
+
+// All of the above for every line at once, vectorised; the same values bit for bit. The result is
+// good until the memory is used again.
+const ImageReturns& FindReturns(const DepthImage& image, const std::vector<BearingLine>& lines,
+                                const ReturnLimits& limits, const std::optional<SliceBand>& slice,
+                                const NoiseWindow& window, ReturnsMemory& memory);
 
 }  // namespace depthgrid

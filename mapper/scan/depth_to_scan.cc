@@ -14,32 +14,33 @@
 namespace depthgrid {
 namespace {
 
-DepthImage Transposed(const DepthImage& image) {
-  DepthImage transposed(image.height_px, image.width_px);
+void Transpose(const DepthImage& image, DepthImage& transposed) {
+  transposed.width_px = image.height_px;
+  transposed.height_px = image.width_px;
+  transposed.z_m.resize(image.z_m.size());
   for (int v = 0; v < transposed.height_px; ++v) {
     for (int u = 0; u < transposed.width_px; ++u) transposed.Row(v)[u] = image.At(v, u);
   }
-  return transposed;
 }
 
-// The geometry of one conversion: which image is read along which lines.
+// Which image is read; the lines it is read along are in the memory.
 struct Reading {
   bool transposed = false;
-  DepthImage transposed_image;
   const DepthImage* image = nullptr;
-  std::vector<Bearing> bearings;
-  std::vector<BearingLine> lines;
 };
 
 Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera,
-                  const Pose3& slam_from_camera, int beams) {
+                  const Pose3& slam_from_camera, int beams, ScanMemory& memory) {
+  Require(depth.width_px == camera.width_px && depth.height_px == camera.height_px,
+          "depth images have the camera's size");
   const Eigen::Quaterniond level_from_camera = LevelFromCamera(slam_from_camera);
   Reading reading;
   reading.transposed = LinesRunAlongRows(camera, level_from_camera);
-  if (reading.transposed) reading.transposed_image = Transposed(depth);
-  reading.image = reading.transposed ? &reading.transposed_image : &depth;
-  reading.bearings = ScanBearings(camera, level_from_camera, beams);
-  reading.lines = BearingLines(camera, level_from_camera, reading.bearings, reading.transposed);
+  if (reading.transposed) Transpose(depth, memory.transposed);
+  reading.image = reading.transposed ? &memory.transposed : &depth;
+  memory.bearings = ScanBearings(camera, level_from_camera, beams, std::move(memory.bearings));
+  memory.lines = BearingLines(camera, level_from_camera, memory.bearings, reading.transposed,
+                              std::move(memory.lines));
   return reading;
 }
 
@@ -94,6 +95,25 @@ Beam BeamOf(double bearing_rad, const BearingLine& line, const BearingReturns& r
   return beam;
 }
 
+Scan ScanOf(const ScanMemory& memory, const std::vector<BearingReturns>& returns,
+            double camera_height_m, const ScanOptions& options) {
+  Scan scan;
+  scan.max_range_m = options.max_range_m;
+  scan.beams.reserve(returns.size());
+  for (std::size_t k = 0; k < returns.size(); ++k) {
+    scan.beams.push_back(BeamOf(memory.bearings[k].angle_rad, memory.lines[k], returns[k],
+                                camera_height_m, options));
+  }
+  return scan;
+}
+
+// A band of this half height above a floor that lies as far below the camera.
+ScanOptions SliceOptions(ScanOptions options, double half_height_m) {
+  options.band_low_m = 0.0;
+  options.band_high_m = 2.0 * half_height_m;
+  return options;
+}
+
 void RequireBelow(const char* low_key, double low, const char* high_key, double high) {
   if (low < high) return;
   std::ostringstream rule;
@@ -125,33 +145,41 @@ Scan DepthToScan::Convert(const DepthImage& depth, const Pose3& slam_from_camera
 
 Scan DepthToScan::ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
                                   double camera_height_m) const {
-  Require(depth.width_px == camera_.width_px && depth.height_px == camera_.height_px,
-          "depth images have the camera's size");
-  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams);
+  ScanMemory memory;
+  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams, memory);
   const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, camera_height_m);
-  const std::vector<BearingReturns> returns =
-      FindReturns(*reading.image, reading.lines, limits, NoiseWindow(depth));
-  Scan scan;
-  scan.max_range_m = options_.max_range_m;
-  scan.beams.reserve(returns.size());
-  for (std::size_t k = 0; k < returns.size(); ++k) {
-    scan.beams.push_back(BeamOf(reading.bearings[k].angle_rad, reading.lines[k], returns[k],
-                                camera_height_m, options_));
-  }
-  return scan;
+  const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
+                                            NoiseWindow(depth, memory.noise), memory.returns);
+  return ScanOf(memory, returns.obstacles, camera_height_m, options_);
+}
+
+ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const Pose3& slam_from_camera,
+                                  double slice_half_height_m, ScanMemory& memory) const {
+  const double camera_height_m = CameraHeightM(depth, slam_from_camera);
+  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams, memory);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, camera_height_m);
+  const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
+  const ReturnLimits slice_limits =
+      LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m);
+  const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
+                                            SliceBand{slice_limits.low_m, slice_limits.high_m},
+                                            NoiseWindow(depth, memory.noise), memory.returns);
+  return {ScanOf(memory, returns.obstacles, camera_height_m, options_),
+          ScanOf(memory, returns.slice, slice_half_height_m, slice_options)};
 }
 
 std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
                                                     const Pose3& slam_from_camera,
                                                     const Scan& scan) const {
+  ScanMemory memory;
   const Reading reading =
-      ReadingOf(depth, camera_, slam_from_camera, static_cast<int>(scan.beams.size()));
+      ReadingOf(depth, camera_, slam_from_camera, static_cast<int>(scan.beams.size()), memory);
   const ReturnLimits limits =
       LimitsOf(options_, camera_, reading.transposed, CameraHeightM(depth, slam_from_camera));
   std::vector<Eigen::Vector2d> pixels(scan.beams.size(), {-1.0, -1.0});
   for (std::size_t k = 0; k < scan.beams.size(); ++k) {
     if (!scan.beams[k].hit) continue;
-    const BearingLine& line = reading.lines[k];
+    const BearingLine& line = memory.lines[k];
     const RowRange rows = RowsOf(line, limits);
     double nearest_m = std::numeric_limits<double>::infinity();
     for (int v = rows.first; v <= rows.last; ++v) {

@@ -3,15 +3,31 @@
 // bearing that the image shows to be free.
 #pragma once
 
-#include <memory>
+#include <vector>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/pose3.h"
 #include "mapper/core/scan.h"
+#include "mapper/scan/bearing_returns.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
+
+// Of one image: what a robot must not run into, and the level slice around the camera.
+struct ScanPair {
+  Scan obstacles;
+  Scan slice;
+};
+
+// Memory for conversions, kept from frame to frame.
+struct ScanMemory {
+  DepthImage transposed;
+  std::vector<Bearing> bearings;
+  std::vector<BearingLine> lines;
+  NoiseWindow::Memory noise;
+  ReturnsMemory returns;
+};
 
 class DepthToScan {
  public:
@@ -24,6 +40,10 @@ class DepthToScan {
   // With the camera's height above the floor from elsewhere.
   Scan ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
                        double camera_height_m) const;
+  // Convert, and what ConvertAtHeight would give for a band of this half height around the camera;
+  // the image is read once for both.
+  ScanPair ConvertBoth(const DepthImage& depth, const Pose3& slam_from_camera,
+                       double slice_half_height_m, ScanMemory& memory) const;
   // The height Convert uses: of the pose, or of the floor seen in the image.
   double CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const;
 

@@ -10,13 +10,6 @@
 namespace depthgrid {
 namespace {
 
-// A band of the slice's thickness above a floor that lies half of it below the camera.
-ScanOptions SliceOptions(ScanOptions options) {
-  options.band_low_m = 0.0;
-  options.band_high_m = 2.0 * options.slice_half_height_m;
-  return options;
-}
-
 // One sum tells of three numbers whether all are finite.
 bool IsSound(const Beam& beam) {
   const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
@@ -35,31 +28,27 @@ std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
 }  // namespace
 
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
-    : slice_half_height_m_(options.slice_half_height_m) {
-  if (!camera) return;
-  obstacles_.emplace(*camera, options);
-  // The other modes read few rows at the camera's height already.
-  if (options.mode == ScanMode::kFull && slice_half_height_m_ > 0.0) {
-    slice_.emplace(*camera, SliceOptions(options));
-  }
+    // The other modes read few rows at the camera's height already.
+    : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0) {
+  if (camera) converter_.emplace(*camera, options);
 }
 
-FrameScans FrameScanner::ScansOf(const Frame& frame) const {
+FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (frame.scan) {
     const std::shared_ptr<const Scan> scan = SoundPart(frame.scan);
     return {scan, frame.matched_scan ? SoundPart(frame.matched_scan) : scan};
   }
   if (!frame.depth || !frame.slam_from_camera) return {};
-  Require(obstacles_.has_value(), "a source of depth images has a camera");
-  FrameScans scans;
-  scans.obstacles =
-      std::make_shared<const Scan>(obstacles_->Convert(*frame.depth, *frame.slam_from_camera));
-  scans.matched = scans.obstacles;
-  if (slice_) {
-    scans.matched = std::make_shared<const Scan>(
-        slice_->ConvertAtHeight(*frame.depth, *frame.slam_from_camera, slice_half_height_m_));
+  Require(converter_.has_value(), "a source of depth images has a camera");
+  if (slice_half_height_m_ <= 0.0) {
+    const auto scan =
+        std::make_shared<const Scan>(converter_->Convert(*frame.depth, *frame.slam_from_camera));
+    return {scan, scan};
   }
-  return scans;
+  ScanPair scans =
+      converter_->ConvertBoth(*frame.depth, *frame.slam_from_camera, slice_half_height_m_, memory_);
+  return {std::make_shared<const Scan>(std::move(scans.obstacles)),
+          std::make_shared<const Scan>(std::move(scans.slice))};
 }
 
 }  // namespace depthgrid

@@ -25,12 +25,12 @@ class FrameScanner {
 
   // Of a ready scan both are that scan, less beams that are not finite numbers or start behind the
   // sensor: those say nothing. Without image, scan or pose both are null.
-  FrameScans ScansOf(const Frame& frame) const;
+  FrameScans ScansOf(const Frame& frame);
 
  private:
-  std::optional<DepthToScan> obstacles_;
-  std::optional<DepthToScan> slice_;  // empty where the obstacle scan itself is matched
-  double slice_half_height_m_ = 0.0;
+  std::optional<DepthToScan> converter_;
+  double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
+  ScanMemory memory_;
 };
 
 }  // namespace depthgrid

@@ -40,8 +40,8 @@ double InverseSigmaOf(std::vector<float>& differences) {
 
 }  // namespace
 
-NoiseWindow::NoiseWindow(const DepthImage& image) {
-  std::array<std::vector<float>, kClasses> differences;
+NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
+  for (std::vector<float>& of_class : differences) of_class.clear();
   for (int k = 0; k < kRows; ++k) {
     const float* row = image.Row((2 * k + 1) * image.height_px / (2 * kRows));
     for (int u = kLag; u + kLag < image.width_px; u += kColumnStep) {

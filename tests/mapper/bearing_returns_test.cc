@@ -76,7 +76,8 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       {12, 10, 9.0, 9.0, 5.5, 4.5, {}},          // narrower than two vectors
       {90, 200, 70.0, 80.0, 45.0, 90.0, {}}};
   RandomStream random(11, RandomStage::kTest);
-  int cases = 0, hits = 0, gaps = 0;
+  ReturnsMemory memory;
+  int cases = 0, hits = 0, slice_hits = 0, gaps = 0;
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     Choose(target);
@@ -100,8 +101,15 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       limits.first_row = i % 6 == 0 ? camera.height_px / 3 : 0;
       limits.last_row = camera.height_px - 1;
       const NoiseWindow window(image);
-      const auto returns = FindReturns(image, lines, limits, window);
+      const SliceBand band{-0.1F, static_cast<float>(0.2 - 0.1)};
+      ReturnLimits slice_limits = limits;
+      slice_limits.low_m = band.low_m;
+      slice_limits.high_m = band.high_m;
+      const ImageReturns both = FindReturns(image, lines, limits, band, window, memory);
+      const std::vector<BearingReturns>& returns = both.obstacles;
       ASSERT_EQ(returns.size(), lines.size());
+      ASSERT_EQ(both.slice.size(), lines.size());
+      ASSERT_EQ(FindReturns(image, lines, limits, {}, window, memory).obstacles, returns);
       for (std::size_t k = 0; k < lines.size(); ++k) {
         const BearingReturns plain = PlainReturns(image, lines[k], limits, window);
         ASSERT_EQ(returns[k].hit, plain.hit) << i << " " << k;
@@ -109,6 +117,9 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         ASSERT_EQ(returns[k].seen, plain.seen) << i << " " << k;
         ASSERT_EQ(returns[k].gap_below, plain.gap_below) << i << " " << k;
         ASSERT_EQ(returns[k].gap_above, plain.gap_above) << i << " " << k;
+        const BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window);
+        ASSERT_EQ(both.slice[k], plain_slice) << i << " " << k;
+        slice_hits += plain_slice.hit ? 1 : 0;
         ++cases;
         hits += plain.hit ? 1 : 0;
         gaps += plain.gap_below.last > 0 || plain.gap_above.last > 0 ? 1 : 0;
@@ -117,6 +128,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   }
   EXPECT_GE(cases, 4000);
   EXPECT_GE(hits, 2000);
+  EXPECT_GE(slice_hits, 2000);
   EXPECT_GE(gaps, 600);
 }
 

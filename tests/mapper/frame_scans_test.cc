@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mapper/core/level.h"
+#include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
 namespace {
@@ -50,6 +51,25 @@ TEST(FrameScanner, ObstaclesAreTheNearestSurfaceAndTheSliceIsLevelWithTheCamera)
   const FrameScans scans = FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(WallFrame());
   EXPECT_NEAR(MeanForwardM(*scans.obstacles), kTableM, 1e-3);
   EXPECT_NEAR(MeanForwardM(*scans.matched), kWallM, 1e-3);
+}
+
+TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
+  ScanOptions options;
+  ScanOptions slice = options;
+  slice.band_low_m = 0.0;
+  slice.band_high_m = 2.0 * options.slice_half_height_m;
+  const PinholeCamera camera;
+  FrameScanner scanner(camera, options);
+  for (const double pitch_rad : {-0.2, 0.0, 0.3}) {
+    Frame frame = WallFrame();
+    frame.slam_from_camera = TiltedCamera({}, kCameraHeightM, pitch_rad, 0.5 * pitch_rad);
+    const FrameScans scans = scanner.ScansOf(frame);
+    EXPECT_EQ(*scans.obstacles,
+              DepthToScan(camera, options).Convert(*frame.depth, *frame.slam_from_camera));
+    EXPECT_EQ(*scans.matched, DepthToScan(camera, slice)
+                                  .ConvertAtHeight(*frame.depth, *frame.slam_from_camera,
+                                                   options.slice_half_height_m));
+  }
 }
 
 TEST(FrameScanner, WithoutASliceTheObstaclesAreMatched) {
