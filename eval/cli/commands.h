@@ -43,6 +43,9 @@ struct MapArguments {
   std::string poses;
   std::string final_poses;
   std::string loops;
+  std::string format;  // the three replace keys of `sequence` when not empty
+  std::string camera;
+  std::string world_up;
   CommonArguments common;
 };
 void Map(const MapArguments& arguments);

@@ -93,12 +93,26 @@ void AddMap(Program& program) {
   const auto [app, arguments] = program.Add<MapArguments>(
       program.app, "map", "Map a recorded or rendered sequence",
       "depthgrid map /tmp/living_room --poses /tmp/living_room/groundtruth.txt -o /tmp/out", &Map);
-  app->add_option("input", arguments->input, "A TUM folder or a CARMEN laser log")->required();
-  app->add_option("--poses", arguments->poses, "SLAM's live poses, TUM format")->type_name("FILE");
-  app->add_option("--final-poses", arguments->final_poses, "SLAM's poses after all corrections")
+  app->add_option("input", arguments->input,
+                  "A TUM, ICL-NUIM or frame-by-frame folder, or a CARMEN laser log")
+      ->required();
+  app->add_option("--poses", arguments->poses,
+                  "SLAM's live poses, TUM format or a matrix a frame; default: the folder's own")
       ->type_name("FILE");
-  app->add_option("--loops", arguments->loops, "SLAM's events, as `depthgrid slam` writes them")
+  app->add_option("--final-poses", arguments->final_poses,
+                  "SLAM's poses after all corrections; without --loops, loops are read off them")
       ->type_name("FILE");
+  app->add_option("--loops", arguments->loops,
+                  "SLAM's events: loops.csv of `depthgrid slam`, ORB-SLAM2's, or stamped loops")
+      ->type_name("FILE");
+  app->add_option("--format", arguments->format,
+                  "Kind of the input, in place of what it looks like: tum, icl, frames, carmen")
+      ->type_name("KIND");
+  app->add_option("--camera", arguments->camera, "A camera file in place of the folder's own")
+      ->type_name("FILE");
+  app->add_option("--up", arguments->world_up,
+                  "Axis of the poses' world that points up: x, -x, y, -y, z, -z or auto")
+      ->type_name("AXIS");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common);
   AddKeys(*app, &MapKeys);

@@ -2,30 +2,25 @@
 
 #include <chrono>
 #include <ctime>
-#include <filesystem>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
-#include "eval/cli/sequence_argument.h"
 #include "eval/mapping_run.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
 #include "mapper/core/error.h"
-#include "mapper/io/carmen_log.h"
+#include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
-#include "mapper/io/trajectory_file.h"
-#include "mapper/io/tum_folder.h"
 
 namespace depthgrid::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct MapSettings {
   std::string input;
   std::string poses;
   std::string final_poses;
   std::string loops;
+  SequenceOptions sequence;
   MapperOptions mapper;
 
   void Visit(OptionsVisitor& v) {
@@ -33,35 +28,80 @@ struct MapSettings {
     v.Text("poses", poses, "SLAM's live poses");
     v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
     v.Text("loops", loops, "SLAM's events");
+    v.Group("sequence", sequence, "how the recorded sequence is read");
     v.Group("mapper", mapper, "the mapper");
   }
 };
 
-struct Input {
-  std::unique_ptr<FrameSource> source;
-  Trajectory final_poses;  // SLAM's own; empty if unknown
-};
-
-Input OpenDepthFolder(const MapArguments& arguments) {
-  if (arguments.poses.empty()) {
-    throw InputError("--poses", "is missing: a depth sequence needs SLAM's poses, a TUM file");
+Config ConfigOf(const MapArguments& arguments) {
+  Config config;
+  const std::pair<const char*, const std::string&> short_names[] = {
+      {"sequence.format", arguments.format},
+      {"sequence.camera", arguments.camera},
+      {"sequence.world_up", arguments.world_up}};
+  for (const auto& [key, value] : short_names) {
+    if (!value.empty()) config.Set(key, value);
   }
-  if (arguments.loops.empty() && arguments.final_poses.empty()) {
-    return {OpenTumFolder(arguments.input, SlamOutputOf(ReadTrajectory(arguments.poses))), {}};
-  }
-  SlamOutput slam = ReadSlamFiles({arguments.poses, arguments.final_poses, arguments.loops},
-                                  FrameStamps(arguments.input));
-  auto source = OpenTumFolder(arguments.input, slam);
-  return {std::move(source), std::move(slam.final)};
+  for (const std::string& assignment : arguments.common.set) config.Set(assignment);
+  return config;
 }
 
-Input OpenInput(const MapArguments& arguments) {
-  if (!fs::exists(arguments.input)) throw InputError(arguments.input, "no such file or folder");
-  if (fs::is_directory(arguments.input)) return OpenDepthFolder(arguments);
+void Say(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+}
+
+// SLAM's files, when there are any.
+std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceOptions& options) {
+  const bool laser = FormatOf(arguments.input, options) == SequenceFormat::kCarmen;
   for (const std::string& file : {arguments.poses, arguments.final_poses, arguments.loops}) {
-    if (!file.empty()) throw InputError(file, "a laser log brings its own poses");
+    if (laser && !file.empty()) throw InputError(file, "a laser log brings its own poses");
   }
-  return {OpenCarmenLog(arguments.input), {}};
+  if (arguments.poses.empty()) {
+    for (const std::string& file : {arguments.final_poses, arguments.loops}) {
+      if (!file.empty()) throw InputError("--poses", "is missing: the poses " + file + " is about");
+    }
+    return {};
+  }
+  const std::vector<double> stamps_s = SequenceStamps(arguments.input, options);
+  return ReadSlamFiles(
+      {arguments.poses, arguments.final_poses, arguments.loops}, stamps_s,
+      {options.recording.max_stamp_difference_s, options.recording.interpolate_poses});
+}
+
+Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSettings& settings,
+                   std::vector<std::string>& warnings) {
+  const auto slam = ReadSlam(arguments, settings.sequence);
+  Sequence sequence = OpenSequence(arguments.input, settings.sequence,
+                                   slam ? std::optional(slam->slam) : std::nullopt);
+  // Poses alone are not known to be final ones.
+  if (slam && arguments.final_poses.empty()) sequence.final_poses.clear();
+  if (!config.Has("mapper.scan.floor_z_m") && sequence.floor_z_m) {
+    settings.mapper.scan.floor_z_m = *sequence.floor_z_m;
+  }
+  fmt::print("{}: {}, {} frames\n", arguments.input, sequence.kind, sequence.source->FrameCount());
+  Say(sequence.notes);
+  if (slam) {
+    Say(slam->notes);
+    warnings = slam->warnings;
+  }
+  return sequence;
+}
+
+void SayResult(const MappingRun& run) {
+  int posed = 0;
+  int rejected = 0;
+  for (const FrameReport& report : run.reports) {
+    posed += report.slam_from_camera ? 1 : 0;
+    rejected += report.loops_rejected;
+  }
+  fmt::print("mapped {} of {} frames", run.result.mapped.size(), run.reports.size());
+  if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
+    fmt::print(", {} without a pose", lost);
+  }
+  if (!run.loops.empty()) {
+    fmt::print("; {} of {} loop closures taken", run.result.loops.size(), run.loops.size());
+  }
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -69,15 +109,15 @@ Input OpenInput(const MapArguments& arguments) {
 void Map(const MapArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   MapSettings settings;
-  Config config;
-  for (const std::string& assignment : arguments.common.set) config.Set(assignment);
+  const Config config = ConfigOf(arguments);
   config.Read(settings);
   settings.input = arguments.input;
   settings.poses = arguments.poses;
   settings.final_poses = arguments.final_poses;
   settings.loops = arguments.loops;
   OutputFolder folder(arguments.common.output, arguments.common.force);
-  const Input input = OpenInput(arguments);
+  std::vector<std::string> warnings;
+  const Sequence input = OpenInput(arguments, config, settings, warnings);
   ProgressBar bar("mapping");
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress());
@@ -91,7 +131,9 @@ void Map(const MapArguments& arguments) {
   record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   WriteRunFolder(folder, record);
   folder.Commit();
-  Warn(run.warnings);
+  SayResult(run);
+  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+  Warn(warnings);
 }
 
 std::string MapKeys() { return ListKeys(MapSettings{}); }

@@ -76,9 +76,9 @@ Recording ListIclFolder(const std::string& folder) {
   return recording;
 }
 
-SlamOutput ReadIclPoses(const std::string& folder, const Recording& recording) {
+SlamOutput ReadIclPoses(const std::string& folder, Recording& recording) {
   if (const std::string path = FileWith(folder, ".gt.freiburg"); !path.empty()) {
-    return SlamOutputOf(ReadTrajectory(path));
+    return SlamOutputOf(ReadTrajectory(path, recording.warnings));
   }
   if (const std::string path = FileWith(folder, ".gt.sim"); !path.empty()) {
     return PairInOrder(ReadMatrixPoses(path), recording, path);

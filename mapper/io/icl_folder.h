@@ -19,8 +19,9 @@ bool IsIclFolder(const std::string& folder);
 // Lists the images; their stamps are their numbers, as in the .gt.freiburg files.
 Recording ListIclFolder(const std::string& folder);
 
-// The folder's own poses, as written: of a camera whose y axis points up.
-SlamOutput ReadIclPoses(const std::string& folder, const Recording& recording);
+// The folder's own poses, as written: of a camera whose y axis points up. What was mended is added
+// to the recording's warnings.
+SlamOutput ReadIclPoses(const std::string& folder, Recording& recording);
 
 // ICL-NUIM's camera, unless the folder has a camera.yaml.
 CameraDescription IclCamera(const std::string& folder);

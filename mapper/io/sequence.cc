@@ -35,6 +35,7 @@ struct DepthSequence {
 DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
                           const std::optional<SlamOutput>& slam, std::vector<std::string>& notes) {
   DepthSequence sequence;
+  sequence.recording = ListTumFolder(path, options.recording);
   if (slam) {
     sequence.slam = *slam;
   } else {
@@ -43,10 +44,9 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
       throw InputError(path,
                        "a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
     }
-    sequence.slam = SlamOutputOf(ReadTrajectory(truth));
+    sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
     notes.push_back("poses: groundtruth.txt of the folder");
   }
-  sequence.recording = ListTumFolder(path, options.recording);
   if (options.camera.empty()) {
     sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
   } else {
@@ -165,6 +165,10 @@ SequenceFormat DetectFormat(const std::string& path) {
                    "*.gt.freiburg, no numbered depth images with poses");
 }
 
+SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options) {
+  return options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+}
+
 std::string NameOf(SequenceFormat format) {
   switch (format) {
     case SequenceFormat::kTum:
@@ -182,8 +186,7 @@ std::string NameOf(SequenceFormat format) {
 }
 
 std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options) {
-  const SequenceFormat format =
-      options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+  const SequenceFormat format = FormatOf(path, options);
   Recording recording;
   if (format == SequenceFormat::kTum) recording = ListTumFolder(path, options.recording);
   if (format == SequenceFormat::kIcl) recording = ListIclFolder(path);
@@ -191,14 +194,15 @@ std::vector<double> SequenceStamps(const std::string& path, const SequenceOption
     recording = ListFrameFolder(path, options.recording).recording;
   }
   std::vector<double> stamps_s;
-  for (const RecordedImage& image : recording.images) stamps_s.push_back(image.stamp_s);
+  for (const RecordedImage& image : recording.images) {
+    stamps_s.push_back(image.stamp_s + options.recording.time_offset_s);
+  }
   return stamps_s;
 }
 
 Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                       const std::optional<SlamOutput>& slam) {
-  const SequenceFormat format =
-      options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+  const SequenceFormat format = FormatOf(path, options);
   Sequence result;
   result.kind = NameOf(format);
   if (format == SequenceFormat::kCarmen) {
@@ -217,6 +221,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   result.source = OpenRecording(std::move(sequence.recording), level, options.recording,
                                 std::move(sequence.reader));
   result.final_poses = std::move(level.final);
+  for (StampedPose& pose : result.final_poses) pose.stamp_s -= options.recording.time_offset_s;
   return result;
 }
 

@@ -34,14 +34,17 @@ struct Sequence {
   std::vector<std::string> notes;  // what was found out about it, a line each
   // z of the floor in the poses' level world, where it was found; 0 when it is within 2 cm of 0.
   std::optional<double> floor_z_m;
-  Trajectory final_poses;  // SLAM's own, in the level world; empty when unknown
+  // SLAM's own, in the level world and by the clock of the frames; empty when unknown.
+  Trajectory final_poses;
 };
 
 // The kind a path looks like. Throws InputError when it is none that is known.
 SequenceFormat DetectFormat(const std::string& path);
+// The one that is forced, or the one it looks like.
+SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options);
 std::string NameOf(SequenceFormat format);
 
-// Stamps of the frames, as poses given for them are to have; none for a laser log.
+// Stamps of the frames by the clock of the poses (time_offset_s added); none for a laser log.
 std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options = {});
 
 // `slam` replaces the folder's own poses; a TUM folder has none but groundtruth.txt, which is taken

@@ -4,23 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
-#include "mapper/io/number_rows.h"
+#include "mapper/io/loop_events.h"
+#include "mapper/io/pose_file.h"
+#include "mapper/io/pose_track.h"
+#include "mapper/io/slam_jumps.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {
 namespace {
 
-constexpr double kMaxStampDifferenceS = 0.01;  // evo's, and less than half a frame at 30 Hz
-constexpr double kMaxNormError = 1e-3;
 constexpr const char* kHeader =
     "kind,frame,epoch,first,second,tx_m,ty_m,tz_m,qx,qy,qz,qw,sigma_translation_m,"
     "sigma_rotation_rad\n";
-constexpr std::size_t kLoopColumns = 14;
 
 std::string LoopRow(const LoopClosure& loop, int epoch) {
   const Eigen::Vector3d& t = loop.first_from_second.translation;
@@ -30,158 +29,115 @@ std::string LoopRow(const LoopClosure& loop, int epoch) {
                      q.w(), loop.sigma_translation_m, loop.sigma_rotation_rad);
 }
 
-// The fields of one line, empty ones included; SplitRows has no empty fields.
-std::vector<std::string_view> SplitAtCommas(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-struct Event {
-  int frame = 0;
-  int epoch = 0;
-  std::optional<LoopClosure> loop;
+struct FramedPose {
+  std::size_t frame = 0;
+  StampedPose pose;
 };
 
-// Fields of one row of loops.csv, each error naming the line.
-class EventRow {
- public:
-  EventRow(std::vector<std::string_view> fields, std::string place, std::size_t frame_count)
-      : fields_(std::move(fields)), place_(std::move(place)), frame_count_(frame_count) {
-    if (fields_.size() != kLoopColumns) {
-      throw InputError(place_,
-                       fmt::format("has {} columns, must have {}", fields_.size(), kLoopColumns));
-    }
-  }
-  Event Parse() const {
-    if (fields_[0] != "loop" && fields_[0] != "relocalisation") {
-      throw InputError(place_,
-                       fmt::format("kind is '{}', must be loop or relocalisation", fields_[0]));
-    }
-    Event event = {Frame(1), Whole(2), std::nullopt};
-    if (fields_[0] == "loop") event.loop = Loop(event.frame);
-    return event;
-  }
-
- private:
-  LoopClosure Loop(int reported_at_frame) const {
-    LoopClosure loop;
-    loop.reported_at_frame = reported_at_frame;
-    loop.first_frame = Frame(3);
-    loop.second_frame = Frame(4);
-    loop.first_from_second = {Eigen::Quaterniond(Value(11), Value(8), Value(9), Value(10)),
-                              {Value(5), Value(6), Value(7)}};
-    loop.sigma_translation_m = Value(12);
-    loop.sigma_rotation_rad = Value(13);
-    const double norm = loop.first_from_second.rotation.norm();
-    if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
-      throw InputError(place_, fmt::format("quaternion has norm {:.6g}, must be 1", norm));
-    }
-    if (std::max(loop.first_frame, loop.second_frame) > reported_at_frame) {
-      throw InputError(place_, "a loop cannot be reported before the frames it joins");
-    }
-    if (!(loop.sigma_translation_m > 0.0) || !(loop.sigma_rotation_rad > 0.0)) {
-      throw InputError(place_, "the sigmas of a loop must be above 0");
-    }
-    return loop;
-  }
-  double Value(std::size_t column) const {
-    const std::optional<double> value = ParseNumber(fields_[column]);
-    if (!value || !std::isfinite(*value)) {
-      throw InputError(place_, fmt::format("column {} is '{}', must be a finite number", column + 1,
-                                           fields_[column]));
-    }
-    return *value;
-  }
-  int Whole(std::size_t column) const {
-    const double value = Value(column);
-    if (value != std::floor(value) || value < 0.0 || value > 1e9) {
-      throw InputError(place_, fmt::format("column {} is '{}', must be a whole number", column + 1,
-                                           fields_[column]));
-    }
-    return static_cast<int>(value);
-  }
-  int Frame(std::size_t column) const {
-    const int frame = Whole(column);
-    if (static_cast<std::size_t>(frame) >= frame_count_) {
-      throw InputError(
-          place_, fmt::format("frame {} is not among the {} input frames", frame, frame_count_));
-    }
-    return frame;
-  }
-
-  std::vector<std::string_view> fields_;
-  std::string place_;
-  std::size_t frame_count_;
-};
-
-std::vector<Event> ReadEvents(const std::string& path, std::size_t frame_count) {
-  std::vector<Event> events;
-  const std::string text = ReadFile(path);
-  std::string_view rest = text;
-  for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = rest.find('\n');
-    std::string_view row = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    const bool header = line == 1 && row.starts_with("kind");
-    if (row.empty() || row.starts_with('#') || header) continue;
-    events.push_back(EventRow(SplitAtCommas(row), PlaceOfLine(path, line), frame_count).Parse());
-    const std::size_t last = events.size() - 1;
-    if (last == 0) continue;
-    if (events[last].frame < events[last - 1].frame ||
-        events[last].epoch < events[last - 1].epoch) {
-      throw InputError(PlaceOfLine(path, line), "frames and epochs must not go down");
-    }
-  }
-  return events;
-}
-
-// The input frame each pose belongs to.
-std::vector<std::size_t> FramesOf(const Trajectory& poses, const std::vector<double>& stamps_s,
-                                  const std::string& path) {
-  std::vector<std::size_t> frames;
+// Poses by the input frames they belong to: of several of one frame the nearest. Those of no frame
+// are counted in the warnings; throws InputError when all are.
+std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const std::vector<double>& stamps_s,
+                                     double max_difference_s, const std::string& path,
+                                     std::vector<std::string>& warnings) {
+  std::vector<FramedPose> framed;
+  int homeless = 0;
+  int doubled = 0;
+  const auto distance_s = [&](const FramedPose& f) {
+    return std::abs(f.pose.stamp_s - stamps_s[f.frame]);
+  };
   for (const StampedPose& pose : poses) {
-    const auto after = std::lower_bound(stamps_s.begin(), stamps_s.end(), pose.stamp_s);
-    auto nearest = after;
-    if (after == stamps_s.end() ||
-        (after != stamps_s.begin() && pose.stamp_s - *std::prev(after) <= *after - pose.stamp_s)) {
-      nearest = after == stamps_s.begin() ? after : std::prev(after);
+    const auto frame = NearestStamp(stamps_s, pose.stamp_s, max_difference_s);
+    if (!frame) {
+      ++homeless;
+      continue;
     }
-    if (nearest == stamps_s.end() || std::abs(*nearest - pose.stamp_s) > kMaxStampDifferenceS) {
-      throw InputError(path, fmt::format("stamp {:.6f} is that of no input frame", pose.stamp_s));
+    const FramedPose found{*frame, pose};
+    if (framed.empty() || framed.back().frame != *frame) {
+      framed.push_back(found);
+      continue;
     }
-    const auto frame = static_cast<std::size_t>(nearest - stamps_s.begin());
-    if (!frames.empty() && frames.back() == frame) {
-      throw InputError(
-          path, fmt::format("stamp {:.6f} is the second pose of one input frame", pose.stamp_s));
-    }
-    frames.push_back(frame);
+    ++doubled;
+    if (distance_s(found) < distance_s(framed.back())) framed.back() = found;
   }
-  return frames;
+  if (framed.empty() && !stamps_s.empty()) {
+    throw InputError(path, fmt::format("no pose within {} s of any image: images from {:.3f} to "
+                                       "{:.3f} s, poses from {:.3f} to {:.3f} s",
+                                       max_difference_s, stamps_s.front(), stamps_s.back(),
+                                       poses.front().stamp_s, poses.back().stamp_s));
+  }
+  const auto warn = [&](int count, const char* what) {
+    if (count > 0) warnings.push_back(fmt::format("{}: {} {}", path, count, what));
+  };
+  warn(homeless, "poses have the stamp of no input frame, ignored");
+  warn(doubled, "poses beside a nearer one of the same input frame, ignored");
+  return framed;
 }
 
-std::vector<SlamPose> LivePoses(const Trajectory& poses, const std::vector<std::size_t>& frames,
-                                const std::vector<Event>& events,
+std::vector<SlamPose> LivePoses(const std::vector<FramedPose>& poses,
+                                const std::vector<SlamEvent>& events,
                                 const std::vector<double>& stamps_s) {
   std::vector<SlamPose> live;
   for (const double stamp_s : stamps_s) live.push_back({stamp_s, std::nullopt, 0});
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    live[frames[k]].slam_from_camera = poses[k].world_from_camera;
+  for (const FramedPose& framed : poses) {
+    live[framed.frame].slam_from_camera = framed.pose.world_from_camera;
   }
   auto event = events.begin();
   int epoch = 0;
   for (std::size_t i = 0; i < live.size(); ++i) {
     for (; event != events.end() && static_cast<std::size_t>(event->frame) == i; ++event) {
-      epoch = event->epoch;
+      epoch = event->epoch ? *event->epoch : epoch + (event->new_epoch ? 1 : 0);
     }
     live[i].epoch = epoch;
   }
   return live;
+}
+
+// Our own loops.csv says when SLAM corrected itself; else it is read off the poses.
+void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& input) {
+  if (epochs_known) return;
+  SlamOutput& slam = input.slam;
+  const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
+  const std::vector<int> jumps = FindJumps(slam.live, revised);
+  if (!jumps.empty()) {
+    input.notes.push_back(
+        fmt::format("SLAM corrected itself at {} frames (jumps of its live poses)", jumps.size()));
+  }
+  StartEpochs(jumps, slam.live);
+  if (!paths.loops.empty() || paths.final.empty()) return;
+  slam.loops = LoopsFromRevision(slam.live, revised, jumps);
+  if (!slam.loops.empty()) {
+    input.notes.push_back(
+        fmt::format("{} loop closures read off the revised poses", slam.loops.size()));
+  }
+}
+
+// All poses as entries of their own; epochs and loops, which are those of frames, move over.
+void KeepAll(const Trajectory& poses, SlamOutput& slam) {
+  const std::vector<SlamPose> framed = std::move(slam.live);
+  slam.live.clear();
+  std::size_t next = 0;
+  int epoch = 0;
+  for (const auto& [stamp_s, pose] : poses) {
+    for (; next < framed.size() && framed[next].stamp_s <= stamp_s; ++next) {
+      epoch = framed[next].epoch;
+    }
+    slam.live.push_back({stamp_s, pose, epoch});
+  }
+  const auto entry_of = [&](int& frame) {
+    const double stamp_s = framed[static_cast<std::size_t>(frame)].stamp_s;
+    const auto entry = std::lower_bound(poses.begin(), poses.end(), stamp_s,
+                                        [](const auto& p, double s) { return p.stamp_s < s; });
+    frame = static_cast<int>(std::min(entry, poses.end() - 1) - poses.begin());
+  };
+  for (LoopClosure& loop : slam.loops) {
+    entry_of(loop.first_frame);
+    entry_of(loop.second_frame);
+    entry_of(loop.reported_at_frame);
+  }
+}
+
+void Append(std::vector<std::string>& to, const std::vector<std::string>& lines) {
+  to.insert(to.end(), lines.begin(), lines.end());
 }
 
 }  // namespace
@@ -214,19 +170,35 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output) {
   WriteFile(folder + "/loops.csv", LoopsText(output));
 }
 
-SlamOutput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s) {
-  SlamOutput output;
-  std::vector<Event> events;
-  if (!paths.loops.empty()) events = ReadEvents(paths.loops, frame_stamps_s.size());
-  for (const Event& event : events) {
-    if (event.loop) output.loops.push_back(*event.loop);
+SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
+                        const SlamReading& reading) {
+  const double max_difference_s = reading.max_difference_s;
+  SlamInput input;
+  SlamOutput& slam = input.slam;
+  SlamEvents events;
+  if (!paths.loops.empty()) {
+    events = ParseSlamEvents(ReadFile(paths.loops), paths.loops, frame_stamps_s, max_difference_s);
+    Append(input.warnings, events.warnings);
   }
-  const Trajectory live = ReadTrajectory(paths.live);
-  const std::vector<std::size_t> frames = FramesOf(live, frame_stamps_s, paths.live);
-  output.live = LivePoses(live, frames, events, frame_stamps_s);
-  output.final = paths.final.empty() ? live : ReadTrajectory(paths.final);
-  if (!paths.final.empty()) FramesOf(output.final, frame_stamps_s, paths.final);
-  return output;
+  for (const SlamEvent& event : events.events) {
+    if (event.loop) slam.loops.push_back(*event.loop);
+  }
+  const Trajectory live = ReadPoseFile(paths.live, frame_stamps_s, input.warnings);
+  const auto framed =
+      PosesByFrame(live, frame_stamps_s, max_difference_s, paths.live, input.warnings);
+  slam.live = LivePoses(framed, events.events, frame_stamps_s);
+  slam.final = live;
+  if (!paths.final.empty()) {
+    slam.final = ReadPoseFile(paths.final, frame_stamps_s, input.warnings);
+    PosesByFrame(slam.final, frame_stamps_s, max_difference_s, paths.final, input.warnings);
+  }
+  if (!paths.loops.empty()) {
+    input.notes.push_back(fmt::format("{} loop closures from {}", slam.loops.size(), events.kind));
+  }
+  const bool epochs_known = events.kind == kOwnEvents;
+  FindCorrections(paths, epochs_known, input);
+  if (reading.keep_all_poses) KeepAll(live, slam);
+  return input;
 }
 
 }  // namespace depthgrid

@@ -4,9 +4,9 @@
 // loops.csv has a header line and one row an event, ordered by frame:
 //   kind                  loop | relocalisation
 //   frame                 the input frame, counted from 0, with whose pose the event takes effect
-//   epoch                 SLAM's epoch from this frame on; unchanged when SLAM did not correct
-//   itself first, second         the frames a loop joins; empty for a relocalisation, as all that
-//   follows tx_m .. qw            first_from_second, the measured relative camera pose
+//   epoch                 SLAM's epoch from this frame on; unchanged when it did not correct itself
+//   first, second         the frames a loop joins; empty for a relocalisation, as all that follows
+//   tx_m .. qw            first_from_second, the measured relative camera pose
 //   sigma_translation_m, sigma_rotation_rad   its standard deviations
 #pragma once
 
@@ -23,13 +23,30 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output);
 
 struct SlamFilePaths {
   std::string live;
-  std::string final;  // empty: the live trajectory is the final one
-  std::string loops;  // empty: no events, one epoch
+  std::string final;  // empty: unknown, the live trajectory stands for it
+  std::string loops;  // empty: events are read off the trajectories (mapper/io/slam_jumps.h)
 };
 
-// The output the files were written from, given the stamps of all input frames (a lost frame is in
-// no file). A pose belongs to the frame with the nearest stamp, at most 0.01 s away. Throws
-// InputError for a file that does not fit the frames or says something impossible.
-SlamOutput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s);
+struct SlamInput {
+  SlamOutput slam;
+  std::vector<std::string> notes;     // what was found, a line each
+  std::vector<std::string> warnings;  // what was wrong and survived, a line each
+};
+
+struct SlamReading {
+  // A pose belongs to the frame with the nearest stamp, at most this far away: evo's, and less than
+  // half a frame at 30 Hz.
+  double max_difference_s = 0.01;
+  // Keeps every pose of the live file with its own stamp, to be interpolated between, instead of
+  // one an input frame.
+  bool keep_all_poses = false;
+};
+
+// The output of a SLAM system as files: its poses (TUM, or a matrix a frame in order), its revised
+// poses and its events, given the stamps of all input frames; lost frames are in no file. Poses of
+// no frame are counted. Throws InputError for a file that is damaged or has nothing to do with the
+// frames.
+SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
+                        const SlamReading& reading = {});
 
 }  // namespace depthgrid

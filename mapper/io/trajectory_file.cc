@@ -74,8 +74,15 @@ TrajectoryFile ReadTrajectoryFile(const std::string& path) {
 }
 
 Trajectory ReadTrajectory(const std::string& path) {
+  std::vector<std::string> unsaid;
+  return ReadTrajectory(path, unsaid);
+}
+
+Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings) {
   TrajectoryFile file = ReadTrajectoryFile(path);
   if (file.poses.empty()) throw InputError(path, "holds no pose");
+  const auto mended = file.Warnings(path);
+  warnings.insert(warnings.end(), mended.begin(), mended.end());
   return std::move(file.poses);
 }
 

@@ -26,6 +26,8 @@ TrajectoryFile ReadTrajectoryFile(const std::string& path);
 TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place);
 // Its poses alone; additionally throws InputError when there is none.
 Trajectory ReadTrajectory(const std::string& path);
+// And what was mended, added to `warnings`.
+Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings);
 
 // Stamps with six decimals, pose values in the shortest form that reads back as the same double.
 std::string TrajectoryText(const Trajectory& trajectory);

@@ -100,7 +100,9 @@ TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   ExpectRefusal("eval trajectory a.txt none.txt", {"none.txt"});
   Succeed("render ./small.yaml --no-colour -o seq");
   ExpectRefusal("map seq --poses b.txt -o out", {"pose"});
-  ExpectRefusal("map seq -o out", {"--poses"});
+  ExpectRefusal("map seq --loops a.txt -o out", {"--poses", "a.txt"});
+  std::filesystem::remove(Path("seq/groundtruth.txt"));
+  ExpectRefusal("map seq -o out", {"needs poses"});
 }
 
 TEST_F(ProgramErrors, BadUsage) {

@@ -15,9 +15,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
+// Near the others, so that no step between two is a jump.
 Pose3 RandomPose(RandomStream& random) {
-  const Eigen::Vector3d turn(random.Normal(), random.Normal(), random.Normal());
-  return {ExpRotation(turn), {random.Normal(), random.Normal(), random.Normal()}};
+  const auto small = [&] { return 0.005 * random.Normal(); };
+  const Eigen::Vector3d turn(small(), small(), small());
+  return {ExpRotation(turn), {small(), small(), small()}};
 }
 
 // Twelve frames: 4 and 5 lost, relocalised at 6, loops at 8 (two at once, one that moved nothing)
@@ -74,7 +76,7 @@ class SlamFiles : public ::testing::Test {
 TEST_F(SlamFiles, ReadBackTheVerySameOutput) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);
-  const SlamOutput read = ReadSlamFiles(Paths(), Stamps(written));
+  const SlamOutput read = ReadSlamFiles(Paths(), Stamps(written)).slam;
   EXPECT_EQ(read.live, written.live);
   EXPECT_EQ(read.final, written.final);
   EXPECT_EQ(read.loops, written.loops);
@@ -89,7 +91,7 @@ TEST_F(SlamFiles, ReadBackTheVerySameOutput) {
 TEST_F(SlamFiles, ALiveTrajectoryAloneIsEnough) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);
-  const SlamOutput read = ReadSlamFiles({Paths().live, "", ""}, Stamps(written));
+  const SlamOutput read = ReadSlamFiles({Paths().live, "", ""}, Stamps(written)).slam;
   EXPECT_EQ(read.final, ReadTrajectory(Paths().live));
   EXPECT_EQ(read.live[7].slam_from_camera, written.live[7].slam_from_camera);
   EXPECT_EQ(read.live[7].epoch, 0);
@@ -119,6 +121,46 @@ TEST_F(SlamFiles, RefusePosesOfOtherFrames) {
   std::vector<double> stamps_s = Stamps(written);
   for (double& stamp_s : stamps_s) stamp_s += 100.0;
   EXPECT_THROW(ReadSlamFiles(Paths(), stamps_s), InputError);
+}
+
+TEST_F(SlamFiles, PosesBesideTheFramesAreCountedAndSurvived) {
+  const SlamOutput written = Example();
+  WriteSlamFiles(folder_, written);
+  std::vector<double> stamps_s = Stamps(written);
+  stamps_s.erase(stamps_s.begin() + 8);  // its image is missing
+  const SlamInput read = ReadSlamFiles({Paths().live, Paths().final, ""}, stamps_s);
+  EXPECT_EQ(read.slam.live.size(), 11U);
+  EXPECT_EQ(read.slam.live[8].slam_from_camera, written.live[9].slam_from_camera);
+  ASSERT_EQ(read.warnings.size(), 2U);
+  EXPECT_THAT(read.warnings[0], HasSubstr("slam.txt: 1 poses have the stamp of no input frame"));
+}
+
+TEST_F(SlamFiles, MatricesTakeTheFramesStampsInOrder) {
+  WriteFile(folder_ + "/kitti.txt",
+            "1 0 0 0.1 0 1 0 0 0 0 1 0\nnan 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0.3 0 1 0 0 0 0 1 0\n");
+  const SlamInput read = ReadSlamFiles({folder_ + "/kitti.txt", "", ""}, {5.0, 6.0, 7.0, 8.0});
+  EXPECT_EQ(read.slam.live[0].slam_from_camera->translation.x(), 0.1);
+  EXPECT_FALSE(read.slam.live[1].slam_from_camera);
+  EXPECT_EQ(read.slam.live[2].slam_from_camera->translation.x(), 0.3);
+  EXPECT_FALSE(read.slam.live[3].slam_from_camera);
+  ASSERT_EQ(read.warnings.size(), 2U);
+  EXPECT_THAT(read.warnings[0], HasSubstr("3 poses for 4 frames"));
+  EXPECT_THAT(read.warnings[1], HasSubstr("1 poses with NaN"));
+}
+
+// For interpolation: poses keep their own stamps, and what was said of frames moves to them.
+TEST_F(SlamFiles, AllPosesMayBeKept) {
+  WriteFile(folder_ + "/dense.txt",
+            "0.00 0 0 0 0 0 0 1\n0.01 1 0 0 0 0 0 1\n0.02 2 0 0 0 0 0 1\n0.03 3 0 0 0 0 0 1\n"
+            "0.04 4 0 0 0 0 0 1\n");
+  WriteFile(folder_ + "/loops.csv", "loop,1,1,0,1,0,0,0,0,0,0,1,0.1,0.1\n");
+  const SlamInput read = ReadSlamFiles({folder_ + "/dense.txt", "", folder_ + "/loops.csv"},
+                                       {0.0, 0.03}, {0.004, true});
+  ASSERT_EQ(read.slam.live.size(), 5U);
+  EXPECT_EQ(read.slam.live[2].slam_from_camera->translation.x(), 2.0);
+  EXPECT_EQ(read.slam.live[2].epoch, 0);
+  EXPECT_EQ(read.slam.live[3].epoch, 1);
+  EXPECT_EQ(read.slam.loops[0].second_frame, 3);
 }
 
 }  // namespace

@@ -1,0 +1,208 @@
+#include "mapper/io/event_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/error.h"
+#include "mapper/io/matrix_poses.h"
+#include "mapper/io/pose_track.h"
+
+namespace depthgrid::internal {
+namespace {
+
+constexpr double kMaxNormError = 1e-3;
+constexpr std::size_t kCsvColumns = 14;
+
+// The fields of one line, empty ones included; SplitRows has no empty fields.
+std::vector<std::string_view> SplitAtCommas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+void RequirePossible(const LoopClosure& loop, const std::string& place) {
+  const double norm = loop.first_from_second.rotation.norm();
+  if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
+    throw InputError(place, fmt::format("quaternion has norm {:.6g}, must be 1", norm));
+  }
+  if (std::max(loop.first_frame, loop.second_frame) > loop.reported_at_frame) {
+    throw InputError(place, "a loop cannot be reported before the frames it joins");
+  }
+  if (!(loop.sigma_translation_m > 0.0) || !(loop.sigma_rotation_rad > 0.0)) {
+    throw InputError(place, "the sigmas of a loop must be above 0");
+  }
+}
+
+// Fields of one row of loops.csv, each error naming the line.
+class CsvRow {
+ public:
+  CsvRow(std::string_view row, const std::string& place, std::size_t frame_count)
+      : fields_(SplitAtCommas(row)), place_(place), frame_count_(frame_count) {
+    if (fields_.size() != kCsvColumns) {
+      throw InputError(place_,
+                       fmt::format("has {} columns, must have {}", fields_.size(), kCsvColumns));
+    }
+  }
+  SlamEvent Parse() const {
+    if (fields_[0] != "loop" && fields_[0] != "relocalisation") {
+      throw InputError(place_,
+                       fmt::format("kind is '{}', must be loop or relocalisation", fields_[0]));
+    }
+    SlamEvent event;
+    event.frame = Frame(1);
+    event.epoch = Whole(2);
+    if (fields_[0] == "loop") event.loop = Loop(event.frame);
+    return event;
+  }
+
+ private:
+  LoopClosure Loop(int reported_at_frame) const {
+    LoopClosure loop;
+    loop.reported_at_frame = reported_at_frame;
+    loop.first_frame = Frame(3);
+    loop.second_frame = Frame(4);
+    loop.first_from_second = {Eigen::Quaterniond(Value(11), Value(8), Value(9), Value(10)),
+                              {Value(5), Value(6), Value(7)}};
+    loop.sigma_translation_m = Value(12);
+    loop.sigma_rotation_rad = Value(13);
+    RequirePossible(loop, place_);
+    return loop;
+  }
+  double Value(std::size_t column) const {
+    const std::optional<double> value = ParseNumber(fields_[column]);
+    if (!value || !std::isfinite(*value)) {
+      throw InputError(place_, fmt::format("column {} is '{}', must be a finite number", column + 1,
+                                           fields_[column].substr(0, 40)));
+    }
+    return *value;
+  }
+  int Whole(std::size_t column) const {
+    const double value = Value(column);
+    if (value != std::floor(value) || value < 0.0 || value > 1e9) {
+      throw InputError(place_, fmt::format("column {} is '{}', must be a whole number", column + 1,
+                                           fields_[column].substr(0, 40)));
+    }
+    return static_cast<int>(value);
+  }
+  int Frame(std::size_t column) const {
+    const int frame = Whole(column);
+    if (static_cast<std::size_t>(frame) >= frame_count_) {
+      throw InputError(
+          place_, fmt::format("frame {} is not among the {} input frames", frame, frame_count_));
+    }
+    return frame;
+  }
+
+  std::vector<std::string_view> fields_;
+  const std::string& place_;
+  std::size_t frame_count_;
+};
+
+double FieldNumber(const TextRow& row, std::size_t field, const std::string& path) {
+  const auto number =
+      field < row.fields.size() ? ParseNumber(row.fields[field]) : std::optional<double>{};
+  if (!number || !std::isfinite(*number)) {
+    throw InputError(PlaceOfLine(path, row.line),
+                     fmt::format("field {} must be a finite number", field + 1));
+  }
+  return *number;
+}
+
+// The 3x4 matrix behind `Tcm`: current_from_matched.
+Pose3 CurrentFromMatched(const TextRow& row, const std::string& path) {
+  const std::string place = PlaceOfLine(path, row.line);
+  const auto name = std::find(row.fields.begin(), row.fields.end(), "Tcm");
+  if (row.fields.end() - name != 13) {
+    throw InputError(place, "a LOOP must end with Tcm and the 12 numbers of a 3x4 matrix");
+  }
+  std::string matrix;
+  for (auto field = name + 1; field != row.fields.end(); ++field) {
+    matrix += std::string(*field) + " ";
+  }
+  const auto pose = ParseMatrixPose(matrix, place);
+  if (!pose) throw InputError(place, "the matrix must be finite");
+  return *pose;
+}
+
+FoundEvent Found(SlamEvent event) { return {std::move(event), false}; }
+FoundEvent Missing() { return {std::nullopt, true}; }
+
+}  // namespace
+
+std::optional<int> FrameFinder::At(double stamp_s) const {
+  const auto nearest = NearestStamp(stamps_s_, stamp_s, max_difference_s_);
+  return nearest ? std::optional(static_cast<int>(*nearest)) : std::nullopt;
+}
+
+SlamEvent ParseCsvEvent(std::string_view row, const std::string& place, std::size_t frame_count) {
+  return CsvRow(row, place, frame_count).Parse();
+}
+
+FoundEvent ParseOrbEvent(const TextRow& row, const std::string& path, const FrameFinder& frames) {
+  const std::string_view name = row.fields.front();
+  if (name == "GBA_DONE") return {};
+  SlamEvent event;
+  if (name == "RELOC") {  // RELOC frame 530 t 1017.666667
+    const auto frame = frames.At(FieldNumber(row, 4, path));
+    if (!frame) return Missing();
+    event.frame = *frame;
+    event.new_epoch = true;
+    return Found(event);
+  }
+  if (name != "LOOP") {
+    throw InputError(
+        PlaceOfLine(path, row.line),
+        fmt::format("'{}' must be LOOP, RELOC or GBA_DONE", std::string(name.substr(0, 40))));
+  }
+  // LOOP 788 1026.27 2 1000.07 jump_m 0.24 nmatch 1003 Tcm ...
+  const auto current = frames.At(FieldNumber(row, 2, path));
+  const auto matched = frames.At(FieldNumber(row, 4, path));
+  const Pose3 matched_from_current = Inverse(CurrentFromMatched(row, path));
+  if (!current || !matched) return Missing();
+  LoopClosure loop;
+  loop.reported_at_frame = std::max(*current, *matched);
+  loop.first_frame = *matched;
+  loop.second_frame = *current;
+  loop.first_from_second = matched_from_current;
+  event.frame = loop.reported_at_frame;
+  event.loop = loop;
+  return Found(event);
+}
+
+FoundEvent ParseStampedLoop(const TextRow& row, const std::string& path,
+                            const FrameFinder& frames) {
+  constexpr std::size_t kPlain = 9;
+  const std::string place = PlaceOfLine(path, row.line);
+  const bool with_sigmas = row.fields.size() == kPlain + 2;
+  const std::vector<double> n = NumbersIn(row, with_sigmas ? kPlain + 2 : kPlain, path);
+  if (!std::all_of(n.begin(), n.end(), [](double value) { return std::isfinite(value); })) {
+    throw InputError(place, "a loop's numbers must be finite");
+  }
+  LoopClosure loop;
+  loop.first_from_second = {Eigen::Quaterniond(n[8], n[5], n[6], n[7]), {n[2], n[3], n[4]}};
+  if (with_sigmas) {
+    loop.sigma_translation_m = n[kPlain];
+    loop.sigma_rotation_rad = n[kPlain + 1];
+  }
+  const auto first = frames.At(n[0]);
+  const auto second = frames.At(n[1]);
+  if (first && second) {
+    loop.first_frame = *first;
+    loop.second_frame = *second;
+    loop.reported_at_frame = std::max(*first, *second);
+  }
+  RequirePossible(loop, place);
+  if (!first || !second) return Missing();
+  SlamEvent event;
+  event.frame = loop.reported_at_frame;
+  event.loop = loop;
+  return Found(event);
+}
+
+}  // namespace depthgrid::internal

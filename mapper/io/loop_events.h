@@ -1,0 +1,38 @@
+// What a SLAM system reported of itself while it ran: loops closed and relocalisations, from a
+// file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/slam_output.h"
+
+namespace depthgrid {
+
+struct SlamEvent {
+  int frame = 0;             // the input frame, from 0, with whose pose it takes effect
+  std::optional<int> epoch;  // SLAM's epoch from this frame on, where the file counts them
+  bool new_epoch = false;    // where it does not: whether SLAM's poses jump with this frame
+  std::optional<LoopClosure> loop;
+};
+
+// SlamEvents::kind of files that count the epochs.
+constexpr const char* kOwnEvents = "loops.csv";
+
+struct SlamEvents {
+  std::string kind;               // for the screen: "loops.csv"
+  std::vector<SlamEvent> events;  // ordered by frame
+  std::vector<std::string> warnings;
+};
+
+// Three kinds, told apart by the first word (docs/formats.md, "Loop closures"):
+//   loops.csv            frames by number, as `depthgrid slam` writes it
+//   ORB-SLAM2 events     LOOP frame stamp matched_frame stamp ... Tcm 3x4 | RELOC frame n t stamp
+//   stamped loops        first_stamp second_stamp tx ty tz qx qy qz qw [sigma_m sigma_rad]
+// Stamps name the nearest of `frame_stamps_s`, at most `max_difference_s` away; events of frames
+// that are not there are counted in the warnings. Throws InputError.
+SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
+                           const std::vector<double>& frame_stamps_s, double max_difference_s);
+
+}  // namespace depthgrid

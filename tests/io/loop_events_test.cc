@@ -1,0 +1,79 @@
+#include "mapper/io/loop_events.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::vector<double> kStamps = {10.0, 10.1, 10.2, 10.3, 10.4};
+
+SlamEvents Parse(const std::string& text) { return ParseSlamEvents(text, "e.txt", kStamps, 0.02); }
+
+std::string ErrorOf(const std::string& text) {
+  try {
+    Parse(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Tcm carries points of the matched camera into the current one: a camera that went 0.5 m along its
+// z sees the old one 0.5 m behind itself.
+TEST(LoopEvents, OrbSlamsEventsByHand) {
+  const SlamEvents events = Parse(
+      "RELOC frame 99 t 10.105\n"
+      "GBA_DONE kf 21\n"
+      "LOOP 88 10.3 5 10.0 jump_m 0.2 nmatch 1003 Tcm 1 0 0 0 0 1 0 0 0 0 1 -0.5\n");
+  EXPECT_EQ(events.kind, "ORB-SLAM2 events");
+  EXPECT_TRUE(events.warnings.empty());
+  ASSERT_EQ(events.events.size(), 2U);
+  EXPECT_EQ(events.events[0].frame, 1);
+  EXPECT_TRUE(events.events[0].new_epoch);
+  EXPECT_FALSE(events.events[0].loop);
+  EXPECT_EQ(events.events[1].frame, 3);
+  EXPECT_FALSE(events.events[1].new_epoch);  // the poses jump frames later; FindJumps says when
+  const LoopClosure& loop = *events.events[1].loop;
+  EXPECT_EQ(loop.reported_at_frame, 3);
+  EXPECT_EQ(loop.first_frame, 0);
+  EXPECT_EQ(loop.second_frame, 3);
+  EXPECT_TRUE(loop.first_from_second.translation.isApprox(Eigen::Vector3d(0.0, 0.0, 0.5)));
+}
+
+TEST(LoopEvents, StampedLoopsWithAndWithoutSigmas) {
+  const SlamEvents events = Parse(
+      "# first second pose\n"
+      "10.1 10.4 1 2 3 0 0 0 1 0.5 0.25\n"
+      "10.0 10.2 0 0 0 0 0 1 0\n"
+      "10.0 17.0 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(events.kind, "stamped loops");
+  EXPECT_THAT(events.warnings, ElementsAre(HasSubstr("e.txt: 1 events of frames that the")));
+  ASSERT_EQ(events.events.size(), 2U);
+  EXPECT_EQ(events.events[0].frame, 2);  // ordered by the frame that reports
+  EXPECT_EQ(events.events[1].loop->first_frame, 1);
+  EXPECT_EQ(events.events[1].loop->first_from_second.translation, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(events.events[1].loop->sigma_translation_m, 0.5);
+  EXPECT_EQ(events.events[1].loop->sigma_rotation_rad, 0.25);
+  EXPECT_EQ(events.events[0].loop->sigma_translation_m, LoopClosure{}.sigma_translation_m);
+}
+
+TEST(LoopEvents, OneClearLineForEachFault) {
+  EXPECT_THAT(ErrorOf("LOOP 1 10.0 0 10.1 Tcm 1 0 0\n"),
+              HasSubstr("e.txt:1: a LOOP must end with"));
+  EXPECT_THAT(ErrorOf("GBA_DONE kf 1\nLOST 3\n"), HasSubstr("e.txt:2: 'LOST' must be LOOP"));
+  EXPECT_THAT(ErrorOf("RELOC frame 3\n"), HasSubstr("field 5 must be a finite number"));
+  EXPECT_THAT(ErrorOf("LOOP 1 10.0 0 10.1 Tcm 2 0 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("rotation"));
+  EXPECT_THAT(ErrorOf("10.0 10.1 0 0 0 0 0 0 1 0.1\n"), HasSubstr("10 columns, must have 9"));
+  EXPECT_THAT(ErrorOf("10.0 10.1 0 0 0 0 0 0 3\n"), HasSubstr("norm 3, must be 1"));
+  EXPECT_THAT(ErrorOf("10.0 nan 0 0 0 0 0 0 1\n"), HasSubstr("finite"));
+  EXPECT_THAT(ErrorOf("leap,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14"));
+}
+
+}  // namespace
+}  // namespace depthgrid

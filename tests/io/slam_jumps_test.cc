@@ -1,0 +1,112 @@
+#include "mapper/io/slam_jumps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "mapper/core/angle.h"
+#include "mapper/io/slam_files.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr int kFrames = 240;
+constexpr int kJumpAt = 200;
+
+// A circle of 1 m radius, walked in 6 s and a third of it again, looking along the path.
+Pose3 OnCircle(int frame) {
+  const double angle_rad = 2.0 * kPi * frame / 180.0;
+  return {ExpRotation(Eigen::Vector3d(0.0, 0.0, angle_rad)),
+          {std::cos(angle_rad), std::sin(angle_rad), 1.2}};
+}
+
+// SLAM drifted by up to 0.3 m and jumps back when it closes the circle, a bit late.
+std::vector<SlamPose> Drifting() {
+  std::vector<SlamPose> live;
+  for (int i = 0; i < kFrames; ++i) {
+    Pose3 pose = OnCircle(i);
+    if (i < kJumpAt) pose.translation.x() += 0.3 * i / kJumpAt;
+    live.push_back({i / 30.0, pose, 0});
+  }
+  return live;
+}
+
+Trajectory Revised() {
+  Trajectory final;
+  for (int i = 0; i < kFrames; ++i) final.push_back({i / 30.0, OnCircle(i)});
+  return final;
+}
+
+TEST(SlamJumps, AreSeenWithAndWithoutARevisedTrajectory) {
+  EXPECT_THAT(FindJumps(Drifting(), Revised()), ElementsAre(kJumpAt));
+  EXPECT_THAT(FindJumps(Drifting(), {}), ElementsAre(kJumpAt));
+}
+
+TEST(SlamJumps, SmoothMotionAndGapsAreNone) {
+  std::vector<SlamPose> live = Drifting();
+  live.resize(kJumpAt);
+  EXPECT_THAT(FindJumps(live, {}), IsEmpty());
+  for (int i = 60; i < 90; ++i) live[static_cast<std::size_t>(i)].slam_from_camera.reset();
+  EXPECT_THAT(FindJumps(live, {}), IsEmpty());
+  EXPECT_THAT(FindJumps(live, Revised()), IsEmpty());
+  EXPECT_THAT(FindJumps({}, {}), IsEmpty());
+}
+
+// Frame 200 is where frame 20 was, to the last digit.
+TEST(SlamJumps, TheLoopIsTheRevisedPosesOfBothVisits) {
+  const auto loops = LoopsFromRevision(Drifting(), Revised(), {kJumpAt});
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_EQ(loops[0].first_frame, 20);
+  EXPECT_EQ(loops[0].second_frame, kJumpAt);
+  EXPECT_EQ(loops[0].reported_at_frame, kJumpAt);
+  EXPECT_LT(loops[0].first_from_second.translation.norm(), 1e-9);
+}
+
+TEST(SlamJumps, APlaceNeverSeenBeforeHasNoLoop) {
+  EXPECT_THAT(LoopsFromRevision(Drifting(), Revised(), {100}), IsEmpty());
+}
+
+TEST(SlamJumps, EpochsCountUpFromEachJump) {
+  std::vector<SlamPose> live(5);
+  StartEpochs({2, 4}, live);
+  std::vector<int> epochs;
+  for (const SlamPose& pose : live) epochs.push_back(pose.epoch);
+  EXPECT_THAT(epochs, ElementsAre(0, 0, 1, 1, 2));
+}
+
+// Its loop was found at frame 788; the poses moved by 0.24 m with frame 790.
+TEST(SlamJumps, RealOrbSlamOutput) {
+  const char* data = std::getenv("DEPTHGRID_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
+  const std::string folder = std::string(data) + "/slam_runs/orb_rich_a/";
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : ReadTrajectory(folder + "live.txt")) {
+    stamps_s.push_back(pose.stamp_s);
+  }
+  const SlamFilePaths paths{folder + "live.txt", folder + "CameraTrajectory.txt", ""};
+  const SlamInput revised = ReadSlamFiles(paths, stamps_s);
+  EXPECT_THAT(FindJumps(ReadSlamFiles({paths.live, "", ""}, stamps_s).slam.live, {}),
+              Contains(790));
+  ASSERT_FALSE(revised.slam.loops.empty());
+  EXPECT_EQ(revised.slam.live[787].epoch, 0);
+  EXPECT_GE(revised.slam.live[790].epoch, 1);
+  const SlamInput told = ReadSlamFiles({paths.live, paths.final, folder + "events.txt"}, stamps_s);
+  ASSERT_EQ(told.slam.loops.size(), 1U);
+  const LoopClosure& loop = told.slam.loops[0];
+  EXPECT_EQ(loop.first_frame, 2);
+  EXPECT_EQ(loop.second_frame, 788);
+  // What its own final poses say of the same two frames.
+  const Pose3 final =
+      Between(told.slam.final[2].world_from_camera, told.slam.final[788].world_from_camera);
+  EXPECT_LT((loop.first_from_second.translation - final.translation).norm(), 0.02);
+}
+
+}  // namespace
+}  // namespace depthgrid
