@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mapper/adjustment_rounds.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/frame_history.h"
@@ -35,6 +36,7 @@ struct IncrementalMapper::State {
   CorrectionFilter filter;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
+  AdjustmentRounds rounds;
   std::vector<MappedFrame> mapped;
 
   State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
@@ -44,13 +46,16 @@ struct IncrementalMapper::State {
         oracle(std::move(orc)),
         scanner(camera, opts.scan),
         filter(opts.fusion),
-        loop_closer(opts.loops) {
+        loop_closer(opts.loops),
+        rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
+                                                    : RoundOptions{.first_frames = 0}) {
     if (!options.fusion.TrustsSlamAlone()) reference = MakeReference(options);
   }
 
   FrameReport Begin(const Frame& frame);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
+  void AdjustBetweenFrames();
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
@@ -117,7 +122,11 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
 void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
-  if (!reference || frame.loops.empty() || mapped.empty()) return;
+  if (!reference || mapped.empty()) return;
+  if (frame.loops.empty()) {
+    if (rounds.IsDue(static_cast<int>(mapped.size()))) AdjustBetweenFrames();
+    return;
+  }
   std::vector<MappedFrame> frames = mapped;
   const bool provisional = scans.matched && frame.slam_from_camera;
   if (provisional) {
@@ -138,6 +147,18 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
     const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
     filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
   }
+}
+
+// Poses and map corrected together while the run goes on; the newest frame keeps its place in the
+// map.
+void IncrementalMapper::State::AdjustBetweenFrames() {
+  const Adjustment adjustment = loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine);
+  for (std::size_t i = 0; i < mapped.size(); ++i) {
+    mapped[i].map_from_base = adjustment.map_from_base[i];
+  }
+  reference->Rebuild(mapped);
+  const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
+  filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
 }
 
 // Within an epoch SLAM's motion carries the correction on. Across one there are two guesses: the
@@ -283,7 +304,8 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
 }
 
 void IncrementalMapper::State::FinishByAdjusting(MapperResult& result) const {
-  const Adjustment adjustment = loop_closer.AdjustAll(result.mapped, *reference);
+  const Adjustment adjustment =
+      loop_closer.AdjustAll(result.mapped, *reference, AdjustEffort::kFinish);
   for (std::size_t i = 0; i < result.mapped.size(); ++i) {
     result.mapped[i].map_from_base = adjustment.map_from_base[i];
   }

@@ -27,7 +27,7 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     loops_.push_back(*loop);
   }
   if (loops_.size() > known) {
-    Adjustment adjustment = reference.Adjust(frames, loops_);
+    Adjustment adjustment = reference.Adjust(frames, loops_, AdjustEffort::kCloseLoops);
     outcome.adjusted = true;
     outcome.map_from_base = std::move(adjustment.map_from_base);
     for (std::size_t i = known; i < loops_.size(); ++i) {

@@ -34,9 +34,10 @@ class LoopCloser {
   Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
                 ReferenceMap& reference);
-  // Everything once more, at the end.
-  Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference) const {
-    return reference.Adjust(frames, loops_);
+  // Everything once more, with the loops known so far.
+  Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference,
+                       AdjustEffort effort) const {
+    return reference.Adjust(frames, loops_, effort);
   }
   const std::vector<PlanarLoop>& loops() const { return loops_; }
 

@@ -13,6 +13,7 @@ void MapperOptions::Visit(OptionsVisitor& v) {
   v.Group("loops", loops, "which loops are believed");
   v.Group("graph", graph, "paper: how loops are closed (Eq. 5-6)");
   v.Group("surfel", surfel, "surfel: the map of surfels and its joint adjustment");
+  v.Group("rounds", rounds, "surfel: when poses and map are adjusted during the run");
 }
 
 }  // namespace depthgrid

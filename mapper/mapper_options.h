@@ -1,6 +1,7 @@
 // Every setting of the mapper; each group is documented beside its class.
 #pragma once
 
+#include "mapper/adjustment_rounds.h"
 #include "mapper/core/options.h"
 #include "mapper/fuse/fusion_options.h"
 #include "mapper/graph/scan_submap_graph.h"
@@ -27,6 +28,7 @@ struct MapperOptions {
   LoopOptions loops;
   GraphOptions graph;
   SurfelOptions surfel;
+  RoundOptions rounds;
 
   void Visit(OptionsVisitor& v);
 };

@@ -34,7 +34,7 @@ void PaperReference::Draw(const Scan& scan, const Pose2& map_from_base) {
 }
 
 Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,
-                                  const std::vector<PlanarLoop>& loops) {
+                                  const std::vector<PlanarLoop>& loops, AdjustEffort) {
   std::vector<ScanMeasurement> measurements = measurements_;
   std::vector<Pose2> poses;
   for (const MappedFrame& frame : frames) poses.push_back(frame.map_from_base);

@@ -18,8 +18,8 @@ class PaperReference : public ReferenceMap {
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
-  Adjustment Adjust(const std::vector<MappedFrame>& frames,
-                    const std::vector<PlanarLoop>& loops) override;
+  Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
+                    AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
 
  private:

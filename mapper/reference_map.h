@@ -37,6 +37,13 @@ struct Adjustment {
   std::vector<bool> loop_accepted;   // one a loop given
 };
 
+// How much an adjustment may cost, and what for.
+enum class AdjustEffort {
+  kRefine,      // during the run: poses are nearly right
+  kCloseLoops,  // during the run: loops may bend them
+  kFinish,      // once: each single frame as well as it can be known
+};
+
 class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
@@ -51,7 +58,7 @@ class ReferenceMap {
                       const Eigen::Matrix3d& covariance) = 0;
   // Corrects all poses at once, given loops (possibly none). Does not change the map; see Rebuild.
   virtual Adjustment Adjust(const std::vector<MappedFrame>& frames,
-                            const std::vector<PlanarLoop>& loops) = 0;
+                            const std::vector<PlanarLoop>& loops, AdjustEffort effort) = 0;
   // Forgets everything and inserts the frames again at their (corrected) poses.
   virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
 };

@@ -151,6 +151,8 @@ GroupLink AsLoop(GroupLink link, double huber_sigmas) {
 void JointOptions::Visit(OptionsVisitor& v) {
   v.Group("groups", groups, "frames that move as one");
   v.Number("rounds", rounds, {0, 1000}, "how often landmarks are found and all poses solved");
+  v.Number("refine_rounds", refine_rounds, {0, 1000}, "the same during the run, without new loops");
+  v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first gate then");
   v.Number("first_gate_m", first_gate_m, {0.01, 10.0},
            "how far apart one landmark may be seen, first");
   v.Number("last_gate_m", last_gate_m, {0.01, 10.0}, "and in the last round");

@@ -12,6 +12,9 @@ namespace depthgrid {
 struct JointOptions {
   SurfelGroupOptions groups;
   int rounds = 6;
+  // Rounds and first gate of adjustments during the run without new loops.
+  int refine_rounds = 3;
+  double refine_gate_m = 0.2;
   // What groups see is one landmark when it lies this near: in the first round, in the last.
   double first_gate_m = 0.5;
   double last_gate_m = 0.1;

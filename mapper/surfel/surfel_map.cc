@@ -38,6 +38,18 @@ GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) 
   return link;
 }
 
+std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
+                           const std::vector<Pose2>& map_from_group) {
+  std::vector<Pose2> poses;
+  for (const GroupPlace& place : places) {
+    poses.push_back(map_from_group[static_cast<std::size_t>(place.group)] * place.group_from_base);
+  }
+  return poses;
+}
+
+// How well groups' poses are known to be adjusted, before each frame is looked at.
+const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
+
 }  // namespace
 
 void SurfelOptions::Visit(OptionsVisitor& v) {
@@ -88,7 +100,7 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
 }
 
 Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
-                             const std::vector<PlanarLoop>& loops) {
+                             const std::vector<PlanarLoop>& loops, AdjustEffort effort) {
   SurfelGroups groups = groups_;
   // A provisional frame at the end was not inserted yet.
   for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
@@ -97,28 +109,44 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
-  const JointResult result =
-      AdjustJointly(groups.groups(), MotionsOf(groups.groups(), frames), links, options_.joint);
+  const JointResult result = AdjustJointly(groups.groups(), MotionsOf(groups.groups(), frames),
+                                           links, JointOptionsFor(effort));
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
-  SurfelStore map;
-  for (std::size_t g = 0; g < groups.groups().size(); ++g) {
-    InsertInto(map, groups.groups()[g].surfels, result.map_from_group[g]);
-  }
-  std::vector<SmootherFrame> smoother;
-  Eigen::Matrix3d cov = Eigen::Vector3d(0.02 * 0.02, 0.02 * 0.02, 0.01 * 0.01).asDiagonal();
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const GroupPlace& place = groups.places()[i];
-    const Pose2& map_from_group = result.map_from_group[static_cast<std::size_t>(place.group)];
-    const Pose2 pose = map_from_group * place.group_from_base;
-    smoother.push_back({pose,
-                        matcher_.Match(maker_.Make(*frames[i].scan, noise_), map, {pose, cov}),
-                        frames[i].slam_motion});
-  }
-  adjustment.map_from_base = Smoothed(smoother, NoiseOf(smoother));
+  adjustment.map_from_base = effort == AdjustEffort::kFinish
+                                 ? SmoothedOver(frames, groups, result.map_from_group)
+                                 : PosesOf(groups.places(), result.map_from_group);
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;
+}
+
+JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
+  JointOptions joint = options_.joint;
+  if (effort == AdjustEffort::kRefine) {
+    joint.rounds = joint.refine_rounds;
+    joint.first_gate_m = joint.refine_gate_m;
+  }
+  return joint;
+}
+
+// Each frame against the adjusted map, then all of them with SLAM's motion.
+std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
+                                           const SurfelGroups& groups,
+                                           const std::vector<Pose2>& map_from_group) {
+  SurfelStore map;
+  for (std::size_t g = 0; g < groups.groups().size(); ++g) {
+    InsertInto(map, groups.groups()[g].surfels, map_from_group[g]);
+  }
+  const Eigen::Matrix3d covariance = kAdjustedSigma.cwiseProduct(kAdjustedSigma).asDiagonal();
+  const std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
+  std::vector<SmootherFrame> smoother;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
+    smoother.push_back(
+        {poses[i], matcher_.Match(pieces, map, {poses[i], covariance}), frames[i].slam_motion});
+  }
+  return Smoothed(smoother, NoiseOf(smoother));
 }
 
 void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {

@@ -35,8 +35,8 @@ class SurfelMap : public ReferenceMap {
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
-  Adjustment Adjust(const std::vector<MappedFrame>& frames,
-                    const std::vector<PlanarLoop>& loops) override;
+  Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
+                    AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
 
   const SurfelStore& surfels() const { return map_; }
@@ -44,6 +44,10 @@ class SurfelMap : public ReferenceMap {
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                   const Pose2& map_from_surfels) const;
+  JointOptions JointOptionsFor(AdjustEffort effort) const;
+  std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
+                                  const SurfelGroups& groups,
+                                  const std::vector<Pose2>& map_from_group);
   const std::vector<Surfel>& PiecesOf(const std::shared_ptr<const Scan>& scan);
 
   SurfelOptions options_;

@@ -1,0 +1,18 @@
+#include "mapper/adjustment_rounds.h"
+
+#include <cmath>
+
+namespace depthgrid {
+
+void RoundOptions::Visit(OptionsVisitor& v) {
+  v.Number("first_frames", first_frames, {0, 1e9}, "mapped frames before the first round; 0: none");
+  v.Number("growth", growth, {1.1, 1e3}, "so many times as many frames before the next");
+}
+
+bool AdjustmentRounds::IsDue(int frames) {
+  if (next_ == 0 || frames < next_) return false;
+  next_ = static_cast<int>(std::ceil(options_.growth * frames));
+  return true;
+}
+
+}  // namespace depthgrid

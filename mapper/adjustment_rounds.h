@@ -1,0 +1,31 @@
+// When poses and map are adjusted while a run goes on.
+#pragma once
+
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+struct RoundOptions {
+  // After so many mapped frames, and then each time there are `growth` times as many as the last
+  // time; 0: never. What the first frames draw crookedly is what later ones are matched against.
+  // Geometric, so that all rounds together cost less than one of everything (docs/results.md).
+  int first_frames = 60;
+  double growth = 3.0;
+
+  void Visit(OptionsVisitor& v);
+};
+
+class AdjustmentRounds {
+ public:
+  explicit AdjustmentRounds(const RoundOptions& options)
+      : options_(options), next_(options.first_frames) {}
+
+  // Whether it is time with so many mapped frames; asked once a frame.
+  bool IsDue(int frames);
+
+ private:
+  RoundOptions options_;
+  int next_;
+};
+
+}  // namespace depthgrid
