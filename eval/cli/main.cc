@@ -202,7 +202,8 @@ void AddReport(Program& program) {
   const auto [app, arguments] =
       program.Add<ReportArguments>(program.app, "report", "Write a folder's HTML report (again)",
                                    "depthgrid report /tmp/out", &Report);
-  app->add_option("folder", arguments->folder, "Folder that `run` or `map` wrote")->required();
+  app->add_option("folder", arguments->folder, "Folder that `run`, `map` or `sweep` wrote")
+      ->required();
 }
 
 void AddRegrid(Program& program) {

@@ -2,6 +2,8 @@
 
 #include "eval/cli/commands.h"
 #include "eval/run_report.h"
+#include "eval/sweep/sweep_database.h"
+#include "eval/sweep_report.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
@@ -10,7 +12,11 @@ void Report(const ReportArguments& arguments) {
   if (!std::filesystem::is_directory(arguments.folder)) {
     throw InputError(arguments.folder, "no such folder");
   }
-  WriteRunReport(arguments.folder);
+  if (SweepDatabase::Exists(arguments.folder)) {
+    WriteSweepReport(arguments.folder);
+  } else {
+    WriteRunReport(arguments.folder);
+  }
 }
 
 }  // namespace depthgrid::cli

@@ -172,12 +172,19 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
   let plot = null;
   let quiet = false;  // the cursor moves because somebody else moved it
   const width = () => Math.max(280, container.clientWidth || 1100);
+  // Dots and whiskers at the ends must not be cut.
+  const roomAround = (u, low, high) => {
+    if (xNames) return [Math.min(low, high) - 0.5, high + 0.5];
+    if (logX) return [low * (low / high) ** 0.02, high * (high / low) ** 0.02];
+    const room = (high - low) * 0.02 || Math.abs(high) * 0.1 || 1;
+    return [low - room, high + room];
+  };
   const options = () => {
     const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), size: 5 } };
     return {
       width: width(), height,
       cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
-      scales: { x: { time: false, distr: logX ? 3 : 1 }, y: series.some((s) => s.low) ? { range: rangeWithIntervals(series) } : {} },
+      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: series.some((s) => s.low) ? { range: rangeWithIntervals(series) } : {} },
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
           ...(xNames ? { splits: () => x, values: () => xNames } : {}) },

@@ -1,6 +1,7 @@
 // The report pages as a browser shows them.
 #include <gmock/gmock.h>
 
+#include "eval/sweep/sweep_database.h"
 #include "tests/eval/browser.h"
 #include "tests/eval/program.h"
 
@@ -105,6 +106,88 @@ TEST_F(ReportPage, OfASequenceWithoutTruth) {
   EXPECT_GT(ColoursOf("#map"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#layers input').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.getElementById('numbers-section')"), nullptr);
+}
+
+// Five gains x three noise scales x four seeds; one run failed.
+void MakeSweep(const std::string& folder) {
+  std::vector<PlannedRun> plan;
+  for (const char* gain : {"0", "0.25", "0.5", "0.75", "1"}) {
+    for (const char* scale : {"0.5", "1", "2"}) {
+      for (const char* seed : {"1", "2", "3", "4"}) {
+        const int run = static_cast<int>(plan.size());
+        plan.push_back({run, run / 4, {gain, scale, seed}});
+      }
+    }
+  }
+  SweepDatabase database = SweepDatabase::Create(
+      folder, {{"title", "gain_x_noise"}, {"experiment", "scene: living_room\n"}},
+      {"mapper.fusion.gain", "slam.drift_scale", "seed"}, plan);
+  for (const PlannedRun& run : plan) {
+    if (run.run == 7) {
+      database.Record({run.run, "lost", {}, {}});
+      continue;
+    }
+    const double gain = std::stod(run.values[0]);
+    const double scale = std::stod(run.values[1]);
+    const double error =
+        0.1 * scale * (1.0 - gain) + 0.05 * gain + 0.001 * std::stod(run.values[2]);
+    database.Record({run.run,
+                     "",
+                     {{"trajectory.est.mean_euclidean_m", error},
+                      {"map.observable.occupied.f1", 1.0 - error},
+                      {"map.other_m", gain}},
+                     {}});
+  }
+}
+
+TEST_F(ReportPage, OfASweep) {
+  std::filesystem::create_directory(Path("sweep"));
+  MakeSweep(Path("sweep"));
+  std::filesystem::create_directories(Path("sweep/runs/9"));
+  Write("sweep/runs/9/report.html", "a run's page");
+  Succeed("report sweep");
+  browser_->Open(Path("sweep/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  ExpectEveryPlotIsDrawn();
+  EXPECT_GT(ColoursOf("#heat canvas"), 20);
+  EXPECT_EQ(browser_->Evaluate("metric.name"), "trajectory.est.mean_euclidean_m");
+  // 60 runs, one failed; at half the noise no gain is best, at twice the noise all of it.
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#best tbody tr').length"), 3);
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody tr:last-child td:nth-child(2)')"
+                               ".textContent"),
+            "1");
+
+  const std::string means = PixelsOf("#plot canvas");
+  const std::string heat = PixelsOf("#heat canvas");
+  browser_->Evaluate("document.getElementById('metric').focus()");
+  browser_->Press("ArrowDown", 40);
+  EXPECT_EQ(browser_->Evaluate("metric.name"), "map.observable.occupied.f1");
+  EXPECT_NE(PixelsOf("#plot canvas"), means);
+  EXPECT_NE(PixelsOf("#heat canvas"), heat);
+  browser_->Evaluate("document.querySelector('#heat canvas').focus()");
+  browser_->Press("ArrowRight", 39);
+  EXPECT_EQ(browser_->Evaluate("heat.cell[0]"), 1);
+
+  browser_->Evaluate(
+      "(() => { const s = document.getElementById('table-what'); s.value = 'runs'; "
+      "s.dispatchEvent(new Event('change')); })()");
+  const std::string first_cell = "document.querySelector('#table tbody td').textContent";
+  EXPECT_EQ(browser_->Evaluate(first_cell), "0");
+  browser_->Click("#table th button");
+  EXPECT_EQ(browser_->Evaluate(first_cell), "59");
+  browser_->Click("#table th input");
+  for (const char* key : {"<", "1", "0"}) browser_->Press(key);
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table tbody tr').length"), 10);
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('#table a').getAttribute('href')"),
+            "runs/9/report.html");
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table .failed').length"), 1);
+  browser_->Click("#table button.link");
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('table-command').textContent"),
+            "depthgrid run experiment.yaml --set mapper.fusion.gain=0 --set slam.drift_scale=2 "
+            "--set seed=1 -o runs/8");
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  browser_->Open(Path("sweep/report.html"), 400);
+  ExpectFits();
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+// A sweep's table as a grid: what was varied, which points there are, which runs repeat each.
+#pragma once
+
+#include "eval/statistics/best_setting.h"
+#include "eval/sweep/sweep_results.h"
+
+namespace depthgrid {
+
+// An axis that is no seed.
+struct GridAxis {
+  std::string key;
+  bool numeric = false;
+  std::vector<std::string> texts;  // its values: ascending if numeric, else as they first appear
+  std::vector<double> numbers;     // the same, if numeric
+};
+
+struct GridPoint {
+  std::vector<std::size_t> values;  // of each axis, index into its texts
+  std::vector<std::size_t> rows;    // the sweep's finished runs of it that did not fail
+};
+
+struct SweepGrid {
+  std::vector<GridAxis> axes;
+  std::vector<GridPoint> points;          // in the sweep's order
+  std::vector<std::string> seeds_of_row;  // the texts of all seed axes together
+};
+
+SweepGrid GridOf(const SweepResults& results);
+
+// One line of the grid along a numeric axis, all other axes held.
+struct GridLine {
+  std::vector<std::size_t> points;  // by rising value of the axis
+  // Over the seeds that all points of the line have; empty if there are none.
+  std::optional<BestSetting> best;
+  std::vector<double> mean_regret_of_seed;  // by point: what is lost to the best point of each seed
+};
+
+// Lines of at least two points. A line's points differ in nothing but the axis.
+std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
+                                 const std::vector<double>& metric, Better better,
+                                 const BootstrapOptions& bootstrap);
+
+}  // namespace depthgrid

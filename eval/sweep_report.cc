@@ -1,0 +1,218 @@
+#include "eval/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+#include "eval/metrics/statistics.h"
+#include "eval/report_json.h"
+#include "eval/statistics/metric_direction.h"
+#include "eval/statistics/sample_summary.h"
+#include "eval/sweep_grid.h"
+#include "eval/web_assets.h"
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = ReportJson;
+
+// More runs than a page can hold: it then has the grid points only.
+constexpr std::size_t kMostRuns = 20'000;
+constexpr int kSignificantDigits = 6;
+
+// What a reader looks at first; the first of them a sweep has is what its page opens with.
+constexpr std::array<const char*, 6> kMainMetrics = {"trajectory.est.mean_euclidean_m",
+                                                     "trajectory.est.ate_rmse_se2_m",
+                                                     "map.observable.occupied.f1",
+                                                     "map.chamfer_m",
+                                                     "map.coverage",
+                                                     "trajectory.slam.mean_euclidean_m"};
+
+// Its place among them, counted from 1; 0 for the others.
+int MainRank(const std::string& metric) {
+  const auto found = std::find(kMainMetrics.begin(), kMainMetrics.end(), metric);
+  return found == kMainMetrics.end() ? 0 : static_cast<int>(found - kMainMetrics.begin()) + 1;
+}
+
+Json Short(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.{}g}", value, kSignificantDigits));
+}
+
+// The intervals' ends wander by about 1 % of the width at 10,000 resamples; large sweeps, whose
+// page should not take minutes, get fewer.
+BootstrapOptions BootstrapFor(const SweepResults& results) {
+  constexpr double kMostDraws = 5e8;  // some seconds
+  constexpr double kFewest = 1000.0;
+  BootstrapOptions options;
+  const double draws = static_cast<double>(results.rows()) *
+                       static_cast<double>(std::max<std::size_t>(1, results.metrics.size()));
+  options.resamples = static_cast<int>(
+      std::clamp(kMostDraws / std::max(1.0, draws), kFewest, 1.0 * options.resamples));
+  return options;
+}
+
+Json AxesJson(const SweepGrid& grid) {
+  Json json = Json::array();
+  for (const GridAxis& axis : grid.axes) {
+    Json one = {{"key", axis.key}, {"numeric", axis.numeric}, {"texts", axis.texts}};
+    if (axis.numeric) one["numbers"] = axis.numbers;
+    json.push_back(one);
+  }
+  return json;
+}
+
+Json PointsJson(const SweepGrid& grid) {
+  Json json = Json::array();
+  for (const GridPoint& point : grid.points) {
+    json.push_back({{"values", point.values}, {"runs", point.rows.size()}});
+  }
+  return json;
+}
+
+Json LinesJson(const SweepGrid& grid, std::size_t axis, const SweepColumn& metric,
+               const BootstrapOptions& bootstrap) {
+  Json json = Json::array();
+  for (const GridLine& line :
+       LinesAlong(grid, axis, metric.values, BetterOf(metric.name), bootstrap)) {
+    if (!line.best) continue;
+    const BestSetting& best = *line.best;
+    Json one = {{"points", line.points},
+                {"best", best.index},
+                {"low", best.setting_interval.low},
+                {"high", best.setting_interval.high}};
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      one["share_best"].push_back(Rounded(best.share_best[i], 3));
+      one["p"].push_back(Short(best.p_as_good[i]));
+      one["regret"].push_back(Short(best.regret_mean[i]));
+      one["regret_of_seed"].push_back(Short(line.mean_regret_of_seed[i]));
+    }
+    json.push_back(one);
+  }
+  return json;
+}
+
+// What one grid point gives, over its seeds.
+void AddPoint(const GridPoint& point, const std::vector<double>& values,
+              std::map<std::size_t, Resamples>& resamples, const BootstrapOptions& bootstrap,
+              Json& json) {
+  std::vector<double> sample;
+  for (const std::size_t row : point.rows) {
+    if (std::isfinite(values[row])) sample.push_back(values[row]);
+  }
+  Json mean, median, low, high;
+  if (!sample.empty()) {
+    const auto table = resamples.try_emplace(sample.size(), sample.size(), bootstrap).first;
+    mean = Short(std::accumulate(sample.begin(), sample.end(), 0.0) /
+                 static_cast<double>(sample.size()));
+    median = Short(Percentile(sample, 0.5));
+    if (const auto interval = MeanInterval(sample, table->second)) {
+      low = Short(interval->low);
+      high = Short(interval->high);
+    }
+  }
+  json["mean"].push_back(mean);
+  json["median"].push_back(median);
+  json["low"].push_back(low);
+  json["high"].push_back(high);
+}
+
+Json MetricsJson(const SweepResults& results, const SweepGrid& grid,
+                 const BootstrapOptions& bootstrap) {
+  std::map<std::size_t, Resamples> resamples;  // by number of seeds
+  Json json = Json::array();
+  for (const SweepColumn& metric : results.metrics) {
+    const bool any = std::any_of(metric.values.begin(), metric.values.end(),
+                                 [](double v) { return std::isfinite(v); });
+    if (!any) continue;
+    Json one = {{"name", metric.name},
+                {"better", BetterOf(metric.name) == Better::kHigher ? "higher" : "lower"},
+                {"main", MainRank(metric.name)}};
+    for (const GridPoint& point : grid.points) {
+      AddPoint(point, metric.values, resamples, bootstrap, one);
+    }
+    if (MainRank(metric.name) > 0) {
+      for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) {
+        if (grid.axes[axis].numeric) {
+          one["lines"][grid.axes[axis].key] = LinesJson(grid, axis, metric, bootstrap);
+        }
+      }
+    }
+    json.push_back(one);
+  }
+  return json;
+}
+
+Json RunsJson(const SweepResults& results, const SweepGrid& grid) {
+  Json json = {{"run", results.runs}, {"seeds", grid.seeds_of_row}};
+  std::vector<std::size_t> point_of_row(results.rows(), 0);
+  std::map<int, std::size_t> index_of;
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    point_of_row[row] = index_of.try_emplace(results.points[row], index_of.size()).first->second;
+  }
+  json["point"] = point_of_row;
+  Json folders = Json::object();  // of the runs that have a page
+  Json failures = Json::object();
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    const std::string folder = fmt::format("runs/{}", results.runs[row]);
+    if (fs::exists(results.folder + "/" + folder + "/report.html")) {
+      folders[std::to_string(row)] = folder;
+    }
+    if (!results.failures[row].empty()) failures[std::to_string(row)] = results.failures[row];
+  }
+  json["folder"] = folders;
+  json["failures"] = failures;
+  for (const SweepColumn& metric : results.metrics) {
+    if (MainRank(metric.name) == 0) continue;
+    Json values = Json::array();
+    for (const double value : metric.values) values.push_back(Short(value));
+    json["metrics"][metric.name] = values;
+  }
+  return json;
+}
+
+Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
+  const BootstrapOptions bootstrap = BootstrapFor(results);
+  Json json;
+  json["planned"] = results.planned_runs;
+  json["finished"] = results.rows();
+  json["failed"] = std::count_if(results.failures.begin(), results.failures.end(),
+                                 [](const std::string& reason) { return !reason.empty(); });
+  json["resamples"] = bootstrap.resamples;
+  json["environment"] = results.environment;
+  json["seed_keys"] = Json::array();
+  for (const SweepParameter& parameter : results.parameters) {
+    if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
+  }
+  json["axes"] = AxesJson(grid);
+  json["points"] = PointsJson(grid);
+  json["metrics"] = MetricsJson(results, grid, bootstrap);
+  json["runs"] = results.rows() <= kMostRuns ? RunsJson(results, grid) : Json(nullptr);
+  return json;
+}
+
+std::string TextOf(const SweepResults& results, const char* key) {
+  const auto found = results.environment.find(key);
+  return found != results.environment.end() ? found->second : "";
+}
+
+}  // namespace
+
+void WriteSweepReport(const std::string& folder) {
+  const SweepResults results = ReadSweep(folder);
+  if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
+  const std::string experiment = TextOf(results, "experiment");
+  if (!experiment.empty()) WriteFile(folder + "/experiment.yaml", experiment);
+  const std::string title = TextOf(results, "title");
+  WriteFile(folder + "/report.html", FillPage("sweep.html", title.empty() ? "Sweep" : title,
+                                              SweepJson(results, GridOf(results)).dump()));
+}
+
+}  // namespace depthgrid

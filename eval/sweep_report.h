@@ -1,0 +1,13 @@
+// report.html of a sweep (docs/report.md).
+#pragma once
+
+#include <string>
+
+namespace depthgrid {
+
+// From the sweep's database. Also writes experiment.yaml, what each run started from, so that the
+// commands the page shows can be run in the folder. Throws InputError when the folder is no
+// sweep's or none of its runs is finished yet.
+void WriteSweepReport(const std::string& folder);
+
+}  // namespace depthgrid

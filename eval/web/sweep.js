@@ -1,0 +1,64 @@
+// The page of a sweep: headline, failures, settings; starts everything.
+"use strict";
+
+function subtitle() {
+  const axes = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${axis.texts.length} ${axis.key}`);
+  const seeds = Math.max(...POINTS.map((p) => p.runs));
+  const size = [...axes, ...(seeds > 1 ? [`${seeds} seeds`] : [])].join(" x ");
+  const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} runs` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
+  byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
+}
+
+function headline() {
+  const card = (value, text) => make("div", { class: "card" }, make("b", {}, value), make("span", {}, text));
+  const best = metric.mean.reduce((found, value, i) => (isNumber(value) && (found < 0 || isBetter(value, metric.mean[found])) ? i : found), -1);
+  const rough = (value, unit = true) => (unit ? withUnit : compact)(Number(value.toPrecision(3)));
+  const cards = [];
+  if (best >= 0) {
+    const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.texts[POINTS[best].values[AXES.indexOf(axis)]]}`);
+    cards.push(card(rough(metric.mean[best]), `best mean, at ${place.join(", ") || "the only point"}`));
+    if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
+  }
+  const line = linesAlong(along.axis).find((l) => l.points.includes(best)) ?? linesAlong(along.axis)[0];
+  if (line) {
+    const axis = AXES[along.axis];
+    const held = heldText(line);
+    cards.push(card(axis.texts[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
+    cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
+    cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), "regret: its mean loss to the best value of each seed"));
+  }
+  byId("headline").replaceChildren(...cards);
+  byId("direction").textContent = `${metric.better} is better`;
+}
+
+function initFailures() {
+  const failures = Object.entries(SWEEP.runs?.failures ?? {});
+  if (!failures.length) { byId("failures-section").remove(); return; }
+  byId("failures").append(tableOf(["run", "reason"], failures.map(([row, reason]) => [String(SWEEP.runs.run[row]), reason])));
+}
+
+function initEnvironment() {
+  for (const [key, text] of Object.entries(SWEEP.environment)) {
+    byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}`));
+  }
+}
+
+initTheme();
+if (METRICS.length) {
+  const options = METRICS.map((m) => make("option", { value: m.name }, metricLabel(m)));
+  byId("metric").append(...options);
+  byId("metric").value = metric.name;
+  byId("metric").addEventListener("change", (event) => chooseMetric(event.target.value));
+  changed.push(headline, drawAlong);
+  along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && axis.texts.length > 1) : -1;
+  if (AXES.length) drawAlong(); else byId("plot-section").remove();
+  headline();
+  if (AXES.length) initHeat(); else byId("heat-section").remove();
+  initTable();
+} else {
+  for (const id of ["plot-section", "best-section", "heat-section", "table-section"]) byId(id).remove();
+}
+subtitle();
+initFailures();
+initEnvironment();
+document.documentElement.dataset.ready = "true";

@@ -1,0 +1,77 @@
+// What the parts of a sweep's page share: its data, the chosen metric, and choosing grid points.
+"use strict";
+const SWEEP = JSON.parse(byId("data").textContent);
+const AXES = SWEEP.axes;
+const POINTS = SWEEP.points;
+
+// The unit is the end of a metric's name.
+function unitOf(name) {
+  if (name.endsWith("_us")) return "µs";
+  const found = name.match(/_(m|rad|deg|s|mib|cells)$/);
+  return found ? { m: "m", rad: "rad", deg: "°", s: "s", mib: "MiB", cells: "cells" }[found[1]] : "";
+}
+// Metrics as they are shown: small lengths in centimetres, angles in degrees.
+const METRICS = SWEEP.metrics.map((metric) => {
+  const unit = unitOf(metric.name);
+  const largest = Math.max(...metric.mean.map((v) => Math.abs(v ?? 0)));
+  let [factor, shown] = [1, unit];
+  if (unit === "m" && largest < 1) [factor, shown] = [100, "cm"];
+  if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
+  const scale = (values) => values.map((v) => (v === null ? null : v * factor));
+  return { ...metric, unit: shown, factor, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
+}).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.name.localeCompare(b.name));
+let metric = METRICS[0];
+const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m.unit ? ` ${m.unit}` : ""}` : "–");
+const metricLabel = (m = metric) => (m.unit ? `${m.name} (${m.unit})` : m.name);
+const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : a < b);
+
+// The axis a reader comes for: the gain if it was swept, else the numeric one of the most values.
+function mainAxis() {
+  const numeric = AXES.map((axis, i) => i).filter((i) => AXES[i].numeric && AXES[i].texts.length > 1);
+  const gain = numeric.find((i) => AXES[i].key === "mapper.fusion.gain");
+  return gain ?? numeric.sort((a, b) => AXES[b].texts.length - AXES[a].texts.length)[0] ?? 0;
+}
+const shortKey = (key) => key.split(".").at(-1);
+
+const changed = [];  // called when the metric or anything that shapes all parts changes
+function chooseMetric(name) {
+  metric = METRICS.find((m) => m.name === name) ?? metric;
+  for (const listener of changed) listener();
+}
+
+// A labelled <select>; options are [value, label].
+function select(label, id, options, chosen, onChange) {
+  const element = make("select", { id, onchange: (event) => onChange(event.target.value) },
+    ...options.map(([value, text]) => make("option", { value: String(value) }, text)));
+  element.value = String(chosen);
+  return make("label", { for: id }, `${label} `, element);
+}
+
+// Which of the other axes must be held so that a plot over `used` shows one point a place: those
+// that are not already decided by the used ones (as in a zip).
+function freeAxes(used) {
+  return AXES.map((axis, i) => i).filter((i) => {
+    if (used.includes(i) || AXES[i].texts.length < 2) return false;
+    const seen = new Map();
+    return POINTS.some(({ values }) => {
+      const place = used.map((u) => values[u]).join();
+      if (!seen.has(place)) { seen.set(place, values[i]); return false; }
+      return seen.get(place) !== values[i];
+    });
+  });
+}
+
+// Held values of the free axes, one a part of the page: {axis: index into its texts, or -1 for any}.
+function holders(prefix, held, free, redraw) {
+  return free.map((i) => {
+    held[i] ??= 0;
+    const options = [...AXES[i].texts.map((text, k) => [k, text]), [-1, "any"]];
+    return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
+  });
+}
+const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[i] === held[i]);
+
+// A line of the grid along an axis, as the statistics see it: computed ones have an interval.
+function linesAlong(axis) {
+  return metric.lines?.[AXES[axis].key] ?? [];
+}

@@ -1,0 +1,179 @@
+// A metric over two axes, with the best value of the one for each value of the other.
+"use strict";
+const heat = { x: -1, y: -1, held: {}, cell: [0, 0] };
+const heatAxes = () => AXES.map((axis, i) => i).filter((i) => AXES[i].texts.length > 1);
+
+function initHeat() {
+  const axes = heatAxes();
+  if (axes.length < 2) { byId("heat-section").remove(); return; }
+  heat.y = mainAxis();  // its best value is the line; up is more
+  heat.x = axes.find((i) => i !== heat.y);
+  changed.push(drawHeat);
+  drawHeat();
+}
+
+// Mean of the metric, index of the point and of the best row, by column and row.
+function heatCells(free) {
+  const [columns, rows] = [AXES[heat.x].texts.length, AXES[heat.y].texts.length];
+  const cells = Array.from({ length: columns }, () => Array(rows).fill(null));
+  const sums = new Map();
+  POINTS.forEach((point, i) => {
+    if (!fits(point.values, heat.held, free) || !isNumber(metric.mean[i])) return;
+    const key = `${point.values[heat.x]} ${point.values[heat.y]}`;
+    const [sum, count] = sums.get(key) ?? [0, 0];
+    sums.set(key, [sum + metric.mean[i], count + 1]);
+    cells[point.values[heat.x]][point.values[heat.y]] = { point: i };
+  });
+  for (const [key, [sum, count]] of sums) {
+    const [c, r] = key.split(" ").map(Number);
+    cells[c][r].mean = sum / count;
+    cells[c][r].count = count;
+  }
+  return cells;
+}
+
+// For each column the row that is best, and if the statistics computed it, the ends of its interval.
+function bestOfColumns(cells) {
+  const lines = AXES[heat.y].numeric ? linesAlong(heat.y) : [];
+  const numberRow = (value) => AXES[heat.y].numbers.reduce((best, v, k, all) => (Math.abs(v - value) < Math.abs(all[best] - value) ? k : best), 0);
+  return cells.map((column) => {
+    let row = -1;
+    column.forEach((cell, r) => { if (cell && (row < 0 || isBetter(cell.mean, column[row].mean))) row = r; });
+    if (row < 0) return null;
+    const line = lines.find((l) => column[row].count === 1 && l.points.includes(column[row].point));
+    return line ? { row, low: numberRow(line.low), high: numberRow(line.high) } : { row };
+  });
+}
+
+function heatPicture(cells, best, width) {
+  const [columns, rows] = [cells.length, cells[0].length];
+  const longest = Math.max(...AXES[heat.y].texts.map((t) => t.length));
+  const edge = { left: Math.min(130, 34 + 7 * longest), right: 92, top: 10, bottom: 46 };
+  const height = Math.max(180, Math.min(460, rows * 28)) + edge.top + edge.bottom;
+  const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
+  const means = cells.flat().filter(Boolean).map((c) => c.mean);
+  const [low, high] = [Math.min(...means), Math.max(...means)];
+  // A few bad corners must not make all else one colour: colours follow the rank of the value.
+  const sorted = [...means].sort((a, b) => a - b);
+  const rank = (value) => (sorted.length < 2 ? 0.5 : sorted.filter((v) => v < value).length / (sorted.length - 1));
+  const shade = (value) => viridis(metric.better === "higher" ? rank(value) : 1 - rank(value));
+  const u = (c) => edge.left + c * w;
+  const v = (r) => height - edge.bottom - (r + 1) * h;
+  const every = (count, size, need) => Math.max(1, Math.ceil(need / size), Math.ceil(count / 40));
+  const paint = (context) => {
+    cells.forEach((column, c) => column.forEach((cell, r) => {
+      context.fillStyle = cell ? rgb(shade(cell.mean)) : colour("panel");
+      context.fillRect(u(c), v(r), Math.ceil(w), Math.ceil(h));
+      if (!cell || w < 44 || h < 16) return;
+      const [red, green, blue] = shade(cell.mean);
+      context.fillStyle = 0.3 * red + 0.6 * green + 0.1 * blue > 120 ? "#000" : "#fff";
+      context.textAlign = w < 80 ? "center" : "left";  // beside the best line where there is room
+      context.fillText(String(Number(cell.mean.toPrecision(3))), u(c) + (w < 80 ? w / 2 : 8), v(r) + h / 2 + 4);
+    }));
+    drawBestLine(context, best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
+    context.strokeStyle = colour("ink");
+    context.lineWidth = 2;
+    context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
+    context.fillStyle = colour("muted");
+    context.textAlign = "center";
+    AXES[heat.x].texts.forEach((text, c) => { if (c % every(columns, w, 7 * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
+    context.fillText(AXES[heat.x].key, edge.left + (width - edge.left - edge.right) / 2, height - 8);
+    context.textAlign = "right";
+    AXES[heat.y].texts.forEach((text, r) => { if (r % every(rows, h, 14) === 0) context.fillText(text, edge.left - 5, v(r) + h / 2 + 4); });
+    context.save();
+    context.translate(11, edge.top + (height - edge.top - edge.bottom) / 2);
+    context.rotate(-Math.PI / 2);
+    context.textAlign = "center";
+    context.fillText(AXES[heat.y].key, 0, 0);
+    context.restore();
+    drawHeatKey(context, width - edge.right + 14, edge.top, height - edge.top - edge.bottom, sorted, low, high);
+  };
+  const canvas = paintedCanvas(width, height, `${metric.name} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
+  canvas.cellAt = (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)];
+  return canvas;
+}
+
+function drawBestLine(context, best, u, v) {
+  const line = (draw) => {
+    for (const [stroke, width] of [["#fff", 5], ["#d4002a", 2.5]]) {
+      context.strokeStyle = stroke;
+      context.lineWidth = width;
+      context.beginPath();
+      draw();
+      context.stroke();
+    }
+  };
+  line(() => best.forEach((b, c) => { if (b) context.lineTo(u(c), v(b.row)); }));
+  best.forEach((b, c) => {
+    if (!b) return;
+    if (isNumber(b.low) && b.low !== b.high) line(() => { context.moveTo(u(c), v(b.low)); context.lineTo(u(c), v(b.high)); });
+    context.beginPath();
+    context.arc(u(c), v(b.row), 5, 0, 2 * Math.PI);
+    context.fillStyle = "#d4002a";
+    context.fill();
+    context.strokeStyle = "#fff";
+    context.lineWidth = 1.5;
+    context.stroke();
+  });
+}
+
+function drawHeatKey(context, left, top, height, sorted, low, high) {
+  for (let i = 0; i < height; ++i) {
+    const share = 1 - i / height;
+    context.fillStyle = rgb(viridis(metric.better === "higher" ? share : 1 - share));
+    context.fillRect(left, top + i, 14, 1.5);
+  }
+  context.fillStyle = colour("muted");
+  context.textAlign = "left";
+  for (const share of [0, 0.5, 1]) {
+    const value = share === 0 ? low : share === 1 ? high : sorted[Math.floor((sorted.length - 1) / 2)];
+    context.fillText(withUnit(Number(value.toPrecision(3))), left + 18, top + (1 - share) * height + (share === 1 ? 10 : share === 0 ? 0 : 4));
+  }
+}
+
+function sayCell(cells, best) {
+  const [c, r] = heat.cell;
+  const cell = cells[c]?.[r];
+  const place = `${AXES[heat.x].key} ${AXES[heat.x].texts[c]}, ${AXES[heat.y].key} ${AXES[heat.y].texts[r]}: `;
+  const value = !cell ? "no run" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points`
+    : `${withUnit(cell.mean)} (95 % ${withUnit(metric.low[cell.point])} to ${withUnit(metric.high[cell.point])}), ${POINTS[cell.point].runs} runs`;
+  const line = best[c] ? ` Best there: ${AXES[heat.y].texts[best[c].row]}.` : "";
+  byId("heat-note").textContent = `${place}${value}.${line} Red: the best ${AXES[heat.y].key} of each column, the bar its 95 % interval where computed. Colours by rank, yellow is better.`;
+}
+
+function drawHeat() {
+  const axes = heatAxes();
+  const free = freeAxes([heat.x, heat.y]);
+  const names = axes.map((i) => [i, AXES[i].key]);
+  const swap = (mine, other) => (value) => {
+    if (heat[other] === Number(value)) heat[other] = heat[mine];
+    heat[mine] = Number(value);
+    heat.cell = [0, 0];
+    drawHeat();
+  };
+  keepFocus(byId("heat-controls"), [select("Across", "heat-x", names, heat.x, swap("x", "y")), select("Up", "heat-y", names, heat.y, swap("y", "x")), ...holders("heat", heat.held, free, drawHeat)]);
+  const cells = heatCells(free);
+  const best = bestOfColumns(cells);
+  if (!cells.flat().some(Boolean)) { byId("heat").replaceChildren(); byId("heat-note").textContent = "No run has these values together."; return; }
+  const hadFocus = byId("heat").contains(document.activeElement);
+  const canvas = heatPicture(cells, best, Math.max(320, byId("heat").clientWidth || 1000));
+  canvas.tabIndex = 0;
+  const choose = (c, r) => {
+    heat.cell = [Math.max(0, Math.min(cells.length - 1, c)), Math.max(0, Math.min(cells[0].length - 1, r))];
+    canvas.redraw();
+    sayCell(cells, best);
+  };
+  canvas.addEventListener("pointermove", (event) => {
+    const [c, r] = canvas.cellAt(event.offsetX, event.offsetY);
+    if (c >= 0 && r >= 0 && c < cells.length && r < cells[0].length) choose(c, r);
+  });
+  canvas.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    choose(heat.cell[0] + step[0], heat.cell[1] + step[1]);
+  });
+  byId("heat").replaceChildren(canvas);
+  if (hadFocus) canvas.focus();
+  sayCell(cells, best);
+}

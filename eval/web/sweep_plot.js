@@ -1,0 +1,111 @@
+// The metric along an axis, a line a value of another; and the best value of the axis.
+"use strict";
+const along = { axis: mainAxis(), by: -1, held: {}, logX: false };
+const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
+const MOST_LINES = PALETTE.length;
+
+// As many values as can be told apart, evenly spread.
+function shownValues(axis) {
+  const count = AXES[axis].texts.length;
+  if (count <= MOST_LINES) return [...AXES[axis].texts.keys()];
+  return [...Array(MOST_LINES).keys()].map((i) => Math.round(i * (count - 1) / (MOST_LINES - 1)));
+}
+
+function plotSeries(free) {
+  const lines = along.by < 0 ? [null] : shownValues(along.by);
+  const axis = AXES[along.axis];
+  const chosen = POINTS.map((point, i) => i).filter((i) => fits(POINTS[i].values, along.held, free));
+  const position = (i) => (axis.numeric ? axis.numbers[POINTS[i].values[along.axis]] : POINTS[i].values[along.axis]);
+  // Several points at one place, as where an axis is left open: a cloud, no line.
+  const crowded = new Set(chosen.map((i) => `${position(i)} ${along.by < 0 ? "" : POINTS[i].values[along.by]}`)).size < chosen.length;
+  const order = [...chosen].sort((a, b) => position(a) - position(b));
+  const x = crowded ? order.map(position) : [...new Set(order.map(position))];
+  const series = lines.map((value, k) => {
+    const slots = x.map(() => null);
+    order.forEach((i, place) => {
+      if (value !== null && POINTS[i].values[along.by] !== value) return;
+      slots[crowded ? place : x.indexOf(position(i))] = i;
+    });
+    const pick = (values) => slots.map((i) => (i === null ? null : values[i]));
+    return {
+      label: value === null ? "mean" : `${shortKey(AXES[along.by].key)} ${AXES[along.by].texts[value]}`, values: pick(metric.mean), low: pick(metric.low), high: pick(metric.high),
+      colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || !axis.numeric, spanGaps: true,
+    };
+  });
+  return { x, series };
+}
+
+function drawAlong() {
+  byId("plot").replaceChildren();
+  const used = along.by < 0 ? [along.axis] : [along.axis, along.by];
+  const free = freeAxes(used);
+  const controls = [
+    select("Axis", "plot-axis", AXES.map((axis, i) => [i, axis.key]), along.axis, (value) => { along.axis = Number(value); if (along.by === along.axis) along.by = -1; drawAlong(); }),
+    select("A line each", "plot-by", [[-1, "none"], ...AXES.map((axis, i) => [i, axis.key]).filter(([i]) => i !== along.axis && AXES[i].texts.length > 1)], along.by, (value) => { along.by = Number(value); drawAlong(); }),
+    ...holders("plot", along.held, free, drawAlong),
+  ];
+  const axis = AXES[along.axis];
+  const positive = axis.numeric && axis.numbers.every((v) => v > 0);
+  if (positive) {
+    const box = make("input", { type: "checkbox", id: "plot-log", onchange: (event) => { along.logX = event.target.checked; drawAlong(); } });
+    box.checked = along.logX;
+    controls.push(make("label", { for: "plot-log" }, box, " logarithmic"));
+  }
+  keepFocus(byId("plot-controls"), controls);
+  const { x, series } = plotSeries(free);
+  drawPlot(byId("plot"), {
+    title: `${metric.name} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
+    xNames: axis.numeric ? undefined : x.map((i) => axis.texts[i]), logX: positive && along.logX,
+  });
+  const seeds = Math.max(...POINTS.map((p) => p.runs));
+  byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} seeds` : "one seed"}. ` +
+    (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${SWEEP.resamples} resamples). ` : "") +
+    (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
+  drawBest();
+}
+
+// Replaces a row of controls without losing the one that was just used.
+function keepFocus(row, controls) {
+  const focused = document.activeElement?.id;
+  row.replaceChildren(...controls);
+  if (focused) row.querySelector(`#${CSS.escape(focused)}`)?.focus();
+}
+
+// ---- best value ----
+function heldText(line) {
+  const values = POINTS[line.points[0]].values;
+  const parts = AXES.map((axis, i) => (i === along.axis || axis.texts.length < 2 ? "" : `${shortKey(axis.key)} ${axis.texts[values[i]]}`));
+  return parts.filter(Boolean).join(", ") || "all";
+}
+
+function drawBest() {
+  const axis = AXES[along.axis];
+  const lines = linesAlong(along.axis);
+  byId("best-section").hidden = !lines.length;
+  byId("regret").replaceChildren();
+  if (!lines.length) return;
+  byId("best-note").textContent = `Of ${axis.key}, for ${metric.name} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
+  const at = (line, k) => axis.texts[POINTS[line.points[k]].values[along.axis]];
+  const rows = lines.map((line) => {
+    const p = POINTS[line.points[line.best]];
+    const asGood = line.p.map((value, k) => [value, k]).filter(([value, k]) => k === line.best || (isNumber(value) && value >= 0.05)).map(([, k]) => at(line, k));
+    return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
+      percent(line.share_best[line.best]),
+      `${compact(metric.mean[line.points[line.best]])} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
+      asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
+      withUnit(line.regret_of_seed[line.best] * metric.factor), String(p.runs)];
+  });
+  const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${metric.unit ? `, ${metric.unit}` : ""} (95 %)`, "as good", "regret", "seeds"], rows);
+  table.id = "best";
+  byId("best").replaceWith(table);
+  const longest = lines.reduce((a, b) => (b.points.length > a.points.length ? b : a));
+  if (longest.points.length < 3) return;
+  const x = longest.points.map((i) => axis.numbers[POINTS[i].values[along.axis]]);
+  const shown = lines.filter((line) => line.points.length === longest.points.length);
+  const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
+  drawPlot(byId("regret"), {
+    title: `Regret along ${axis.key}: mean loss to the best value of each seed`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    series: some.map((line, k) => ({ label: heldText(line), values: line.regret_of_seed.map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true })),
+  });
+}

@@ -1,0 +1,118 @@
+// Grid points and runs as tables that sort and filter.
+"use strict";
+const table = { what: "points", sort: 0, down: false, filters: [], most: 100 };
+
+// What each table shows: {title, unit, numeric, at(row)}.
+function columnsOf(what) {
+  const runs = SWEEP.runs;
+  const pointOf = what === "points" ? (row) => row : (row) => runs.point[row];
+  const axes = AXES.map((axis, i) => ({
+    title: axis.key, numeric: axis.numeric,
+    at: (row) => { const k = POINTS[pointOf(row)].values[i]; return axis.numeric ? axis.numbers[k] : axis.texts[k]; },
+  }));
+  if (what === "points") {
+    const shown = METRICS.filter((m) => m.main || m === metric);
+    return [...axes, { title: "runs", numeric: true, at: (row) => POINTS[row].runs },
+      ...shown.flatMap((m) => [
+        { title: m.name, unit: m.unit, numeric: true, at: (row) => m.mean[row] },
+        ...(m === metric ? [{ title: "95 % low", unit: m.unit, numeric: true, at: (row) => m.low[row] }, { title: "95 % high", unit: m.unit, numeric: true, at: (row) => m.high[row] },
+          { title: "median", unit: m.unit, numeric: true, at: (row) => m.median[row] }] : [])])];
+  }
+  const factorOf = (name) => METRICS.find((m) => m.name === name) ?? { factor: 1, unit: unitOf(name) };
+  return [{ title: "run", numeric: true, at: (row) => runs.run[row] }, ...axes,
+    ...(SWEEP.seed_keys.length ? [{ title: SWEEP.seed_keys.join(" "), numeric: SWEEP.seed_keys.length === 1, at: (row) => (SWEEP.seed_keys.length === 1 ? Number(runs.seeds[row]) : runs.seeds[row]) }] : []),
+    ...Object.entries(runs.metrics ?? {}).map(([name, values]) => ({
+      title: name, unit: factorOf(name).unit, numeric: true,
+      at: (row) => (values[row] === null ? null : values[row] * factorOf(name).factor),
+    })),
+    { title: "report", link: true, at: (row) => (runs.failures[row] ? "failed" : runs.folder[row] ? "open" : "command") }];
+}
+
+// "0.5", "<0.1", ">= 3", "0.2..0.4" for numbers; part of the text for texts, and for anything else.
+function matcher(text, numeric) {
+  const wanted = text.trim();
+  if (!wanted) return () => true;
+  const range = wanted.match(/^(-?[\d.eE+-]+)\s*\.\.\s*(-?[\d.eE+-]+)$/);
+  const comparison = wanted.match(/^(<=|>=|<|>|=)?\s*(-?[\d.eE+-]+)$/);
+  if (numeric && range) return (v) => isNumber(v) && v >= Number(range[1]) && v <= Number(range[2]);
+  if (numeric && comparison) {
+    const limit = Number(comparison[2]);
+    const rule = { "<": (v) => v < limit, "<=": (v) => v <= limit, ">": (v) => v > limit, ">=": (v) => v >= limit, "=": (v) => v === limit }[comparison[1] ?? "="];
+    return (v) => isNumber(v) && rule(v);
+  }
+  return (v) => String(v ?? "").toLowerCase().includes(wanted.toLowerCase());
+}
+
+// The command that makes a run again, to be started in this folder.
+function commandOf(row) {
+  const runs = SWEEP.runs;
+  const set = AXES.map((axis, i) => [axis.key, axis.texts[POINTS[runs.point[row]].values[i]]]);
+  runs.seeds[row].split(" ").forEach((seed, i) => { if (SWEEP.seed_keys[i]) set.push([SWEEP.seed_keys[i], seed]); });
+  const quoted = (text) => (/^[\w.+-]*$/.test(text) ? text : `'${text}'`);
+  return `depthgrid run experiment.yaml ${set.map(([key, value]) => `--set ${key}=${quoted(value)}`).join(" ")} -o runs/${runs.run[row]}`;
+}
+
+function linkCell(row, text) {
+  if (text === "open") return make("a", { href: `${SWEEP.runs.folder[row]}/report.html` }, "open");
+  if (text === "failed") return make("span", { class: "failed", title: SWEEP.runs.failures[row] }, "failed");
+  return make("button", { type: "button", class: "link", title: commandOf(row), "aria-label": `Command that makes run ${SWEEP.runs.run[row]} again`,
+    onclick: () => {
+      byId("table-command").textContent = commandOf(row);
+      navigator.clipboard?.writeText(commandOf(row)).then(() => { byId("table-copied").textContent = "Copied. "; }, () => {});
+    } }, "command");
+}
+
+function rowsShown(columns) {
+  const count = table.what === "points" ? POINTS.length : SWEEP.runs.run.length;
+  const tests = columns.map((column, k) => matcher(table.filters[k] ?? "", column.numeric));
+  const rows = [...Array(count).keys()].filter((row) => columns.every((column, k) => tests[k](column.at(row))));
+  const { at, numeric } = columns[table.sort] ?? columns[0];
+  const sign = table.down ? -1 : 1;
+  // Missing values last, whichever way.
+  return rows.sort((a, b) => {
+    const [x, y] = [at(a), at(b)];
+    if (x === null || y === null) return (x === null) - (y === null) || a - b;
+    return sign * (numeric ? x - y : String(x).localeCompare(String(y))) || a - b;
+  });
+}
+
+function drawRows(columns, body) {
+  const rows = rowsShown(columns);
+  body.replaceChildren(...rows.slice(0, table.most).map((row) => make("tr", {}, ...columns.map((column) => {
+    const value = column.at(row);
+    return make("td", {}, column.link ? linkCell(row, value) : column.numeric ? compact(value) : String(value ?? "–"));
+  }))));
+  const more = rows.length > table.most;
+  const note = byId("table-note");
+  note.replaceChildren(`${rows.length} rows${more ? `, the first ${table.most} shown. ` : ". "}`);
+  if (more) note.append(make("button", { type: "button", class: "no-print", onclick: () => { table.most *= 10; drawRows(columns, body); } }, "Show more"));
+  if (table.what === "runs") {
+    note.append(make("br"), "Runs without a folder can be made again: start the command in this sweep's folder, then “open” it after ", make("code", {}, "depthgrid report ."), ".",
+      make("br"), make("span", { id: "table-copied" }), make("code", { id: "table-command" }));
+  }
+}
+
+function drawTable() {
+  const columns = columnsOf(table.what);
+  const body = make("tbody");
+  const sortBy = (k) => { table.down = table.sort === k && !table.down; table.sort = k; drawTable(); byId("table").querySelectorAll("th button")[k].focus(); };
+  const heads = columns.map((column, k) => make("th", { scope: "col", "aria-sort": table.sort !== k ? "none" : table.down ? "descending" : "ascending" },
+    make("button", { type: "button", class: "sort", onclick: () => sortBy(k) }, `${column.title}${column.unit ? ` (${column.unit})` : ""} ${table.sort === k ? (table.down ? "▼" : "▲") : ""}`)));
+  const filters = columns.map((column, k) => {
+    const input = make("input", { type: "search", size: "8", placeholder: column.numeric ? "filter: <1" : "filter", "aria-label": `Filter ${column.title}` });
+    input.value = table.filters[k] ?? "";
+    input.addEventListener("input", () => { table.filters[k] = input.value; drawRows(columns, body); });
+    return make("th", { class: "no-print" }, input);
+  });
+  byId("table").replaceChildren(make("table", { class: "grid" }, make("thead", {}, make("tr", {}, ...heads), make("tr", {}, ...filters)), body));
+  drawRows(columns, body);
+}
+
+function initTable() {
+  const choose = (value) => { Object.assign(table, { what: value, sort: 0, down: false, filters: [], most: 100 }); drawTable(); };
+  const options = [["points", "grid points (means over seeds)"], ...(SWEEP.runs ? [["runs", "single runs"]] : [])];
+  byId("table-controls").append(select("Show", "table-what", options, "points", choose),
+    make("span", { class: "muted no-print" }, "Filters: part of a text; for numbers also <0.1, >=3, 0.2..0.4."));
+  changed.push(() => { table.filters = []; drawTable(); });
+  drawTable();
+}

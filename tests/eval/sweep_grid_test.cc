@@ -1,0 +1,100 @@
+#include "eval/sweep_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "eval/statistics/metric_direction.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Gains 0, 0.5, 1 (in another order) x two profiles x three seeds; one run failed.
+SweepResults Table() {
+  SweepResults results;
+  SweepParameter gain{"mapper.fusion.gain", {}, {}};
+  SweepParameter profile{"slam.profile", {}, {}};
+  SweepParameter seed{"seed", {}, {}};
+  SweepColumn error{"trajectory.est.mean_euclidean_m", {}};
+  int point = 0;
+  for (const double g : {1.0, 0.0, 0.5}) {
+    for (const char* name : {"wild", "calm"}) {
+      for (int s = 1; s <= 3; ++s) {
+        results.runs.push_back(static_cast<int>(results.runs.size()));
+        results.points.push_back(point);
+        gain.texts.push_back(g == 0.5 ? "0.5" : g == 1.0 ? "1" : "0");
+        gain.numbers.push_back(g);
+        profile.texts.emplace_back(name);
+        profile.numbers.push_back(kNone);
+        seed.texts.push_back(std::to_string(s));
+        seed.numbers.push_back(s);
+        // Wild: 0.5 is best but for seed 3, where 1 is. Calm: 0 is always best.
+        const bool wild = profile.texts.back() == "wild";
+        double value = wild ? std::abs(g - 0.5) + 0.1 * s : g;
+        if (wild && s == 3 && g == 1.0) value = 0.2;
+        const bool failed = !wild && s == 2 && g == 1.0;
+        error.values.push_back(failed ? kNone : value);
+        results.failures.emplace_back(failed ? "lost" : "");
+      }
+      ++point;
+    }
+  }
+  results.parameters = {gain, profile, seed};
+  results.metrics = {error};
+  return results;
+}
+
+TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
+  const SweepGrid grid = GridOf(Table());
+  ASSERT_EQ(grid.axes.size(), 2U);
+  EXPECT_EQ(grid.axes[0].texts, (std::vector<std::string>{"0", "0.5", "1"}));
+  EXPECT_EQ(grid.axes[0].numbers, (std::vector<double>{0.0, 0.5, 1.0}));
+  EXPECT_FALSE(grid.axes[1].numeric);
+  EXPECT_EQ(grid.axes[1].texts, (std::vector<std::string>{"wild", "calm"}));
+  ASSERT_EQ(grid.points.size(), 6U);
+  EXPECT_EQ(grid.points[1].values, (std::vector<std::size_t>{2, 1}));  // gain 1, calm
+  EXPECT_EQ(grid.points[1].rows, (std::vector<std::size_t>{3, 5}));    // 4 failed
+  EXPECT_EQ(grid.seeds_of_row[5], "3");
+}
+
+TEST(SweepGrid, FindsTheBestOfEachLineOverSharedSeeds) {
+  const SweepResults table = Table();
+  const SweepGrid grid = GridOf(table);
+  const auto lines = LinesAlong(grid, 0, table.metrics[0].values, Better::kLower, {});
+  ASSERT_EQ(lines.size(), 2U);
+  const GridLine& wild = lines[0];
+  EXPECT_EQ(wild.points, (std::vector<std::size_t>{2, 4, 0}));  // gain 0, 0.5, 1
+  ASSERT_TRUE(wild.best);
+  EXPECT_EQ(wild.best->setting, 0.5);
+  EXPECT_EQ(wild.best->setting_interval.low, 0.5);
+  // 0.5 gives .1 .2 .3; the best of each seed .1 .2 .2.
+  EXPECT_NEAR(wild.mean_regret_of_seed[1], 0.1 / 3.0, 1e-12);
+  EXPECT_NEAR(wild.mean_regret_of_seed[0], (0.5 + 0.5 + 0.6) / 3.0, 1e-12);
+  // The seed that failed at gain 1 counts nowhere on the other line.
+  const GridLine& calm = lines[1];
+  ASSERT_TRUE(calm.best);
+  EXPECT_EQ(calm.best->setting, 0.0);
+  EXPECT_NEAR(calm.mean_regret_of_seed[2], 1.0, 1e-12);
+}
+
+TEST(SweepGrid, HasNoLineThroughPointsThatDifferOtherwise) {
+  SweepResults table = Table();
+  // As in a zip: each gain with a profile of its own.
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    table.parameters[1].texts[row] = table.parameters[0].texts[row];
+    table.points[row] /= 2;
+  }
+  EXPECT_TRUE(LinesAlong(GridOf(table), 0, table.metrics[0].values, Better::kLower, {}).empty());
+}
+
+TEST(MetricDirection, IsThatOfTheScore) {
+  EXPECT_EQ(BetterOf("map.observable.occupied.f1"), Better::kHigher);
+  EXPECT_EQ(BetterOf("map.coverage"), Better::kHigher);
+  EXPECT_EQ(BetterOf("map.chamfer_m"), Better::kLower);
+  EXPECT_EQ(BetterOf("trajectory.est.mean_euclidean_m"), Better::kLower);
+}
+
+}  // namespace
+}  // namespace depthgrid
