@@ -57,10 +57,18 @@ std::vector<std::optional<Pose3>> PosesAt(const Trajectory& trajectory,
   return poses;
 }
 
+// Trajectories of a source without a camera are planar (docs/formats.md, "Laser logs"): a camera
+// never looks straight up to the last digit.
+Pose2 BaseOfRow(const Pose3& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  if (q.x() != 0.0 || q.y() != 0.0) return BaseOf(pose);
+  return {pose.translation.x(), pose.translation.y(), WrapAngle(2.0 * std::atan2(q.z(), q.w()))};
+}
+
 Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
   Json json = {{"x", Json::array()}, {"y", Json::array()}, {"yaw", Json::array()}};
   for (const auto& pose : poses) {
-    const Pose2 base = pose ? BaseOf(*pose) : Pose2{};
+    const Pose2 base = pose ? BaseOfRow(*pose) : Pose2{};
     json["x"].push_back(pose ? Rounded(base.x_m, 4) : Json(nullptr));
     json["y"].push_back(pose ? Rounded(base.y_m, 4) : Json(nullptr));
     json["yaw"].push_back(pose ? Rounded(base.yaw_rad, 4) : Json(nullptr));
@@ -71,7 +79,7 @@ Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
 std::vector<std::optional<Pose2>> BasesOf(const std::vector<std::optional<Pose3>>& poses) {
   std::vector<std::optional<Pose2>> bases;
   for (const auto& pose : poses)
-    bases.push_back(pose ? std::optional(BaseOf(*pose)) : std::nullopt);
+    bases.push_back(pose ? std::optional(BaseOfRow(*pose)) : std::nullopt);
   return bases;
 }
 

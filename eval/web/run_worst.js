@@ -177,12 +177,12 @@ function worstCard(worst) {
 function initWorst() {
   if (!RUN.worst.length) { byId("worst-section").remove(); return; }
   byId("worst-note").textContent = RUN.worst_by;
-  const head = ["frame", "time", "SLAM's error", "error at the time", "error at the end", "match score", "innovation", ""];
+  const errors = [["SLAM's error", "slam_error_m"], ["error at the time", "map_error_m"], ["error at the end", "est_error_m"]].filter(([, name]) => frames[name]);
+  const head = ["frame", "time", ...errors.map(([label]) => label), "match score", "innovation", ""];
   const rows = RUN.worst.map(({ row: i }) => {
     const at = (column) => (frames[column] ? frames[column][i] : null);
     const innovation = at("innovation_forward_m") === null ? null : Math.hypot(at("innovation_forward_m"), at("innovation_left_m"));
-    return [String(frames.frame[i]), `${fixed(times[i], 2)} s`, metres(at("slam_error_m")),
-      metres(at("map_error_m")), metres(at("est_error_m")), fixed(at("match_score"), 2), metres(innovation),
+    return [String(frames.frame[i]), `${fixed(times[i], 2)} s`, ...errors.map(([, name]) => metres(at(name))), fixed(at("match_score"), 2), metres(innovation),
       make("button", { type: "button", class: "no-print", "aria-label": `Show frame ${frames.frame[i]} on the map`,
         onclick: () => { selectFrame(i); byId("map-title").scrollIntoView({ behavior: "smooth" }); } }, "On the map")];
   });

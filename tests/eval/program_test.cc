@@ -147,6 +147,24 @@ TEST_F(ProgramRun, ReportWritesTheSamePageAgain) {
   EXPECT_TRUE(ReadFile(Path("out/report.html")) == page);
 }
 
+TEST_F(ProgramRun, ReportOfALaserLogHasItsHeadings) {
+  std::string log;
+  for (int i = 0; i < 3; ++i) {
+    log += "FLASER 181";
+    for (int beam = 0; beam < 181; ++beam) log += " 2.0";
+    const std::string stamp = std::to_string(0.1 * i);
+    log += " 1 2 0.5 1 2 0.5 " + stamp + " robot " + stamp + "\n";
+  }
+  Write("robot.log", log);
+  Succeed("map robot.log -o out");
+  const std::string page = ReadFile(Path("out/report.html"));
+  const std::string before = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t start = page.find(before) + before.size();
+  const auto data =
+      nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
+  EXPECT_EQ(data["paths"]["slam"]["yaw"], (std::vector<double>{0.5, 0.5, 0.5}));
+}
+
 TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
   std::filesystem::create_directory(Path("out"));
   Write("out/notes.txt", "mine");
