@@ -18,12 +18,13 @@ GainOracle OracleOf(const Trajectory& truth) {
 
 }  // namespace
 
-RunScores Score(const MappingRun& run, const TruthRecord& truth) {
+RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOptions& options) {
   RunScores scores;
   scores.slam = ScoreTrajectory(truth.trajectory, SlamTrajectory(run));
   scores.online = ScoreTrajectory(truth.trajectory, OnlineTrajectory(run));
   scores.est = ScoreTrajectory(truth.trajectory, FinalTrajectory(run));
   scores.map = ScoreMap(truth.map, StatesOf(run.result.map), truth.observable);
+  scores.map.quality = ScoreMapQuality(truth.map, run.result.map, truth.observable, options);
   return scores;
 }
 
@@ -41,7 +42,7 @@ ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& co
   SyntheticSource source(sensor, slam, context.threads);
   MappingRun mapping =
       MapFrames(source, options.mapper, slam.final, context.progress, OracleOf(world.trajectory));
-  RunScores scores = Score(mapping, truth);
+  RunScores scores = Score(mapping, truth, options.metrics);
   return {options,          std::move(world), std::move(slam), std::move(mapping),
           std::move(truth), std::move(scores)};
 }

@@ -19,7 +19,8 @@ struct RunScores {
   MapScore map;
 };
 
-RunScores Score(const MappingRun& run, const TruthRecord& truth);
+RunScores Score(const MappingRun& run, const TruthRecord& truth,
+                const MetricsOptions& options = {});
 
 // What decides how fast, and nothing else.
 struct RunContext {

@@ -31,6 +31,7 @@ void ExperimentOptions::Visit(OptionsVisitor& v) {
   v.Group("sensor", sensor, "the depth camera");
   v.Group("slam", slam, "the SLAM system");
   v.Group("mapper", mapper, "the mapper");
+  v.Group("metrics", metrics, "the scores of the map");
 }
 
 ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "eval/metrics/map_quality.h"
 #include "mapper/io/config.h"
 #include "mapper/mapper_options.h"
 #include "sim/sensor_options.h"
@@ -28,6 +29,7 @@ struct ExperimentOptions {
   SensorOptions sensor;
   SlamOptions slam;
   MapperOptions mapper;
+  MetricsOptions metrics;  // which scores; never changes the map
 
   std::uint64_t DepthSeed() const { return depth_seed != 0 ? depth_seed : seed; }
   std::uint64_t SlamSeed() const { return slam_seed != 0 ? slam_seed : seed; }

@@ -55,6 +55,8 @@ Json ToJson(const CellScores& scores) {
           {"truth_to_estimate_m", ToJson(scores.truth_to_estimate_m)},
           {"hausdorff95_m", ToJson(scores.hausdorff95_m)},
           {"coverage", ToJson(scores.coverage)},
+          {"occupied_mcc", ToJson(scores.occupied_mcc)},
+          {"free_mcc", ToJson(scores.free_mcc)},
           {"scored_cells", scores.scored_cells},
           {"confusion", confusion}};
 }
@@ -97,6 +99,76 @@ Json ToJson(const TrajectoryScore& score) {
   };
 }
 
+Json ToJson(const WallDistanceScore& score) {
+  return {{"f1_5cm", ToJson(score.f1_5cm)},
+          {"f1_10cm", ToJson(score.f1_10cm)},
+          {"chamfer_m", ToJson(score.chamfer_m)},
+          {"estimate_to_truth_m", ToJson(score.estimate_to_truth_m)},
+          {"truth_to_estimate_m", ToJson(score.truth_to_estimate_m)},
+          {"hausdorff95_m", ToJson(score.hausdorff95_m)}};
+}
+
+Json Registered(const MapQuality& quality) {
+  if (!quality.registration || !quality.registered) return nullptr;
+  const Pose2& motion = quality.registration->truth_from_estimate;
+  Json json = {{"x_m", motion.x_m},
+               {"y_m", motion.y_m},
+               {"yaw_rad", motion.yaw_rad},
+               {"mean_shift_m", quality.registration->mean_shift_m}};
+  json.update(ToJson(*quality.registered));
+  return json;
+}
+
+Json ToJson(const std::optional<WallThickness>& thickness) {
+  if (!thickness) return nullptr;
+  return {{"mean_m", thickness->mean_m}, {"p95_m", thickness->p95_m}};
+}
+
+Json ToJson(const std::optional<Calibration>& calibration) {
+  if (!calibration) return nullptr;
+  Json bins = Json::array();
+  for (const ReliabilityBin& bin : calibration->bins) {
+    bins.push_back({{"cells", bin.cells},
+                    {"mean_prob", bin.mean_prob},
+                    {"occupied_share", bin.occupied_share}});
+  }
+  return {{"cells", calibration->cells},
+          {"brier", calibration->brier},
+          {"log_loss", calibration->log_loss},
+          {"calibration_error", calibration->calibration_error},
+          {"reliability", bins}};
+}
+
+Json ToJson(const TruthlessScore& score) {
+  return {{"occupied_share", ToJson(score.occupied_share)},
+          {"corners", score.corners},
+          {"enclosed_areas", score.enclosed_areas}};
+}
+
+Json ToJson(const std::optional<Navigability>& score) {
+  if (!score) return nullptr;
+  return {{"success_rate", score->success_rate},
+          {"falsely_blocked_rate", score->falsely_blocked_rate},
+          {"collision_rate", ToJson(score->collision_rate)},
+          {"length_ratio", ToJson(score->length_ratio)},
+          {"pairs", score->pairs},
+          {"planned", score->planned},
+          {"collisions", score->collisions}};
+}
+
+void AddQuality(const MapQuality& quality, Json& json) {
+  json["walls"] = ToJson(quality.walls);
+  json["registered"] = Registered(quality);
+  json["wall_thickness"] = ToJson(quality.thickness);
+  json["true_wall_thickness"] = ToJson(quality.true_thickness);
+  json["double_wall_rate"] = ToJson(quality.double_wall_rate);
+  json["calibration"] = ToJson(quality.calibration);
+  json["ssim"] = ToJson(quality.ssim);
+  json["truthless"] = ToJson(quality.truthless);
+  json["truthless_of_truth"] = ToJson(quality.truthless_of_truth);
+  json["navigability"] = ToJson(quality.navigability);
+}
+
 Json ToJson(const MapScore& score) {
   const CellScores& headline = score.observable ? *score.observable : score.all;
   Json json;
@@ -106,6 +178,7 @@ Json ToJson(const MapScore& score) {
   json["tolerance_cells"] = kDefaultToleranceCells;
   if (score.observable) json["observable"] = ToJson(*score.observable);
   json["all"] = ToJson(score.all);
+  if (score.quality) AddQuality(*score.quality, json);
   return json;
 }
 

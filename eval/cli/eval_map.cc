@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -21,7 +22,9 @@ std::string Number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
-StateMap ReadStates(const std::string& path) { return StatesOf(AlignedMap(ReadMap(path))); }
+OccupancyMap ReadAligned(const std::string& path) { return AlignedMap(ReadMap(path)); }
+
+StateMap ReadStates(const std::string& path) { return StatesOf(ReadAligned(path)); }
 
 CellSet ReadObservable(const std::string& path) {
   const StateMap states = ReadStates(path);
@@ -30,6 +33,12 @@ CellSet ReadObservable(const std::string& path) {
     observable.members[i] = states.states[i] == CellState::kFree;
   }
   return observable;
+}
+
+// A trinary file keeps states only, of which a calibration would say nothing.
+bool HoldsProbabilities(const OccupancyMap& map) {
+  return std::any_of(map.occupied_prob.begin(), map.occupied_prob.end(),
+                     [](float prob) { return prob > 0.0F && prob < 1.0F; });
 }
 
 // The same length to a millionth: files print it in decimal.
@@ -59,6 +68,58 @@ void AddDistanceRow(const std::string& name, const CellScores& scores, std::vect
                   Number(scores.coverage, 4)});
 }
 
+Row WallRow(const std::string& name, const WallDistanceScore& score) {
+  return {name, Number(score.f1_5cm, 4), Number(score.f1_10cm, 4), Number(score.chamfer_m, 4),
+          Number(score.hausdorff95_m, 4)};
+}
+
+void PrintWalls(const MapQuality& quality) {
+  std::vector<Row> rows = {{"walls", "F1 5 cm", "F1 10 cm", "chamfer m", "Hausdorff 95 % m"},
+                           WallRow("as they lie", quality.walls)};
+  if (quality.registered) rows.push_back(WallRow("registered", *quality.registered));
+  fmt::print("\n{}", Table(rows));
+  if (quality.registration) {
+    const Pose2& motion = quality.registration->truth_from_estimate;
+    fmt::print("registered by x {:.4f} m, y {:.4f} m, yaw {:.3f} deg: {:.4f} m on average\n",
+               motion.x_m, motion.y_m, DegFromRad(motion.yaw_rad),
+               quality.registration->mean_shift_m);
+  }
+}
+
+std::optional<double> MeanOf(const std::optional<WallThickness>& thickness) {
+  return thickness ? std::optional(thickness->mean_m) : std::nullopt;
+}
+
+void PrintShape(const MapQuality& quality) {
+  const auto column = [](const std::string& name, const std::optional<WallThickness>& thickness,
+                         const TruthlessScore& s) -> Row {
+    return {name, Number(MeanOf(thickness), 4), Number(s.occupied_share, 4),
+            std::to_string(s.corners), std::to_string(s.enclosed_areas)};
+  };
+  fmt::print("\n{}",
+             Table({{"map", "wall thickness m", "occupied share", "corners", "enclosed areas"},
+                    column("estimate", quality.thickness, quality.truthless),
+                    column("truth", quality.true_thickness, quality.truthless_of_truth)}));
+}
+
+void PrintOthers(const MapQuality& quality) {
+  std::vector<Row> rows = {{"double wall rate", Number(quality.double_wall_rate, 4)},
+                           {"SSIM", Number(quality.ssim, 4)}};
+  if (quality.calibration) {
+    rows.push_back({"Brier score", Number(quality.calibration->brier, 4)});
+    rows.push_back({"log loss", Number(quality.calibration->log_loss, 4)});
+    rows.push_back({"calibration error", Number(quality.calibration->calibration_error, 4)});
+  }
+  if (quality.navigability) {
+    const Navigability& drive = *quality.navigability;
+    rows.push_back({fmt::format("{} plans: success", drive.pairs), Number(drive.success_rate, 4)});
+    rows.push_back({"  falsely blocked", Number(drive.falsely_blocked_rate, 4)});
+    rows.push_back({"  collisions of the planned", Number(drive.collision_rate, 4)});
+    rows.push_back({"  length ratio", Number(drive.length_ratio, 4)});
+  }
+  fmt::print("\n{}", Table(rows));
+}
+
 void PrintTable(const MapScore& score) {
   std::vector<Row> cells = {
       {"cells", "precision", "recall", "F1", "IoU", "free precision", "recall", "F1", "IoU"}};
@@ -70,13 +131,16 @@ void PrintTable(const MapScore& score) {
   AddRows("all", score.all, cells);
   AddDistanceRow("all", score.all, distances);
   fmt::print("{}\n{}", Table(cells), Table(distances));
+  PrintWalls(*score.quality);
+  PrintShape(*score.quality);
+  PrintOthers(*score.quality);
 }
 
 }  // namespace
 
 void EvalMap(const EvalMapArguments& arguments) {
   const StateMap truth = ReadStates(arguments.reference);
-  StateMap estimate = ReadStates(arguments.estimate);
+  OccupancyMap estimate = ReadAligned(arguments.estimate);
   RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;
   const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
@@ -87,7 +151,9 @@ void EvalMap(const EvalMapArguments& arguments) {
     RequireSameResolution(truth.geometry, arguments.reference, observable->geometry,
                           observable_path);
   }
-  const MapScore score = ScoreMap(truth, estimate, observable);
+  MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
+  score.quality = ScoreMapQuality(truth, estimate, observable, {});
+  if (!HoldsProbabilities(estimate)) score.quality->calibration.reset();
   if (arguments.json) {
     fmt::print("{}", MetricsJson({}, &score));
   } else {

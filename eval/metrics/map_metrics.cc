@@ -4,36 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "eval/metrics/cell_maps.h"
 #include "eval/metrics/distance_transform.h"
 #include "eval/metrics/statistics.h"
 
 namespace depthgrid {
 namespace {
-
-StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry) {
-  StateMap moved(geometry);
-  for (std::size_t i = 0; i < geometry.size(); ++i) moved.states[i] = map.At(geometry.CellAt(i));
-  return moved;
-}
-
-CellSet OnGeometry(const CellSet& mask, const GridGeometry& geometry) {
-  CellSet moved(geometry);
-  for (std::size_t i = 0; i < geometry.size(); ++i) {
-    moved.members[i] = mask.Has(geometry.CellAt(i)) ? 1 : 0;
-  }
-  return moved;
-}
-
-CellSet CellsIn(const StateMap& map, CellState state) {
-  CellSet mask(map.geometry);
-  for (std::size_t i = 0; i < map.states.size(); ++i) mask.members[i] = map.states[i] == state;
-  return mask;
-}
-
-std::optional<double> Ratio(double part, double whole) {
-  if (whole <= 0.0) return std::nullopt;
-  return part / whole;
-}
 
 // Cells that are in both sets.
 int CountBoth(const CellSet& a, const CellSet& b) {
@@ -68,11 +44,8 @@ StateScore ScoreState(const CellSet& truth, const CellSet& estimate, const CellS
   score.found_cells = found.matched;
   score.precision = Ratio(right.matched, right.counted);
   score.recall = Ratio(found.matched, found.counted);
-  if (score.precision && score.recall) {
-    const double sum = *score.precision + *score.recall;
-    score.f1 = sum > 0.0 ? 2.0 * *score.precision * *score.recall / sum : 0.0;
-    score.iou = *score.f1 / (2.0 - *score.f1);
-  }
+  score.f1 = F1Of(score.precision, score.recall);
+  if (score.f1) score.iou = *score.f1 / (2.0 - *score.f1);
   return score;
 }
 
@@ -116,6 +89,25 @@ void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellS
   }
 }
 
+// Of the 2 x 2 table that asks only whether a cell is in this state.
+std::optional<double> Matthews(const CellScores& scores, CellState state) {
+  const auto asked = static_cast<std::size_t>(state);
+  double both = 0.0;
+  double truth_only = 0.0;
+  double estimate_only = 0.0;
+  double neither = 0.0;
+  for (std::size_t t = 0; t < scores.confusion.size(); ++t) {
+    for (std::size_t e = 0; e < scores.confusion.size(); ++e) {
+      double& sum =
+          t == asked ? (e == asked ? both : truth_only) : (e == asked ? estimate_only : neither);
+      sum += scores.confusion[t][e];
+    }
+  }
+  const double product = (both + truth_only) * (both + estimate_only) * (neither + truth_only) *
+                         (neither + estimate_only);
+  return Ratio(both * neither - truth_only * estimate_only, std::sqrt(product));
+}
+
 // All maps on one geometry; `to_cover` are the cells that coverage asks for.
 CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
                       const CellSet& to_cover) {
@@ -130,18 +122,12 @@ CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const Cel
     scores.free[index] = ScoreState(true_free, free, scored, tolerance);
   }
   ScoreConfusion(truth, estimate, scored, scores);
+  scores.occupied_mcc = Matthews(scores, CellState::kOccupied);
+  scores.free_mcc = Matthews(scores, CellState::kFree);
   ScoreDistances(true_walls, walls, scored, scores);
   const int asked = CountBoth(to_cover, to_cover);
   scores.coverage = Ratio(CountBoth(to_cover, walls) + CountBoth(to_cover, free), asked);
   return scores;
-}
-
-CellSet KnownCells(const StateMap& map) {
-  CellSet mask(map.geometry);
-  for (std::size_t i = 0; i < map.states.size(); ++i) {
-    mask.members[i] = map.states[i] != CellState::kUnknown;
-  }
-  return mask;
 }
 
 }  // namespace

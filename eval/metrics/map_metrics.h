@@ -13,6 +13,7 @@
 #include <array>
 #include <optional>
 
+#include "eval/metrics/map_quality.h"
 #include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
 
@@ -40,6 +41,10 @@ struct CellScores {
   std::array<StateScore, kMaxToleranceCells + 1> free;
   // [truth][estimate], indexed by CellState.
   std::array<std::array<int, 3>, 3> confusion = {};
+  // Matthews' correlation of "is occupied" and of "is free" with the truth, exact cells; empty when
+  // one side never or always says so.
+  std::optional<double> occupied_mcc;
+  std::optional<double> free_mcc;
   // Between occupied cell centres; empty when either map has none. The directed distances are from
   // the scored estimated cells to all true ones and from the scored true cells to all estimated
   // ones.
@@ -56,6 +61,7 @@ struct CellScores {
 struct MapScore {
   std::optional<CellScores> observable;  // empty when nothing was said about what is observable
   CellScores all;
+  std::optional<MapQuality> quality;  // ScoreMapQuality's; ScoreMap leaves it out
 };
 
 // Same resolution required of all three.

@@ -1,0 +1,36 @@
+// Maps laid on one lattice, and the sets of cells in them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mapper/core/cell_set.h"
+#include "mapper/core/occupancy_map.h"
+
+namespace depthgrid {
+
+// The same map on another rectangle; what was outside is unknown, and not a member.
+StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry);
+CellSet OnGeometry(const CellSet& set, const GridGeometry& geometry);
+
+CellSet CellsIn(const StateMap& map, CellState state);
+CellSet KnownCells(const StateMap& map);
+
+// Truth and estimate on the rectangle that holds both, with the cells to be scored: the observable
+// ones, or those whose truth is known when nothing was said about what is observable.
+struct ScoredMaps {
+  StateMap truth;
+  StateMap estimate;
+  CellSet scored;
+};
+ScoredMaps OnOneGeometry(const StateMap& truth, const StateMap& estimate,
+                         const std::optional<CellSet>& observable);
+
+// Cell centres in metres, in the order of the cells.
+std::vector<Eigen::Vector2d> CentresOf(const CellSet& set);
+
+std::optional<double> Ratio(double part, double whole);  // empty when the whole is not positive
+std::optional<double> F1Of(const std::optional<double>& precision,
+                           const std::optional<double>& recall);
+
+}  // namespace depthgrid

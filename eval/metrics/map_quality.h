@@ -1,0 +1,45 @@
+// What else is said of a map beside cell scores (docs/metrics.md, "Maps").
+#pragma once
+
+#include <optional>
+
+#include "eval/metrics/calibration.h"
+#include "eval/metrics/map_registration.h"
+#include "eval/metrics/navigability.h"
+#include "eval/metrics/truthless_metrics.h"
+#include "eval/metrics/wall_distances.h"
+#include "eval/metrics/wall_shape.h"
+#include "mapper/core/options.h"
+
+namespace depthgrid {
+
+// The dear ones can be switched off. Times: living room, 5 cm, one thread (docs/metrics.md).
+struct MetricsOptions {
+  bool registration = true;
+  bool ssim = true;
+  bool navigation = true;
+  NavigabilityOptions navigability;
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct MapQuality {
+  WallDistanceScore walls;                      // as the map lies
+  std::optional<MapRegistration> registration;  // empty: no walls, or switched off
+  std::optional<WallDistanceScore> registered;  // the walls moved by it
+  std::optional<WallThickness> thickness;
+  std::optional<WallThickness> true_thickness;
+  std::optional<double> double_wall_rate;
+  std::optional<Calibration> calibration;
+  std::optional<double> ssim;
+  TruthlessScore truthless;
+  TruthlessScore truthless_of_truth;  // what a perfect map would get
+  std::optional<Navigability> navigability;
+};
+
+// Over the observable cells, or those whose truth is known when nothing was said about what is
+// observable. Same resolution required of all three.
+MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
+                           const std::optional<CellSet>& observable, const MetricsOptions& options);
+
+}  // namespace depthgrid

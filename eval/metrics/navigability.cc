@@ -1,0 +1,121 @@
+#include "eval/metrics/navigability.h"
+
+#include <cmath>
+#include <vector>
+
+#include "eval/metrics/cell_maps.h"
+#include "eval/metrics/distance_transform.h"
+#include "eval/metrics/grid_paths.h"
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+// Free cells whose centre is at least so far from every wall cell's centre.
+CellSet Passable(const StateMap& map, double clearance_m) {
+  const std::vector<double> squared_cells = SquaredDistances(CellsIn(map, CellState::kOccupied));
+  const double least_cells = clearance_m / map.geometry.resolution_m;
+  CellSet passable(map.geometry);
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    passable.members[i] =
+        map.states[i] == CellState::kFree && squared_cells[i] >= least_cells * least_cells;
+  }
+  return passable;
+}
+
+struct Errand {
+  Cell start;
+  std::vector<Cell> goals;
+};
+
+// For each start, goals that the true map leads to. Starts from which there is nothing far enough
+// are drawn anew, a limited number of times.
+std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
+                                const NavigabilityOptions& options) {
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < passable.members.size(); ++i) {
+    const Cell cell = passable.geometry.CellAt(i);
+    if (passable.members[i] != 0 && allowed.Has(cell)) cells.push_back(cell);
+  }
+  std::vector<Errand> errands;
+  if (cells.empty()) return errands;
+  constexpr int kTriesPerDraw = 20;
+  RandomStream random(options.seed, RandomStage::kNavigability);
+  const auto draw = [&] { return cells[random.Below(cells.size())]; };
+  const double least_cells = options.least_distance_m / passable.geometry.resolution_m;
+  for (int tries = 0;
+       static_cast<int>(errands.size()) < options.starts && tries < options.starts * kTriesPerDraw;
+       ++tries) {
+    Errand errand{draw(), {}};
+    for (int i = 0; i < options.goals_per_start * kTriesPerDraw &&
+                    static_cast<int>(errand.goals.size()) < options.goals_per_start;
+         ++i) {
+      const Cell goal = draw();
+      const double apart_cells = std::hypot(goal.x - errand.start.x, goal.y - errand.start.y);
+      if (apart_cells >= least_cells) errand.goals.push_back(goal);
+    }
+    if (!errand.goals.empty()) errands.push_back(std::move(errand));
+  }
+  return errands;
+}
+
+bool Collides(const std::vector<Cell>& path, const CellSet& truly_passable) {
+  for (const Cell& cell : path) {
+    if (!truly_passable.Has(cell)) return true;
+  }
+  return false;
+}
+
+struct Tally {
+  Navigability result;
+  double length_ratios = 0.0;
+};
+
+void Run(const Errand& errand, const CellSet& true_plan, const CellSet& judge, const CellSet& plan,
+         Tally& tally) {
+  const GridPaths true_ways(true_plan, errand.start, errand.goals);
+  const GridPaths ways(plan, errand.start, errand.goals);
+  for (const Cell& goal : errand.goals) {
+    const auto true_length = true_ways.LengthCells(goal);
+    if (!true_length) continue;
+    ++tally.result.pairs;
+    const auto length = ways.LengthCells(goal);
+    if (!length) continue;
+    ++tally.result.planned;
+    tally.length_ratios += *length / *true_length;
+    tally.result.collisions += Collides(ways.PathTo(goal), judge) ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+void NavigabilityOptions::Visit(OptionsVisitor& v) {
+  v.Number("robot_radius_m", robot_radius_m, {0.0, 10.0}, "the robot that plans are made for");
+  v.Number("margin_m", margin_m, {0.0, 10.0}, "what the planner keeps from walls beyond that");
+  v.Number("starts", starts, {1, 10000}, "places from which plans are made");
+  v.Number("goals_per_start", goals_per_start, {1, 10000}, "plans from each");
+  v.Number("least_distance_m", least_distance_m, {0.0, 1e4}, "between start and goal");
+  v.Seed("seed", seed, "of starts and goals");
+}
+
+std::optional<Navigability> Navigate(const StateMap& truth, const StateMap& estimate,
+                                     const CellSet& allowed, const NavigabilityOptions& options) {
+  const double keep_m = options.robot_radius_m + options.margin_m;
+  const CellSet true_plan = Passable(truth, keep_m);
+  const CellSet judge = Passable(truth, options.robot_radius_m);
+  const CellSet plan = Passable(estimate, keep_m);
+  Tally tally;
+  for (const Errand& errand : DrawErrands(true_plan, allowed, options)) {
+    Run(errand, true_plan, judge, plan, tally);
+  }
+  Navigability& result = tally.result;
+  if (result.pairs == 0) return std::nullopt;
+  const double pairs = result.pairs;
+  result.success_rate = (result.planned - result.collisions) / pairs;
+  result.falsely_blocked_rate = (result.pairs - result.planned) / pairs;
+  result.collision_rate = Ratio(result.collisions, result.planned);
+  result.length_ratio = Ratio(tally.length_ratios, result.planned);
+  return result;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,39 @@
+// Grey pictures of maps and their smoothing, for the metrics that look at maps as pictures.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/occupancy_map.h"
+
+namespace depthgrid {
+
+// Row by row, as the cells of a grid.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<double> values;
+
+  double& At(int x, int y) { return values[Index(x, y)]; }
+  double At(int x, int y) const { return values[Index(x, y)]; }
+  std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+};
+
+// A value a state, unknown cells for `margin_cells` all around.
+struct Shades {
+  double unknown = 0.5;
+  double free = 0.0;
+  double occupied = 1.0;
+};
+Picture PictureOfStates(const StateMap& map, const Shades& shades, int margin_cells);
+
+// Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; pixels nearer
+// than the radius to the edge keep what can be said of them from inside.
+Picture Smoothed(const Picture& picture, double sigma_px, int radius_px);
+
+// Pixel by pixel.
+Picture Product(const Picture& a, const Picture& b);
+
+}  // namespace depthgrid

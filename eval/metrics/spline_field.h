@@ -1,0 +1,34 @@
+// A set of cells as a smooth hill over the plane, so that it can be compared at a fraction of a
+// cell.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mapper/core/cell_set.h"
+
+namespace depthgrid {
+
+// Value and derivatives with respect to cells.
+struct SplineSample {
+  double value = 0.0;
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
+};
+
+// The sum of one bicubic B-spline bump a member, centred on its cell. The bumps of a row of cells
+// add up to a ridge without ripples (they are a partition of unity), so nothing pulls towards whole
+// cells. With a radius the set is first smoothed by three box filters of 2 radius + 1 cells.
+class SplineField {
+ public:
+  SplineField(const CellSet& set, int smoothing_radius_cells);
+
+  // Anywhere on the plane; `position_cells` is in cells of the lattice, a cell's centre at + 0.5.
+  SplineSample At(const Eigen::Vector2d& position_cells) const;
+
+ private:
+  GridGeometry geometry_;
+  std::vector<double> values_;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,118 @@
+#include "eval/metrics/wall_distances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "eval/metrics/cell_maps.h"
+#include "eval/metrics/statistics.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// Targets sorted into square buckets; the nearest is looked for in growing squares of them.
+class Buckets {
+ public:
+  Buckets(const std::vector<Eigen::Vector2d>& targets, double size_m) : size_m_(size_m) {
+    Cell low = CellOf(targets.front(), size_m);
+    Cell high = low;
+    for (const Eigen::Vector2d& t : targets) {
+      const Cell c = CellOf(t, size_m);
+      low = {std::min(low.x, c.x), std::min(low.y, c.y)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y)};
+    }
+    geometry_ = {size_m, low, high.x - low.x + 1, high.y - low.y + 1};
+    members_.resize(geometry_.size());
+    for (const Eigen::Vector2d& t : targets) {
+      members_[geometry_.Index(CellOf(t, size_m))].push_back(t);
+    }
+  }
+
+  double DistanceFrom(const Eigen::Vector2d& point) const {
+    const Cell centre = CellOf(point, size_m_);
+    double best_squared = std::numeric_limits<double>::infinity();
+    // Beyond ring k + 1 everything is at least k buckets away.
+    for (int ring = 0;; ++ring) {
+      const double reach_m = (ring - 1) * size_m_;
+      if (ring > 0 && best_squared <= reach_m * reach_m) return std::sqrt(best_squared);
+      VisitRing(centre, ring, point, best_squared);
+    }
+  }
+
+ private:
+  void VisitRing(const Cell& centre, int ring, const Eigen::Vector2d& point, double& best) const {
+    for (int y = centre.y - ring; y <= centre.y + ring; ++y) {
+      const bool whole_row = std::abs(y - centre.y) == ring;
+      for (int x = centre.x - ring; x <= centre.x + ring;
+           x += whole_row || ring == 0 ? 1 : 2 * ring) {
+        const Cell cell{x, y};
+        if (!geometry_.Contains(cell)) continue;
+        for (const Eigen::Vector2d& t : members_[geometry_.Index(cell)]) {
+          best = std::min(best, (t - point).squaredNorm());
+        }
+      }
+    }
+  }
+
+  double size_m_;
+  GridGeometry geometry_;
+  std::vector<std::vector<Eigen::Vector2d>> members_;
+};
+
+double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
+  // Centres a whole number of cells apart come out a rounding error too far.
+  constexpr double kSlackM = 1e-6;
+  const auto within = std::count_if(distances_m.begin(), distances_m.end(),
+                                    [&](double d) { return d <= limit_m + kSlackM; });
+  return static_cast<double>(within) / static_cast<double>(distances_m.size());
+}
+
+CellSet Both(const CellSet& a, const CellSet& b) {
+  CellSet both = a;
+  for (std::size_t i = 0; i < both.members.size(); ++i) both.members[i] &= b.members[i];
+  return both;
+}
+
+}  // namespace
+
+std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
+                                     const std::vector<Eigen::Vector2d>& targets,
+                                     double spacing_m) {
+  Require(!targets.empty(), "a nearest point is one of at least one");
+  const Buckets buckets(targets, spacing_m);
+  std::vector<double> distances_m;
+  distances_m.reserve(points.size());
+  for (const Eigen::Vector2d& p : points) distances_m.push_back(buckets.DistanceFrom(p));
+  return distances_m;
+}
+
+WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
+                                     const CellSet& scored, const Pose2& truth_from_estimate) {
+  WallDistanceScore score;
+  const double resolution_m = scored.geometry.resolution_m;
+  const std::vector<Eigen::Vector2d> true_points = CentresOf(true_walls);
+  std::vector<Eigen::Vector2d> points = CentresOf(walls);
+  for (Eigen::Vector2d& p : points) p = truth_from_estimate * p;
+  if (true_points.empty() || points.empty()) return score;
+  std::vector<Eigen::Vector2d> counted;
+  for (const Eigen::Vector2d& p : points) {
+    if (scored.Has(CellOf(p, resolution_m))) counted.push_back(p);
+  }
+  constexpr double kBucketCells = 4.0;
+  const double bucket_m = kBucketCells * resolution_m;
+  const auto forth_m = NearestDistances(counted, true_points, bucket_m);
+  const auto back_m = NearestDistances(CentresOf(Both(true_walls, scored)), points, bucket_m);
+  if (!forth_m.empty()) score.estimate_to_truth_m = Summarise(forth_m).mean;
+  if (!back_m.empty()) score.truth_to_estimate_m = Summarise(back_m).mean;
+  if (forth_m.empty() || back_m.empty()) return score;
+  score.chamfer_m = 0.5 * (*score.estimate_to_truth_m + *score.truth_to_estimate_m);
+  constexpr double kHausdorffFraction = 0.95;
+  score.hausdorff95_m =
+      std::max(Percentile(forth_m, kHausdorffFraction), Percentile(back_m, kHausdorffFraction));
+  score.f1_5cm = F1Of(ShareWithin(forth_m, 0.05), ShareWithin(back_m, 0.05));
+  score.f1_10cm = F1Of(ShareWithin(forth_m, 0.10), ShareWithin(back_m, 0.10));
+  return score;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,35 @@
+// Walls compared as points, without cells: distances between wall cells' centres after a motion of
+// the estimate.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/cell_set.h"
+#include "mapper/core/pose2.h"
+
+namespace depthgrid {
+
+// Euclidean distance from each point to the nearest of the targets, exact; at least one target.
+std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
+                                     const std::vector<Eigen::Vector2d>& targets, double spacing_m);
+
+struct WallDistanceScore {
+  // Santos et al. 2013: mean distance to the nearest wall of the other map ("normalised error" and
+  // its reverse), metres.
+  std::optional<double> estimate_to_truth_m;
+  std::optional<double> truth_to_estimate_m;
+  std::optional<double> chamfer_m;  // mean of the two
+  std::optional<double> hausdorff95_m;
+  // Harmonic mean of the shares of wall cells within 5 and 10 cm of the other map's walls.
+  std::optional<double> f1_5cm;
+  std::optional<double> f1_10cm;
+};
+
+// The estimate's walls are moved first; those that then lie in scored cells count, and the true
+// ones in scored cells. All on one lattice.
+WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
+                                     const CellSet& scored, const Pose2& truth_from_estimate = {});
+
+}  // namespace depthgrid
