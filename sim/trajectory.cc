@@ -113,7 +113,7 @@ void CheckClearance(const Trajectory& trajectory,
     const double distance = distance_m(position_m);
     if (distance >= clearance_m) continue;
     throw InputError(place,
-                     fmt::format("{} is {:.3f} m from geometry, must be at least {} m",
+                     fmt::format("{} is {:.3f} m from geometry, must be at least {:.3f} m",
                                  Shown(static_cast<int>(i), position_m), distance, clearance_m));
   }
 }
