@@ -59,9 +59,11 @@ std::vector<std::optional<Pose3>> PosesAt(const Trajectory& trajectory,
 
 // Trajectories of a source without a camera are planar (docs/formats.md, "Laser logs"): a camera
 // never looks straight up to the last digit.
+bool IsPlanar(const Pose3& pose) { return pose.rotation.x() == 0.0 && pose.rotation.y() == 0.0; }
+
 Pose2 BaseOfRow(const Pose3& pose) {
+  if (!IsPlanar(pose)) return BaseOf(pose);
   const Eigen::Quaterniond& q = pose.rotation;
-  if (q.x() != 0.0 || q.y() != 0.0) return BaseOf(pose);
   return {pose.translation.x(), pose.translation.y(), WrapAngle(2.0 * std::atan2(q.z(), q.w()))};
 }
 
@@ -205,6 +207,8 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["subtitle"] = SubtitleOf(settings, run.frames.rows);
   json["settings"] = run.settings;
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);
+  const bool planar = !run.slam.empty() && IsPlanar(run.slam.front().world_from_camera);
+  json["input_poses"] = planar ? "Odometry" : "SLAM";
   json["mapped_frames"] = run.scans.size();
   json["map"] = MapJson(run);
   json["paths"]["slam"] = PathJson(PosesAt(run.slam, stamps_s));
