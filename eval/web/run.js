@@ -11,6 +11,7 @@ function headline() {
     add(fixed(seen.occupied.f1, 3), `F1 of ${m.map.observable ? "observable " : ""}walls, 1-cell tolerance`);
     add(percent(m.map.coverage), "of the observable cells mapped");
     add(metres(m.map.chamfer_m), "chamfer distance of the walls");
+    if (isNumber(m.map.navigability?.success_rate)) add(percent(m.map.navigability.success_rate), "of sampled ways are planned on the map and free in truth");
     add(metres(m.trajectory.slam?.mean_euclidean_m), "SLAM's mean error, not aligned");
     add(metres(m.trajectory.est?.mean_euclidean_m), "mean error of the estimate, not aligned");
     add(metres(m.trajectory.est?.ate_rmse_se2_m), "ATE of the estimate, aligned in the plane");
@@ -34,6 +35,33 @@ function initSamples() {
     row.append(figure(sample.depth, "depth with the scan"));
     byId("samples").append(row);
   }
+}
+
+// Everything metrics.json says of the map beyond its cells; a run may lack any of it.
+function furtherMapNumbers(map) {
+  const rows = [];
+  const add = (label, value, show) => { if (isNumber(value)) rows.push([label, show(value)]); };
+  const plain = (value) => fixed(value, 3);
+  const { walls, registered, navigability: ways, calibration, truthless, truthless_of_truth: trueTruthless } = map;
+  add("F1 of walls within 5 cm", walls?.f1_5cm, plain);
+  add("F1 of walls within 10 cm", walls?.f1_10cm, plain);
+  add("estimated walls to true ones, mean", walls?.estimate_to_truth_m, metres);
+  add("true walls to estimated ones, mean", walls?.truth_to_estimate_m, metres);
+  if (registered) rows.push(["registration to the truth", `${metres(registered.x_m)}, ${metres(registered.y_m)}, ${fixed(registered.yaw_rad * 180 / Math.PI, 2)}°`]);
+  add("it moves a wall by, mean", registered?.mean_shift_m, metres);
+  add("chamfer distance once registered", registered?.chamfer_m, metres);
+  add("F1 within 5 cm once registered", registered?.f1_5cm, plain);
+  if (map.wall_thickness) rows.push(["thickness of walls, mean (truth)", `${metres(map.wall_thickness.mean_m)} (${metres(map.true_wall_thickness?.mean_m)})`]);
+  add("double walls", map.double_wall_rate, percent);
+  add("probabilities: Brier score", calibration?.brier, plain);
+  add("probabilities: calibration error", calibration?.calibration_error, plain);
+  add("structural similarity (SSIM)", map.ssim, plain);
+  if (truthless) rows.push(["occupied share, corners, enclosed areas (truth)", `${percent(truthless.occupied_share)}, ${truthless.corners}, ${truthless.enclosed_areas} (${percent(trueTruthless?.occupied_share)}, ${trueTruthless?.corners}, ${trueTruthless?.enclosed_areas})`]);
+  add("ways planned on the map and free in truth", ways?.success_rate, percent);
+  add("ways wrongly thought blocked", ways?.falsely_blocked_rate, percent);
+  add("planned ways that collide", ways?.collision_rate, percent);
+  add("length of planned ways against the shortest", ways?.length_ratio, plain);
+  return rows;
 }
 
 function initNumbers() {
@@ -65,6 +93,15 @@ function initNumbers() {
     tableOf(["", "wall precision", "recall", "F1", "IoU", "free precision", "recall", "F1"], rows)));
   byId("numbers").append(make("div", { class: "scroll" }, tableOf(["", "chamfer", "Hausdorff 95 %", "coverage"],
     cells.map(([label, s]) => [label, metres(s.chamfer_m), metres(s.hausdorff95_m), percent(s.coverage)]))));
+  const further = furtherMapNumbers(m.map);
+  if (further.length) byId("numbers").append(make("h3", {}, "Map, further"), make("div", { class: "scroll" }, tableOf(["", "value"], further)));
+  const bins = (m.map.calibration?.reliability ?? []).filter((bin) => bin.cells > 0);
+  if (bins.length > 1) {
+    drawPlot(byId("numbers"), {
+      title: "Calibration: share of cells truly occupied against the map's probability", x: bins.map((bin) => bin.mean_prob), xLabel: "probability in the map", yLabel: "share occupied",
+      series: [{ label: "cells", values: bins.map((bin) => bin.occupied_share), colour: "est", points: true }, { label: "ideal", values: bins.map((bin) => bin.mean_prob), colour: "muted", dash: [4, 4] }],
+    });
+  }
 }
 
 initTheme();
