@@ -45,7 +45,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
                        "a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
     }
     sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
-    notes.push_back("poses: groundtruth.txt of the folder");
+    notes.emplace_back("poses: groundtruth.txt of the folder");
   }
   if (options.camera.empty()) {
     sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
