@@ -104,7 +104,8 @@ TEST(Wilcoxon, ExactAgreesWithAllSigns) {
     const WilcoxonResult result = Wilcoxon(signed_by(pattern));
     const auto at_most =
         std::count_if(all.begin(), all.end(), [&](double w) { return w <= result.statistic; });
-    const double p_value = std::min(1.0, 2.0 * static_cast<double>(at_most) / static_cast<double>(all.size()));
+    const double p_value =
+        std::min(1.0, 2.0 * static_cast<double>(at_most) / static_cast<double>(all.size()));
     EXPECT_NEAR(result.p_value, p_value, 1e-12);
     ++compared;
   }
