@@ -46,16 +46,16 @@ Json Short(double value) {
   return std::stod(fmt::format("{:.{}g}", value, kSignificantDigits));
 }
 
-// The intervals' ends wander by about 1 % of the width at 10,000 resamples; large sweeps, whose
-// page should not take minutes, get fewer.
-BootstrapOptions BootstrapFor(const SweepResults& results) {
-  constexpr double kMostDraws = 5e8;  // some seconds
+// The intervals' ends wander by about 1 % of the width at 10,000 resamples. What a page has dozens
+// of, and large sweeps, whose page should not take minutes, get fewer.
+BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
+  constexpr double kMostDraws = 2e7;  // some seconds
   constexpr double kFewest = 1000.0;
+  constexpr double kMostOfOthers = 2000.0;
   BootstrapOptions options;
-  const double draws = static_cast<double>(results.rows()) *
-                       static_cast<double>(std::max<std::size_t>(1, results.metrics.size()));
-  options.resamples = static_cast<int>(
-      std::clamp(kMostDraws / std::max(1.0, draws), kFewest, 1.0 * options.resamples));
+  const double most = main_metric ? options.resamples : kMostOfOthers;
+  options.resamples =
+      static_cast<int>(std::clamp(kMostDraws / static_cast<double>(results.rows()), kFewest, most));
   return options;
 }
 
@@ -124,21 +124,25 @@ void AddPoint(const GridPoint& point, const std::vector<double>& values,
   json["high"].push_back(high);
 }
 
-Json MetricsJson(const SweepResults& results, const SweepGrid& grid,
-                 const BootstrapOptions& bootstrap) {
-  std::map<std::size_t, Resamples> resamples;  // by number of seeds
+Json MetricsJson(const SweepResults& results, const SweepGrid& grid) {
+  std::map<std::size_t, Resamples> main_resamples;  // by number of seeds
+  std::map<std::size_t, Resamples> other_resamples;
   Json json = Json::array();
   for (const SweepColumn& metric : results.metrics) {
     const bool any = std::any_of(metric.values.begin(), metric.values.end(),
                                  [](double v) { return std::isfinite(v); });
     if (!any) continue;
+    const bool is_main = MainRank(metric.name) > 0;
+    const BootstrapOptions bootstrap = BootstrapFor(results, is_main);
+    auto& resamples = is_main ? main_resamples : other_resamples;
     Json one = {{"name", metric.name},
+                {"resamples", bootstrap.resamples},
                 {"better", BetterOf(metric.name) == Better::kHigher ? "higher" : "lower"},
                 {"main", MainRank(metric.name)}};
     for (const GridPoint& point : grid.points) {
       AddPoint(point, metric.values, resamples, bootstrap, one);
     }
-    if (MainRank(metric.name) > 0) {
+    if (is_main) {
       for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) {
         if (grid.axes[axis].numeric) {
           one["lines"][grid.axes[axis].key] = LinesJson(grid, axis, metric, bootstrap);
@@ -179,13 +183,11 @@ Json RunsJson(const SweepResults& results, const SweepGrid& grid) {
 }
 
 Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
-  const BootstrapOptions bootstrap = BootstrapFor(results);
   Json json;
   json["planned"] = results.planned_runs;
   json["finished"] = results.rows();
   json["failed"] = std::count_if(results.failures.begin(), results.failures.end(),
                                  [](const std::string& reason) { return !reason.empty(); });
-  json["resamples"] = bootstrap.resamples;
   json["environment"] = results.environment;
   json["seed_keys"] = Json::array();
   for (const SweepParameter& parameter : results.parameters) {
@@ -193,7 +195,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   }
   json["axes"] = AxesJson(grid);
   json["points"] = PointsJson(grid);
-  json["metrics"] = MetricsJson(results, grid, bootstrap);
+  json["metrics"] = MetricsJson(results, grid);
   json["runs"] = results.rows() <= kMostRuns ? RunsJson(results, grid) : Json(nullptr);
   return json;
 }

@@ -4,7 +4,9 @@
 function subtitle() {
   const axes = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${axis.texts.length} ${axis.key}`);
   const seeds = Math.max(...POINTS.map((p) => p.runs));
-  const size = [...axes, ...(seeds > 1 ? [`${seeds} seeds`] : [])].join(" x ");
+  // Axes that are not crossed with each other: the number of points says more.
+  const crossed = AXES.reduce((product, axis) => product * axis.texts.length, 1) === POINTS.length;
+  const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [`${seeds} seeds`] : [])].join(" x ");
   const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} runs` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
   byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
 }
@@ -15,7 +17,7 @@ function headline() {
   const rough = (value, unit = true) => (unit ? withUnit : compact)(Number(value.toPrecision(3)));
   const cards = [];
   if (best >= 0) {
-    const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.texts[POINTS[best].values[AXES.indexOf(axis)]]}`);
+    const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.labels[POINTS[best].values[AXES.indexOf(axis)]]}`);
     cards.push(card(rough(metric.mean[best]), `best mean, at ${place.join(", ") || "the only point"}`));
     if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
   }
@@ -23,7 +25,7 @@ function headline() {
   if (line) {
     const axis = AXES[along.axis];
     const held = heldText(line);
-    cards.push(card(axis.texts[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
+    cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
     cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
     cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), "regret: its mean loss to the best value of each seed"));
   }
@@ -50,7 +52,7 @@ if (METRICS.length) {
   byId("metric").value = metric.name;
   byId("metric").addEventListener("change", (event) => chooseMetric(event.target.value));
   changed.push(headline, drawAlong);
-  along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && axis.texts.length > 1) : -1;
+  along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && repeats(i) && repeats(along.axis)) : -1;
   if (AXES.length) drawAlong(); else byId("plot-section").remove();
   headline();
   if (AXES.length) initHeat(); else byId("heat-section").remove();

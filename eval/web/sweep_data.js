@@ -1,7 +1,8 @@
 // What the parts of a sweep's page share: its data, the chosen metric, and choosing grid points.
 "use strict";
 const SWEEP = JSON.parse(byId("data").textContent);
-const AXES = SWEEP.axes;
+// `texts` are as they were set, `labels` as they are shown.
+const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(compact) : axis.texts }));
 const POINTS = SWEEP.points;
 
 // The unit is the end of a metric's name.
@@ -61,11 +62,15 @@ function freeAxes(used) {
   });
 }
 
+// Whether the axis repeats: several points have the same value of it, as in a grid. Where all are
+// drawn at random, or change together, there is nothing to hold and no line to follow.
+const repeats = (i) => AXES[i].texts.length > 1 && POINTS.length >= 1.5 * AXES[i].texts.length;
+
 // Held values of the free axes, one a part of the page: {axis: index into its texts, or -1 for any}.
 function holders(prefix, held, free, redraw) {
   return free.map((i) => {
     held[i] ??= 0;
-    const options = [...AXES[i].texts.map((text, k) => [k, text]), [-1, "any"]];
+    const options = [...AXES[i].labels.map((text, k) => [k, text]), [-1, "any"]];
     return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
   });
 }

@@ -1,11 +1,25 @@
 // A metric over two axes, with the best value of the one for each value of the other.
 "use strict";
 const heat = { x: -1, y: -1, held: {}, cell: [0, 0] };
+// An axis of more values than fit, as that of a random sweep, goes into bins of as many points each.
+const MOST_ROWS = 60;
+const BINS = 12;
+const HEAT_AXES = AXES.map((axis, i) => {
+  if (!axis.numeric || axis.texts.length <= MOST_ROWS) return { labels: axis.labels, of: (value) => value, binned: false };
+  const sorted = POINTS.map((p) => p.values[i]).sort((a, b) => a - b);
+  const ends = [...Array(BINS + 1).keys()].map((k) => sorted[Math.min(sorted.length - 1, Math.floor(k * sorted.length / BINS))]);
+  const short = (value) => String(Number(axis.numbers[value].toPrecision(2)));
+  return {
+    labels: [...Array(BINS).keys()].map((k) => `${short(ends[k])}–${short(ends[k + 1])}`), binned: true,
+    of: (value) => { let bin = 0; while (bin + 1 < BINS && value >= ends[bin + 1]) ++bin; return bin; },
+  };
+});
 const heatAxes = () => AXES.map((axis, i) => i).filter((i) => AXES[i].texts.length > 1);
 
 function initHeat() {
   const axes = heatAxes();
-  if (axes.length < 2) { byId("heat-section").remove(); return; }
+  const crossed = axes.some((i) => axes.some((k) => i !== k && freeAxes([i]).includes(k) && freeAxes([k]).includes(i)));
+  if (axes.length < 2 || (!crossed && !axes.some((i) => HEAT_AXES[i].binned))) { byId("heat-section").remove(); return; }
   heat.y = mainAxis();  // its best value is the line; up is more
   heat.x = axes.find((i) => i !== heat.y);
   changed.push(drawHeat);
@@ -14,15 +28,16 @@ function initHeat() {
 
 // Mean of the metric, index of the point and of the best row, by column and row.
 function heatCells(free) {
-  const [columns, rows] = [AXES[heat.x].texts.length, AXES[heat.y].texts.length];
+  const [columns, rows] = [HEAT_AXES[heat.x].labels.length, HEAT_AXES[heat.y].labels.length];
   const cells = Array.from({ length: columns }, () => Array(rows).fill(null));
   const sums = new Map();
   POINTS.forEach((point, i) => {
     if (!fits(point.values, heat.held, free) || !isNumber(metric.mean[i])) return;
-    const key = `${point.values[heat.x]} ${point.values[heat.y]}`;
+    const [c, r] = [HEAT_AXES[heat.x].of(point.values[heat.x]), HEAT_AXES[heat.y].of(point.values[heat.y])];
+    const key = `${c} ${r}`;
     const [sum, count] = sums.get(key) ?? [0, 0];
     sums.set(key, [sum + metric.mean[i], count + 1]);
-    cells[point.values[heat.x]][point.values[heat.y]] = { point: i };
+    cells[c][r] = { point: i };
   });
   for (const [key, [sum, count]] of sums) {
     const [c, r] = key.split(" ").map(Number);
@@ -47,7 +62,7 @@ function bestOfColumns(cells) {
 
 function heatPicture(cells, best, width) {
   const [columns, rows] = [cells.length, cells[0].length];
-  const longest = Math.max(...AXES[heat.y].texts.map((t) => t.length));
+  const longest = Math.max(...HEAT_AXES[heat.y].labels.map((t) => t.length));
   const edge = { left: Math.min(130, 34 + 7 * longest), right: 92, top: 10, bottom: 46 };
   const height = Math.max(180, Math.min(460, rows * 28)) + edge.top + edge.bottom;
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
@@ -76,10 +91,10 @@ function heatPicture(cells, best, width) {
     context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
     context.fillStyle = colour("muted");
     context.textAlign = "center";
-    AXES[heat.x].texts.forEach((text, c) => { if (c % every(columns, w, 7 * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
+    HEAT_AXES[heat.x].labels.forEach((text, c) => { if (c % every(columns, w, 7 * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
     context.fillText(AXES[heat.x].key, edge.left + (width - edge.left - edge.right) / 2, height - 8);
     context.textAlign = "right";
-    AXES[heat.y].texts.forEach((text, r) => { if (r % every(rows, h, 14) === 0) context.fillText(text, edge.left - 5, v(r) + h / 2 + 4); });
+    HEAT_AXES[heat.y].labels.forEach((text, r) => { if (r % every(rows, h, 14) === 0) context.fillText(text, edge.left - 5, v(r) + h / 2 + 4); });
     context.save();
     context.translate(11, edge.top + (height - edge.top - edge.bottom) / 2);
     context.rotate(-Math.PI / 2);
@@ -134,10 +149,10 @@ function drawHeatKey(context, left, top, height, sorted, low, high) {
 function sayCell(cells, best) {
   const [c, r] = heat.cell;
   const cell = cells[c]?.[r];
-  const place = `${AXES[heat.x].key} ${AXES[heat.x].texts[c]}, ${AXES[heat.y].key} ${AXES[heat.y].texts[r]}: `;
+  const place = `${AXES[heat.x].key} ${HEAT_AXES[heat.x].labels[c]}, ${AXES[heat.y].key} ${HEAT_AXES[heat.y].labels[r]}: `;
   const value = !cell ? "no run" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points`
     : `${withUnit(cell.mean)} (95 % ${withUnit(metric.low[cell.point])} to ${withUnit(metric.high[cell.point])}), ${POINTS[cell.point].runs} runs`;
-  const line = best[c] ? ` Best there: ${AXES[heat.y].texts[best[c].row]}.` : "";
+  const line = best[c] ? ` Best there: ${HEAT_AXES[heat.y].labels[best[c].row]}.` : "";
   byId("heat-note").textContent = `${place}${value}.${line} Red: the best ${AXES[heat.y].key} of each column, the bar its 95 % interval where computed. Colours by rank, yellow is better.`;
 }
 

@@ -11,6 +11,13 @@ function shownValues(axis) {
   return [...Array(MOST_LINES).keys()].map((i) => Math.round(i * (count - 1) / (MOST_LINES - 1)));
 }
 
+// Whether an axis only rises, or only falls, along another: in a zip it does, at random it does not.
+function monotone(points, along, other) {
+  const sorted = [...points].sort((a, b) => POINTS[a].values[along] - POINTS[b].values[along]).map((i) => POINTS[i].values[other]);
+  const steps = sorted.slice(1).map((v, k) => Math.sign(v - sorted[k]));
+  return !steps.includes(1) || !steps.includes(-1);
+}
+
 function plotSeries(free) {
   const lines = along.by < 0 ? [null] : shownValues(along.by);
   const axis = AXES[along.axis];
@@ -18,6 +25,8 @@ function plotSeries(free) {
   const position = (i) => (axis.numeric ? axis.numbers[POINTS[i].values[along.axis]] : POINTS[i].values[along.axis]);
   // Several points at one place, as where an axis is left open: a cloud, no line.
   const crowded = new Set(chosen.map((i) => `${position(i)} ${along.by < 0 ? "" : POINTS[i].values[along.by]}`)).size < chosen.length;
+  // So are points that differ in more than what is drawn, as those of a random sweep.
+  const scattered = along.by < 0 && AXES.some((other, i) => i !== along.axis && other.numeric && !monotone(chosen, along.axis, i));
   const order = [...chosen].sort((a, b) => position(a) - position(b));
   const x = crowded ? order.map(position) : [...new Set(order.map(position))];
   const series = lines.map((value, k) => {
@@ -28,8 +37,8 @@ function plotSeries(free) {
     });
     const pick = (values) => slots.map((i) => (i === null ? null : values[i]));
     return {
-      label: value === null ? "mean" : `${shortKey(AXES[along.by].key)} ${AXES[along.by].texts[value]}`, values: pick(metric.mean), low: pick(metric.low), high: pick(metric.high),
-      colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || !axis.numeric, spanGaps: true,
+      label: value === null ? "mean" : `${shortKey(AXES[along.by].key)} ${AXES[along.by].labels[value]}`, values: pick(metric.mean), low: pick(metric.low), high: pick(metric.high),
+      colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || scattered || !axis.numeric, spanGaps: true,
     };
   });
   return { x, series };
@@ -55,11 +64,11 @@ function drawAlong() {
   const { x, series } = plotSeries(free);
   drawPlot(byId("plot"), {
     title: `${metric.name} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
-    xNames: axis.numeric ? undefined : x.map((i) => axis.texts[i]), logX: positive && along.logX,
+    xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX,
   });
   const seeds = Math.max(...POINTS.map((p) => p.runs));
   byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} seeds` : "one seed"}. ` +
-    (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${SWEEP.resamples} resamples). ` : "") +
+    (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples). ` : "") +
     (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
   drawBest();
 }
@@ -74,7 +83,7 @@ function keepFocus(row, controls) {
 // ---- best value ----
 function heldText(line) {
   const values = POINTS[line.points[0]].values;
-  const parts = AXES.map((axis, i) => (i === along.axis || axis.texts.length < 2 ? "" : `${shortKey(axis.key)} ${axis.texts[values[i]]}`));
+  const parts = AXES.map((axis, i) => (i === along.axis || axis.texts.length < 2 ? "" : `${shortKey(axis.key)} ${axis.labels[values[i]]}`));
   return parts.filter(Boolean).join(", ") || "all";
 }
 
@@ -86,7 +95,7 @@ function drawBest() {
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.name} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
     "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
-  const at = (line, k) => axis.texts[POINTS[line.points[k]].values[along.axis]];
+  const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
   const rows = lines.map((line) => {
     const p = POINTS[line.points[line.best]];
     const asGood = line.p.map((value, k) => [value, k]).filter(([value, k]) => k === line.best || (isNumber(value) && value >= 0.05)).map(([, k]) => at(line, k));
