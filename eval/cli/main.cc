@@ -16,6 +16,13 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
+constexpr const char* kFirstSteps =
+    "First steps:\n"
+    "  depthgrid scenes                     what is shipped\n"
+    "  depthgrid run living_room -o out     a minute; then open out/report.html\n"
+    "  depthgrid COMMAND --help             options and examples of a command\n"
+    "Exit codes: 0 done, 1 failed while running, 2 bad usage or input.";
+
 void AddSet(CLI::App& app, CommonArguments& common) {
   app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
       ->type_name("KEY=VALUE")
@@ -30,7 +37,8 @@ void AddOutput(CLI::App& app, CommonArguments& common) {
 
 void AddThreads(CLI::App& app, CommonArguments& common) {
   app.add_option("--threads", common.threads, "Threads; 0 is one a core. Never changes a result")
-      ->check(CLI::Range(0, 1024));
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""));
 }
 
 void AddCache(CLI::App& app, CommonArguments& common) {
@@ -92,7 +100,11 @@ void AddRender(Program& program) {
 void AddMap(Program& program) {
   const auto [app, arguments] = program.Add<MapArguments>(
       program.app, "map", "Map a recorded or rendered sequence",
-      "depthgrid map /tmp/living_room --poses /tmp/living_room/groundtruth.txt -o /tmp/out", &Map);
+
+      "depthgrid map robot.log -o /tmp/out                  # a laser log brings its odometry\n"
+      "  depthgrid map rgbd_folder --poses slam.txt -o /tmp/out\n"
+      "  depthgrid map rgbd_folder --poses live.txt --loops loops.csv -o /tmp/out",
+      &Map);
   app->add_option("input", arguments->input,
                   "A TUM, ICL-NUIM or frame-by-frame folder, or a CARMEN laser log")
       ->required();
@@ -121,7 +133,12 @@ void AddMap(Program& program) {
 void AddRun(Program& program) {
   const auto [app, arguments] = program.Add<RunArguments>(
       program.app, "run", "Render, disturb, map and score one experiment, in memory",
-      "depthgrid run living_room --set mapper.fusion.gain=0.25 -o /tmp/out", &Run);
+
+      "depthgrid run living_room -o /tmp/out                # then open /tmp/out/report.html\n"
+      "  depthgrid run office_room -o /tmp/out2 --set mapper.fusion.gain=0.25 --set seed=7\n"
+      "  depthgrid run mine.yaml -o /tmp/out3                 # only `scene:` is required in it\n"
+      "  depthgrid run living_room --keys                     # what can be set",
+      &Run);
   app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
       ->required();
   AddOutput(*app, arguments->common);
@@ -175,6 +192,9 @@ void AddSlamFit(Program& program) {
 void AddEval(Program& program) {
   CLI::App* eval = program.app.add_subcommand("eval", "Score a trajectory or a map");
   eval->require_subcommand(1);
+  eval->footer(
+      "Example:\n  depthgrid eval trajectory groundtruth.txt trajectory_est.txt\n"
+      "  depthgrid eval map OUT/truth_map.yaml OUT/map.yaml --json");
   const auto [trajectory, t] = program.Add<EvalTrajectoryArguments>(
       *eval, "trajectory", "Errors of a trajectory, TUM files, evo's conventions",
       "depthgrid eval trajectory groundtruth.txt trajectory_est.txt", &EvalTrajectory);
@@ -232,6 +252,7 @@ int Main(int argc, char** argv) {
   Program program;
   program.app.require_subcommand(1);
   program.app.set_version_flag("--version", DEPTHGRID_VERSION);
+  program.app.footer(kFirstSteps);
   AddScenes(program);
   AddRender(program);
   AddMap(program);
