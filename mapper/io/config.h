@@ -3,12 +3,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mapper/core/options.h"
 
 namespace depthgrid {
+
+struct ConfigEntry;
 
 class Config {
  public:
@@ -42,6 +45,8 @@ class Config {
   std::string Place() const;
   // Names of the top-level keys in file order.
   std::vector<std::string> Keys() const;
+  // Every top-level key as it is written, dots and all, with its value; in file order.
+  std::vector<ConfigEntry> Entries() const;
   // The YAML texts of a list's elements at a key path; a scalar is a list of one. Throws InputError
   // if absent.
   std::vector<std::string> List(const std::string& key_path) const;
@@ -65,6 +70,14 @@ class Config {
   static void FinishReading(OptionsVisitor& reader);
 
   std::unique_ptr<Tree> tree_;
+};
+
+struct ConfigEntry {
+  std::string key;
+  std::string place;                              // file and line, for errors
+  std::string text;                               // the value as one line of YAML
+  std::optional<Config> map;                      // the value, if it is a map of keys
+  std::optional<std::vector<std::string>> items;  // the elements' YAML texts, if it is a list
 };
 
 namespace internal {

@@ -1,0 +1,156 @@
+#include "eval/sweep/sweep_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "eval/sweep/sweep_results.h"
+#include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kMaxValues = 1e6;  // of one axis: more is a slip of the pen
+
+// What an axis may say instead of listing its values.
+struct RangeOptions {
+  double from = 0.0;
+  double to = 0.0;
+  int count = 0;
+  RangeScale scale = RangeScale::kLinear;
+
+  void Visit(OptionsVisitor& v) {
+    v.Number("from", from, {}, "first value");
+    v.Number("to", to, {}, "last value");
+    v.Number("count", count, {1, kMaxValues}, "how many values");
+    v.Choice("scale", scale, {{RangeScale::kLinear, "linear"}, {RangeScale::kLog, "log"}},
+             "equal differences or equal ratios");
+  }
+};
+
+struct SeedOptions {
+  int seeds = 0;
+  std::uint64_t first = 1;
+
+  void Visit(OptionsVisitor& v) {
+    v.Number("seeds", seeds, {1, kMaxValues}, "how many seeds");
+    v.Seed("first", first, "the first of them");
+  }
+};
+
+std::vector<std::string> KeysOf(const std::string& names) {
+  std::vector<std::string> keys;
+  for (const TextRow& row : SplitRows(names)) {
+    for (const auto& field : row.fields) keys.emplace_back(field);
+  }
+  return keys;
+}
+
+void ReadSeeds(const Config& map, SweepAxis& axis) {
+  SeedOptions seeds;
+  map.Read(seeds);
+  for (int i = 0; i < seeds.seeds; ++i) {
+    axis.values.push_back({fmt::format("{}", seeds.first + static_cast<std::uint64_t>(i))});
+  }
+}
+
+void ReadRange(const Config& map, SweepAxis& axis) {
+  RangeOptions read;
+  map.Read(read);
+  for (const char* key : {"from", "to"}) {
+    if (!map.Has(key)) throw InputError(axis.place, fmt::format("a range needs '{}'", key));
+  }
+  if (read.scale == RangeScale::kLog && (read.from <= 0.0 || read.to <= 0.0)) {
+    throw InputError(axis.place,
+                     fmt::format("a log range from {} to {} must lie above 0", read.from, read.to));
+  }
+  const AxisRange range{read.from, read.to, read.scale};
+  if (read.count == 0) {
+    axis.range = range;
+    return;
+  }
+  for (int i = 0; i < read.count; ++i) {
+    const double share = read.count == 1 ? 0.0 : static_cast<double>(i) / (read.count - 1);
+    axis.values.push_back({fmt::format("{}", range.At(share))});
+  }
+}
+
+void ReadList(const std::vector<std::string>& items, SweepAxis& axis) {
+  for (const std::string& item : items) {
+    std::vector<std::string> value = {ShortestYaml(item)};
+    if (axis.keys.size() > 1) {
+      value = Config::FromText("value: " + item, axis.place).List("value");
+      std::transform(value.begin(), value.end(), value.begin(), ShortestYaml);
+    }
+    if (value.size() != axis.keys.size()) {
+      throw InputError(axis.place, fmt::format("value {} must be a list of {}, one a key", item,
+                                               axis.keys.size()));
+    }
+    axis.values.push_back(std::move(value));
+  }
+}
+
+SweepAxis ReadAxis(const ConfigEntry& entry) {
+  SweepAxis axis;
+  axis.place = entry.place;
+  axis.keys = KeysOf(entry.key);
+  if (axis.keys.empty()) throw InputError(entry.place, "an axis needs the name of a key");
+  if (entry.map && axis.keys.size() > 1) {
+    throw InputError(entry.place, "keys that change together need a list of lists");
+  }
+  if (entry.map && entry.map->Has("seeds")) {
+    ReadSeeds(*entry.map, axis);
+  } else if (entry.map) {
+    ReadRange(*entry.map, axis);
+  } else {
+    ReadList(entry.items.value_or(std::vector{entry.text}), axis);
+  }
+  const bool nothing = entry.text.empty() || entry.text == "~" || entry.text == "null";
+  if ((axis.values.empty() && !axis.range) || nothing) {
+    throw InputError(entry.place, fmt::format("axis '{}' has no values", entry.key));
+  }
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    const auto end = axis.values.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(axis.values.begin(), end, axis.values[i]) == end) continue;
+    throw InputError(entry.place, fmt::format("axis '{}' has the value {} twice", entry.key,
+                                              fmt::join(axis.values[i], ", ")));
+  }
+  return axis;
+}
+
+}  // namespace
+
+double AxisRange::At(double share) const {
+  if (share <= 0.0) return from;
+  if (share >= 1.0) return to;
+  return scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
+}
+
+bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }
+
+std::vector<SweepAxis> ReadAxes(const Config& axes) {
+  std::vector<SweepAxis> read;
+  std::vector<std::string> seen;
+  for (const ConfigEntry& entry : axes.Entries()) {
+    read.push_back(ReadAxis(entry));
+    for (const std::string& key : read.back().keys) {
+      if (std::find(seen.begin(), seen.end(), key) != seen.end()) {
+        throw InputError(entry.place, fmt::format("key '{}' is on two axes", key));
+      }
+      seen.push_back(key);
+    }
+  }
+  return read;
+}
+
+std::string ShortestYaml(const std::string& text) {
+  constexpr double kExactIntegers = 9007199254740992.0;  // 2^53: larger seeds stay as they stand
+  const auto number = ParseNumber(text);
+  if (!number || !std::isfinite(*number) || std::abs(*number) >= kExactIntegers) return text;
+  return fmt::format("{}", *number);
+}
+
+}  // namespace depthgrid

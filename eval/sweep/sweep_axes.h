@@ -1,0 +1,42 @@
+// The axes of a sweep's file (docs/sweeps.md, "Axes").
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/options.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+
+enum class RangeScale { kLinear, kLog };
+
+// A range without a count, from which a random sweep draws.
+struct AxisRange {
+  double from = 0.0;
+  double to = 0.0;
+  RangeScale scale = RangeScale::kLinear;
+
+  // At `share` of the way, 0 to 1; the ends are exact.
+  double At(double share) const;
+};
+
+struct SweepAxis {
+  std::vector<std::string> keys;                 // several: their values change together
+  std::vector<std::vector<std::string>> values;  // [value][key], YAML in its shortest form
+  std::optional<AxisRange> range;                // of a random sweep, instead of values
+  std::string place;
+
+  // Seeds repeat each grid point instead of making others.
+  bool IsSeed() const;
+};
+
+// `axes` is the map of that name. Throws InputError for an axis without values, a range that is
+// none, or an axis twice.
+std::vector<SweepAxis> ReadAxes(const Config& axes);
+
+// Numbers in their shortest form, anything else as it stands.
+std::string ShortestYaml(const std::string& text);
+
+}  // namespace depthgrid

@@ -1,0 +1,259 @@
+#include "eval/sweep/sweep_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <unordered_map>
+
+#include "eval/shipped.h"
+#include "mapper/core/error.h"
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxRuns = 1e7;
+
+// The top level of a sweep's file, `axes` and `set` apart.
+struct SweepFileOptions {
+  std::string experiment;
+  SweepMode mode = SweepMode::kGrid;
+  int samples = 0;
+  std::uint64_t sample_seed = 1;
+  StopOptions stop;
+
+  void Visit(OptionsVisitor& v) {
+    v.Text("experiment", experiment, "a shipped experiment or a file");
+    v.Choice("mode", mode,
+             {{SweepMode::kGrid, "grid"}, {SweepMode::kZip, "zip"}, {SweepMode::kRandom, "random"}},
+             "how axes are combined");
+    v.Number("samples", samples, {1, kMaxRuns}, "points of a random sweep");
+    v.Seed("sample_seed", sample_seed, "of the draws of a random sweep");
+    v.Group("stop", stop, "when a point needs no more seeds");
+  }
+};
+
+// A point or a seed: the value texts of some axes, one behind the other.
+using Combination = std::vector<std::string>;
+
+std::vector<Combination> Grid(const std::vector<const SweepAxis*>& axes) {
+  std::vector<Combination> combinations = {{}};
+  for (const SweepAxis* axis : axes) {
+    if (static_cast<double>(combinations.size()) * static_cast<double>(axis->values.size()) >
+        kMaxRuns) {
+      throw InputError(axis->place, fmt::format("the sweep has more than {:.0f} runs", kMaxRuns));
+    }
+    std::vector<Combination> longer;
+    for (const Combination& combination : combinations) {
+      for (const auto& value : axis->values) {
+        longer.push_back(combination);
+        longer.back().insert(longer.back().end(), value.begin(), value.end());
+      }
+    }
+    combinations = std::move(longer);
+  }
+  return combinations;
+}
+
+std::vector<Combination> Zip(const std::vector<const SweepAxis*>& axes) {
+  std::vector<Combination> combinations(axes.empty() ? 1 : axes[0]->values.size());
+  for (const SweepAxis* axis : axes) {
+    if (axis->values.size() != combinations.size()) {
+      throw InputError(axis->place,
+                       fmt::format("has {} values, the first axis has {}: in mode zip all have the "
+                                   "same number",
+                                   axis->values.size(), combinations.size()));
+    }
+    for (std::size_t i = 0; i < combinations.size(); ++i) {
+      combinations[i].insert(combinations[i].end(), axis->values[i].begin(), axis->values[i].end());
+    }
+  }
+  return combinations;
+}
+
+std::vector<Combination> Samples(const std::vector<const SweepAxis*>& axes, int count,
+                                 std::uint64_t seed) {
+  std::vector<Combination> combinations;
+  for (int i = 0; i < count; ++i) {
+    RandomStream random(seed, RandomStage::kSweep, static_cast<std::uint32_t>(i));
+    Combination combination;
+    for (const SweepAxis* axis : axes) {
+      if (axis->range) {
+        combination.push_back(fmt::format("{}", axis->range->At(random.Uniform())));
+      } else {
+        const auto& value = axis->values[random.Below(axis->values.size())];
+        combination.insert(combination.end(), value.begin(), value.end());
+      }
+    }
+    combinations.push_back(std::move(combination));
+  }
+  return combinations;
+}
+
+std::vector<Combination> Points(const std::vector<const SweepAxis*>& axes,
+                                const SweepFileOptions& file, const std::string& place) {
+  if (file.mode == SweepMode::kRandom) {
+    if (file.samples == 0) throw InputError(place, "mode random needs 'samples'");
+    return Samples(axes, file.samples, file.sample_seed);
+  }
+  for (const SweepAxis* axis : axes) {
+    if (axis->range) throw InputError(axis->place, "a range needs 'count', but in mode random");
+  }
+  return file.mode == SweepMode::kZip ? Zip(axes) : Grid(axes);
+}
+
+// Values by position among `axes` put in the order of all keys.
+struct KeyOrder {
+  std::vector<std::size_t> position;  // of each key of the axes among all keys
+
+  KeyOrder(const std::vector<const SweepAxis*>& axes, const std::vector<std::string>& keys) {
+    for (const SweepAxis* axis : axes) {
+      for (const std::string& key : axis->keys) {
+        position.push_back(
+            static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin()));
+      }
+    }
+  }
+  void Put(const Combination& combination, std::vector<std::string>& values) const {
+    for (std::size_t i = 0; i < position.size(); ++i) values[position[i]] = combination[i];
+  }
+};
+
+void EnumerateRuns(const SweepFileOptions& file, const std::string& place, SweepPlan& plan) {
+  std::vector<const SweepAxis*> point_axes;
+  std::vector<const SweepAxis*> seed_axes;
+  for (const SweepAxis& axis : plan.axes) {
+    (axis.IsSeed() ? seed_axes : point_axes).push_back(&axis);
+    plan.parameter_keys.insert(plan.parameter_keys.end(), axis.keys.begin(), axis.keys.end());
+  }
+  const std::vector<Combination> points = Points(point_axes, file, place);
+  SweepFileOptions crossed = file;
+  crossed.mode = SweepMode::kGrid;
+  const std::vector<Combination> seeds = Points(seed_axes, crossed, place);
+  const double count = static_cast<double>(points.size()) * static_cast<double>(seeds.size());
+  if (count > kMaxRuns) throw InputError(place, fmt::format("has {:.0f} runs", count));
+  const KeyOrder point_order(point_axes, plan.parameter_keys);
+  const KeyOrder seed_order(seed_axes, plan.parameter_keys);
+  plan.point_count = static_cast<int>(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (const Combination& seed : seeds) {
+      PlannedRun run;
+      run.run = static_cast<int>(plan.runs.size());
+      run.point = static_cast<int>(p);
+      run.values.resize(plan.parameter_keys.size());
+      point_order.Put(points[p], run.values);
+      seed_order.Put(seed, run.values);
+      plan.runs.push_back(std::move(run));
+    }
+  }
+  plan.size_text = fmt::format("{} points x {} seeds", points.size(), seeds.size());
+}
+
+// Each value alone, so that a slip is found before the first run and named with its line.
+void CheckValues(const SweepPlan& plan) {
+  for (const SweepAxis& axis : plan.axes) {
+    std::vector<std::vector<std::string>> values = axis.values;
+    if (axis.range) {
+      values = {{fmt::format("{}", axis.range->from)}, {fmt::format("{}", axis.range->to)}};
+    }
+    for (const auto& value : values) {
+      Config config = Config::FromText(plan.base.ToYaml(), axis.place);
+      for (std::size_t i = 0; i < axis.keys.size(); ++i) config.Set(axis.keys[i], value[i]);
+      ReadExperiment(std::move(config), plan.base_folder);
+    }
+  }
+}
+
+std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
+  std::string text = ToYaml(file) + "axes:\n";
+  for (const SweepAxis& axis : plan.axes) {
+    text += fmt::format("  {}:", fmt::join(axis.keys, ", "));
+    if (axis.range) text += fmt::format(" {} to {}", axis.range->from, axis.range->to);
+    for (const auto& value : axis.values) text += fmt::format(" [{}]", fmt::join(value, ", "));
+    text += "\n";
+  }
+  return text;
+}
+
+// Whether runs that differ in this key alone see the same scans.
+bool IsOfMapperOnly(const std::string& key) {
+  return key.starts_with("mapper.") && !key.starts_with("mapper.scan");
+}
+
+}  // namespace
+
+void StopOptions::Visit(OptionsVisitor& v) {
+  constexpr double kMaxSeeds = 1e6;
+  v.Text("metric", metric, "a metric of results.csv; empty never stops early");
+  v.Number("width", width, {0.0}, "of the 95 % interval of its mean");
+  v.Number("min_seeds", min_seeds, {2, kMaxSeeds}, "before a point may stop");
+}
+
+ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
+  Config config = base;
+  for (std::size_t i = 0; i < parameter_keys.size(); ++i) {
+    config.Set(parameter_keys[i], run.values[i]);
+  }
+  return ReadExperiment(std::move(config), base_folder);
+}
+
+SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
+  Config config = Config::FromFile(path);
+  if (!config.Has("axes")) throw InputError(path, "key 'axes' is missing");
+  if (!config.Has("experiment")) throw InputError(path, "key 'experiment' is missing");
+  SweepPlan plan;
+  plan.title = fs::path(path).stem().string();
+  plan.axes = ReadAxes(config.Take("axes"));
+  if (plan.axes.empty()) throw InputError(path, "has no axes");
+  const Config fixed = config.Take("set");
+  SweepFileOptions file;
+  config.Read(file);
+  const std::string experiment =
+      ResolveName(file.experiment, ShippedKind::kExperiment, fs::path(path).parent_path().string());
+  plan.base_folder = fs::path(experiment).parent_path().string();
+  plan.base = Config::FromFile(experiment);
+  ReadExperiment(plan.base, plan.base_folder);  // so that its own errors name its own file
+  plan.base = Config::FromText(plan.base.ToYaml(), path + ", set");
+  for (const ConfigEntry& entry : fixed.Entries()) plan.base.Set(entry.key, entry.text);
+  for (const std::string& assignment : set) plan.base.Set(assignment);
+  plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
+  CheckValues(plan);
+  EnumerateRuns(file, path, plan);
+  plan.stop = file.stop;
+  file.experiment.clear();  // its content counts, not its name
+  plan.sweep_text = TextOf(file, plan);
+  return plan;
+}
+
+std::vector<int> ScanGroups(const SweepPlan& plan) {
+  std::vector<std::size_t> shaping;
+  for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
+    if (!IsOfMapperOnly(plan.parameter_keys[i])) shaping.push_back(i);
+  }
+  std::unordered_map<std::string, int> known;
+  std::vector<int> groups;
+  for (const PlannedRun& run : plan.runs) {
+    std::string seen;
+    for (const std::size_t i : shaping) seen += run.values[i] + "\n";
+    groups.push_back(known.try_emplace(seen, static_cast<int>(known.size())).first->second);
+  }
+  return groups;
+}
+
+std::vector<PlannedRun> RunsOf(const SweepPlan& plan, const Shard& shard) {
+  if (shard.count == 1) return plan.runs;
+  const std::vector<int> groups = ScanGroups(plan);
+  std::vector<PlannedRun> runs;
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) {
+    const int unit = plan.stop.Enabled() ? plan.runs[i].point : groups[i];
+    if (unit % shard.count == shard.index - 1) runs.push_back(plan.runs[i]);
+  }
+  return runs;
+}
+
+}  // namespace depthgrid
