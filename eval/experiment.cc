@@ -33,6 +33,11 @@ ExperimentOptions Completed(ExperimentOptions options, const Scene& scene) {
   return options;
 }
 
+MappingRun MapExperiment(FrameSource& source, const ExperimentOptions& completed,
+                         const World& world, const SlamOutput& slam, const Progress& progress) {
+  return MapFrames(source, completed.mapper, slam.final, progress, OracleOf(world.trajectory));
+}
+
 ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& context) {
   World world = LoadWorld(given, context.threads);
   const ExperimentOptions options = Completed(given, world.scene);
@@ -40,8 +45,7 @@ ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& co
   TruthRecord truth = MakeTruth(world, options.mapper, context.threads);
   const SyntheticSensor sensor(world, options, context.cache_folder);
   SyntheticSource source(sensor, slam, context.threads);
-  MappingRun mapping =
-      MapFrames(source, options.mapper, slam.final, context.progress, OracleOf(world.trajectory));
+  MappingRun mapping = MapExperiment(source, options, world, slam, context.progress);
   RunScores scores = Score(mapping, truth, options.metrics);
   return {options,          std::move(world), std::move(slam), std::move(mapping),
           std::move(truth), std::move(scores)};

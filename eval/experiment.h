@@ -41,6 +41,10 @@ struct ExperimentRun {
 // The options with what follows from the scene filled in: the height of its floor.
 ExperimentOptions Completed(ExperimentOptions options, const Scene& scene);
 
+// The mapping of an experiment whose frames come from `source`.
+MappingRun MapExperiment(FrameSource& source, const ExperimentOptions& completed,
+                         const World& world, const SlamOutput& slam, const Progress& progress);
+
 ExperimentRun RunExperiment(const ExperimentOptions& options, const RunContext& context);
 
 }  // namespace depthgrid

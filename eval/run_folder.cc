@@ -60,13 +60,12 @@ void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
   WriteScans(folder.File("scans.bin"), stored);
 }
 
-void WriteMetrics(const OutputFolder& folder, const RunScores& scores) {
-  WriteFile(folder.File("metrics.json"),
-            MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
-                        &scores.map));
-}
-
 }  // namespace
+
+std::string MetricsOf(const RunScores& scores) {
+  return MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
+                     &scores.map);
+}
 
 std::string Provenance(const std::string& scene_hash) {
   std::string yaml = "provenance:\n";
@@ -84,7 +83,9 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
   if (record.truth != nullptr) WriteTruthMaps(folder.work().string(), *record.truth);
-  if (record.scores != nullptr) WriteMetrics(folder, *record.scores);
+  if (record.scores != nullptr) {
+    WriteFile(folder.File("metrics.json"), MetricsOf(*record.scores));
+  }
   if (record.slam != nullptr) WriteFile(folder.File("loops.csv"), LoopsText(*record.slam));
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);

@@ -26,6 +26,9 @@ struct RunRecord {
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 
+// metrics.json of a run.
+std::string MetricsOf(const RunScores& scores);
+
 // Version and instruction set, as in every run.yaml.
 std::string Provenance(const std::string& scene_hash);
 

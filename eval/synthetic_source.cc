@@ -46,21 +46,25 @@ SyntheticSource::SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam,
   Require(sensor.FrameCount() == FrameCount(), "SLAM says something of every frame");
 }
 
+Frame SlamPlayback::FrameAt(int index, const SlamOutput& slam) {
+  const SlamPose& pose = slam.live[static_cast<std::size_t>(index)];
+  Frame frame;
+  frame.index = index;
+  frame.stamp_s = pose.stamp_s;
+  frame.slam_from_camera = pose.slam_from_camera;
+  frame.slam_epoch = pose.epoch;
+  for (; next_loop_ < slam.loops.size() && slam.loops[next_loop_].reported_at_frame <= index;
+       ++next_loop_) {
+    frame.loops.push_back(slam.loops[next_loop_]);
+  }
+  return frame;
+}
+
 std::optional<Frame> SyntheticSource::Next() {
   auto image = images_.Next();
   if (!image) return std::nullopt;
-  const SlamPose& pose = slam_.live[static_cast<std::size_t>(next_)];
-  Frame frame;
-  frame.index = next_;
-  frame.stamp_s = pose.stamp_s;
+  Frame frame = playback_.FrameAt(next_++, slam_);
   frame.depth = std::move(*image);
-  frame.slam_from_camera = pose.slam_from_camera;
-  frame.slam_epoch = pose.epoch;
-  for (; next_loop_ < slam_.loops.size() && slam_.loops[next_loop_].reported_at_frame <= next_;
-       ++next_loop_) {
-    frame.loops.push_back(slam_.loops[next_loop_]);
-  }
-  ++next_;
   return frame;
 }
 

@@ -36,6 +36,16 @@ class SyntheticSensor {
   std::optional<DepthCache> cache_;
 };
 
+// What SLAM says, frame by frame; the depth side is left empty.
+class SlamPlayback {
+ public:
+  // The frame at position `index` of `slam`, with the loops reported since the last call.
+  Frame FrameAt(int index, const SlamOutput& slam);
+
+ private:
+  std::size_t next_loop_ = 0;
+};
+
 class SyntheticSource final : public FrameSource {
  public:
   // `slam.live` has one entry a frame.
@@ -50,7 +60,7 @@ class SyntheticSource final : public FrameSource {
   PinholeCamera camera_;
   SlamOutput slam_;
   int next_ = 0;
-  std::size_t next_loop_ = 0;
+  SlamPlayback playback_;
   OrderedFrames<std::shared_ptr<const DepthImage>> images_;
 };
 

@@ -89,6 +89,19 @@ struct EvalMapArguments {
 };
 void EvalMap(const EvalMapArguments& arguments);
 
+struct SweepArguments {
+  std::string sweep;               // empty with `merge`
+  int jobs = 0;                    // 0: as many as there are cores
+  std::string shard;               // I/N; empty: all of it
+  std::vector<std::string> merge;  // folders of parts
+  std::string executor = "local";
+  std::string slurm_options;  // for sbatch
+  int slurm_tasks = 0;        // 0: as many as have work for long enough
+  bool dry_run = false;
+  CommonArguments common;
+};
+void Sweep(const SweepArguments& arguments);
+
 struct ReportArguments {
   std::string folder;
 };

@@ -26,8 +26,11 @@ std::string TimeText(double seconds) {
 ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { Clear(); }
+
+void ProgressBar::Clear() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
 }
 
 void ProgressBar::Show(int done, int total) {

@@ -19,6 +19,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void Show(int done, int total);
+  // Takes the bar away, so that something else can be said.
+  void Clear();
   Progress AsProgress();
 
  private:

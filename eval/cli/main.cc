@@ -148,6 +148,32 @@ void AddRun(Program& program) {
   AddKeys(*app, &ExperimentKeys);
 }
 
+void AddSweep(Program& program) {
+  const auto [app, arguments] = program.Add<SweepArguments>(
+      program.app, "sweep",
+      "Run an experiment many times over; started again, it goes on where it stopped",
+      "depthgrid sweep kalman_gain -o /tmp/gains", &Sweep);
+  app->add_option("sweep", arguments->sweep, "Shipped sweep or a YAML file");
+  app->add_option("-j,--jobs", arguments->jobs, "Runs at a time; 0 is one a core")
+      ->check(CLI::Range(0, 1024));
+  app->add_option("--shard", arguments->shard, "Do part I of N only, from 1")->type_name("I/N");
+  app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
+      ->type_name("DIR");
+  app->add_option("--executor", arguments->executor, "Where runs are done")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  app->add_option("--slurm-options", arguments->slurm_options,
+                  "More options for sbatch, such as '--partition=long --time=1:00:00'");
+  app->add_option("--slurm-tasks", arguments->slurm_tasks,
+                  "Parts to make; 0 gives each at least 30 s of work")
+      ->check(CLI::Range(0, 1000));
+  app->add_flag("--dry-run", arguments->dry_run, "Say how many runs and how long, then stop");
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+  AddCache(*app, arguments->common);
+  AddKeys(*app, &ExperimentKeys);
+}
+
 void AddSlam(Program& program) {
   const auto [app, arguments] = program.Add<SlamArguments>(
       program.app, "slam", "Disturb a sequence's true trajectory as a SLAM system would",
@@ -257,6 +283,7 @@ int Main(int argc, char** argv) {
   AddRender(program);
   AddMap(program);
   AddRun(program);
+  AddSweep(program);
   AddSlam(program);
   AddSlamCalibrate(program);
   AddSlamFit(program);

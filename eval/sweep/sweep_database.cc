@@ -106,6 +106,13 @@ struct SweepDatabase::Impl {
     insert.exec();
   }
 
+  std::vector<int> RunsWhere(const std::string& condition) const {
+    std::vector<int> runs;
+    SQLite::Statement query(*database, "SELECT run FROM runs " + condition + " ORDER BY run");
+    while (query.executeStep()) runs.push_back(query.getColumn(0).getInt());
+    return runs;
+  }
+
   void AddColumn(const std::string& table, const std::string& name) {
     const auto columns = ColumnsOf(*database, table);
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) {
@@ -184,7 +191,8 @@ bool SweepDatabase::Exists(const std::string& folder) { return fs::exists(Databa
 SweepDatabase SweepDatabase::Create(const std::string& folder,
                                     const std::map<std::string, std::string>& environment,
                                     const std::vector<std::string>& parameter_keys,
-                                    const std::vector<PlannedRun>& plan) {
+                                    const std::vector<PlannedRun>& plan,
+                                    const std::vector<RunOutcome>& outcomes) {
   // Under another name until it is whole: a kill in between leaves no half plan.
   const std::string partial = DatabasePath(folder) + ".partial";
   fs::remove(partial);
@@ -220,6 +228,7 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
       values.exec();
       values.reset();
     }
+    for (const RunOutcome& outcome : outcomes) impl.Insert(outcome);
     transaction.commit();
   }
   fs::rename(partial, DatabasePath(folder));
@@ -257,12 +266,14 @@ std::map<std::string, std::string> SweepDatabase::Environment() const {
 }
 
 std::vector<int> SweepDatabase::FinishedRuns() const {
-  std::vector<int> runs;
-  SQLite::Statement query(*impl_->database,
-                          "SELECT run FROM runs WHERE state <> 'planned' ORDER BY run");
-  while (query.executeStep()) runs.push_back(query.getColumn(0).getInt());
-  return runs;
+  return impl_->RunsWhere("WHERE state <> 'planned'");
 }
+
+std::vector<int> SweepDatabase::UnfinishedRuns() const {
+  return impl_->RunsWhere("WHERE state = 'planned'");
+}
+
+std::vector<int> SweepDatabase::PlannedRuns() const { return impl_->RunsWhere(""); }
 
 void SweepDatabase::Record(const RunOutcome& outcome) { Record(std::vector{outcome}); }
 

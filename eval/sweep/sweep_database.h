@@ -32,11 +32,12 @@ struct RunOutcome {
 class SweepDatabase {
  public:
   static bool Exists(const std::string& folder);
-  // All of the plan, or nothing, is in the file afterwards.
+  // All of the plan and of what is known already, or nothing, is in the file afterwards.
   static SweepDatabase Create(const std::string& folder,
                               const std::map<std::string, std::string>& environment,
                               const std::vector<std::string>& parameter_keys,
-                              const std::vector<PlannedRun>& plan);
+                              const std::vector<PlannedRun>& plan,
+                              const std::vector<RunOutcome>& outcomes = {});
   // Throws InputError when there is none or it is something else.
   static SweepDatabase Open(const std::string& folder);
   SweepDatabase(SweepDatabase&&) noexcept;
@@ -46,6 +47,10 @@ class SweepDatabase {
   std::map<std::string, std::string> Environment() const;
   // Numbers of the runs that are done or failed, ascending.
   std::vector<int> FinishedRuns() const;
+  // Numbers of the others, ascending.
+  std::vector<int> UnfinishedRuns() const;
+  // Numbers of both.
+  std::vector<int> PlannedRuns() const;
   void Record(const RunOutcome& outcome);
   // All outcomes in one transaction.
   void Record(const std::vector<RunOutcome>& outcomes);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "eval/metrics_json.h"
+#include "eval/run_folder.h"
 
 namespace depthgrid {
 namespace {
@@ -37,7 +37,7 @@ void Collect(const nlohmann::ordered_json& json, const std::string& path, NamedV
 
 NamedValues SweepMetrics(const RunScores& scores) {
   NamedValues values;
-  Collect(nlohmann::ordered_json::parse(MetricsOfRun(scores)), "", values);
+  Collect(nlohmann::ordered_json::parse(MetricsOf(scores)), "", values);
   return values;
 }
 

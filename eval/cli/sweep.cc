@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/cli/experiment_argument.h"
+#include "eval/shipped.h"
+#include "eval/sweep/sweep_folder.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+Shard ShardOf(const std::string& text) {
+  Shard shard;
+  if (text.empty()) return shard;
+  const std::size_t slash = text.find('/');
+  const auto number = [&](std::string_view part, int& value) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc() && end == part.data() + part.size();
+  };
+  const bool read = slash != std::string::npos &&
+                    number(std::string_view(text).substr(0, slash), shard.index) &&
+                    number(std::string_view(text).substr(slash + 1), shard.count);
+  if (!read || shard.index < 1 || shard.index > shard.count) {
+    throw InputError("--shard", "is '" + text + "', must be I/N with I from 1 to N");
+  }
+  return shard;
+}
+
+// A folder made for the sweep is taken away again when nothing could be started in it.
+class SweepFolder {
+ public:
+  SweepFolder(const std::string& path, bool force) : path_(path) {
+    if (fs::exists(path) && !fs::is_directory(path)) {
+      throw InputError(path, "is a file, the output must be a folder");
+    }
+    if (!force && fs::exists(path) && !fs::is_empty(path) && !IsSweep()) {
+      throw InputError(path, "is not empty and no sweep; choose another folder, or --force");
+    }
+    std::error_code error;
+    created_ = fs::create_directories(path, error);
+    if (error) throw InputError(path, "cannot be created: " + error.message());
+  }
+  ~SweepFolder() {
+    std::error_code ignored;
+    if (created_ && !SweepDatabase::Exists(path_)) fs::remove_all(path_, ignored);
+  }
+  SweepFolder(const SweepFolder&) = delete;
+  SweepFolder& operator=(const SweepFolder&) = delete;
+
+ private:
+  // One killed before its plan was written has a lock and no more.
+  bool IsSweep() const { return SweepDatabase::Exists(path_) || fs::exists(path_ + "/.lock"); }
+
+  std::string path_;
+  bool created_ = false;
+};
+
+std::string DurationText(double seconds) {
+  constexpr double kMinute = 60.0;
+  constexpr double kHour = 3600.0;
+  if (seconds < kMinute) return fmt::format("{:.0f} s", seconds);
+  if (seconds < kHour) return fmt::format("{:.0f} min", seconds / kMinute);
+  return fmt::format("{:.1f} h", seconds / kHour);
+}
+
+void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t planned,
+              const SweepContext& context) {
+  fmt::print("{}: {} runs, {}", plan.title, plan.runs.size(), plan.size_text);
+  if (planned < plan.runs.size()) fmt::print("; {} of them here", planned);
+  if (runs.size() < planned) fmt::print("; {} done already", planned - runs.size());
+  fmt::print("\n");
+  if (runs.empty()) return;
+  const SweepEstimate estimate = EstimateSweep(plan, runs, context);
+  fmt::print("about {} with {} at a time, {} different sets of scans\n",
+             DurationText(estimate.cpu_s / context.threads), context.threads, estimate.scan_sets);
+  std::fflush(stdout);
+}
+
+void Summarise(const SweepResults& results) {
+  std::size_t failed = 0;
+  std::string reason;
+  for (const std::string& failure : results.failures) {
+    if (failure.empty()) continue;
+    if (failed++ == 0) reason = failure;
+  }
+  fmt::print("{} runs in {}/results.csv\n", results.rows(), results.folder);
+  if (failed > 0) Warn({fmt::format("{} runs failed, the first: {}", failed, reason)});
+}
+
+void Merge(const SweepArguments& arguments) {
+  if (!arguments.sweep.empty()) {
+    throw InputError("--merge", "takes the sweep from the parts, '" + arguments.sweep +
+                                    "' is one argument too many");
+  }
+  const std::string& output = arguments.common.output;
+  if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
+  const SweepFolder folder(output, arguments.common.force);
+  MergeSweeps(arguments.merge, output);
+  Summarise(ReadSweep(output));
+}
+
+// Rendered depth and scans outlive a kill beside the results when nobody named another place.
+std::string SweepCache(const CommonArguments& arguments) {
+  const std::string named = CacheFolder(arguments);
+  if (!named.empty() || arguments.no_cache) return named;
+  return arguments.output + "/cache";
+}
+
+void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
+  const std::string& output = arguments.common.output;
+  const Shard shard = ShardOf(arguments.shard);
+  const SweepFolder folder(output, arguments.common.force);
+  SweepContext context;
+  context.threads = ThreadsOr(arguments.jobs);
+  context.cache_folder = SweepCache(arguments.common);
+  const SweepLock lock(output);
+  SweepDatabase database = OpenOrCreateSweep(output, plan, shard, arguments.common.force);
+  Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), context);
+  ProgressBar bar("runs");
+  context.progress = bar.AsProgress();
+  try {
+    DoRuns(plan, database, context);
+  } catch (...) {  // interrupted: what is known so far is worth a table
+    WriteResultsCsv(database, output);
+    throw;
+  }
+  WriteResultsCsv(database, output);
+  if (context.cache_folder == output + "/cache") fs::remove_all(context.cache_folder);
+  bar.Clear();
+  Summarise(database.Results());
+}
+
+}  // namespace
+
+void Sweep(const SweepArguments& arguments) {
+  if (!arguments.merge.empty()) return Merge(arguments);
+  if (arguments.sweep.empty()) throw InputError("sweep", "name a shipped sweep or a YAML file");
+  const SweepPlan plan =
+      ReadSweepPlan(ResolveName(arguments.sweep, ShippedKind::kSweep), arguments.common.set);
+  if (arguments.dry_run) {
+    SweepContext context;
+    context.threads = ThreadsOr(arguments.jobs);
+    context.cache_folder = CacheFolder(arguments.common);
+    std::vector<int> runs;
+    for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) runs.push_back(run.run);
+    return Announce(plan, runs, runs.size(), context);
+  }
+  SweepHere(arguments, plan);
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,40 @@
+// Independent tasks on several threads. What a task gives must depend on its index alone.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace depthgrid {
+
+// Calls task(i) for i in [0, count), in any order, from `threads` threads of which the caller is
+// one. The first exception stops the rest and is thrown here.
+template <typename Task>
+void ForEachIndex(std::size_t count, int threads, const Task& task) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        task(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
+    helpers.emplace_back(work);
+  }
+  work();
+  for (std::thread& helper : helpers) helper.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,211 @@
+#include "eval/sweep/sweep_engine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <map>
+#include <mutex>
+
+#include "eval/metrics/statistics.h"
+#include "eval/parallel.h"
+#include "eval/statistics/resamples.h"
+#include "eval/sweep/scan_maker.h"
+#include "eval/sweep/sweep_inputs.h"
+#include "eval/sweep/sweep_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+// Scans are held for as many groups at once as fit in here: enough that threads seldom wait for
+// each other at the end of a batch (20 sets of 900 frames), little beside what a laptop has.
+constexpr std::size_t kBatchBytes = std::size_t{512} << 20U;
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double ThreadCpuS() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+// Runs that share their scans.
+struct Group {
+  std::vector<const PlannedRun*> runs;
+  ScanSet scans;
+};
+
+NamedValues TimesOf(const MappingRun& run, double cpu_s, double wall_s) {
+  constexpr double kP95 = 0.95;
+  std::vector<double> frames_us;
+  for (const FrameReport& report : run.reports) frames_us.push_back(report.times.total_us);
+  NamedValues times = {{"time_cpu_s", cpu_s}, {"time_wall_s", wall_s}};
+  if (!frames_us.empty()) {
+    times.emplace_back("cpu_us_per_frame_median", Percentile(frames_us, 0.5));
+    times.emplace_back("cpu_us_per_frame_p95", Percentile(frames_us, kP95));
+  }
+  return times;
+}
+
+class Engine {
+ public:
+  Engine(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context)
+      : plan_(plan), database_(database), context_(context), inputs_(context.threads) {}
+
+  // Runs in the order of their groups, a batch of groups at a time.
+  void Do(const std::vector<const PlannedRun*>& runs, const std::vector<int>& group_of_run) {
+    std::map<int, Group> groups;
+    for (const PlannedRun* run : runs) {
+      groups[group_of_run[static_cast<std::size_t>(run->run)]].runs.push_back(run);
+    }
+    std::vector<Group*> batch;
+    std::size_t bytes = 0;
+    for (auto& [number, group] : groups) {
+      Prepare(group);
+      bytes += BytesOf(group.scans);
+      batch.push_back(&group);
+      if (bytes < kBatchBytes) continue;
+      DoBatch(batch);
+      for (Group* done : batch) *done = {};
+      batch.clear();
+      bytes = 0;
+    }
+    DoBatch(batch);
+  }
+
+  void SetProgress(int done, int total) {
+    done_ = done;
+    total_ = total;
+    Tick();
+  }
+  int done() const { return done_; }
+
+ private:
+  void Tick() {
+    if (context_.progress) context_.progress(done_, total_);
+  }
+
+  // The set without its scans; what is wrong with it is the failure of each of its runs.
+  void Prepare(Group& group) {
+    try {
+      const ExperimentOptions options = plan_.OptionsOf(*group.runs.front());
+      group.scans = MakeSet(options, inputs_.WorldOf(options));
+    } catch (const std::exception& error) {
+      group.scans.failure = error.what();
+    }
+    Tick();
+  }
+
+  void DoBatch(const std::vector<Group*>& batch) {
+    std::vector<ScanSet*> sets;
+    std::vector<std::pair<const PlannedRun*, const ScanSet*>> runs;
+    for (Group* group : batch) {
+      sets.push_back(&group->scans);
+      for (const PlannedRun* run : group->runs) runs.emplace_back(run, &group->scans);
+    }
+    MakeScans(sets, {context_.threads, context_.cache_folder, [this] { Tick(); }});
+    ForEachIndex(runs.size(), context_.threads, [&](std::size_t i) {
+      const RunOutcome outcome = OutcomeOf(*runs[i].first, *runs[i].second);
+      const std::lock_guard lock(mutex_);
+      database_.Record(outcome);
+      ++done_;
+      Tick();
+    });
+  }
+
+  RunOutcome OutcomeOf(const PlannedRun& run, const ScanSet& scans) {
+    const Clock::time_point start = Clock::now();
+    const double cpu_before_s = ThreadCpuS();
+    RunOutcome outcome;
+    outcome.run = run.run;
+    outcome.failure = scans.failure;
+    MappingRun mapping;
+    if (outcome.failure.empty()) {
+      try {
+        const ExperimentOptions options = Completed(plan_.OptionsOf(run), scans.world->scene);
+        const auto truth = inputs_.TruthOf(options);
+        ScannedSource source(scans);
+        mapping = MapExperiment(source, options, *scans.world, scans.slam, {});
+        outcome.metrics = SweepMetrics(Score(mapping, *truth));
+      } catch (const std::exception& error) {
+        outcome.failure = error.what();
+      }
+    }
+    outcome.times = TimesOf(mapping, ThreadCpuS() - cpu_before_s, SecondsSince(start));
+    return outcome;
+  }
+
+  const SweepPlan& plan_;
+  SweepDatabase& database_;
+  const SweepContext& context_;
+  SweepInputs inputs_;
+  std::mutex mutex_;
+  int done_ = 0;
+  int total_ = 0;
+};
+
+std::vector<const PlannedRun*> Unfinished(const SweepPlan& plan, const SweepDatabase& database) {
+  std::vector<const PlannedRun*> runs;
+  for (const int run : database.UnfinishedRuns()) {
+    runs.push_back(&plan.runs[static_cast<std::size_t>(run)]);
+  }
+  return runs;
+}
+
+// Whether the mean over these seeds is sure enough. A failed run says nothing and counts as none.
+bool IsSure(const StopOptions& stop, std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (static_cast<int>(values.size()) < stop.min_seeds) return false;
+  const auto interval = MeanInterval(values, Resamples(values.size()));
+  return interval && interval->high - interval->low < stop.width;
+}
+
+// Points may stop: all points are run with one seed after the other, and after each seed those that
+// are sure lose what is left of their plan. The decision looks at all seeds up to that one and at
+// nothing else, so it is the same however the runs are spread over threads, kills and machines.
+void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine,
+                  const std::vector<int>& groups) {
+  const auto seeds = static_cast<int>(plan.runs.size()) / plan.point_count;
+  const std::vector<int> planned = database.PlannedRuns();
+  std::map<int, std::vector<int>> seeds_of_point;  // the runs of each, in order
+  for (const int run : planned) seeds_of_point[run / seeds].push_back(run);
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::vector<const PlannedRun*> runs;
+    for (const PlannedRun* run : Unfinished(plan, database)) {
+      if (run->run % seeds == seed) runs.push_back(run);
+    }
+    engine.Do(runs, groups);
+    std::vector<int> dropped;
+    for (auto& [point, all] : seeds_of_point) {
+      const auto count = static_cast<std::size_t>(seed) + 1;
+      if (all.size() <= count) continue;
+      const std::vector<int> so_far(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+      if (!IsSure(plan.stop, database.MetricOf(plan.stop.metric, so_far))) continue;
+      dropped.insert(dropped.end(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
+      all.resize(count);
+    }
+    database.Drop(dropped);
+    const auto total = static_cast<int>(database.PlannedRuns().size());
+    engine.SetProgress(engine.done(), total);
+  }
+}
+
+}  // namespace
+
+void DoRuns(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context) {
+  Engine engine(plan, database, context);
+  const std::vector<const PlannedRun*> runs = Unfinished(plan, database);
+  const auto planned = static_cast<int>(database.PlannedRuns().size());
+  engine.SetProgress(planned - static_cast<int>(runs.size()), planned);
+  const std::vector<int> groups = ScanGroups(plan);
+  if (plan.stop.Enabled()) {
+    DoRunsBySeed(plan, database, engine, groups);
+  } else {
+    engine.Do(runs, groups);
+  }
+}
+
+}  // namespace depthgrid

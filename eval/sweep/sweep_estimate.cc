@@ -1,0 +1,78 @@
+#include <algorithm>
+#include <ctime>
+#include <set>
+
+#include "eval/sweep/scan_set.h"
+#include "eval/sweep/sweep_engine.h"
+#include "eval/sweep/sweep_inputs.h"
+#include "eval/sweep/sweep_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+// Enough for the mapper to have something to match against; a third of a second to make.
+constexpr std::size_t kPilotFrames = 24;
+
+double CpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// CPU seconds of parts of a run.
+struct PilotTimes {
+  std::size_t frames = 0;  // of the whole run
+  double scan_s = 0.0;     // a frame, made for all runs of a group
+  double map_s = 0.0;      // a frame
+  double score_s = 0.0;    // a run
+};
+
+PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepContext& context) {
+  SweepInputs inputs(context.threads);
+  ScanSet set = MakeSet(options, inputs.WorldOf(options));
+  const auto truth = inputs.TruthOf(set.options);
+  PilotTimes times;
+  times.frames = set.slam.live.size();
+  const std::size_t pilot = std::min(times.frames, kPilotFrames);
+  set.slam.live.resize(pilot);
+  set.scans.resize(pilot);
+  const SyntheticSensor sensor(*set.world, set.options, context.cache_folder);
+  const FrameScanner scanner(set.world->camera, set.options.mapper.scan);
+  double before_s = CpuS();
+  for (std::size_t i = 0; i < pilot; ++i) {
+    Frame frame;
+    frame.depth = std::make_shared<const DepthImage>(sensor.Image(static_cast<int>(i)));
+    frame.slam_from_camera = set.slam.live[i].slam_from_camera;
+    set.scans[i] = scanner.ScansOf(frame);
+  }
+  times.scan_s = (CpuS() - before_s) / static_cast<double>(pilot);
+  before_s = CpuS();
+  ScannedSource source(set);
+  const MappingRun mapping = MapExperiment(source, set.options, *set.world, set.slam, {});
+  times.map_s = (CpuS() - before_s) / static_cast<double>(pilot);
+  before_s = CpuS();
+  SweepMetrics(Score(mapping, *truth));
+  times.score_s = CpuS() - before_s;
+  return times;
+}
+
+}  // namespace
+
+SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
+                            const SweepContext& context) {
+  SweepEstimate estimate;
+  if (runs.empty()) return estimate;
+  const std::vector<int> groups = ScanGroups(plan);
+  std::set<int> used;
+  for (const int run : runs) used.insert(groups[static_cast<std::size_t>(run)]);
+  estimate.scan_sets = static_cast<int>(used.size());
+  try {
+    const PlannedRun& first = plan.runs[static_cast<std::size_t>(runs.front())];
+    const PilotTimes times = TimesOfFirstFrames(plan.OptionsOf(first), context);
+    const auto frames = static_cast<double>(times.frames);
+    const double run_s = frames * times.map_s + times.score_s;
+    estimate.cpu_s =
+        estimate.scan_sets * frames * times.scan_s + static_cast<double>(runs.size()) * run_s;
+  } catch (const std::exception&) {
+    // The run itself will say what is wrong with it.
+  }
+  return estimate;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,184 @@
+#include "eval/sweep/sweep_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLockName = "/.lock";
+
+using Environment = std::map<std::string, std::string>;
+
+std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
+
+Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
+  return {{"title", plan.title},
+          {"sweep", plan.sweep_text},
+          {"experiment", plan.experiment_yaml},
+          {"version", DEPTHGRID_VERSION},
+          {"instruction_set", DEPTHGRID_ARCH},
+          {"shard", ShardText(shard)}};
+}
+
+// The first line in which two texts differ, for people.
+std::string Difference(const std::string& a, const std::string& b) {
+  std::istringstream lines_a(a);
+  std::istringstream lines_b(b);
+  std::string line_a;
+  std::string line_b;
+  while (true) {
+    const bool more_a = static_cast<bool>(std::getline(lines_a, line_a));
+    const bool more_b = static_cast<bool>(std::getline(lines_b, line_b));
+    if (!more_a && !more_b) return "";
+    if (!more_a) line_a.clear();
+    if (!more_b) line_b.clear();
+    if (line_a != line_b) return fmt::format("'{}' there, '{}' here", line_a, line_b);
+  }
+}
+
+// `there` must be what `here` is, in these respects.
+void RequireSame(const std::string& place, const Environment& there, const Environment& here,
+                 const std::vector<std::string>& respects) {
+  for (const std::string& respect : respects) {
+    const auto found = there.find(respect);
+    const std::string value = found == there.end() ? "" : found->second;
+    if (value == here.at(respect)) continue;
+    const std::string what = respect == "sweep"        ? "another sweep"
+                             : respect == "experiment" ? "a sweep of another experiment"
+                                                       : "a sweep of another " + respect;
+    throw InputError(place, fmt::format("holds {}: {}", what, Difference(value, here.at(respect))));
+  }
+}
+
+bool IsEmptyFolder(const std::string& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() != fs::path(kLockName).filename()) return false;
+  }
+  return true;
+}
+
+std::vector<RunOutcome> OutcomesOf(const SweepResults& results) {
+  std::vector<RunOutcome> outcomes(results.rows());
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    outcomes[row].run = results.runs[row];
+    outcomes[row].failure = results.failures[row];
+    for (const SweepColumn& metric : results.metrics) {
+      outcomes[row].metrics.emplace_back(metric.name, metric.values[row]);
+    }
+    for (const SweepColumn& time : results.times) {
+      outcomes[row].times.emplace_back(time.name, time.values[row]);
+    }
+  }
+  return outcomes;
+}
+
+std::vector<PlannedRun> PlanOf(const SweepResults& results) {
+  std::vector<PlannedRun> plan(results.rows());
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    plan[row].run = results.runs[row];
+    plan[row].point = results.points[row];
+    for (const SweepParameter& parameter : results.parameters) {
+      plan[row].values.push_back(parameter.texts[row]);
+    }
+  }
+  return plan;
+}
+
+// Throws unless the parts are all of 1/N .. N/N, each once.
+void RequireWhole(const std::vector<std::string>& folders, const std::vector<SweepResults>& parts) {
+  std::map<std::string, std::string> seen;
+  std::string count;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string shard = parts[i].environment.at("shard");
+    const std::string of = shard.substr(shard.find('/') + 1);
+    if (!count.empty() && of != count) {
+      throw InputError(folders[i],
+                       fmt::format("is one of {} parts, {} is one of {}", of, folders[0], count));
+    }
+    count = of;
+    const auto [there, is_new] = seen.try_emplace(shard, folders[i]);
+    if (!is_new) {
+      throw InputError(folders[i], fmt::format("is part {}, as {} is", shard, there->second));
+    }
+  }
+  for (int index = 1; index <= std::stoi(count); ++index) {
+    const std::string shard = fmt::format("{}/{}", index, count);
+    if (!seen.contains(shard)) throw InputError("--merge", "part " + shard + " is missing");
+  }
+}
+
+}  // namespace
+
+SweepLock::SweepLock(const std::string& folder) {
+  const std::string path = folder + kLockName;
+  file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0) throw InputError(folder, "cannot be written");
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(file_);
+    throw InputError(folder, "another program is working on this sweep");
+  }
+}
+
+SweepLock::~SweepLock() { ::close(file_); }
+
+SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
+                                const Shard& shard, bool force) {
+  const Environment here = EnvironmentOf(plan, shard);
+  if (SweepDatabase::Exists(folder)) {
+    SweepDatabase database = SweepDatabase::Open(folder);
+    RequireSame(folder, database.Environment(), here,
+                {"version", "instruction_set", "experiment", "sweep", "shard"});
+    return database;
+  }
+  if (!force && !IsEmptyFolder(folder)) {
+    throw InputError(folder, "is not empty and no sweep; choose another folder, or --force");
+  }
+  return SweepDatabase::Create(folder, here, plan.parameter_keys, RunsOf(plan, shard));
+}
+
+void WriteResultsCsv(const SweepDatabase& database, const std::string& folder) {
+  WriteFile((fs::path(folder) / "results.csv").string(), ResultsCsv(database.Results()));
+}
+
+void MergeSweeps(const std::vector<std::string>& folders, const std::string& target) {
+  std::vector<SweepResults> parts;
+  for (const std::string& folder : folders) {
+    parts.push_back(ReadSweep(folder));
+    const SweepResults& part = parts.back();
+    RequireSame(folder, part.environment, parts[0].environment,
+                {"version", "instruction_set", "experiment", "sweep"});
+    const auto missing = part.planned_runs - static_cast<int>(part.rows());
+    if (missing > 0) {
+      throw InputError(folder, fmt::format("is not finished: {} of {} runs are missing", missing,
+                                           part.planned_runs));
+    }
+  }
+  RequireWhole(folders, parts);
+  std::vector<PlannedRun> plan;
+  std::vector<RunOutcome> outcomes;
+  for (const SweepResults& part : parts) {
+    for (PlannedRun& run : PlanOf(part)) plan.push_back(std::move(run));
+    for (RunOutcome& outcome : OutcomesOf(part)) outcomes.push_back(std::move(outcome));
+  }
+  Environment environment = parts[0].environment;
+  environment.erase("schema");
+  environment["shard"] = ShardText({});
+  std::vector<std::string> keys;
+  for (const SweepParameter& parameter : parts[0].parameters) keys.push_back(parameter.key);
+  const SweepDatabase merged = SweepDatabase::Create(target, environment, keys, plan, outcomes);
+  WriteResultsCsv(merged, target);
+}
+
+}  // namespace depthgrid

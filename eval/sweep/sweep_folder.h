@@ -1,0 +1,37 @@
+// The folder of a sweep: started, gone on with, finished, joined from parts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/sweep/sweep_engine.h"
+
+namespace depthgrid {
+
+// Held while a program works in a sweep's folder; another one is refused with an InputError.
+class SweepLock {
+ public:
+  explicit SweepLock(const std::string& folder);
+  ~SweepLock();
+  SweepLock(const SweepLock&) = delete;
+  SweepLock& operator=(const SweepLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+// The database in `folder`, made when there is none. Throws InputError when the folder holds
+// another sweep, another part of it, or one of another version or instruction set, and when it
+// holds something else (unless `force`). A folder that is made is left only if all went well.
+SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
+                                const Shard& shard, bool force);
+
+// results.csv beside the database, of what is known so far.
+void WriteResultsCsv(const SweepDatabase& database, const std::string& folder);
+
+// Joins the parts of one sweep into `folder`, which must be empty or missing (or `into_sweep`: the
+// folder that holds them). Throws InputError when parts are missing, unfinished or doubled, or of
+// another sweep, version or instruction set.
+void MergeSweeps(const std::vector<std::string>& parts, const std::string& folder);
+
+}  // namespace depthgrid

@@ -1,0 +1,26 @@
+// What is true of many runs at once and slow to make: rooms, and what of them is scored against.
+#pragma once
+
+#include <memory>
+
+#include "eval/experiment.h"
+#include "eval/sweep/shelf.h"
+
+namespace depthgrid {
+
+class SweepInputs {
+ public:
+  explicit SweepInputs(int threads) : threads_(threads) {}
+
+  // Both throw InputError as LoadWorld does. Thread-safe.
+  std::shared_ptr<const World> WorldOf(const ExperimentOptions& options);
+  std::shared_ptr<const TruthRecord> TruthOf(const ExperimentOptions& options);
+
+ private:
+  int threads_;
+  // More than the axes of a sweep that are varied next to each other; a world is some MB.
+  Shelf<World> worlds_{8};
+  Shelf<TruthRecord> truths_{16};
+};
+
+}  // namespace depthgrid

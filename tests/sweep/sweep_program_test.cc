@@ -1,0 +1,258 @@
+// `depthgrid sweep` end to end: the same table however it came about.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "eval/sweep/sweep_database.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ProgramSweep : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("sweep.yaml", kSweep);
+  }
+
+  // The table less its timing columns.
+  std::string TableOf(const std::string& folder) const {
+    SweepResults results = ReadSweep(Path(folder));
+    for (const SweepColumn& column : results.times) {
+      const bool says_so = column.name.find("time") != std::string::npos ||
+                           column.name.find("_us") != std::string::npos;
+      EXPECT_TRUE(says_so) << column.name;
+    }
+    EXPECT_EQ(ReadFile(Path(folder + "/results.csv")), ResultsCsv(results));
+    results.times.clear();
+    return ResultsCsv(results);
+  }
+  void ExpectSameTable(const std::string& a, const std::string& b) const {
+    const std::string table = TableOf(a);
+    EXPECT_GT(table.size(), 1000U);
+    EXPECT_TRUE(table == TableOf(b)) << a << " and " << b;
+  }
+  // Starts the program, waits until the sweep has so many rows and then a little, and kills it;
+  // how many rows it left. Nothing when it ended before.
+  std::optional<std::size_t> RowsWhenKilled(const std::vector<std::string>& arguments,
+                                            const std::string& folder, std::size_t rows,
+                                            std::chrono::microseconds longer) const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      std::vector<char*> argv = {const_cast<char*>(DEPTHGRID_PROGRAM)};
+      for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+      argv.push_back(nullptr);
+      const bool quiet = ::chdir(root_.c_str()) == 0 &&
+                         std::freopen("/dev/null", "w", stdout) != nullptr &&
+                         std::freopen("/dev/null", "w", stderr) != nullptr;
+      if (quiet) ::execv(DEPTHGRID_PROGRAM, argv.data());
+      ::_exit(1);
+    }
+    const auto done = [&]() -> std::size_t {
+      if (!std::filesystem::exists(Path(folder + "/results.sqlite"))) return 0;
+      return SweepDatabase::Open(Path(folder)).FinishedRuns().size();
+    };
+    int status = 0;
+    while (done() < rows && ::waitpid(child, &status, WNOHANG) == 0) ::usleep(1000);
+    std::this_thread::sleep_for(longer);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    if (!WIFSIGNALED(status)) return std::nullopt;
+    return done();
+  }
+
+  static constexpr const char* kSweep = R"(
+experiment: ./small.yaml
+axes:
+  mapper.fusion.gain: {from: 0, to: 1, count: 3}
+  seed: {seeds: 2}
+  sensor.noise: [none, handa]
+)";
+};
+
+TEST_F(ProgramSweep, GivesTheScoresOfSingleRuns) {
+  Succeed("sweep ./sweep.yaml -o out");
+  Succeed(
+      "run ./small.yaml --set mapper.fusion.gain=0.5 --set seed=2 --set sensor.noise=none -o run");
+  const SweepResults results = ReadSweep(Path("out"));
+  ASSERT_EQ(results.rows(), 12U);
+  std::size_t row = 0;
+  for (; row < results.rows(); ++row) {
+    if (results.Parameter("mapper.fusion.gain").numbers[row] == 0.5 &&
+        results.Parameter("seed").numbers[row] == 2 &&
+        results.Parameter("sensor.noise").texts[row] == "none") {
+      break;
+    }
+  }
+  ASSERT_LT(row, results.rows());
+  const auto metrics = nlohmann::json::parse(ReadFile(Path("run/metrics.json")));
+  int compared = 0;
+  for (const SweepColumn& column : results.metrics) {
+    std::string pointer = "/" + column.name;
+    std::replace(pointer.begin(), pointer.end(), '.', '/');
+    const auto& value = metrics[nlohmann::json::json_pointer(pointer)];
+    if (value.is_null()) {
+      EXPECT_TRUE(std::isnan(column.values[row])) << column.name;
+      continue;
+    }
+    EXPECT_EQ(value.get<double>(), column.values[row]) << column.name;
+    ++compared;
+  }
+  EXPECT_GT(compared, 40);
+}
+
+TEST_F(ProgramSweep, IsTheSameTableWithOneAndTwoWorkersAndWithoutACache) {
+  Succeed("sweep ./sweep.yaml -j 1 -o one");
+  Succeed("sweep ./sweep.yaml -j 2 -o two");
+  Succeed("sweep ./sweep.yaml -j 2 --no-cache -o bare");
+  ExpectSameTable("one", "two");
+  ExpectSameTable("one", "bare");
+  EXPECT_FALSE(std::filesystem::exists(Path("one/cache")));
+}
+
+TEST_F(ProgramSweep, PartsJoinToTheWhole) {
+  Succeed("sweep ./sweep.yaml -o whole");
+  for (const char* part : {"1", "2", "3"}) {
+    Succeed(std::string("sweep ./sweep.yaml --shard ") + part + "/3 -o part" + part);
+  }
+  Succeed("sweep --merge part2 part3 part1 -o joined");
+  ExpectSameTable("whole", "joined");
+  const Outcome incomplete = Program("sweep --merge part1 part3 -o lacking");
+  EXPECT_EQ(incomplete.exit_code, 2);
+  EXPECT_THAT(incomplete.err, HasSubstr("part 2/3 is missing"));
+  EXPECT_FALSE(std::filesystem::exists(Path("lacking")));
+  EXPECT_EQ(Program("sweep --merge part1 part2 part3 part1 -o doubled").exit_code, 2);
+}
+
+TEST_F(ProgramSweep, KilledFiftyTimesItIsTheSameTable) {
+  Write("many.yaml", R"(
+experiment: ./small.yaml
+axes:
+  mapper.fusion.gain: {from: 0, to: 1, count: 20}
+  seed: {seeds: 20}
+)");
+  Succeed("sweep ./many.yaml -j 2 -o whole");
+  constexpr std::size_t kKills = 50;
+  constexpr std::size_t kRuns = 400;
+  std::set<std::size_t> rows_left;
+  for (std::size_t kill = 0; kill < kKills; ++kill) {
+    const std::size_t rows = kRuns * 3 / 4 * kill / kKills;  // the rest is done by the last start
+    // From the first moments of a start to the middle of a run.
+    const std::chrono::microseconds longer(kill < 10 ? 10'000 * kill : 997 * kill % 10'000);
+    const auto left =
+        RowsWhenKilled({"sweep", "./many.yaml", "-j", "2", "-o", "killed"}, "killed", rows, longer);
+    ASSERT_TRUE(left.has_value()) << "ended before kill " << kill;
+    rows_left.insert(*left);
+  }
+  EXPECT_GE(rows_left.size(), kKills / 2);
+  EXPECT_LT(*rows_left.rbegin(), kRuns);
+  Succeed("sweep ./many.yaml -j 2 -o killed");
+  ExpectSameTable("whole", "killed");
+}
+
+TEST_F(ProgramSweep, AFailingRunIsRecordedAndTheOthersGoOn) {
+  Write("failing.yaml", R"(
+experiment: ./small.yaml
+axes:
+  mapper.scan.band_low_m: [0.1, 1.8, 0.2]
+)");
+  const Outcome outcome = Program("sweep ./failing.yaml -o out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("1 runs failed, the first: mapper.scan.band_low_m"));
+  const SweepResults results = ReadSweep(Path("out"));
+  ASSERT_EQ(results.rows(), 3U);
+  EXPECT_THAT(results.failures[1], HasSubstr("mapper.scan.band_low_m"));
+  EXPECT_EQ(results.failures[0] + results.failures[2], "");
+  const auto& error = results.Metric("trajectory.est.mean_euclidean_m");
+  EXPECT_TRUE(std::isnan(error[1]));
+  EXPECT_TRUE(std::isfinite(error[0]) && std::isfinite(error[2]));
+}
+
+TEST_F(ProgramSweep, APointStopsWhenItIsSure) {
+  Write("stop.yaml", R"(
+experiment: ./small.yaml
+axes:
+  seed: {seeds: 8}
+  slam.drift_scale: [0.01, 1000]
+stop: {metric: trajectory.slam.mean_euclidean_m, width: 0.01, min_seeds: 3}
+)");
+  Succeed("sweep ./stop.yaml -j 1 -o one");
+  Succeed("sweep ./stop.yaml -j 2 -o two");
+  ExpectSameTable("one", "two");
+  for (const char* part : {"1", "2"}) {
+    Succeed(std::string("sweep ./stop.yaml --shard ") + part + "/2 -o part" + part);
+  }
+  Succeed("sweep --merge part1 part2 -o joined");
+  ExpectSameTable("one", "joined");
+  int calm = 0;
+  int wild = 0;
+  for (const double scale : ReadSweep(Path("one")).Parameter("slam.drift_scale").numbers) {
+    ++(scale < 1.0 ? calm : wild);
+  }
+  EXPECT_EQ(calm, 3);
+  EXPECT_EQ(wild, 8);
+}
+
+TEST_F(ProgramSweep, SaysWhatItIsGoingToDo) {
+  const Outcome dry = Program("sweep ./sweep.yaml --dry-run -o out");
+  EXPECT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_THAT(dry.out, HasSubstr("12 runs, 6 points x 2 seeds"));
+  EXPECT_THAT(dry.out, HasSubstr("4 different sets of scans"));
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
+TEST_F(ProgramSweep, ErrorsAreOneLineAndLeaveNothing) {
+  const auto expect = [&](const std::string& axes, const std::string& message) {
+    Write("bad.yaml", "experiment: ./small.yaml\n" + axes);
+    const Outcome outcome = Program("sweep ./bad.yaml -o out");
+    EXPECT_EQ(outcome.exit_code, 2) << axes;
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << axes;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(Path("out"))) << axes;
+  };
+  expect("axes: {mapper.fusion.gian: [0, 1]}\n", "did you mean 'mapper.fusion.gain'?");
+  expect("axes:\n  seed: [1]\n  mapper.fusion.gain: [0, 2]\n", "bad.yaml:4: mapper.fusion.gain is");
+  expect("axes: {mapper.fusion.gain: []}\n", "axis 'mapper.fusion.gain' has no values");
+  expect("axes: {mapper.fusion.gain: }\n", "axis 'mapper.fusion.gain' has no values");
+  expect("axes: {}\n", "has no axes");
+  expect("seeds: 3\n", "key 'axes' is missing");
+  expect("axes: {seed: [1, 1]}\n", "has the value 1 twice");
+  expect("axes: {seed: [1], 'seed, frames': [[1, 2]]}\n", "is on two axes");
+  expect("axes: {seed: [1]}\nmod: zip\n", "did you mean 'mode'?");
+  expect("mode: zip\naxes: {frames: [1, 2], mapper.fusion.gain: [0]}\n", "the same number");
+  expect("mode: random\naxes: {frames: [1, 2]}\n", "needs 'samples'");
+  expect("axes: {mapper.fusion.gain: {from: 0, to: 1}}\n", "needs 'count'");
+  expect("axes: {frames: {from: 0, to: 9, count: 2, scale: log}}\n", "must lie above 0");
+  expect("axes: {frames: {from: 1, two: 9, count: 2}}\n", "unknown key 'two'");
+  EXPECT_EQ(Program("sweep ./sweep.yaml --shard 3/2 -o out").exit_code, 2);
+  EXPECT_EQ(Program("sweep nothing_like_this -o out").exit_code, 2);
+}
+
+TEST_F(ProgramSweep, GoesOnOnlyWithTheSameSweep) {
+  Succeed("sweep ./sweep.yaml -o out");
+  const std::string table = TableOf("out");
+  Succeed("sweep ./sweep.yaml -o out");
+  EXPECT_TRUE(TableOf("out") == table);
+  const Outcome other = Program("sweep ./sweep.yaml --set frames=11 -o out");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("'frames: 12' there, 'frames: 11' here"));
+  EXPECT_EQ(Program("sweep ./sweep.yaml --shard 1/2 -o out").exit_code, 2);
+  std::filesystem::create_directory(Path("mine"));
+  Write("mine/notes.txt", "mine");
+  EXPECT_EQ(Program("sweep ./sweep.yaml -o mine").exit_code, 2);
+  EXPECT_EQ(FilesIn("mine"), std::vector<std::string>{"notes.txt"});
+}
+
+}  // namespace
+}  // namespace depthgrid
