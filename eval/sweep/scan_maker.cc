@@ -73,7 +73,8 @@ void ScanFrame(const DepthJob& job, std::size_t index) {
     Frame frame;
     frame.depth = depth;
     frame.slam_from_camera = job.sets[i]->slam.live[index].slam_from_camera;
-    job.sets[i]->scans[index] = job.scanners[i].ScansOf(frame);
+    FrameScanner scanner = job.scanners[i];  // a thread's own: it has memory
+    job.sets[i]->scans[index] = scanner.ScansOf(frame);
   }
 }
 

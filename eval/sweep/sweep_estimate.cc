@@ -33,7 +33,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   set.slam.live.resize(pilot);
   set.scans.resize(pilot);
   const SyntheticSensor sensor(*set.world, set.options, context.cache_folder);
-  const FrameScanner scanner(set.world->camera, set.options.mapper.scan);
+  FrameScanner scanner(set.world->camera, set.options.mapper.scan);
   double before_s = CpuS();
   for (std::size_t i = 0; i < pilot; ++i) {
     Frame frame;

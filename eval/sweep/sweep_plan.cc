@@ -163,7 +163,8 @@ void CheckValues(const SweepPlan& plan) {
     }
     for (const auto& value : values) {
       Config config = Config::FromText(plan.base.ToYaml(), axis.place);
-      for (std::size_t i = 0; i < axis.keys.size(); ++i) config.Set(axis.keys[i], value[i]);
+      for (std::size_t i = 0; i < axis.keys.size(); ++i)
+        config.Set(axis.keys[i], value[i], axis.place);
       ReadExperiment(std::move(config), plan.base_folder);
     }
   }
@@ -197,7 +198,7 @@ void StopOptions::Visit(OptionsVisitor& v) {
 ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
   Config config = base;
   for (std::size_t i = 0; i < parameter_keys.size(); ++i) {
-    config.Set(parameter_keys[i], run.values[i]);
+    config.Set(parameter_keys[i], run.values[i], parameter_keys[i] + "=" + run.values[i]);
   }
   return ReadExperiment(std::move(config), base_folder);
 }
@@ -219,7 +220,8 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   plan.base = Config::FromFile(experiment);
   ReadExperiment(plan.base, plan.base_folder);  // so that its own errors name its own file
   plan.base = Config::FromText(plan.base.ToYaml(), path + ", set");
-  for (const ConfigEntry& entry : fixed.Entries()) plan.base.Set(entry.key, entry.text);
+  for (const ConfigEntry& entry : fixed.Entries())
+    plan.base.Set(entry.key, entry.text, entry.place);
   for (const std::string& assignment : set) plan.base.Set(assignment);
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
   CheckValues(plan);

@@ -105,8 +105,10 @@ void Config::Set(const std::string& assignment) {
   Set(assignment.substr(0, equals), assignment.substr(equals + 1));
 }
 
-void Config::Set(const std::string& key_path, const std::string& yaml_value) {
-  const std::string place = "--set " + key_path + "=" + yaml_value;
+void Config::Set(const std::string& key_path, const std::string& yaml_value,
+                 const std::string& given_place) {
+  const std::string place =
+      given_place.empty() ? "--set " + key_path + "=" + yaml_value : given_place;
   const YAML::Node value = Parse(yaml_value, place);
   const auto parts = SplitPath(key_path);
   YAML::Node node = tree_->root;

@@ -30,8 +30,10 @@ class Config {
 
   // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML.
   void Set(const std::string& assignment);
-  // The same with the key and the YAML value apart, for sweeps.
-  void Set(const std::string& key_path, const std::string& yaml_value);
+  // The same with the key and the YAML value apart, for sweeps; `place` is what errors name, the
+  // assignment when empty.
+  void Set(const std::string& key_path, const std::string& yaml_value,
+           const std::string& place = "");
   // Removes a top-level key and returns its subtree; an empty tree if absent.
   Config Take(const std::string& key);
   // Removes a top-level key whose value is a list of maps and returns them in order; none if

@@ -50,13 +50,13 @@ class ProgramSweep : public ProgramTest {
                                             std::chrono::microseconds longer) const {
     const pid_t child = ::fork();
     if (child == 0) {
-      std::vector<char*> argv = {const_cast<char*>(DEPTHGRID_PROGRAM)};
+      std::vector<char*> argv = {const_cast<char*>(kProgramFile)};
       for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
       argv.push_back(nullptr);
       const bool quiet = ::chdir(root_.c_str()) == 0 &&
                          std::freopen("/dev/null", "w", stdout) != nullptr &&
                          std::freopen("/dev/null", "w", stderr) != nullptr;
-      if (quiet) ::execv(DEPTHGRID_PROGRAM, argv.data());
+      if (quiet) ::execv(kProgramFile, argv.data());
       ::_exit(1);
     }
     const auto done = [&]() -> std::size_t {
