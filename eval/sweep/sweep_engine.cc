@@ -129,7 +129,7 @@ class Engine {
         const auto truth = inputs_.TruthOf(options);
         ScannedSource source(scans);
         mapping = MapExperiment(source, options, *scans.world, scans.slam, {});
-        outcome.metrics = SweepMetrics(Score(mapping, *truth));
+        outcome.metrics = SweepMetrics(Score(mapping, *truth, options.metrics));
       } catch (const std::exception& error) {
         outcome.failure = error.what();
       }

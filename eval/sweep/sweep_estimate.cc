@@ -47,7 +47,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   const MappingRun mapping = MapExperiment(source, set.options, *set.world, set.slam, {});
   times.map_s = (CpuS() - before_s) / static_cast<double>(pilot);
   before_s = CpuS();
-  SweepMetrics(Score(mapping, *truth));
+  SweepMetrics(Score(mapping, *truth, set.options.metrics));
   times.score_s = CpuS() - before_s;
   return times;
 }
