@@ -102,6 +102,17 @@ struct SweepArguments {
 };
 void Sweep(const SweepArguments& arguments);
 
+struct CompareArguments {
+  std::string a;
+  std::string b;
+  std::vector<std::string> metrics;
+  std::vector<std::string> where;  // of both
+  std::vector<std::string> where_a;
+  std::vector<std::string> where_b;
+  bool json = false;
+};
+void CompareRuns(const CompareArguments& arguments);
+
 struct ReportArguments {
   std::string folder;
 };

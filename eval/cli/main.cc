@@ -244,6 +244,28 @@ void AddEval(Program& program) {
   map->add_flag("--json", m->json, "Print JSON instead of a table");
 }
 
+void AddCompare(Program& program) {
+  const auto [app, arguments] = program.Add<CompareArguments>(
+      program.app, "compare", "Which of two sweeps or sets of runs is better, and how sure that is",
+      "depthgrid compare sweep sweep --where-a mapper.fusion.gain=0.25 "
+      "--where-b mapper.fusion.gain=1",
+      &CompareRuns);
+  const auto add_where = [&app = app](const char* name, std::vector<std::string>& values,
+                                      const char* meaning) {
+    app->add_option(name, values, meaning)->type_name("KEY=VALUE")->allow_extra_args(false);
+  };
+  app->add_option("a", arguments->a, "A sweep's folder, a run's, or a folder of runs")->required();
+  app->add_option("b", arguments->b, "Likewise; the runs of the same seeds make pairs")->required();
+  app->add_option("--metric", arguments->metrics,
+                  "A score by its path in metrics.json (repeat for more), or all")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  add_where("--where", arguments->where, "Only runs with this value of an axis");
+  add_where("--where-a", arguments->where_a, "The same for A alone");
+  add_where("--where-b", arguments->where_b, "The same for B alone");
+  app->add_flag("--json", arguments->json, "Print JSON instead of a table");
+}
+
 void AddReport(Program& program) {
   const auto [app, arguments] =
       program.Add<ReportArguments>(program.app, "report", "Write a folder's HTML report (again)",
@@ -289,6 +311,7 @@ int Main(int argc, char** argv) {
   AddSlamFit(program);
   AddEval(program);
   AddRegrid(program);
+  AddCompare(program);
   AddReport(program);
   try {
     program.app.parse(argc, argv);

@@ -1,0 +1,59 @@
+// Two configurations over the same seeds: which is better in each score, and how sure that is
+// (docs/statistics.md, "Comparing").
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eval/statistics/paired_comparison.h"
+#include "eval/sweep/sweep_results.h"
+
+namespace depthgrid {
+
+using Condition = std::pair<std::string, std::string>;  // axis and YAML value
+
+struct CompareOptions {
+  std::vector<std::string> metrics;  // empty: those that say most
+  // Only the runs of a side with these values count.
+  std::vector<Condition> where_a;
+  std::vector<Condition> where_b;
+  double level = 0.05;  // of all tests together
+  BootstrapOptions bootstrap;
+};
+
+enum class Verdict {
+  kABetter,
+  kBBetter,
+  kNotToldApart,
+  kTooFew,  // whatever the values, so few pairs cannot decide
+};
+
+struct MetricComparison {
+  std::string metric;
+  Better better = Better::kLower;
+  PairedComparison paired;
+  double p_holm = 1.0;
+  Verdict verdict = Verdict::kNotToldApart;
+  // Seeds at which a difference as large as this one would be seen with 80 % power; empty where it
+  // is zero.
+  std::optional<int> seeds_needed;
+};
+
+struct Comparison {
+  std::vector<std::string> paired_by;  // the axes whose values make a pair
+  int pairs = 0;
+  int runs_a = 0;  // that meet the conditions and did not fail
+  int runs_b = 0;
+  std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
+};
+
+// Throws InputError for a metric or axis that is not there, runs that make no pair, and runs that
+// make several.
+Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options);
+
+std::string ComparisonJson(const Comparison& comparison, const std::string& a,
+                           const std::string& b);
+
+}  // namespace depthgrid

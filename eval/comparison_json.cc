@@ -1,0 +1,63 @@
+#include <nlohmann/json.hpp>
+
+#include "eval/comparison.h"
+
+namespace depthgrid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* NameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kABetter:
+      return "a";
+    case Verdict::kBBetter:
+      return "b";
+    case Verdict::kTooFew:
+      return "too_few_pairs";
+    case Verdict::kNotToldApart:
+      break;
+  }
+  return "not_told_apart";
+}
+
+Json ToJson(const MetricComparison& c) {
+  const PairedComparison& p = c.paired;
+  const Json interval =
+      p.mean_interval ? Json{p.mean_interval->low, p.mean_interval->high} : Json();
+  return {{"better", c.better == Better::kHigher ? "higher" : "lower"},
+          {"pairs", p.pairs},
+          {"mean_a", p.mean_a},
+          {"mean_b", p.mean_b},
+          {"mean_difference", p.mean_difference},
+          {"mean_difference_interval95", interval},
+          {"median_difference", p.median_difference},
+          {"std_difference", p.std_difference},
+          {"a_wins", p.a_wins},
+          {"b_wins", p.b_wins},
+          {"p_value", p.wilcoxon.p_value},
+          {"p_holm", c.p_holm},
+          {"exact", p.wilcoxon.exact},
+          {"rank_biserial", p.wilcoxon.rank_biserial},
+          {"seeds_needed", c.seeds_needed ? Json(*c.seeds_needed) : Json()},
+          {"verdict", NameOf(c.verdict)}};
+}
+
+}  // namespace
+
+std::string ComparisonJson(const Comparison& comparison, const std::string& a,
+                           const std::string& b) {
+  Json json = {{"a", a},
+               {"b", b},
+               {"paired_by", comparison.paired_by},
+               {"pairs", comparison.pairs},
+               {"runs_a", comparison.runs_a},
+               {"runs_b", comparison.runs_b},
+               {"metrics", Json::object()}};
+  for (const MetricComparison& compared : comparison.metrics) {
+    json["metrics"][compared.metric] = ToJson(compared);
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace depthgrid

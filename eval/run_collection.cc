@@ -1,0 +1,95 @@
+#include "eval/run_collection.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <limits>
+
+#include "eval/metric_columns.h"
+#include "eval/sweep/sweep_database.h"
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+bool IsRun(const fs::path& folder) {
+  return fs::exists(folder / "metrics.json") && fs::exists(folder / "run.yaml");
+}
+
+std::vector<fs::path> RunFolders(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw InputError(folder, "no such folder");
+  if (IsRun(folder)) return {folder};
+  std::vector<fs::path> runs;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory() && IsRun(entry.path())) runs.push_back(entry.path());
+  }
+  std::sort(runs.begin(), runs.end());
+  if (runs.empty()) {
+    throw InputError(folder, "holds no sweep and no run with scores (run.yaml and metrics.json)");
+  }
+  return runs;
+}
+
+double NumberOf(const std::string& text) {
+  double number = kNothing;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : kNothing;
+}
+
+void AddParameters(const fs::path& run, SweepResults& table) {
+  constexpr std::array<const char*, 7> kKeys = {
+      "scene", "trajectory", "frames", "seed", "depth_seed", "slam_seed", "trajectory_seed"};
+  const Config settings = Config::FromFile((run / "run.yaml").string());
+  if (table.parameters.empty()) {
+    for (const char* key : kKeys) table.parameters.push_back({key, {}, {}});
+  }
+  for (SweepParameter& parameter : table.parameters) {
+    const std::string text =
+        settings.Has(parameter.key) ? settings.List(parameter.key).front() : "";
+    parameter.texts.push_back(text);
+    parameter.numbers.push_back(NumberOf(text));
+  }
+}
+
+// The row's figures; columns met for the first time are empty for the rows before.
+void AddMetrics(const fs::path& run, SweepResults& table) {
+  const std::string file = (run / "metrics.json").string();
+  const std::size_t row = table.rows() - 1;
+  for (const auto& [name, value] : MetricColumns(ReadFile(file), file)) {
+    auto column = std::find_if(table.metrics.begin(), table.metrics.end(),
+                               [&](const SweepColumn& c) { return c.name == name; });
+    if (column == table.metrics.end()) {
+      column = table.metrics.insert(table.metrics.end(), {name, {}});
+    }
+    column->values.resize(row, kNothing);
+    column->values.push_back(value);
+  }
+  for (SweepColumn& column : table.metrics) column.values.resize(table.rows(), kNothing);
+}
+
+}  // namespace
+
+SweepResults ReadRuns(const std::string& folder) {
+  if (SweepDatabase::Exists(folder)) return ReadSweep(folder);
+  SweepResults table;
+  table.folder = folder;
+  for (const fs::path& run : RunFolders(folder)) {
+    const int number = static_cast<int>(table.rows());
+    table.runs.push_back(number);
+    table.points.push_back(0);
+    table.failures.emplace_back();
+    AddParameters(run, table);
+    AddMetrics(run, table);
+  }
+  table.planned_runs = static_cast<int>(table.rows());
+  return table;
+}
+
+}  // namespace depthgrid

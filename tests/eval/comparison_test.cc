@@ -1,0 +1,156 @@
+// `depthgrid compare`: runs joined into pairs, and what is said of them.
+#include "eval/comparison.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mapper/core/error.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// Errors (m) of ten seeds; those of tests/statistics, where SciPy's figures for them stand.
+const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
+const std::vector<double> kB = {.312, .340, .301, .305, .344, .290, .377, .401, .262, .350};
+constexpr const char* kError = "trajectory.est.mean_euclidean_m";
+
+// A sweep over gains and seeds 1, 2, ...; the error of each gain by seed.
+SweepResults Sweep(const std::vector<std::pair<std::string, std::vector<double>>>& by_gain) {
+  SweepResults table;
+  table.folder = "sweep";
+  table.parameters = {{"mapper.fusion.gain", {}, {}}, {"seed", {}, {}}};
+  table.metrics = {{kError, {}}, {"map.ssim", {}}};
+  for (const auto& [gain, errors] : by_gain) {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      table.runs.push_back(static_cast<int>(table.rows()));
+      table.points.push_back(0);
+      table.failures.emplace_back();
+      table.parameters[0].texts.push_back(gain);
+      table.parameters[0].numbers.push_back(std::stod(gain));
+      table.parameters[1].texts.push_back(std::to_string(i + 1));
+      table.parameters[1].numbers.push_back(static_cast<double>(i + 1));
+      table.metrics[0].values.push_back(errors[i]);
+      table.metrics[1].values.push_back(1.0 - errors[i]);
+    }
+  }
+  return table;
+}
+
+TEST(Compare, TwoSettingsOfOneSweep) {
+  const SweepResults sweep = Sweep({{"0.25", kA}, {"0.50", kB}});
+  CompareOptions options;
+  options.where_a = {{"mapper.fusion.gain", "0.250"}};
+  options.where_b = {{"mapper.fusion.gain", "0.5"}};
+  const Comparison c = Compare(sweep, sweep, options);
+  EXPECT_THAT(c.paired_by, ElementsAre("seed"));
+  EXPECT_EQ(c.pairs, 10);
+  ASSERT_EQ(c.metrics.size(), 2U);
+  const MetricComparison& error = c.metrics[0];
+  EXPECT_EQ(error.metric, kError);
+  EXPECT_NEAR(error.paired.mean_difference, -0.0636, 1e-12);
+  EXPECT_NEAR(error.paired.wilcoxon.p_value, 0.009765625, 1e-12);
+  EXPECT_NEAR(error.p_holm, 2 * 0.009765625, 1e-12);  // of two tests
+  EXPECT_EQ(error.verdict, Verdict::kBBetter);
+  EXPECT_EQ(c.metrics[1].better, Better::kHigher);
+  EXPECT_EQ(c.metrics[1].verdict, Verdict::kBBetter);
+  std::swap(options.where_a, options.where_b);
+  EXPECT_EQ(Compare(sweep, sweep, options).metrics[0].verdict, Verdict::kABetter);
+}
+
+TEST(Compare, PairsByAllAxesThatBothHave) {
+  const SweepResults one = Sweep({{"0.25", kA}, {"0.5", kB}});
+  const SweepResults two = Sweep({{"0.5", kA}, {"1", kB}});
+  const Comparison c = Compare(one, two, {});
+  EXPECT_THAT(c.paired_by, ElementsAre("mapper.fusion.gain", "seed"));
+  EXPECT_EQ(c.pairs, 10);  // gain 0.5 alone is in both
+  EXPECT_EQ(c.runs_a, 20);
+  EXPECT_NEAR(c.metrics[0].paired.mean_a, 0.3282, 1e-12);
+  EXPECT_NEAR(c.metrics[0].paired.mean_b, 0.3918, 1e-12);
+}
+
+TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
+  SweepResults a = Sweep({{"0.25", kA}});
+  const SweepResults b = Sweep({{"0.25", kB}});
+  a.failures[3] = "no pose";
+  a.metrics[0].values[5] = NAN;
+  const Comparison c = Compare(a, b, {});
+  EXPECT_EQ(c.pairs, 9);
+  EXPECT_EQ(c.metrics[0].paired.pairs, 8);
+  EXPECT_EQ(c.metrics[1].paired.pairs, 9);
+}
+
+TEST(Compare, FewPairsCannotDecide) {
+  const Comparison c =
+      Compare(Sweep({{"1", {1, 2, 3, 4, 5}}}), Sweep({{"1", {2, 3, 4, 5, 6}}}), {});
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kTooFew);
+  const Comparison equal = Compare(Sweep({{"1", kA}}), Sweep({{"1", kA}}), {});
+  EXPECT_EQ(equal.metrics[0].verdict, Verdict::kNotToldApart);
+  EXPECT_EQ(equal.metrics[0].seeds_needed, std::nullopt);
+}
+
+// Runs' folders with what is read of them.
+class ProgramCompare : public ProgramTest {
+ protected:
+  void WriteRuns(const std::string& folder, const std::vector<double>& errors) const {
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      const std::string run = fmt::format("{}/{}", folder, i);
+      std::filesystem::create_directories(Path(run));
+      Write(run + "/run.yaml",
+            fmt::format("scene: room\ntrajectory: walk\nframes: 9\nseed: {}\n", i + 1));
+      Write(run + "/metrics.json",
+            fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", errors[i]));
+    }
+  }
+  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    for (const std::string& text : says) EXPECT_THAT(outcome.err, HasSubstr(text));
+    EXPECT_EQ(outcome.out, "");
+  }
+};
+
+TEST_F(ProgramCompare, FoldersOfRuns) {
+  WriteRuns("a", kA);
+  WriteRuns("b", kB);
+  const Outcome table = Program("compare a b");
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("10 pairs"));
+  EXPECT_THAT(table.out, HasSubstr("B better"));
+  const auto json = nlohmann::json::parse(Program("compare a b --json").out);
+  EXPECT_EQ(json["pairs"], 10);
+  EXPECT_EQ(json["metrics"][kError]["verdict"], "b");
+  EXPECT_NEAR(json["metrics"][kError]["p_value"].get<double>(), 0.009765625, 1e-12);
+  EXPECT_EQ(json["metrics"][kError]["seeds_needed"], 12);
+  // Single runs: the difference alone.
+  const Outcome single = Program("compare a/0 b/0");
+  EXPECT_EQ(single.exit_code, 0) << single.err;
+  EXPECT_THAT(single.out, HasSubstr("too few pairs"));
+}
+
+TEST_F(ProgramCompare, Refusals) {
+  WriteRuns("a", kA);
+  WriteRuns("b", {0.1, 0.2});
+  ExpectRefusal("compare a nowhere", {"nowhere", "no such folder"});
+  ExpectRefusal("compare a .", {".", "no run with scores"});
+  ExpectRefusal("compare a b --metric trajectory.est.mean_euclidian_m",
+                {"mean_euclidian_m", "did you mean", kError});
+  ExpectRefusal("compare a b --where seed", {"--where", "key.path=value"});
+  ExpectRefusal("compare a b --where sed=1", {"sed", "'seed'"});
+  ExpectRefusal("compare a b --where-a seed=77", {"seed = 77"});
+  ExpectRefusal("compare a/0 b/1", {"shares no run"});
+  Write("b/0/metrics.json", "{");
+  ExpectRefusal("compare a b", {"b/0/metrics.json"});
+  // Twice the same seed.
+  std::filesystem::copy(Path("a/0"), Path("a/copy"), std::filesystem::copy_options::recursive);
+  ExpectRefusal("compare a a", {"several runs"});
+}
+
+}  // namespace
+}  // namespace depthgrid
