@@ -73,7 +73,7 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
     const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
     const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
     const Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
-    submaps.Insert(rasterizer.Rasterize(stored.scan, pose, grid.resolution_m));
+    submaps.Insert(rasterizer.Rasterize(*stored.scan, pose, grid.resolution_m));
   }
   ProbabilityGrid* matching = submaps.matching();
   return matching != nullptr ? matching->map() : OccupancyMap{};

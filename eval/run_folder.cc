@@ -55,7 +55,7 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
 void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
   std::vector<StoredScan> stored;
   for (const MappedFrame& mapped : run.result.mapped) {
-    stored.push_back({mapped.frame, mapped.stamp_s, mapped.map_from_base, *mapped.obstacles});
+    stored.push_back({mapped.frame, mapped.stamp_s, mapped.map_from_base, mapped.obstacles});
   }
   WriteScans(folder.File("scans.bin"), stored);
 }

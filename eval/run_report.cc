@@ -125,7 +125,8 @@ Json ScansJson(const RunFiles& run, const std::vector<std::size_t>& worst) {
     const bool is_worst = std::find(worst.begin(), worst.end(), row) != worst.end();
     if (i % step != 0 && !is_worst) continue;
     std::vector<Eigen::Vector2d> hits;
-    for (const Beam& beam : stored.scan.beams) {
+    const Scan scan = *stored.scan;
+    for (const Beam& beam : scan.beams) {
       if (beam.hit) hits.push_back(EndPoint(beam));
     }
     Json cm = Json::array();

@@ -53,7 +53,7 @@ ReportJson SurfaceJson(const MatchSurface& surface) {
 void AddMatch(const RunFiles& run, std::size_t scan_index, const Pose2& map_from_base,
               const GridOptions& grid, const SubmapOptions& submap, ReportJson& json) {
   MatchPoints points;
-  points.Assign(run.scans[scan_index].scan);
+  points.Assign(*run.scans[scan_index].scan);
   const OccupancyMap reference = ReferenceOf(run, scan_index, grid, submap);
   if (points.size() == 0 || reference.geometry.size() == 0) return;
   json["map"] = MapJson(reference, RectangleAround(points, map_from_base, grid.resolution_m));

@@ -37,6 +37,8 @@ struct IncrementalMapper::State {
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   AdjustmentRounds rounds;
+  ScanArchive matched_scans;
+  ScanArchive obstacle_scans;
   std::vector<MappedFrame> mapped;
 
   State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
@@ -66,7 +68,7 @@ struct IncrementalMapper::State {
   Pose2 CarriedOn() const;
   Pose2 Extrapolated() const;
   void Anchor(const Pose2& map_from_base);
-  MappedFrame AsMapped(const FrameScans& scans, const Pose2& map_from_base) const;
+  MappedFrame AsMapped(const FrameScans& scans, const Pose2& map_from_base);
   void FinishByAdjusting(MapperResult& result) const;
   void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
                       MapperResult& result) const;
@@ -264,13 +266,14 @@ void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
 }
 
 MappedFrame IncrementalMapper::State::AsMapped(const FrameScans& scans,
-                                               const Pose2& map_from_base) const {
+                                               const Pose2& map_from_base) {
   const FrameRecord& record = history.newest();
   MappedFrame frame;
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
-  frame.scan = scans.matched;
-  frame.obstacles = scans.obstacles;
+  frame.scan = matched_scans.Keep(*scans.matched);
+  frame.obstacles =
+      scans.obstacles == scans.matched ? frame.scan : obstacle_scans.Keep(*scans.obstacles);
   frame.map_from_base = map_from_base;
   if (!mapped.empty()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mapper/core/scan.h"
+#include "mapper/core/kept_scan.h"
 #include "mapper/frame_report.h"
 
 namespace depthgrid {
@@ -15,8 +15,8 @@ namespace depthgrid {
 struct MappedFrame {
   int frame = 0;  // Frame::index
   double stamp_s = 0.0;
-  std::shared_ptr<const Scan> scan;       // what is matched
-  std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; often the same object
+  KeptScan scan;       // what is matched
+  KeptScan obstacles;  // what the map is drawn from; often the same
   Pose2 map_from_base;
   // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
   std::optional<Pose2> slam_motion;

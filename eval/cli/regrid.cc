@@ -40,7 +40,7 @@ void Regrid(const RegridArguments& arguments) {
   const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
   if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
   MapDrawing drawing(options);
-  for (const StoredScan& stored : scans) drawing.Add(stored.scan, stored.map_from_base);
+  for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
   const fs::path map = folder / fmt::format("map_{}.yaml", arguments.resolution_m);
   WriteMap(map.string(), drawing.Map());
   fmt::print("{}\n", map.string());

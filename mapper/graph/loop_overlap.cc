@@ -34,8 +34,9 @@ Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
     if (index < 0 || index >= static_cast<int>(frames.size())) continue;
     const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    grid.Insert(rasterizer.Rasterize(*frame.scan, middle_from_base, options.resolution_m));
-    for (const Beam& beam : frame.scan->beams) {
+    const Scan scan = *frame.scan;
+    grid.Insert(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m));
+    for (const Beam& beam : scan.beams) {
       if (beam.hit) place.points.push_back(middle_from_base * EndPoint(beam));
     }
   }

@@ -1,8 +1,10 @@
 #include "mapper/io/scan_file.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <string_view>
 
 #include "mapper/core/error.h"
@@ -14,11 +16,17 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "scans.bin is written as it lies in memory");
 
-constexpr std::string_view kMagic = "DGSCANS1";
+constexpr std::string_view kMagic = "DGSCANS2";
 
 template <typename T>
 void Append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename T>
+void AppendAll(std::string& bytes, std::span<const T> values) {
+  if (values.empty()) return;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
 class Reader {
@@ -33,19 +41,22 @@ class Reader {
     rest_.remove_prefix(sizeof value);
     return value;
   }
+  template <typename T>
+  void TakeAll(std::uint32_t count, std::vector<T>& values) {
+    RequireRoom(count, sizeof(T));
+    values.resize(count);
+    if (count > 0) std::memcpy(values.data(), rest_.data(), count * sizeof(T));
+    rest_.remove_prefix(count * sizeof(T));
+  }
   void RequireMagic() {
-    if (!rest_.starts_with(kMagic)) throw InputError(place_, "holds no stored scans (scans.bin)");
+    if (!rest_.starts_with(kMagic)) Fail("holds no stored scans (scans.bin)");
     rest_.remove_prefix(kMagic.size());
   }
   // Before memory is taken for `count` things that need `bytes_each` in the file.
   void RequireRoom(std::uint32_t count, std::size_t bytes_each) const {
-    if (rest_.size() / bytes_each < count) throw InputError(place_, "is truncated");
+    if (rest_.size() / bytes_each < count) Fail("is truncated");
   }
-  float TakeFinite() {
-    const auto value = Take<float>();
-    if (!std::isfinite(value)) throw InputError(place_, "holds a beam that is not finite");
-    return value;
-  }
+  [[noreturn]] void Fail(const char* message) const { throw InputError(place_, message); }
   bool empty() const { return rest_.empty(); }
 
  private:
@@ -53,46 +64,67 @@ class Reader {
   std::string place_;
 };
 
-constexpr std::size_t kBeamBytes = 4 * sizeof(float) + 1;
-constexpr std::size_t kScanBytes = 2 * sizeof(std::uint32_t) + 5 * sizeof(double);
+// Without its beams.
+constexpr std::size_t kScanBytes = 3 * sizeof(std::uint32_t) + 5 * sizeof(double) + 1;
 
-StoredScan TakeScan(Reader& reader) {
-  StoredScan stored;
-  stored.frame = reader.Take<std::int32_t>();
-  const auto beams = reader.Take<std::uint32_t>();
-  stored.stamp_s = reader.Take<double>();
-  stored.map_from_base.x_m = reader.Take<double>();
-  stored.map_from_base.y_m = reader.Take<double>();
-  stored.map_from_base.yaw_rad = reader.Take<double>();
-  stored.scan.max_range_m = reader.Take<double>();
-  reader.RequireRoom(beams, kBeamBytes);
-  for (std::uint32_t i = 0; i < beams; ++i) {
-    Beam beam;
-    beam.bearing_rad = reader.TakeFinite();
-    beam.range_m = reader.TakeFinite();
-    beam.clear_from_m = reader.TakeFinite();
-    beam.clear_to_m = reader.TakeFinite();
-    beam.hit = reader.Take<std::uint8_t>() != 0;
-    stored.scan.beams.push_back(beam);
-  }
-  return stored;
+bool IsFinite(const Beam& beam) {
+  return std::isfinite(beam.bearing_rad) && std::isfinite(beam.range_m) &&
+         std::isfinite(beam.clear_from_m) && std::isfinite(beam.clear_to_m);
 }
 
-void AppendScan(std::string& bytes, const StoredScan& stored) {
+// Scans one after the other: bearings that stay the same are not repeated.
+class ScanTaker {
+ public:
+  StoredScan Take(Reader& reader) {
+    StoredScan stored;
+    stored.frame = reader.Take<std::int32_t>();
+    const auto beams = reader.Take<std::uint32_t>();
+    const auto values = reader.Take<std::uint32_t>();
+    stored.stamp_s = reader.Take<double>();
+    stored.map_from_base.x_m = reader.Take<double>();
+    stored.map_from_base.y_m = reader.Take<double>();
+    stored.map_from_base.yaw_rad = reader.Take<double>();
+    const auto max_range_m = reader.Take<double>();
+    if (reader.Take<std::uint8_t>() != 0) reader.TakeAll(beams, bearings_rad_);
+    reader.TakeAll(values, values_);
+    reader.TakeAll(beams, codes_);
+    const PackedScan packed{max_range_m, bearings_rad_, codes_, values_};
+    if (!IsWhole(packed)) reader.Fail("holds a damaged scan");
+    const Scan scan = Unpacked(packed);
+    if (!std::all_of(scan.beams.begin(), scan.beams.end(), IsFinite)) {
+      reader.Fail("holds a beam that is not finite");
+    }
+    stored.scan = archive_.Keep(scan);
+    return stored;
+  }
+
+ private:
+  ScanArchive archive_;
+  std::vector<float> bearings_rad_;
+  std::vector<float> values_;
+  std::vector<std::uint8_t> codes_;
+};
+
+void AppendScan(std::string& bytes, const StoredScan& stored, bool own_bearings) {
+  const PackedScan packed = stored.scan.packed();
   Append(bytes, static_cast<std::int32_t>(stored.frame));
-  Append(bytes, static_cast<std::uint32_t>(stored.scan.beams.size()));
+  Append(bytes, static_cast<std::uint32_t>(packed.codes.size()));
+  Append(bytes, static_cast<std::uint32_t>(packed.values.size()));
   Append(bytes, stored.stamp_s);
   Append(bytes, stored.map_from_base.x_m);
   Append(bytes, stored.map_from_base.y_m);
   Append(bytes, stored.map_from_base.yaw_rad);
-  Append(bytes, stored.scan.max_range_m);
-  for (const Beam& beam : stored.scan.beams) {
-    Append(bytes, beam.bearing_rad);
-    Append(bytes, beam.range_m);
-    Append(bytes, beam.clear_from_m);
-    Append(bytes, beam.clear_to_m);
-    Append(bytes, static_cast<std::uint8_t>(beam.hit ? 1 : 0));
-  }
+  Append(bytes, packed.max_range_m);
+  Append(bytes, static_cast<std::uint8_t>(own_bearings ? 1 : 0));
+  if (own_bearings) AppendAll(bytes, packed.bearings_rad);
+  AppendAll(bytes, packed.values);
+  AppendAll(bytes, packed.codes);
+}
+
+bool SameBearings(const StoredScan& a, const StoredScan& b) {
+  const auto left = a.scan.packed().bearings_rad;
+  const auto right = b.scan.packed().bearings_rad;
+  return std::equal(left.begin(), left.end(), right.begin(), right.end());
 }
 
 }  // namespace
@@ -104,7 +136,8 @@ std::vector<StoredScan> ReadScans(const std::string& path) {
   const auto count = reader.Take<std::uint32_t>();
   reader.RequireRoom(count, kScanBytes);
   std::vector<StoredScan> scans;
-  for (std::uint32_t i = 0; i < count; ++i) scans.push_back(TakeScan(reader));
+  ScanTaker taker;
+  for (std::uint32_t i = 0; i < count; ++i) scans.push_back(taker.Take(reader));
   if (!reader.empty()) throw InputError(path, "goes on behind its last scan");
   return scans;
 }
@@ -112,7 +145,9 @@ std::vector<StoredScan> ReadScans(const std::string& path) {
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans) {
   std::string bytes(kMagic);
   Append(bytes, static_cast<std::uint32_t>(scans.size()));
-  for (const StoredScan& scan : scans) AppendScan(bytes, scan);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    AppendScan(bytes, scans[i], i == 0 || !SameBearings(scans[i - 1], scans[i]));
+  }
   WriteFile(path, bytes);
 }
 

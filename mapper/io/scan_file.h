@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mapper/core/scan.h"
+#include "mapper/core/kept_scan.h"
 
 namespace depthgrid {
 
@@ -13,7 +13,7 @@ struct StoredScan {
   int frame = 0;  // of the input, counted from 0
   double stamp_s = 0.0;
   Pose2 map_from_base;
-  Scan scan;
+  KeptScan scan;
 
   bool operator==(const StoredScan&) const = default;
 };

@@ -11,18 +11,21 @@ namespace {
 
 std::vector<StoredScan> SomeScans() {
   RandomStream random(31, RandomStage::kTest);
+  ScanArchive archive;
   std::vector<StoredScan> scans;
   for (int i = 0; i < 5; ++i) {
     StoredScan stored;
     stored.frame = 3 * i;
     stored.stamp_s = random.Uniform(0, 100);
     stored.map_from_base = {random.Uniform(-5, 5), random.Uniform(-5, 5), random.Uniform(-3, 3)};
-    stored.scan.max_range_m = 6.0;
+    Scan scan;
+    scan.max_range_m = 6.0;
     for (int b = 0; b < 10 * i; ++b) {
-      stored.scan.beams.push_back({static_cast<float>(random.Uniform(-1, 1)),
-                                   static_cast<float>(random.Uniform(0, 6)), 0.4F,
-                                   static_cast<float>(random.Uniform(0, 6)), b % 3 == 0});
+      scan.beams.push_back({static_cast<float>(random.Uniform(-1, 1)),
+                            static_cast<float>(random.Uniform(0, 6)), 0.4F,
+                            static_cast<float>(random.Uniform(0, 6)), b % 3 == 0});
     }
+    stored.scan = archive.Keep(scan);
     scans.push_back(stored);
   }
   return scans;
@@ -55,6 +58,23 @@ TEST_F(ScanFileTest, EveryTruncationIsAnError) {
   WriteFile(path_, whole + "x");
   EXPECT_THROW(ReadScans(path_), InputError);
   EXPECT_THROW(ReadScans(path_ + ".missing"), InputError);
+}
+
+TEST_F(ScanFileTest, DamagedBytesAreAnErrorOrAnotherScan) {
+  WriteScans(path_, SomeScans());
+  const std::string whole = ReadFile(path_);
+  int errors = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 3) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ '\xff');
+    WriteFile(path_, bytes);
+    try {
+      ReadScans(path_);
+    } catch (const InputError&) {
+      ++errors;
+    }
+  }
+  EXPECT_GT(errors, 30);
 }
 
 TEST_F(ScanFileTest, AnAbsurdCountTakesNoMemory) {

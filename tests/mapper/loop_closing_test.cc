@@ -11,6 +11,7 @@ namespace {
 
 // Twice round a furnished room at true poses.
 std::vector<MappedFrame> TwoRounds(const PlanarWorld& world, int frames_a_round) {
+  ScanArchive archive;
   std::vector<MappedFrame> frames;
   for (int i = 0; i < 2 * frames_a_round; ++i) {
     const double angle_rad = 2.0 * kPi * i / frames_a_round;
@@ -20,8 +21,8 @@ std::vector<MappedFrame> TwoRounds(const PlanarWorld& world, int frames_a_round)
     frame.map_from_base = {3.0 + 0.8 * std::cos(angle_rad), 1.5 + 0.8 * std::sin(angle_rad),
                            WrapAngle(angle_rad)};
     PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
-    frame.scan = std::make_shared<Scan>(
-        ScanOf(world, frame.map_from_base, laser, 1, static_cast<std::uint32_t>(i)));
+    frame.scan =
+        archive.Keep(ScanOf(world, frame.map_from_base, laser, 1, static_cast<std::uint32_t>(i)));
     frames.push_back(frame);
   }
   return frames;

@@ -59,13 +59,16 @@ TEST(PaperReference, RebuildingAtTheSamePosesChangesNothing) {
   const PlanarWorld room = RectangleWorld(-2.45, -2.5, 2.45, 2.5);
   PaperReference running({}, {.scans = 10}, {}, {});
   PaperReference rebuilt({}, {.scans = 10}, {}, {});
+  ScanArchive archive;
   std::vector<MappedFrame> frames;
   for (int i = 0; i < 35; ++i) {
     MappedFrame frame;
     frame.map_from_base = {0.02 * i, 0.0, 0.03 * i};
-    frame.scan = std::make_shared<Scan>(ScanOf(room, frame.map_from_base, {.beams = 200}));
-    running.Insert(frame.scan, frame.map_from_base, {});
-    rebuilt.Insert(frame.scan, frame.map_from_base, {});
+    const auto scan =
+        std::make_shared<const Scan>(ScanOf(room, frame.map_from_base, {.beams = 200}));
+    frame.scan = archive.Keep(*scan);
+    running.Insert(scan, frame.map_from_base, {});
+    rebuilt.Insert(scan, frame.map_from_base, {});
     frames.push_back(frame);
   }
   rebuilt.Rebuild(frames);
