@@ -7,10 +7,11 @@ namespace depthgrid {
 void RoundOptions::Visit(OptionsVisitor& v) {
   v.Number("first_frames", first_frames, {0, 1e9}, "mapped frames before the first round; 0: none");
   v.Number("growth", growth, {1.1, 1e3}, "so many times as many frames before the next");
+  v.Number("last_frames", last_frames, {0, 1e9}, "mapped frames after which there are no rounds");
 }
 
 bool AdjustmentRounds::IsDue(int frames) {
-  if (next_ == 0 || frames < next_) return false;
+  if (next_ == 0 || frames < next_ || frames > options_.last_frames) return false;
   next_ = static_cast<int>(std::ceil(options_.growth * frames));
   return true;
 }

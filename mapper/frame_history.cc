@@ -1,5 +1,6 @@
 #include "mapper/frame_history.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -17,10 +18,11 @@ constexpr int kFinalReachFrames = 300;
 }  // namespace
 
 void FrameHistory::Start(const Frame& frame) {
-  const bool is_new = position_of_index_.emplace(frame.index, records_.size()).second;
-  if (!is_new) {
+  const auto place = PlaceOf(frame.index);
+  if (place != position_of_index_.end() && place->first == frame.index) {
     throw InputError("frame " + std::to_string(frame.index), "was given before");
   }
+  position_of_index_.insert(place, {frame.index, records_.size()});
   FrameRecord record;
   record.index = frame.index;
   record.stamp_s = frame.stamp_s;
@@ -29,20 +31,29 @@ void FrameHistory::Start(const Frame& frame) {
   records_.push_back(record);
 }
 
+FrameHistory::Positions::const_iterator FrameHistory::PlaceOf(int frame_index) const {
+  if (position_of_index_.empty() || position_of_index_.back().first < frame_index) {
+    return position_of_index_.end();
+  }
+  return std::lower_bound(position_of_index_.begin(), position_of_index_.end(),
+                          std::pair(frame_index, std::size_t{0}));
+}
+
 const FrameRecord* FrameHistory::Find(int frame_index) const {
-  const auto found = position_of_index_.find(frame_index);
-  return found == position_of_index_.end() ? nullptr : &records_[found->second];
+  const auto found = PlaceOf(frame_index);
+  if (found == position_of_index_.end() || found->first != frame_index) return nullptr;
+  return &records_[found->second];
 }
 
 const FrameRecord* FrameHistory::PosedBefore(const FrameRecord& record) const {
-  for (std::size_t i = position_of_index_.at(record.index); i-- > 0;) {
+  for (std::size_t i = PlaceOf(record.index)->second; i-- > 0;) {
     if (records_[i].slam_from_camera) return &records_[i];
   }
   return nullptr;
 }
 
 const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {
-  const int position = static_cast<int>(position_of_index_.at(record.index));
+  const int position = static_cast<int>(PlaceOf(record.index)->second);
   const int count = static_cast<int>(records_.size());
   for (int step = 0; step <= reach; ++step) {
     for (const int candidate : {position - step, position + step}) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <optional>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "mapper/core/frame.h"
@@ -39,7 +39,13 @@ class FrameHistory {
 
  private:
   std::vector<FrameRecord> records_;
-  std::unordered_map<int, std::size_t> position_of_index_;  // looked up, never walked
+  // Frame::index and position in records_, ordered by index, which mostly is the order they come
+  // in.
+  using Positions = std::vector<std::pair<int, std::size_t>>;
+  // The first entry that is not before this index.
+  Positions::const_iterator PlaceOf(int frame_index) const;
+
+  Positions position_of_index_;
 };
 
 // A loop between two frames as one between two mapped frames, by SLAM's own motion within an epoch.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace depthgrid {
 
@@ -14,8 +15,10 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("min_line_beams", min_line_beams, {3, 1000}, "shorter pieces are left out");
 }
 
-std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise) {
-  std::vector<Surfel> surfels;
+std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise,
+                                          std::vector<Surfel> memory) {
+  std::vector<Surfel> surfels = std::move(memory);
+  surfels.clear();
   returns_.Read(scan, noise);
   for (const ScanLine& line : lines_.Find(returns_)) {
     // A fit so steep that it leaves the field of view is no surface that was seen.

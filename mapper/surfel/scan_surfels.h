@@ -28,7 +28,9 @@ class ScanSurfelMaker {
         returns_(options.jump_sigmas),
         lines_(options.split_chi2, options.min_line_beams) {}
 
-  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise);
+  // `memory`: of an earlier result, to be used again.
+  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise,
+                           std::vector<Surfel> memory = {});
 
  private:
   int BeamsAt(const ScanLine& line, int begin) const;

@@ -1,5 +1,6 @@
 #include "mapper/surfel/surfel_groups.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mapper/core/error.h"
@@ -43,6 +44,12 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
     const double sigma_m = 1.0 / std::sqrt(piece.information);
     newest_.Merge(motion * piece,
                   {0.5 * options_.spacing_m, kGateM + kGateSigmas * sigma_m, min_cosine});
+  }
+  // Room for the frames to come, as neighbouring groups are alike; not a little more each frame.
+  if (group.surfels.capacity() < newest_.surfels().size()) {
+    const std::size_t like_before =
+        groups_.size() > 1 ? groups_[groups_.size() - 2].surfels.size() : 0;
+    group.surfels.reserve(std::max(like_before, newest_.surfels().size()) * 5 / 4);
   }
   group.surfels = newest_.surfels();
 }

@@ -1,6 +1,7 @@
 #include "mapper/surfel/surfel_map.h"
 
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/error.h"
 #include "mapper/surfel/frame_smoother.h"
@@ -71,7 +72,7 @@ SurfelMap::SurfelMap(const SurfelOptions& options)
 const std::vector<Surfel>& SurfelMap::PiecesOf(const std::shared_ptr<const Scan>& scan) {
   if (scan == scan_) return pieces_;
   noise_.Add(*scan);
-  pieces_ = maker_.Make(*scan, noise_);
+  pieces_ = maker_.Make(*scan, noise_, std::move(pieces_));
   scan_ = scan;
   return pieces_;
 }
@@ -104,7 +105,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   SurfelGroups groups = groups_;
   // A provisional frame at the end was not inserted yet.
   for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
-    groups.Add(PiecesOf(frames[i].scan), frames[i].map_from_base);
+    groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
   }
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
   std::vector<GroupLink> links;

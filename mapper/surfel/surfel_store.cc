@@ -1,5 +1,6 @@
 #include "mapper/surfel/surfel_store.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace depthgrid {
@@ -21,12 +22,6 @@ void Fuse(const Surfel& piece, Surfel& surfel) {
 
 }  // namespace
 
-const SurfelStore::Tile* SurfelStore::TileOf(const Cell& cell) const {
-  const auto found = tile_of_key_.find(KeyOf(cell));
-  if (found == tile_of_key_.end()) return nullptr;
-  return &tiles_[static_cast<std::size_t>(found->second)];
-}
-
 int SurfelStore::Nearest(const Surfel& piece, const AssociationGate& gate) const {
   // The gate's rectangle, turned along the piece and put in a box.
   const Eigen::Vector2d across = piece.normal.cwiseAbs();
@@ -39,29 +34,33 @@ int SurfelStore::Nearest(const Surfel& piece, const AssociationGate& gate) const
   const double per_off = 1.0 / gate.off_m;
   int nearest = -1;
   double nearest_distance2 = 2.0;
-  const Tile* tile = nullptr;
-  std::uint64_t tile_key = 0;
-  for (int y = low.y; y <= high.y; ++y) {
-    for (int x = low.x; x <= high.x; ++x) {
-      const std::uint64_t key = KeyOf({x, y});
-      if (key != tile_key || (x == low.x && y == low.y)) {
-        tile_key = key;
-        tile = TileOf({x, y});
-      }
+  const auto consider = [&](int i) {
+    const Surfel& surfel = surfels_[static_cast<std::size_t>(i)];
+    if (surfel.normal.dot(piece.normal) < gate.min_cosine) return;
+    const Eigen::Vector2d d_m = piece.point_m - surfel.point_m;
+    const double a = (d_m.x() * surfel.normal.y() - d_m.y() * surfel.normal.x()) * per_along;
+    const double o = d_m.dot(surfel.normal) * per_off;
+    if (std::abs(a) > 1.0 || std::abs(o) > 1.0) return;
+    const double distance2 = a * a + o * o;
+    // Ties go to the surfel added first, wherever it is in its cell.
+    if (distance2 < nearest_distance2 || (distance2 == nearest_distance2 && i < nearest)) {
+      nearest_distance2 = distance2;
+      nearest = i;
+    }
+  };
+  // Tile by tile, and in each row by row.
+  for (int tile_y = low.y; tile_y <= high.y; tile_y = (tile_y | kTileMask) + 1) {
+    const int last_y = std::min(high.y, tile_y | kTileMask);
+    for (int tile_x = low.x; tile_x <= high.x; tile_x = (tile_x | kTileMask) + 1) {
+      const Tile* tile = TileOf({tile_x, tile_y});
       if (tile == nullptr) continue;
-      for (int i = (*tile)[PlaceOf({x, y})]; i >= 0;
-           i = next_in_cell_[static_cast<std::size_t>(i)]) {
-        const Surfel& surfel = (*this)[i];
-        if (surfel.normal.dot(piece.normal) < gate.min_cosine) continue;
-        const Eigen::Vector2d d_m = piece.point_m - surfel.point_m;
-        const double a = (d_m.x() * surfel.normal.y() - d_m.y() * surfel.normal.x()) * per_along;
-        const double o = d_m.dot(surfel.normal) * per_off;
-        if (std::abs(a) > 1.0 || std::abs(o) > 1.0) continue;
-        const double distance2 = a * a + o * o;
-        // Ties go to the surfel added first, wherever it is in its cell.
-        if (distance2 < nearest_distance2 || (distance2 == nearest_distance2 && i < nearest)) {
-          nearest_distance2 = distance2;
-          nearest = i;
+      const int cells = std::min(high.x, tile_x | kTileMask) - tile_x + 1;
+      for (int y = tile_y; y <= last_y; ++y) {
+        const int* first = tile->data() + PlaceOf({tile_x, y});
+        for (int cell = 0; cell < cells; ++cell) {
+          for (int i = first[cell]; i >= 0; i = next_in_cell_[static_cast<std::size_t>(i)]) {
+            consider(i);
+          }
         }
       }
     }
@@ -78,9 +77,13 @@ int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate) {
 
 int SurfelStore::Add(const Surfel& surfel) {
   const Cell cell = CellOf(surfel.point_m, kCellM);
-  const auto [tile, fresh] = tile_of_key_.try_emplace(KeyOf(cell), static_cast<int>(tiles_.size()));
-  if (fresh) tiles_.emplace_back().fill(-1);
-  int& first = tiles_[static_cast<std::size_t>(tile->second)][PlaceOf(cell)];
+  int tile = tile_of_key_.Find(KeyOf(cell));
+  if (tile < 0) {
+    tile = static_cast<int>(tiles_.size());
+    tile_of_key_.Add(KeyOf(cell), tile);
+    tiles_.emplace_back().fill(-1);
+  }
+  int& first = tiles_[static_cast<std::size_t>(tile)][PlaceOf(cell)];
   const int index = size();
   surfels_.push_back(surfel);
   next_in_cell_.push_back(first);
@@ -91,7 +94,7 @@ int SurfelStore::Add(const Surfel& surfel) {
 void SurfelStore::Clear() {
   surfels_.clear();
   next_in_cell_.clear();
-  tile_of_key_.clear();
+  tile_of_key_.Clear();
   tiles_.clear();
 }
 

@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "mapper/core/grid_geometry.h"
 #include "mapper/surfel/surfel.h"
+#include "mapper/surfel/tile_index.h"
 
 namespace depthgrid {
 
@@ -46,12 +46,14 @@ class SurfelStore {
   static std::size_t PlaceOf(const Cell& cell) {
     return static_cast<std::size_t>(((cell.y & kTileMask) << kTileBits) | (cell.x & kTileMask));
   }
-  const Tile* TileOf(const Cell& cell) const;
+  const Tile* TileOf(const Cell& cell) const {
+    const int tile = tile_of_key_.Find(KeyOf(cell));
+    return tile < 0 ? nullptr : &tiles_[static_cast<std::size_t>(tile)];
+  }
 
   std::vector<Surfel> surfels_;
   std::vector<int> next_in_cell_;  // parallel to surfels_
-  // Only looked up, never walked through: its order cannot show.
-  std::unordered_map<std::uint64_t, int> tile_of_key_;
+  TileIndex tile_of_key_;
   std::vector<Tile> tiles_;
 };
 

@@ -22,6 +22,8 @@ TEST(AdjustmentRounds, ComeAfterTheFirstFramesAndThenRarer) {
   EXPECT_EQ(RoundsOf({.first_frames = 10, .growth = 3.0}, 300),
             (std::vector<int>{10, 30, 90, 270}));
   EXPECT_TRUE(RoundsOf({.first_frames = 0}, 300).empty());
+  EXPECT_EQ(RoundsOf({.first_frames = 10, .growth = 3.0, .last_frames = 90}, 300),
+            (std::vector<int>{10, 30, 90}));
 }
 
 // To and fro before a wall with a niche: a perfect prior and noisy scans.

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
 #include "mapper/match/scan_matcher.h"
 #include "tests/mapper/match_world.h"
 
@@ -53,6 +55,43 @@ TEST(Allocation, MatchingHasNoneInSteadyState) {
     counted = allocations - before;
   }
   EXPECT_EQ(counted, 0);
+}
+
+// Frames of a walk that goes round and round, after some rounds: what is allocated is room for what
+// is kept, in ever larger pieces, and new groups of surfels or submaps.
+double AllocationsAFrame(const MapperOptions& options) {
+  const PlanarWorld room = FurnishedRoom();
+  constexpr int kRound = 300, kWarm = 600, kCounted = 600;
+  std::vector<Frame> round(kRound);
+  for (int k = 0; k < kRound; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kRound;
+    const Pose2 pose{3.0 + 0.3 * std::cos(turn_rad), 1.8 + 0.3 * std::sin(turn_rad),
+                     WrapAngle(turn_rad)};
+    const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    round[static_cast<std::size_t>(k)].scan =
+        std::make_shared<const Scan>(ScanOf(room, pose, laser, 8, static_cast<std::uint32_t>(k)));
+    round[static_cast<std::size_t>(k)].slam_from_camera = CameraOf(pose, 0.0);
+  }
+  IncrementalMapper mapper(options, std::nullopt);
+  long before = 0;
+  for (int k = 0; k < kWarm + kCounted; ++k) {
+    if (k == kWarm) before = allocations;
+    Frame& frame = round[static_cast<std::size_t>(k % kRound)];
+    frame.index = k;
+    frame.stamp_s = k / 30.0;
+    mapper.AddFrame(frame);
+  }
+  return static_cast<double>(allocations - before) / kCounted;
+}
+
+TEST(Allocation, AFrameHasHardlyAnyInSteadyState) {
+  MapperOptions options;
+  options.method = MapperMethod::kPaper;
+  EXPECT_LT(AllocationsAFrame(options), 0.5);
+  options.method = MapperMethod::kSurfel;
+  options.fusion.mode = FusionMode::kLearned;
+  options.rounds.first_frames = 0;  // adjusting everything takes memory
+  EXPECT_LT(AllocationsAFrame(options), 0.5);
 }
 
 }  // namespace

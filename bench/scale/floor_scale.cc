@@ -1,0 +1,201 @@
+// Does time a frame stay flat and memory grow with the area seen? A laser walks through floors of
+// 5 m to 200 m: square rooms of 5 m with doors and a cupboard each, up and down the rows and back.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+#include "tests/mapper/planar_world.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kRoomM = 5.0;
+constexpr double kDoorM = 1.2;
+constexpr double kStepM = 0.04;            // a frame: 1.2 m/s at 30 Hz
+constexpr double kTurnRad = kPi / 2 / 30;  // a frame
+
+double CpuUs() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
+}
+
+// Resident now, not at most: a floor's memory must not hide behind that of the one before.
+double ResidentMib() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0.0;
+  file >> pages >> pages;
+  return pages * 4096.0 / (1 << 20);
+}
+
+// A side of a room: in two parts with a door between them, or whole at the border.
+void AddSide(const Eigen::Vector2d& from, const Eigen::Vector2d& to, bool whole,
+             PlanarWorld& world) {
+  if (whole) {
+    world.push_back({from, to});
+    return;
+  }
+  const Eigen::Vector2d half_door = 0.5 * kDoorM * (to - from).normalized();
+  const Eigen::Vector2d middle = 0.5 * (from + to);
+  world.push_back({from, middle - half_door});
+  world.push_back({middle + half_door, to});
+}
+
+// The walls of the rooms around a place: more than 6 m in every direction.
+PlanarWorld WallsAround(const Eigen::Vector2d& place_m, int rooms) {
+  PlanarWorld world;
+  const Cell here = CellOf(place_m, kRoomM);
+  for (int y = std::max(here.y - 2, 0); y <= std::min(here.y + 2, rooms - 1); ++y) {
+    for (int x = std::max(here.x - 2, 0); x <= std::min(here.x + 2, rooms - 1); ++x) {
+      const Eigen::Vector2d low(kRoomM * x, kRoomM * y), high(low.x() + kRoomM, low.y() + kRoomM);
+      AddSide(low, {high.x(), low.y()}, y == 0, world);
+      AddSide(low, {low.x(), high.y()}, x == 0, world);
+      if (y == rooms - 1) AddSide({low.x(), high.y()}, high, true, world);
+      if (x == rooms - 1) AddSide({high.x(), low.y()}, high, true, world);
+      // A cupboard in a corner that differs from room to room.
+      RandomStream random(1, RandomStage::kTest, static_cast<std::uint32_t>(y * rooms + x));
+      const double side = random.Uniform() < 0.5 ? 0.2 : 3.4;
+      const Eigen::Vector2d corner = low + Eigen::Vector2d(side, random.Uniform(0.2, 1.0));
+      const Eigen::Vector2d size(random.Uniform(0.4, 1.3), random.Uniform(0.3, 0.7));
+      const PlanarWorld cupboard =
+          RectangleWorld(corner.x(), corner.y(), corner.x() + size.x(), corner.y() + size.y());
+      world.insert(world.end(), cupboard.begin(), cupboard.end());
+    }
+  }
+  return world;
+}
+
+// Walks from room to room; turns on the spot.
+class Walker {
+ public:
+  explicit Walker(int rooms) : rooms_(rooms) {
+    for (int y = 0; y < rooms; ++y) {
+      for (int x = 0; x < rooms; ++x) {
+        const int column = y % 2 == 0 ? x : rooms - 1 - x;
+        stops_.emplace_back(kRoomM * (column + 0.5), kRoomM * (y + 0.5));
+      }
+    }
+    for (std::size_t i = stops_.size(); i-- > 1;) stops_.push_back(stops_[i - 1]);
+    pose_ = {stops_[0].x(), stops_[0].y(), 0.0};
+  }
+  Pose2 Next() {
+    if (rooms_ == 1) {  // round and round on the spot
+      pose_.yaw_rad = WrapAngle(pose_.yaw_rad + kTurnRad);
+      return pose_;
+    }
+    const Eigen::Vector2d way = stops_[goal_] - pose_.translation();
+    const double turn_rad = WrapAngle(std::atan2(way.y(), way.x()) - pose_.yaw_rad);
+    if (way.norm() < kStepM) {
+      pose_ = {stops_[goal_].x(), stops_[goal_].y(), pose_.yaw_rad};
+      goal_ = (goal_ + 1) % stops_.size();
+    } else if (std::abs(turn_rad) > kTurnRad) {
+      pose_.yaw_rad = WrapAngle(pose_.yaw_rad + std::copysign(kTurnRad, turn_rad));
+    } else {
+      pose_ = {pose_.x_m + kStepM * way.normalized().x(), pose_.y_m + kStepM * way.normalized().y(),
+               pose_.yaw_rad + turn_rad};
+    }
+    return pose_;
+  }
+
+ private:
+  int rooms_;
+  std::vector<Eigen::Vector2d> stops_;
+  std::size_t goal_ = 1;
+  Pose2 pose_;
+};
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Settings {
+  bool surfel = true;
+  bool finish = true;
+};
+
+void Walk(double floor_m, int frames, const Settings& settings) {
+  MapperOptions options;
+  options.method = settings.surfel ? MapperMethod::kSurfel : MapperMethod::kPaper;
+  if (settings.surfel) options.fusion.mode = FusionMode::kLearned;
+  const int rooms = static_cast<int>(std::lround(floor_m / kRoomM));
+  const double before_mib = ResidentMib();
+  IncrementalMapper mapper(options, std::nullopt, CpuUs);
+  Walker walker(rooms);
+  const PlanarLaser laser{.beams = 640,
+                          .field_of_view_rad = RadFromDeg(58.0),
+                          .max_range_m = 6.0,
+                          .sigma_of_range = 0.01};
+  std::vector<double> times_us;
+  Pose2 odometry, last;
+  double sum_us = 0.0, error_m = 0.0;
+  for (int k = 0; k < frames; ++k) {
+    const Pose2 truth = walker.Next();
+    // Odometry with a slowly varying bias: 1 % of the way, 0.1 degree a metre.
+    const double swing = std::sin(k / 200.0);
+    odometry =
+        k == 0 ? truth
+               : odometry * Between(last, truth) * Pose2{4e-4 * swing, 2e-4 * swing, 7e-5 * swing};
+    last = truth;
+    Frame frame;
+    frame.index = k;
+    frame.stamp_s = k / 30.0;
+    frame.scan = std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), rooms), truth,
+                                                     laser, 2, static_cast<std::uint32_t>(k)));
+    frame.slam_from_camera = CameraOf(odometry, 0.0);
+    const FrameReport report = mapper.AddFrame(frame);
+    times_us.push_back(report.times.total_us);
+    sum_us += report.times.total_us;
+    error_m += (BaseOf(*report.map_from_camera).translation() - truth.translation()).norm();
+  }
+  const auto part = [&](double from, double to) {
+    const auto at = [&](double share) {
+      return times_us.begin() + static_cast<std::ptrdiff_t>(share * frames);
+    };
+    return Median({at(from), at(to)});
+  };
+  const double walked_mib = ResidentMib() - before_mib;
+  std::printf("| %4.0f m | %6d | %5.0f | %5.0f | %5.0f | %6.0f | %6.1f | %7.1f | %7.3f |", floor_m,
+              frames, part(0.05, 0.15), part(0.45, 0.55), part(0.9, 1.0), sum_us / frames,
+              *std::max_element(times_us.begin(), times_us.end()) * 1e-3, walked_mib,
+              error_m / frames);
+  std::fflush(stdout);
+  if (settings.finish) {
+    const double start_us = CpuUs();
+    const MapperResult result = mapper.Finish();
+    std::printf(" %7.0f |", (CpuUs() - start_us) / frames);
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace depthgrid
+
+int main(int argc, char** argv) {
+  depthgrid::Settings settings;
+  bool paper = false, no_finish = false;
+  std::vector<double> floors = {5, 20, 50, 100, 200};
+  std::vector<int> frames = {1000, 5000, 20000, 50000, 100000};
+  CLI::App app("Time a frame and memory over floors of growing size");
+  app.add_option("--floors", floors, "side lengths, metres");
+  app.add_option("--frames", frames, "of each");
+  app.add_flag("--paper", paper, "the paper's chain");
+  app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
+  CLI11_PARSE(app, argc, argv);
+  settings.surfel = !paper;
+  settings.finish = !no_finish;
+  std::printf(
+      "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
+      "error m |%s\n",
+      settings.finish ? " finish us/frame |" : "");
+  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|" : "");
+  for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
+    depthgrid::Walk(floors[i], frames[i], settings);
+  }
+}
