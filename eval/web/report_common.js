@@ -99,7 +99,7 @@ function seriesOf(s) {
   };
 }
 
-// Whiskers from low to high at every point of the series that have them.
+// Whiskers from low to high at every point of the series that have them, side by side.
 function drawIntervals(u, series) {
   series.forEach((s, k) => {
     if (!s.low || !u.series[k + 1].show) return;
@@ -112,7 +112,7 @@ function drawIntervals(u, series) {
     u.ctx.beginPath();
     u.data[0].forEach((x, i) => {
       if (!isNumber(s.low[i]) || !isNumber(s.high[i])) return;
-      const px = u.valToPos(x, "x", true);
+      const px = u.valToPos(x, "x", true) + (k - (series.length - 1) / 2) * 4 * devicePixelRatio;
       const [low, high] = [u.valToPos(s.low[i], "y", true), u.valToPos(s.high[i], "y", true)];
       const cap = 3 * devicePixelRatio;
       u.ctx.moveTo(px, low); u.ctx.lineTo(px, high);

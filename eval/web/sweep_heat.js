@@ -64,7 +64,7 @@ function heatPicture(cells, best, width) {
   const [columns, rows] = [cells.length, cells[0].length];
   const longest = Math.max(...HEAT_AXES[heat.y].labels.map((t) => t.length));
   const edge = { left: Math.min(130, 34 + 7 * longest), right: 92, top: 10, bottom: 46 };
-  const height = Math.max(180, Math.min(460, rows * 28)) + edge.top + edge.bottom;
+  const height = Math.max(160, Math.min(460, rows * 34)) + edge.top + edge.bottom;
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
   const means = cells.flat().filter(Boolean).map((c) => c.mean);
   const [low, high] = [Math.min(...means), Math.max(...means)];
