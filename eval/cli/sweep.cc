@@ -8,6 +8,7 @@
 #include "eval/cli/experiment_argument.h"
 #include "eval/shipped.h"
 #include "eval/sweep/sweep_folder.h"
+#include "eval/sweep_report.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
@@ -89,7 +90,12 @@ void Summarise(const SweepResults& results) {
     if (failure.empty()) continue;
     if (failed++ == 0) reason = failure;
   }
-  fmt::print("{} runs in {}/results.csv\n", results.rows(), results.folder);
+  fmt::print("{} runs in {}/results.csv", results.rows(), results.folder);
+  if (results.rows() > 0) {
+    WriteSweepReport(results.folder);
+    fmt::print(", to look at in {}/report.html", results.folder);
+  }
+  fmt::print("\n");
   if (failed > 0) Warn({fmt::format("{} runs failed, the first: {}", failed, reason)});
 }
 

@@ -18,14 +18,14 @@ function columnsOf(what) {
         ...(m === metric ? [{ title: "95 % low", unit: m.unit, numeric: true, at: (row) => m.low[row] }, { title: "95 % high", unit: m.unit, numeric: true, at: (row) => m.high[row] },
           { title: "median", unit: m.unit, numeric: true, at: (row) => m.median[row] }] : [])])];
   }
-  const factorOf = (name) => METRICS.find((m) => m.name === name) ?? { factor: 1, unit: unitOf(name) };
-  return [{ title: "run", numeric: true, at: (row) => runs.run[row] }, ...axes,
+  const shown = METRICS.filter((m) => runs.metrics?.[m.name]);
+  return [{ title: "run", numeric: true, at: (row) => runs.run[row] },
+    { title: "page", link: true, at: (row) => (runs.failures[row] ? "failed" : runs.folder[row] ? "open" : "command") }, ...axes,
     ...(SWEEP.seed_keys.length ? [{ title: SWEEP.seed_keys.join(" "), numeric: SWEEP.seed_keys.length === 1, at: (row) => (SWEEP.seed_keys.length === 1 ? Number(runs.seeds[row]) : runs.seeds[row]) }] : []),
-    ...Object.entries(runs.metrics ?? {}).map(([name, values]) => ({
-      title: name, unit: factorOf(name).unit, numeric: true,
-      at: (row) => (values[row] === null ? null : values[row] * factorOf(name).factor),
-    })),
-    { title: "report", link: true, at: (row) => (runs.failures[row] ? "failed" : runs.folder[row] ? "open" : "command") }];
+    ...shown.map((m) => ({
+      title: m.name, unit: m.unit, numeric: true,
+      at: (row) => (runs.metrics[m.name][row] === null ? null : runs.metrics[m.name][row] * m.factor),
+    }))];
 }
 
 // "0.5", "<0.1", ">= 3", "0.2..0.4" for numbers; part of the text for texts, and for anything else.
@@ -97,9 +97,9 @@ function drawTable() {
   const body = make("tbody");
   const sortBy = (k) => { table.down = table.sort === k && !table.down; table.sort = k; drawTable(); byId("table").querySelectorAll("th button")[k].focus(); };
   const heads = columns.map((column, k) => make("th", { scope: "col", "aria-sort": table.sort !== k ? "none" : table.down ? "descending" : "ascending" },
-    make("button", { type: "button", class: "sort", onclick: () => sortBy(k) }, `${column.title}${column.unit ? ` (${column.unit})` : ""} ${table.sort === k ? (table.down ? "▼" : "▲") : ""}`)));
+    make("button", { type: "button", class: "sort", onclick: () => sortBy(k) }, `${column.title.replaceAll(/[._]/g, "$&\u200b")}${column.unit ? ` (${column.unit})` : ""} ${table.sort === k ? (table.down ? "▼" : "▲") : ""}`)));
   const filters = columns.map((column, k) => {
-    const input = make("input", { type: "search", size: "8", placeholder: column.numeric ? "filter: <1" : "filter", "aria-label": `Filter ${column.title}` });
+    const input = make("input", { type: "search", size: "8", placeholder: column.numeric ? "<1" : "filter", "aria-label": `Filter ${column.title}` });
     input.value = table.filters[k] ?? "";
     input.addEventListener("input", () => { table.filters[k] = input.value; drawRows(columns, body); });
     return make("th", { class: "no-print" }, input);
