@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/shipped.h"
+#include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_folder.h"
+#include "eval/sweep/sweep_progress.h"
 #include "eval/sweep_report.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -129,7 +134,11 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   SweepDatabase database = OpenOrCreateSweep(output, plan, shard, arguments.common.force);
   Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), context);
   ProgressBar bar("runs");
-  context.progress = bar.AsProgress();
+  ProgressFile file(output);
+  context.progress = [&](int done, int total) {
+    bar.Show(done, total);
+    file.Note({done, total});
+  };
   try {
     DoRuns(plan, database, context);
   } catch (...) {  // interrupted: what is known so far is worth a table
@@ -137,9 +146,95 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
     throw;
   }
   WriteResultsCsv(database, output);
+  const auto runs = static_cast<int>(database.PlannedRuns().size());
+  file.NoteNow({runs, runs});
   if (context.cache_folder == output + "/cache") fs::remove_all(context.cache_folder);
   bar.Clear();
   Summarise(database.Results());
+}
+
+// A word that a shell takes as it is.
+std::string ShellWord(const std::string& text) {
+  std::string word(1, '\'');
+  for (const char c : text) word.append(c == '\'' ? "'\\''" : std::string(1, c));
+  return word + "'";
+}
+
+// The command of one part; the shell of its task knows which.
+std::string PartCommand(const SweepArguments& arguments, const std::string& sweep_file,
+                        const std::string& folder, int parts) {
+  const auto absolute = [](const std::string& path) {
+    return fs::absolute(path).lexically_normal().string();
+  };
+  std::string command = ShellWord(fs::read_symlink("/proc/self/exe").string()) + " sweep " +
+                        ShellWord(absolute(sweep_file));
+  command +=
+      fmt::format(" --shard \"$SLURM_ARRAY_TASK_ID/{}\" -j {}", parts, std::max(1, arguments.jobs));
+  command += " -o " + ShellWord(folder) + "/shards/\"$SLURM_ARRAY_TASK_ID\"";
+  for (const std::string& set : arguments.common.set) command += " --set " + ShellWord(set);
+  const std::string cache = CacheFolder(arguments.common);
+  if (!cache.empty()) command += " --cache " + ShellWord(absolute(cache));
+  if (arguments.common.no_cache) command += " --no-cache";
+  return command;
+}
+
+// As many parts as have work for long enough: an empty task costs Slurm about a second.
+int PartsFor(const SweepArguments& arguments, const SweepPlan& plan, double cpu_s) {
+  constexpr double kLeastTaskS = 30.0;
+  constexpr int kMostParts = 1000;  // Slurm's default MaxArraySize is 1001
+  const std::vector<int> groups = ScanGroups(plan);
+  const int units =
+      plan.stop.Enabled() ? plan.point_count : *std::max_element(groups.begin(), groups.end()) + 1;
+  const double tasks = cpu_s / std::max(1, arguments.jobs) / kLeastTaskS;
+  const int wanted = arguments.slurm_tasks > 0
+                         ? arguments.slurm_tasks
+                         : static_cast<int>(std::min<double>(tasks, kMostParts));
+  return std::clamp(wanted, 1, std::min(units, kMostParts));
+}
+
+// The number of parts stays what it was when the sweep was started first.
+int PartsIn(const std::string& folder, const std::function<int()>& otherwise) {
+  const std::string path = folder + "/shards/parts.txt";
+  if (fs::exists(path)) return std::stoi(ReadFile(path));
+  const int parts = otherwise();
+  fs::create_directories(folder + "/shards");
+  WriteFile(path, fmt::format("{}\n", parts));
+  return parts;
+}
+
+void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
+                  const std::string& sweep_file) {
+  if (!arguments.shard.empty()) throw InputError("--shard", "is what --executor slurm decides");
+  const std::string output = fs::absolute(arguments.common.output).lexically_normal().string();
+  const SweepFolder folder(output, arguments.common.force);
+  const SweepLock lock(output);
+  SweepContext context;
+  context.cache_folder = CacheFolder(arguments.common);
+  SlurmJob job;
+  job.title = plan.title;
+  job.folder = output;
+  job.options = arguments.slurm_options;
+  job.cpus_per_task = std::max(1, arguments.jobs);
+  job.parts = PartsIn(output, [&] {
+    std::vector<int> runs;
+    for (const PlannedRun& run : plan.runs) runs.push_back(run.run);
+    return PartsFor(arguments, plan, EstimateSweep(plan, runs, context).cpu_s);
+  });
+  job.command = PartCommand(arguments, sweep_file, output, job.parts);
+  fmt::print("{}: {} runs, {}; {} tasks\n", plan.title, plan.runs.size(), plan.size_text,
+             job.parts);
+  std::fflush(stdout);
+  ProgressBar bar("runs");
+  job.progress = [&](int done, int) { bar.Show(done, static_cast<int>(plan.runs.size())); };
+  if (!SweepDatabase::Exists(output)) {
+    RunOnSlurm(job);
+    std::vector<std::string> parts;
+    for (int part = 1; part <= job.parts; ++part) parts.push_back(PartFolder(output, part));
+    MergeSweeps(parts, output);
+  }
+  bar.Clear();
+  // Says so if it is another sweep.
+  Summarise(OpenOrCreateSweep(output, plan, {}, false).Results());
 }
 
 }  // namespace
@@ -147,8 +242,8 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
 void Sweep(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) return Merge(arguments);
   if (arguments.sweep.empty()) throw InputError("sweep", "name a shipped sweep or a YAML file");
-  const SweepPlan plan =
-      ReadSweepPlan(ResolveName(arguments.sweep, ShippedKind::kSweep), arguments.common.set);
+  const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
+  const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
   if (arguments.dry_run) {
     SweepContext context;
     context.threads = ThreadsOr(arguments.jobs);
@@ -157,6 +252,7 @@ void Sweep(const SweepArguments& arguments) {
     for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) runs.push_back(run.run);
     return Announce(plan, runs, runs.size(), context);
   }
+  if (arguments.executor == "slurm") return SweepOnSlurm(arguments, plan, file);
   SweepHere(arguments, plan);
 }
 

@@ -1,0 +1,168 @@
+#include "eval/sweep/slurm.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "eval/sweep/sweep_progress.h"
+#include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kPollInterval{2};
+constexpr int kMostFruitlessStarts = 3;
+
+struct CommandOutput {
+  bool succeeded = false;
+  std::string text;  // standard output and error
+};
+
+CommandOutput OutputOf(const std::string& command) {
+  CommandOutput output;
+  FILE* const pipe = ::popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return output;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    output.text.append(buffer.data(), count);
+  }
+  output.succeeded = ::pclose(pipe) == 0;
+  return output;
+}
+
+// Parts of ours that Slurm still has before it. Nothing when it cannot be asked just now.
+std::optional<std::set<int>> PartsInQueue(const std::set<std::string>& job_ids) {
+  // Job of the array, number in it, state; one line a task. Completing tasks have ended.
+  const CommandOutput queue = OutputOf(
+      "squeue --noheader --array --me --states=PENDING,RUNNING,CONFIGURING,SUSPENDED "
+      "--format='%F %K'");
+  if (!queue.succeeded) return std::nullopt;
+  std::set<int> parts;
+  for (const TextRow& row : SplitRows(queue.text)) {
+    if (row.fields.size() != 2 || !job_ids.contains(std::string(row.fields[0]))) continue;
+    if (const auto part = ParseNumber(row.fields[1])) parts.insert(static_cast<int>(*part));
+  }
+  return parts;
+}
+
+class Submission {
+ public:
+  explicit Submission(const SlurmJob& job) : job_(job), folder_(job.folder + "/slurm") {
+    fs::create_directories(folder_);
+    fs::create_directories(job.folder + "/shards");
+    WriteFile(Script(), fmt::format("#!/bin/sh\n"
+                                    "#SBATCH --job-name=depthgrid-{}\n"
+                                    "#SBATCH --output={}/%A_%a.log\n"
+                                    "#SBATCH --cpus-per-task={}\n"
+                                    "exec {}\n",
+                                    job.title, folder_, job.cpus_per_task, job.command));
+    // Jobs of a coordinator that was killed may be running still.
+    if (fs::exists(JobList())) {
+      const std::string text = ReadFile(JobList());
+      for (const TextRow& row : SplitRows(text)) job_ids_.emplace(row.fields[0]);
+    }
+  }
+
+  void Submit(const std::set<int>& parts) {
+    const CommandOutput sbatch = OutputOf(fmt::format("sbatch --parsable --array={} {} '{}'",
+                                                      ArrayText(parts), job_.options, Script()));
+    const std::string id = sbatch.text.substr(0, sbatch.text.find_first_of(";\n"));
+    if (!sbatch.succeeded || !ParseNumber(id)) {
+      throw std::runtime_error("sbatch refused: " + sbatch.text);
+    }
+    job_ids_.insert(id);
+    std::string list;
+    for (const std::string& known : job_ids_) list += known + "\n";
+    WriteFile(JobList(), list);
+  }
+
+  const std::set<std::string>& job_ids() const { return job_ids_; }
+  const std::string& folder() const { return folder_; }
+
+ private:
+  std::string Script() const { return folder_ + "/job.sh"; }
+  std::string JobList() const { return folder_ + "/jobs.txt"; }
+
+  const SlurmJob& job_;
+  std::string folder_;
+  std::set<std::string> job_ids_;
+};
+
+// What the parts' folders say.
+struct State {
+  SweepProgress sum;
+  std::set<int> unfinished;
+  std::map<int, int> done;  // runs of each part
+};
+
+State StateOf(const SlurmJob& job) {
+  State state;
+  for (int part = 1; part <= job.parts; ++part) {
+    const auto progress = ReadProgress(PartFolder(job.folder, part));
+    if (progress) {
+      state.sum.done += progress->done;
+      state.sum.total += progress->total;
+      state.done[part] = progress->done;
+    }
+    if (!progress || !progress->Finished()) state.unfinished.insert(part);
+  }
+  return state;
+}
+
+}  // namespace
+
+std::string PartFolder(const std::string& folder, int part) {
+  return fmt::format("{}/shards/{}", folder, part);
+}
+
+std::string ArrayText(const std::set<int>& parts) {
+  std::string text;
+  for (auto first = parts.begin(); first != parts.end();) {
+    auto last = first;
+    while (std::next(last) != parts.end() && *std::next(last) == *last + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ",", *first);
+    if (last != first) text += fmt::format("-{}", *last);
+    first = std::next(last);
+  }
+  return text;
+}
+
+void RunOnSlurm(const SlurmJob& job) {
+  Submission submission(job);
+  std::map<int, int> fruitless;      // starts of a part since it last got on
+  std::map<int, int> done_at_start;  // its runs then
+  for (State state = StateOf(job); !state.unfinished.empty(); state = StateOf(job)) {
+    const auto queued = PartsInQueue(submission.job_ids());
+    if (queued) {
+      // Again from the folders: a part may have finished between the two looks.
+      std::set<int> ended = StateOf(job).unfinished;
+      for (const int part : *queued) ended.erase(part);
+      for (const int part : ended) {
+        const bool got_on = state.done[part] > done_at_start[part];
+        fruitless[part] = got_on ? 1 : fruitless[part] + 1;
+        done_at_start[part] = state.done[part];
+        if (fruitless[part] > kMostFruitlessStarts) {
+          throw std::runtime_error(
+              fmt::format("part {} ended {} times without a result; see {}/*_{}.log", part,
+                          kMostFruitlessStarts, submission.folder(), part));
+        }
+      }
+      if (!ended.empty()) submission.Submit(ended);
+    }
+    job.progress(state.sum.done, state.sum.total);
+    std::this_thread::sleep_for(kPollInterval);
+  }
+}
+
+}  // namespace depthgrid

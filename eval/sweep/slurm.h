@@ -1,0 +1,33 @@
+// The parts of a sweep as tasks of Slurm array jobs (docs/sweeps.md, "Slurm"). What counts as done
+// is what the parts' own folders say, never what Slurm remembers of its tasks.
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace depthgrid {
+
+struct SlurmJob {
+  std::string title;
+  std::string folder;   // of the whole sweep, absolute; parts go to folder/shards/I
+  int parts = 1;        // tasks 1 .. parts
+  std::string command;  // shell words of one part; $SLURM_ARRAY_TASK_ID is its number
+  std::string options;  // for sbatch
+  int cpus_per_task = 1;
+  std::function<void(int done, int total)> progress;  // of runs; may throw to stop
+};
+
+// The folder of a part.
+std::string PartFolder(const std::string& folder, int part);
+
+// Writes the job, submits the parts that are not finished, waits, submits again what ended without
+// being finished, and returns when all parts are. Throws std::runtime_error when Slurm refuses, or
+// when a part ends three times without getting on.
+void RunOnSlurm(const SlurmJob& job);
+
+// "1-3,7" of {1, 2, 3, 7}.
+std::string ArrayText(const std::set<int>& parts);
+
+}  // namespace depthgrid
