@@ -80,7 +80,7 @@ struct Program {
 
 void AddScenes(Program& program) {
   const auto [app, arguments] =
-      program.Add<ScenesArguments>(program.app, "scenes", "List the shipped scenes and experiments",
+      program.Add<ScenesArguments>(program.app, "scenes", "List the shipped scenes, experiments and sweeps",
                                    "depthgrid scenes", &ListScenes);
 }
 

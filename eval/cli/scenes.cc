@@ -6,6 +6,7 @@
 #include "eval/cli/console.h"
 #include "eval/experiment_options.h"
 #include "eval/shipped.h"
+#include "eval/sweep/sweep_plan.h"
 #include "sim/scene.h"
 #include "sim/trajectory.h"
 
@@ -62,7 +63,12 @@ void ListScenes(const ScenesArguments&) {
                            options.trajectory.empty() ? "first" : options.trajectory,
                            options.frames > 0 ? fmt::format("{}", options.frames) : "whole path"});
   }
-  fmt::print("{}\n{}", Table(scenes), Table(experiments));
+  std::vector<std::vector<std::string>> sweeps = {{"sweep", "runs", "of"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kSweep)) {
+    const SweepPlan plan = ReadSweepPlan(ResolveName(name, ShippedKind::kSweep), {});
+    sweeps.push_back({name, fmt::format("{}", plan.runs.size()), plan.size_text});
+  }
+  fmt::print("{}\n{}\n{}", Table(scenes), Table(experiments), Table(sweeps));
 }
 
 }  // namespace depthgrid::cli

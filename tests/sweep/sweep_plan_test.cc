@@ -1,0 +1,142 @@
+// Which runs a sweep's file asks for.
+#include "eval/sweep/sweep_plan.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <set>
+
+#include "eval/sweep/slurm.h"
+#include "mapper/core/error.h"
+#include "tests/io/temporary_folder.h"
+#include "tests/paths.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+
+class SweepPlanTest : public TemporaryFolderTest {
+ protected:
+  SweepPlan PlanOf(const std::string& text) {
+    Write("small.yaml", "scene: living_room\nframes: 9\n");
+    Write("sweep.yaml", "experiment: ./small.yaml\n" + text);
+    return ReadSweepPlan(Path("sweep.yaml"), {});
+  }
+  // The values of one key over the runs.
+  static std::vector<std::string> ValuesOf(const SweepPlan& plan, const std::string& key) {
+    const auto& keys = plan.parameter_keys;
+    const auto at =
+        static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
+    std::vector<std::string> values;
+    for (const PlannedRun& run : plan.runs) values.push_back(run.values.at(at));
+    return values;
+  }
+  static std::vector<int> PointsOf(const SweepPlan& plan) {
+    std::vector<int> points;
+    for (const PlannedRun& run : plan.runs) points.push_back(run.point);
+    return points;
+  }
+};
+
+TEST_F(SweepPlanTest, RangesIncludeBothEnds) {
+  const SweepPlan plan = PlanOf("axes: {mapper.fusion.gain: {from: 0, to: 1, count: 5}}\n");
+  EXPECT_THAT(ValuesOf(plan, "mapper.fusion.gain"), ElementsAre("0", "0.25", "0.5", "0.75", "1"));
+  const SweepPlan log =
+      PlanOf("axes: {slam.drift_scale: {from: 0.25, to: 4, count: 3, scale: log}}\n");
+  EXPECT_THAT(ValuesOf(log, "slam.drift_scale"), ElementsAre("0.25", "1", "4"));
+}
+
+TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
+  const SweepPlan plan = PlanOf(
+      "axes:\n  seed: {seeds: 2, first: 7}\n  mapper.fusion.gain: [0, 1.0]\n"
+      "  depth_seed: [1, 2]\n");
+  EXPECT_THAT(plan.parameter_keys, ElementsAre("seed", "mapper.fusion.gain", "depth_seed"));
+  EXPECT_THAT(PointsOf(plan), ElementsAre(0, 0, 0, 0, 1, 1, 1, 1));
+  EXPECT_THAT(ValuesOf(plan, "seed"), ElementsAre("7", "7", "8", "8", "7", "7", "8", "8"));
+  EXPECT_THAT(ValuesOf(plan, "depth_seed"), ElementsAre("1", "2", "1", "2", "1", "2", "1", "2"));
+  EXPECT_THAT(ValuesOf(plan, "mapper.fusion.gain"),
+              ElementsAre("0", "0", "0", "0", "1", "1", "1", "1"));
+  EXPECT_EQ(plan.OptionsOf(plan.runs[2]).seed, 8U);
+}
+
+TEST_F(SweepPlanTest, ZipTakesValuesTogetherAndStillCrossesSeeds) {
+  const SweepPlan plan =
+      PlanOf("mode: zip\naxes: {frames: [5, 6], mapper.fusion.gain: [0, 1], seed: {seeds: 3}}\n");
+  EXPECT_THAT(ValuesOf(plan, "frames"), ElementsAre("5", "5", "5", "6", "6", "6"));
+  EXPECT_THAT(ValuesOf(plan, "mapper.fusion.gain"), ElementsAre("0", "0", "0", "1", "1", "1"));
+  EXPECT_THAT(ValuesOf(plan, "seed"), ElementsAre("1", "2", "3", "1", "2", "3"));
+}
+
+TEST_F(SweepPlanTest, KeysOfOneAxisChangeTogether) {
+  const SweepPlan plan = PlanOf(
+      "axes:\n  'sensor.noise, sensor.noise_scale': [[none, 1], [handa, 4]]\n  frames: [5, 6]\n");
+  EXPECT_THAT(ValuesOf(plan, "sensor.noise"), ElementsAre("none", "none", "handa", "handa"));
+  EXPECT_THAT(ValuesOf(plan, "sensor.noise_scale"), ElementsAre("1", "1", "4", "4"));
+}
+
+TEST_F(SweepPlanTest, RandomSamplesAreTheSameEveryTimeAndInRange) {
+  const std::string text =
+      "mode: random\nsamples: 100\naxes:\n  mapper.fusion.gain: {from: 0.2, to: 0.4}\n"
+      "  slam.drift_scale: {from: 0.01, to: 100, scale: log}\n  frames: [5, 6]\n"
+      "  seed: {seeds: 2}\n";
+  const SweepPlan plan = PlanOf(text);
+  ASSERT_EQ(plan.runs.size(), 200U);
+  EXPECT_EQ(ValuesOf(plan, "mapper.fusion.gain"), ValuesOf(PlanOf(text), "mapper.fusion.gain"));
+  EXPECT_NE(ValuesOf(plan, "mapper.fusion.gain"),
+            ValuesOf(PlanOf("sample_seed: 2\n" + text), "mapper.fusion.gain"));
+  int below_one = 0;
+  for (const std::string& value : ValuesOf(plan, "slam.drift_scale")) {
+    EXPECT_TRUE(std::stod(value) > 0.01 && std::stod(value) < 100.0) << value;
+    below_one += std::stod(value) < 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(below_one, 70);  // half of 200, the log's middle being 1
+  EXPECT_LT(below_one, 130);
+  for (const std::string& value : ValuesOf(plan, "mapper.fusion.gain")) {
+    EXPECT_TRUE(std::stod(value) > 0.2 && std::stod(value) < 0.4) << value;
+  }
+}
+
+TEST_F(SweepPlanTest, RunsThatDifferInTheMapperAloneAreOneGroup) {
+  const SweepPlan plan = PlanOf(
+      "axes: {mapper.fusion.gain: [0, 1], mapper.scan.beams: [100, 200], seed: {seeds: 2}}\n");
+  EXPECT_THAT(ScanGroups(plan), ElementsAre(0, 1, 2, 3, 0, 1, 2, 3));
+}
+
+TEST_F(SweepPlanTest, ShardsArePartsOfTheWhole) {
+  const SweepPlan plan = PlanOf("axes: {mapper.fusion.gain: [0, 1], seed: {seeds: 7}}\n");
+  std::multiset<int> runs;
+  for (int index = 1; index <= 3; ++index) {
+    for (const PlannedRun& run : RunsOf(plan, {index, 3})) runs.insert(run.run);
+  }
+  EXPECT_EQ(runs.size(), 14U);
+  EXPECT_EQ(std::set<int>(runs.begin(), runs.end()).size(), 14U);
+}
+
+TEST_F(SweepPlanTest, TheSameSweepSaysTheSameOfItself) {
+  const std::string text = "axes: {mapper.fusion.gain: [0, 0.5, 1], seed: [1, 2]}\n";
+  const std::string other =
+      "axes: {mapper.fusion.gain: {from: 0, to: 1, count: 3}, seed: {seeds: 2}}\n";
+  EXPECT_EQ(PlanOf(text).sweep_text, PlanOf(other).sweep_text);
+  EXPECT_NE(PlanOf(text).sweep_text,
+            PlanOf("axes: {mapper.fusion.gain: [0, 0.5, 1], seed: [1, 3]}\n").sweep_text);
+}
+
+TEST_F(SweepPlanTest, EveryShippedSweepIsSound) {
+  int sweeps = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(kSourceFolder) / "scenes/sweeps")) {
+    EXPECT_GE(ReadSweepPlan(entry.path().string(), {}).runs.size(), 50U) << entry.path();
+    ++sweeps;
+  }
+  EXPECT_GE(sweeps, 7);
+}
+
+TEST(SlurmArray, IsWrittenInRanges) {
+  EXPECT_EQ(ArrayText({1, 2, 3, 7}), "1-3,7");
+  EXPECT_EQ(ArrayText({4}), "4");
+  EXPECT_EQ(ArrayText({1, 3, 4}), "1,3-4");
+}
+
+}  // namespace
+}  // namespace depthgrid
