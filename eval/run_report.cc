@@ -164,7 +164,8 @@ Json SamplesJson(const std::string& folder) {
 }
 
 std::string ValueOf(const Config& settings, const std::string& key) {
-  return settings.Has(key) ? settings.List(key).front() : "";
+  const std::string value = settings.Has(key) ? settings.List(key).front() : "";
+  return value == "\"\"" ? "" : value;  // YAML of an empty text
 }
 
 std::string TitleOf(const Config& settings) {

@@ -24,7 +24,7 @@ std::string TimeText(double seconds) {
 }  // namespace
 
 ProgressBar::ProgressBar(std::string label)
-    : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
+    : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() { Clear(); }
 
@@ -33,27 +33,38 @@ void ProgressBar::Clear() {
   drawn_ = false;
 }
 
+void ProgressBar::Say(const std::string& words) {
+  if (!on_terminal_) return;
+  fmt::print(stderr, "\r\033[K{} ...", words);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
 void ProgressBar::Show(int done, int total) {
   ThrowIfInterrupted();
   if (!on_terminal_ || total <= 0) return;
   constexpr std::chrono::milliseconds kRedraw{100};
   const auto now = Clock::now();
-  if (drawn_ && now - last_drawn_ < kRedraw && done < total) return;
+  if (!first_) first_ = {done, now};  // what was before says nothing of the rate
+  if (shown_ && now - last_drawn_ < kRedraw && done < total) return;
   constexpr int kBarWidth = 30;
   const int filled = static_cast<int>(static_cast<long long>(kBarWidth) * done / total);
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  const double rate_hz = elapsed_s > 0.0 ? done / elapsed_s : 0.0;
+  const double elapsed_s = std::chrono::duration<double>(now - first_->time).count();
+  const double rate_hz = elapsed_s > 0.0 ? (done - first_->done) / elapsed_s : 0.0;
   const std::string left = rate_hz > 0.0 ? TimeText((total - done) / rate_hz) + " left" : "";
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {:.1f}/s  {}", label_, "", filled, "",
-             kBarWidth - filled, done, total, rate_hz, left);
+  const std::string rate = rate_hz > 0.0 ? fmt::format("{:.1f}/s  {}", rate_hz, left) : "";
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {}", label_, "", filled, "",
+             kBarWidth - filled, done, total, rate);
   std::fflush(stderr);
-  drawn_ = true;
+  drawn_ = shown_ = true;
   last_drawn_ = now;
 }
 
 Progress ProgressBar::AsProgress() {
   return [this](int done, int total) { Show(done, total); };
 }
+
+void SayReport(const std::string& folder) { fmt::print("look at {}/report.html\n", folder); }
 
 void Warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {

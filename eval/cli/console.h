@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void Show(int done, int total);
+  // Puts a few words in the bar's place, for work whose end is not known; terminals only.
+  void Say(const std::string& words);
   // Takes the bar away, so that something else can be said.
   void Clear();
   Progress AsProgress();
@@ -27,11 +30,18 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
   std::string label_;
   bool on_terminal_;
-  bool drawn_ = false;
-  Clock::time_point start_;
+  struct Progressed {
+    int done;
+    Clock::time_point time;
+  };
+  bool drawn_ = false;  // anything
+  bool shown_ = false;  // the bar itself
+  std::optional<Progressed> first_;
   Clock::time_point last_drawn_;
 };
 
+// Where the page of what was done lies.
+void SayReport(const std::string& folder);
 void Warn(const std::vector<std::string>& warnings);
 
 // Ctrl-C makes the next progress report throw, so that half-written output is removed.

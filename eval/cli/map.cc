@@ -121,6 +121,7 @@ void Map(const MapArguments& arguments) {
   ProgressBar bar("mapping");
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress());
+  bar.Say("writing the map and the report");
   RunRecord record;
   record.title = arguments.input;
   record.settings = ToYaml(settings);
@@ -131,7 +132,9 @@ void Map(const MapArguments& arguments) {
   record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   WriteRunFolder(folder, record);
   folder.Commit();
+  bar.Clear();
   SayResult(run);
+  SayReport(arguments.common.output);
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   Warn(warnings);
 }

@@ -95,12 +95,11 @@ void Summarise(const SweepResults& results) {
     if (failure.empty()) continue;
     if (failed++ == 0) reason = failure;
   }
-  fmt::print("{} runs in {}/results.csv", results.rows(), results.folder);
+  fmt::print("{} runs in {}/results.csv\n", results.rows(), results.folder);
   if (results.rows() > 0) {
     WriteSweepReport(results.folder);
-    fmt::print(", to look at in {}/report.html", results.folder);
+    SayReport(results.folder);
   }
-  fmt::print("\n");
   if (failed > 0) Warn({fmt::format("{} runs failed, the first: {}", failed, reason)});
 }
 

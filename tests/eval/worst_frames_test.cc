@@ -118,8 +118,10 @@ Scan OneHit() {
 TEST(ReferenceOf, HoldsTheScansBeforeAtTheirPosesOfTheTime) {
   RunFiles run;
   run.frames = Frames();
-  for (int i = 0; i < 3; ++i)
-    run.scans.push_back({i, 0.1 * i, {5.0 + 2.0 * i, 3.0, 0.0}, OneHit()});
+  ScanArchive archive;
+  for (int i = 0; i < 3; ++i) {
+    run.scans.push_back({i, 0.1 * i, {5.0 + 2.0 * i, 3.0, 0.0}, archive.Keep(OneHit())});
+  }
   EXPECT_EQ(ReferenceOf(run, 0, {}, {}).geometry.size(), 0U);
   // The first scan lay at the origin then, wherever it lies in the end.
   const OccupancyMap second = ReferenceOf(run, 1, {}, {});
