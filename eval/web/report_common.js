@@ -112,7 +112,7 @@ function drawIntervals(u, series) {
     u.ctx.beginPath();
     u.data[0].forEach((x, i) => {
       if (!isNumber(s.low[i]) || !isNumber(s.high[i])) return;
-      const px = u.valToPos(x, "x", true) + (k - (series.length - 1) / 2) * 4 * devicePixelRatio;
+      const px = u.valToPos(x, "x", true) + (k - (series.length - 1) / 2) * 2 * devicePixelRatio;
       const [low, high] = [u.valToPos(s.low[i], "y", true), u.valToPos(s.high[i], "y", true)];
       const cap = 3 * devicePixelRatio;
       u.ctx.moveTo(px, low); u.ctx.lineTo(px, high);
@@ -125,13 +125,13 @@ function drawIntervals(u, series) {
 }
 
 // The y range must hold the whiskers too, not only the points.
-function rangeWithIntervals(series) {
+function rangeWithIntervals(series, log) {
   return (u, low, high) => {
     series.forEach((s, k) => {
       if (!s.low || !u.series[k + 1].show) return;
       for (const v of [...s.low, ...s.high]) if (isNumber(v)) { low = Math.min(low, v); high = Math.max(high, v); }
     });
-    return uPlot.rangeNum(low, high, 0.1, true);
+    return log ? uPlot.rangeLog(low, high, 10, false) : uPlot.rangeNum(low, high, 0.1, true);
   };
 }
 
@@ -165,7 +165,7 @@ function zoomPlot(u, x, factor) {
 // digits, unit, points, low, high (ends of intervals)}. Lines stop where a value is null. Plots of
 // one `sync` key share their cursor. `xNames` replaces the numbers of the x axis, one a value of x.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
-function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX }) {
+function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title));
   container.append(box);
@@ -184,7 +184,7 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
     return {
       width: width(), height,
       cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
-      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: series.some((s) => s.low) ? { range: rangeWithIntervals(series) } : {} },
+      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : {}) } },
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
           ...(xNames ? { splits: () => x, values: () => xNames } : {}) },

@@ -1,6 +1,6 @@
 // The metric along an axis, a line a value of another; and the best value of the axis.
 "use strict";
-const along = { axis: mainAxis(), by: -1, held: {}, logX: false };
+const along = { axis: mainAxis(), by: -1, held: {}, logX: false, logY: false };
 const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
 const MOST_LINES = PALETTE.length;
 
@@ -54,17 +54,20 @@ function drawAlong() {
     ...holders("plot", along.held, free, drawAlong),
   ];
   const axis = AXES[along.axis];
+  const checkbox = (id, key, label) => {
+    const box = make("input", { type: "checkbox", id, onchange: (event) => { along[key] = event.target.checked; drawAlong(); } });
+    box.checked = along[key];
+    controls.push(make("label", { for: id }, box, ` ${label}`));
+  };
   const positive = axis.numeric && axis.numbers.every((v) => v > 0);
-  if (positive) {
-    const box = make("input", { type: "checkbox", id: "plot-log", onchange: (event) => { along.logX = event.target.checked; drawAlong(); } });
-    box.checked = along.logX;
-    controls.push(make("label", { for: "plot-log" }, box, " logarithmic"));
-  }
+  const positiveValues = [...metric.mean, ...metric.low].every((v) => v === null || v > 0);
+  if (positive) checkbox("plot-log", "logX", "logarithmic axis");
+  if (positiveValues) checkbox("plot-log-values", "logY", "logarithmic values");
   keepFocus(byId("plot-controls"), controls);
   const { x, series } = plotSeries(free);
   drawPlot(byId("plot"), {
     title: `${metric.name} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
-    xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX,
+    xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
   const seeds = Math.max(...POINTS.map((p) => p.runs));
   byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} seeds` : "one seed"}. ` +
