@@ -8,6 +8,7 @@
 #include "mapper/core/level.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/correction_filter.h"
+#include "mapper/graph/loop_search.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/loop_closing.h"
 #include "mapper/reference_factory.h"
@@ -19,6 +20,12 @@ namespace {
 int HitCount(const Scan& scan) {
   return static_cast<int>(std::count_if(scan.beams.begin(), scan.beams.end(),
                                         [](const Beam& beam) { return beam.hit; }));
+}
+
+bool SearchesLoops(const MapperOptions& options) {
+  const LoopSearchUse use = options.loops.search.use;
+  return use == LoopSearchUse::kOn ||
+         (use == LoopSearchUse::kAuto && options.method == MapperMethod::kSurfel);
 }
 
 // The last motion goes on for this long at most; after a longer gap it says nothing.
@@ -36,6 +43,7 @@ struct IncrementalMapper::State {
   CorrectionFilter filter;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
+  std::optional<LoopSearch> loop_search;
   AdjustmentRounds rounds;
   ScanArchive matched_scans;
   ScanArchive obstacle_scans;
@@ -51,13 +59,17 @@ struct IncrementalMapper::State {
         loop_closer(opts.loops),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}) {
-    if (!options.fusion.TrustsSlamAlone()) reference = MakeReference(options);
+    if (options.fusion.TrustsSlamAlone()) return;
+    reference = MakeReference(options);
+    if (SearchesLoops(options)) loop_search.emplace(options.loops.search, options.loops.overlap);
   }
 
   FrameReport Begin(const Frame& frame);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   void AdjustBetweenFrames();
+  void FindLoops(const FrameScans& scans, FrameReport& report);
+  void MoveTo(const std::vector<Pose2>& map_from_base);
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
@@ -97,6 +109,7 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   state_->Match(scans.matched, prediction, report);
   const FusedPose fused = state_->Fuse(prediction, report);
   state_->Insert(scans, fused, report);
+  state_->FindLoops(scans, report);
   return report;
 }
 
@@ -139,25 +152,32 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   report.loops_accepted = outcome.accepted;
   report.loops_rejected = outcome.rejected;
   if (!outcome.adjusted) return;
-  for (std::size_t i = 0; i < mapped.size(); ++i) {
-    mapped[i].map_from_base = outcome.map_from_base[i];
-  }
-  reference->Rebuild(mapped);
-  if (provisional) {
-    Anchor(outcome.map_from_base.back());
-  } else {
-    const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
-    filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
-  }
+  MoveTo(outcome.map_from_base);
+  if (provisional) Anchor(outcome.map_from_base.back());
 }
 
 // Poses and map corrected together while the run goes on; the newest frame keeps its place in the
 // map.
 void IncrementalMapper::State::AdjustBetweenFrames() {
-  const Adjustment adjustment = loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine);
-  for (std::size_t i = 0; i < mapped.size(); ++i) {
-    mapped[i].map_from_base = adjustment.map_from_base[i];
-  }
+  MoveTo(loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine).map_from_base);
+}
+
+// Those that the mapper finds itself. The frame's online estimate stays as it was given.
+void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
+  const StageTimer timer(clock, report.times.loops_us);
+  if (!loop_search || !report.inserted) return;
+  const std::vector<PlanarLoop> found = loop_search->Find(mapped, scans.matched, *reference);
+  if (found.empty()) return;
+  const LoopCloser::Outcome outcome = loop_closer.Add(found, mapped, *reference);
+  report.loops_accepted += outcome.accepted;
+  report.loops_rejected += outcome.rejected;
+  loop_search->Forget();
+  if (outcome.adjusted) MoveTo(outcome.map_from_base);
+}
+
+// The newest pose is the newest mapped frame's.
+void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base) {
+  for (std::size_t i = 0; i < mapped.size(); ++i) mapped[i].map_from_base = map_from_base[i];
   reference->Rebuild(mapped);
   const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));

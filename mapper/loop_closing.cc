@@ -8,6 +8,7 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether SLAM's loops correct the map");
   v.Flag("verify", verify, "whether a loop must lay what its two places saw over each other");
   v.Group("overlap", overlap, "how that is tested");
+  v.Group("search", search, "loops that the mapper finds itself");
 }
 
 LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
@@ -35,6 +36,34 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     }
   }
   outcome.rejected = static_cast<int>(events.size()) - outcome.accepted;
+  return outcome;
+}
+
+LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
+                                    const std::vector<MappedFrame>& frames,
+                                    ReferenceMap& reference) {
+  const std::vector<PlanarLoop> known = loops_;
+  loops_.insert(loops_.end(), found.begin(), found.end());
+  const Adjustment adjustment = reference.Adjust(frames, loops_, AdjustEffort::kCloseLoops);
+  const auto pose = [&](int frame) {
+    return adjustment.map_from_base[static_cast<std::size_t>(frame)];
+  };
+  bool believed = true;
+  for (std::size_t i = known.size(); i < loops_.size(); ++i) {
+    PlanarLoop adjusted = loops_[i];
+    adjusted.first_from_second = Between(pose(adjusted.first), pose(adjusted.second));
+    believed = believed && adjustment.loop_accepted[i] &&
+               Agrees(OverlapOf(frames, adjusted, options_.overlap), options_.overlap);
+  }
+  Outcome outcome;
+  if (believed) {
+    outcome.adjusted = true;
+    outcome.map_from_base = adjustment.map_from_base;
+    outcome.accepted = static_cast<int>(found.size());
+  } else {
+    loops_ = known;
+    outcome.rejected = static_cast<int>(found.size());
+  }
   return outcome;
 }
 

@@ -6,6 +6,7 @@
 
 #include "mapper/frame_history.h"
 #include "mapper/graph/loop_overlap.h"
+#include "mapper/graph/loop_search_options.h"
 
 namespace depthgrid {
 
@@ -14,6 +15,7 @@ struct LoopOptions {
   // Whether a loop must lay what its two places saw over each other.
   bool verify = true;
   OverlapOptions overlap;
+  LoopSearchOptions search;
 
   void Visit(OptionsVisitor& v);
 };
@@ -34,6 +36,10 @@ class LoopCloser {
   Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
                 ReferenceMap& reference);
+  // Loops that the mapper found itself. They are kept when the adjustment with all loops takes them
+  // in and still lays what their places saw over each other.
+  Outcome Add(const std::vector<PlanarLoop>& found, const std::vector<MappedFrame>& frames,
+              ReferenceMap& reference);
   // Everything once more, with the loops known so far.
   Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference,
                        AdjustEffort effort) const {

@@ -56,6 +56,10 @@ class ReferenceMap {
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                       const Eigen::Matrix3d& covariance) = 0;
+  // The share of a scan at a pose that lies on what was inserted before the frame at this position;
+  // 0 where that is not known.
+  virtual double ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
+                                 const Pose2& map_from_base, int frame) = 0;
   // Corrects all poses at once, given loops (possibly none). Does not change the map; see Rebuild.
   virtual Adjustment Adjust(const std::vector<MappedFrame>& frames,
                             const std::vector<PlanarLoop>& loops, AdjustEffort effort) = 0;

@@ -1,5 +1,6 @@
 #include "mapper/surfel/surfel_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -96,8 +97,24 @@ void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                        const Eigen::Matrix3d&) {
   const std::vector<Surfel>& pieces = PiecesOf(scan);
+  surfels_before_.push_back(map_.size());
   InsertInto(map_, pieces, map_from_base);
   groups_.Add(pieces, map_from_base);
+}
+
+double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
+                                  const Pose2& map_from_base, int frame) {
+  const std::vector<Surfel>& pieces = PiecesOf(scan);
+  if (pieces.empty()) return 0.0;
+  const Motion2 motion(map_from_base);
+  const AssociationGate gate{options_.match.along_m, options_.match.gate_m,
+                             std::cos(RadFromDeg(options_.match.max_angle_deg))};
+  const int before = surfels_before_[static_cast<std::size_t>(frame)];
+  const auto seen = std::count_if(pieces.begin(), pieces.end(), [&](const Surfel& piece) {
+    const int surfel = map_.Nearest(motion * piece, gate);
+    return surfel >= 0 && surfel < before;
+  });
+  return static_cast<double>(seen) / static_cast<double>(pieces.size());
 }
 
 Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
@@ -155,7 +172,10 @@ void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {
   for (const MappedFrame& frame : frames) map_from_base.push_back(frame.map_from_base);
   groups_.MoveTo(map_from_base);
   map_.Clear();
+  surfels_before_.clear();
   for (const SurfelGroup& group : groups_.groups()) {
+    surfels_before_.insert(surfels_before_.end(), static_cast<std::size_t>(group.frames),
+                           map_.size());
     InsertInto(map_, group.surfels, group.map_from_group);
   }
 }

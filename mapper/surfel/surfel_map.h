@@ -35,6 +35,8 @@ class SurfelMap : public ReferenceMap {
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
+  double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                         int frame) override;
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
@@ -55,6 +57,7 @@ class SurfelMap : public ReferenceMap {
   ScanSurfelMaker maker_;
   SurfelMatcher matcher_;
   SurfelStore map_;
+  std::vector<int> surfels_before_;  // of the map, when each frame was inserted
   SurfelGroups groups_;
   // The last scan asked for, and its pieces: matching and inserting want the same.
   std::shared_ptr<const Scan> scan_;

@@ -1,0 +1,153 @@
+#include "mapper/graph/loop_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// How much a metre from the map's place and a radian from its heading speak against a candidate.
+constexpr double kMetresPerRadian = 1.0;
+// With a narrow view, places looked at from more different headings have little in common.
+constexpr double kMaxTurnDeg = 60.0;
+// Beyond the window, so that places beside a way count.
+constexpr double kBesideM = 1.0;
+// Where the newest scans already lie on what was seen long ago, the adjustment sees it too.
+constexpr double kKnownShare = 0.5;
+
+const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
+  return frames[static_cast<std::size_t>(i)].map_from_base;
+}
+
+bool IsSmall(const Pose2& pose, double within_m, double within_deg) {
+  return pose.translation().norm() < within_m && std::abs(pose.yaw_rad) < RadFromDeg(within_deg);
+}
+
+}  // namespace
+
+void LoopSearchOptions::Visit(OptionsVisitor& v) {
+  v.Choice(
+      "use", use,
+      {{LoopSearchUse::kAuto, "auto"}, {LoopSearchUse::kOn, "on"}, {LoopSearchUse::kOff, "off"}},
+      "whether the mapper looks for loops itself; auto: with method surfel");
+  v.Number("every_m", every_m, {0.05, 1000.0}, "way between two searches");
+  v.Number("min_way_m", min_way_m, {0.1, 1e6}, "how far back along the way a loop begins");
+  v.Number("drift_share", drift_share, {0.0, 1.0}, "what the estimate may drift by, of the way");
+  v.Number("turn_deg_per_m", turn_deg_per_m, {0.0, 90.0}, "and turn by");
+  v.Number("min_window_m", min_window_m, {0.0, 100.0}, "half width of the search, at least");
+  v.Number("max_window_m", max_window_m, {0.0, 100.0}, "at most");
+  v.Number("min_window_deg", min_window_deg, {0.0, 180.0}, "half angle of the search, at least");
+  v.Number("max_window_deg", max_window_deg, {0.0, 180.0}, "at most");
+  v.Number("candidates", candidates, {1, 1000}, "places that are searched, at most");
+  v.Group("place", place, "which scans are searched together");
+  v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
+  v.Number("max_second_score", max_second_score, {0.0, 1.0},
+           "a pose elsewhere with more than this share of the score makes it ambiguous");
+  v.Number("min_explained", min_explained, {0.0, 1.0}, "of the scans, once matched precisely");
+  v.Number("max_sigma_m", max_sigma_m, {0.0, 10.0}, "of the match in its worst direction");
+  v.Number("max_sigma_deg", max_sigma_deg, {0.0, 90.0}, "of the match's heading");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
+  v.Number("min_correction_m", min_correction_m, {0.0, 10.0}, "nearer places need no loop");
+  v.Number("min_correction_deg", min_correction_deg, {0.0, 90.0}, "nor better aligned ones");
+  v.Number("consent_m", consent_m, {0.0, 10.0}, "two loops must want the same correction, to this");
+  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
+}
+
+double LoopSearch::WindowM(double way_m) const {
+  return std::clamp(options_.drift_share * way_m, options_.min_window_m, options_.max_window_m);
+}
+
+double LoopSearch::WindowRad(double way_m) const {
+  return RadFromDeg(std::clamp(options_.turn_deg_per_m * way_m, options_.min_window_deg,
+                               options_.max_window_deg));
+}
+
+void LoopSearch::Walk(const std::vector<MappedFrame>& frames) {
+  while (way_m_.size() < frames.size()) {
+    const int i = static_cast<int>(way_m_.size());
+    const double way_m =
+        i == 0 ? 0.0
+               : way_m_.back() +
+                     Between(PoseAt(frames, i - 1), PoseAt(frames, i)).translation().norm();
+    way_m_.push_back(way_m);
+    if (keyframes_.empty() ||
+        way_m - way_m_[static_cast<std::size_t>(keyframes_.back())] >= options_.every_m) {
+      keyframes_.push_back(i);
+    }
+  }
+}
+
+// Places that the query may be at, the likeliest first.
+std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames, int query) const {
+  struct Ranked {
+    double cost = 0.0;
+    int frame = 0;
+  };
+  std::vector<Ranked> ranked;
+  for (const int k : keyframes_) {
+    const double way_m =
+        way_m_[static_cast<std::size_t>(query)] - way_m_[static_cast<std::size_t>(k)];
+    if (way_m < options_.min_way_m) break;
+    const Pose2 off = Between(PoseAt(frames, k), PoseAt(frames, query));
+    if (std::abs(off.yaw_rad) > RadFromDeg(kMaxTurnDeg)) continue;
+    const double distance_m = off.translation().norm();
+    if (distance_m > WindowM(way_m) + kBesideM) continue;
+    ranked.push_back({distance_m + kMetresPerRadian * std::abs(off.yaw_rad), k});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
+  std::vector<int> candidates;
+  for (const Ranked& r : ranked) {
+    if (static_cast<int>(candidates.size()) == options_.candidates) break;
+    candidates.push_back(r.frame);
+  }
+  return candidates;
+}
+
+// Whether both want the map's newer part moved the same way.
+bool LoopSearch::Consents(const std::vector<MappedFrame>& frames, const PlanarLoop& a,
+                          const PlanarLoop& b) const {
+  const Pose2 by_a = PoseAt(frames, a.first) * a.first_from_second;
+  const Pose2 by_b = PoseAt(frames, b.first) * b.first_from_second *
+                     Between(PoseAt(frames, b.second), PoseAt(frames, a.second));
+  return IsSmall(Between(by_a, by_b), options_.consent_m, options_.consent_deg);
+}
+
+std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
+                                         const std::shared_ptr<const Scan>& newest,
+                                         ReferenceMap& reference) {
+  Walk(frames);
+  if (way_m_.back() < next_search_m_) return {};
+  next_search_m_ = way_m_.back() + options_.every_m;
+  // The query lies so far back that what was seen on either side of it belongs to its place.
+  const double query_way_m = way_m_.back() - options_.place.reach_m;
+  const auto at = [&](double way_m) {
+    return static_cast<int>(std::lower_bound(way_m_.begin(), way_m_.end(), way_m) - way_m_.begin());
+  };
+  if (query_way_m < options_.min_way_m) return {};
+  const int query = at(query_way_m);
+  const std::vector<int> candidates = Candidates(frames, query);
+  if (candidates.empty()) return {};
+  if (reference.ShareSeenBefore(newest, frames.back().map_from_base,
+                                at(query_way_m - options_.min_way_m)) > kKnownShare) {
+    return {};
+  }
+  for (const int candidate : candidates) {
+    const double way_m = query_way_m - way_m_[static_cast<std::size_t>(candidate)];
+    const std::optional<PlanarLoop> loop =
+        matcher_.LoopBetween(frames, candidate, query, WindowM(way_m), WindowRad(way_m));
+    if (!loop) continue;
+    const Pose2 correction =
+        Between(Between(PoseAt(frames, candidate), PoseAt(frames, query)), loop->first_from_second);
+    if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) return {};
+    const std::optional<PlanarLoop> before = waiting_;
+    waiting_ = loop;
+    if (before && Consents(frames, *before, *loop)) return {*before, *loop};
+    return {};
+  }
+  return {};
+}
+
+void LoopSearch::Forget() { waiting_.reset(); }
+
+}  // namespace depthgrid

@@ -1,0 +1,41 @@
+// Loops that the mapper finds itself: has this place been seen before, and where does the map have
+// it? (docs/math.md, "Loops found by the mapper")
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mapper/graph/loop_search_options.h"
+#include "mapper/graph/place_matcher.h"
+#include "mapper/reference_map.h"
+
+namespace depthgrid {
+
+class LoopSearch {
+ public:
+  LoopSearch(const LoopSearchOptions& options, const OverlapOptions& overlap)
+      : options_(options), matcher_(options, overlap) {}
+
+  // To be asked after each frame that was mapped: loops that came to be believed.
+  std::vector<PlanarLoop> Find(const std::vector<MappedFrame>& frames,
+                               const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
+  // The frames were moved.
+  void Forget();
+
+ private:
+  void Walk(const std::vector<MappedFrame>& frames);
+  std::vector<int> Candidates(const std::vector<MappedFrame>& frames, int query) const;
+  double WindowM(double way_m) const;
+  double WindowRad(double way_m) const;
+  bool Consents(const std::vector<MappedFrame>& frames, const PlanarLoop& a,
+                const PlanarLoop& b) const;
+
+  LoopSearchOptions options_;
+  PlaceMatcher matcher_;
+  std::vector<double> way_m_;   // to each mapped frame
+  std::vector<int> keyframes_;  // mapped frames `every_m` apart
+  double next_search_m_ = 0.0;
+  std::optional<PlanarLoop> waiting_;  // for another that consents
+};
+
+}  // namespace depthgrid

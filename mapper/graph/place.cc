@@ -1,0 +1,98 @@
+#include "mapper/graph/place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/grid/probability_grid.h"
+#include "mapper/grid/scan_rasterizer.h"
+
+namespace depthgrid {
+namespace {
+
+const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
+  return frames[static_cast<std::size_t>(i)].map_from_base;
+}
+
+// The last frame on one side that is still within reach.
+int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
+                  const PlaceOptions& options) {
+  double way_m = 0.0;
+  double turn_rad = 0.0;
+  int i = middle;
+  while (i + step >= 0 && i + step < static_cast<int>(frames.size())) {
+    const Pose2 motion = Between(PoseAt(frames, i), PoseAt(frames, i + step));
+    way_m += motion.translation().norm();
+    turn_rad += std::abs(motion.yaw_rad);
+    if (way_m > options.reach_m || turn_rad > RadFromDeg(options.turn_deg)) break;
+    i += step;
+  }
+  return i;
+}
+
+}  // namespace
+
+void PlaceOptions::Visit(OptionsVisitor& v) {
+  v.Number("reach_m", reach_m, {0.0, 100.0}, "way to a place's outermost frames, metres");
+  v.Number("turn_deg", turn_deg, {0.0, 1e4}, "turning on that way, at most");
+  v.Number("max_scans", max_scans, {1, 1000}, "scans of a place, evenly spread");
+  v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cells that are searched, metres");
+}
+
+std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
+                              const PlaceOptions& options) {
+  const int first = FarthestFrame(frames, middle, -1, options);
+  const int last = FarthestFrame(frames, middle, 1, options);
+  const int count = std::min(options.max_scans, last - first + 1);
+  std::vector<int> members;
+  for (int k = 0; k < count; ++k) {
+    members.push_back(count == 1 ? middle : first + (last - first) * k / (count - 1));
+  }
+  return members;
+}
+
+OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
+                       int middle, double resolution_m) {
+  ScanRasterizer rasterizer;
+  GridOptions grid_options;
+  grid_options.resolution_m = resolution_m;
+  ProbabilityGrid grid(grid_options);
+  const Pose2 middle_from_map = Inverse(PoseAt(frames, middle));
+  for (const int i : members) {
+    const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
+    grid.Insert(
+        rasterizer.Rasterize(*frame.scan, middle_from_map * frame.map_from_base, resolution_m));
+  }
+  return grid.map();
+}
+
+std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frames,
+                                           const std::vector<int>& members, int middle,
+                                           double resolution_m) {
+  struct Placed {
+    Cell cell;
+    Eigen::Vector2d point;
+  };
+  std::vector<Placed> placed;
+  const Pose2 middle_from_map = Inverse(PoseAt(frames, middle));
+  for (const int i : members) {
+    const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
+    const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
+    const Scan scan = *frame.scan;
+    for (const Beam& beam : scan.beams) {
+      if (!beam.hit) continue;
+      const Eigen::Vector2d point = middle_from_base * EndPoint(beam);
+      placed.push_back({CellOf(point, resolution_m), point});
+    }
+  }
+  // The first of each cell, so that near walls do not outweigh far ones.
+  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return a.cell.y != b.cell.y ? a.cell.y < b.cell.y : a.cell.x < b.cell.x;
+  });
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (i == 0 || !(placed[i].cell == placed[i - 1].cell)) points.push_back(placed[i].point);
+  }
+  return points;
+}
+
+}  // namespace depthgrid

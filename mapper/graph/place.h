@@ -1,0 +1,36 @@
+// A place: what the scans around a frame saw together, in that frame's base axes.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/core/options.h"
+#include "mapper/reference_map.h"
+
+namespace depthgrid {
+
+struct PlaceOptions {
+  // Frames belong to the place of the frame in their middle when the way to them is this short.
+  // With a narrow view it takes a few metres of them to tell one place from another.
+  double reach_m = 1.5;
+  double turn_deg = 120.0;
+  int max_scans = 16;  // of them, evenly spread
+  double resolution_m = 0.05;
+
+  void Visit(OptionsVisitor& v);
+};
+
+// Positions among the mapped frames, in order of time.
+std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
+                              const PlaceOptions& options);
+
+// The map that these scans draw.
+OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
+                       int middle, double resolution_m);
+
+// Where they hit, one point a cell.
+std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frames,
+                                           const std::vector<int>& members, int middle,
+                                           double resolution_m);
+
+}  // namespace depthgrid

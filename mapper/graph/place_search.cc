@@ -1,0 +1,192 @@
+#include "mapper/graph/place_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr float kWallProb = 0.5F;
+// The widest square is 32 cells, 1.6 m of a 5 cm grid: wider ones hold a wall nearly everywhere.
+constexpr int kMaxLevels = 6;
+
+void RaiseTo(std::uint8_t score, const Cell& cell, const GridGeometry& geometry,
+             std::vector<std::uint8_t>& scores) {
+  std::uint8_t& there = scores[geometry.Index(cell)];
+  there = std::max(there, score);
+}
+
+// The points' cells at one rotation.
+std::vector<Cell> CellsOf(const std::vector<Eigen::Vector2d>& points, const PointCells& at) {
+  std::vector<Cell> cells;
+  cells.reserve(points.size());
+  for (const Eigen::Vector2d& point : points) {
+    const auto x = static_cast<float>(point.x());
+    const auto y = static_cast<float>(point.y());
+    cells.push_back({at.whole_cells.x + static_cast<int>(at.X(x, y)),
+                     at.whole_cells.y + static_cast<int>(at.Y(x, y))});
+  }
+  return cells;
+}
+
+// A square of translations of one rotation, and more than what any of them can score.
+struct Candidate {
+  LatticeStep step;  // its lower-left corner
+  int bound = -1;
+};
+
+bool Better(const Candidate& a, const Candidate& b) {
+  return a.bound != b.bound ? a.bound > b.bound : PrecedesInLattice(a.step, b.step);
+}
+
+class Search {
+ public:
+  Search(const WallPyramid& walls, const std::vector<Eigen::Vector2d>& points,
+         const PlaceWindow& window, double least_score, const std::optional<NotNear>& except)
+      : walls_(walls), except_(except) {
+    double farthest2 = 0.0;
+    for (const Eigen::Vector2d& point : points) {
+      farthest2 = std::max(farthest2, point.squaredNorm());
+    }
+    lattice_ = MakeLattice(window.place_from_query, window.half_m, window.half_rad,
+                           walls.resolution_m(), std::sqrt(farthest2));
+    for (int yaw = -lattice_.half_yaw_steps; yaw <= lattice_.half_yaw_steps; ++yaw) {
+      cells_.push_back(CellsOf(points, lattice_.CellsAt(yaw)));
+    }
+    best_score_ = static_cast<int>(std::ceil(least_score * kBestWallScore *
+                                             static_cast<double>(points.size()))) -
+                  1;
+  }
+
+  void Run() {
+    const int level = walls_.levels() - 1;
+    std::vector<Candidate> candidates;
+    for (int yaw = -lattice_.half_yaw_steps; yaw <= lattice_.half_yaw_steps; ++yaw) {
+      for (int y = -lattice_.half_cells; y <= lattice_.half_cells; y += 1 << level) {
+        for (int x = -lattice_.half_cells; x <= lattice_.half_cells; x += 1 << level) {
+          candidates.push_back(CandidateAt({x, y, yaw}, level));
+        }
+      }
+    }
+    std::sort(candidates.begin(), candidates.end(), Better);
+    for (const Candidate& candidate : candidates) Branch(candidate, level);
+  }
+
+  PlaceMatch Result(std::size_t points) const {
+    PlaceMatch match;
+    if (!best_) return match;
+    match.found = true;
+    match.place_from_query = lattice_.PoseOf(*best_);
+    match.score = best_score_ / (static_cast<double>(kBestWallScore) * static_cast<double>(points));
+    return match;
+  }
+
+ private:
+  Candidate CandidateAt(const LatticeStep& step, int level) const {
+    int sum = 0;
+    for (const Cell& cell :
+         cells_[static_cast<std::size_t>(step.yaw_steps + lattice_.half_yaw_steps)]) {
+      sum += walls_.Best({cell.x + step.x_cells, cell.y + step.y_cells}, level);
+    }
+    return {step, sum};
+  }
+
+  bool IsExcepted(const LatticeStep& step) const {
+    if (!except_) return false;
+    const Pose2 off = Between(except_->place_from_query, lattice_.PoseOf(step));
+    return off.translation().norm() < except_->within_m &&
+           std::abs(off.yaw_rad) < except_->within_rad;
+  }
+
+  void Branch(const Candidate& candidate, int level) {
+    if (candidate.bound <= best_score_) return;
+    if (level == 0) {
+      if (IsExcepted(candidate.step)) return;
+      best_score_ = candidate.bound;
+      best_ = candidate.step;
+      return;
+    }
+    // Corners outside the window stay below any score.
+    std::array<Candidate, 4> children{};
+    for (int corner = 0; corner < 4; ++corner) {
+      LatticeStep step = candidate.step;
+      step.x_cells += (corner & 1) << (level - 1);
+      step.y_cells += (corner >> 1) << (level - 1);
+      if (step.x_cells > lattice_.half_cells || step.y_cells > lattice_.half_cells) continue;
+      children[static_cast<std::size_t>(corner)] = CandidateAt(step, level - 1);
+    }
+    std::sort(children.begin(), children.end(), Better);
+    for (const Candidate& child : children) Branch(child, level - 1);
+  }
+
+  const WallPyramid& walls_;
+  std::optional<NotNear> except_;
+  SearchLattice lattice_;
+  std::vector<std::vector<Cell>> cells_;  // one entry a rotation
+  int best_score_ = 0;                    // only more than this is of interest
+  std::optional<LatticeStep> best_;
+};
+
+}  // namespace
+
+WallPyramid::WallPyramid(const OccupancyMap& map) : resolution_m_(map.geometry.resolution_m) {
+  Level finest;
+  finest.geometry = map.geometry;
+  finest.geometry.min_cell = {map.geometry.min_cell.x - 1, map.geometry.min_cell.y - 1};
+  finest.geometry.width_cells += 2;
+  finest.geometry.height_cells += 2;
+  finest.score.assign(finest.geometry.size(), 0);
+  for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
+    if (!(map.occupied_prob[i] > kWallProb)) continue;
+    const Cell wall = map.geometry.CellAt(i);
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const bool centre = dx == 0 && dy == 0;
+        RaiseTo(centre ? kBestWallScore : 1, {wall.x + dx, wall.y + dy}, finest.geometry,
+                finest.score);
+      }
+    }
+  }
+  levels_.push_back(std::move(finest));
+  while (static_cast<int>(levels_.size()) < kMaxLevels) AddLevel();
+}
+
+// The squares of a level are made of four of the level below.
+void WallPyramid::AddLevel() {
+  const int below = levels() - 1;
+  const int half = 1 << below;
+  Level level;
+  level.geometry = levels_.back().geometry;
+  level.geometry.min_cell.x -= half;
+  level.geometry.min_cell.y -= half;
+  level.geometry.width_cells += half;
+  level.geometry.height_cells += half;
+  level.score.resize(level.geometry.size());
+  for (std::size_t i = 0; i < level.score.size(); ++i) {
+    const Cell c = level.geometry.CellAt(i);
+    level.score[i] = static_cast<std::uint8_t>(
+        std::max({Best(c, below), Best({c.x + half, c.y}, below), Best({c.x, c.y + half}, below),
+                  Best({c.x + half, c.y + half}, below)}));
+  }
+  levels_.push_back(std::move(level));
+}
+
+int WallPyramid::Best(const Cell& cell, int level) const {
+  const Level& l = levels_[static_cast<std::size_t>(level)];
+  return l.geometry.Contains(cell) ? l.score[l.geometry.Index(cell)] : 0;
+}
+
+PlaceMatch SearchPlace(const WallPyramid& walls, const std::vector<Eigen::Vector2d>& points,
+                       const PlaceWindow& window, double least_score,
+                       const std::optional<NotNear>& except) {
+  Require(least_score > 0.0, "a place is found by what fits");
+  if (points.empty()) return {};
+  Search search(walls, points, window, least_score, except);
+  search.Run();
+  return search.Result(points.size());
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,61 @@
+// Where do points lie in a place's map? Branch and bound over all poses of a window (Hess et al.
+// 2016; Olson 2009 for the pyramid), exact: the same pose as trying them all.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/match/search_lattice.h"
+
+namespace depthgrid {
+
+// A place's walls as scores, 2 in a wall's cell, 1 beside one, and for each power of two the
+// largest score of the square of that many cells up and to the right.
+class WallPyramid {
+ public:
+  explicit WallPyramid(const OccupancyMap& map);
+
+  int levels() const { return static_cast<int>(levels_.size()); }
+  double resolution_m() const { return resolution_m_; }
+  // The largest score of cells x..x+2^level-1, y..y+2^level-1; 0 outside.
+  int Best(const Cell& cell, int level) const;
+
+ private:
+  struct Level {
+    GridGeometry geometry;
+    std::vector<std::uint8_t> score;
+  };
+  void AddLevel();
+
+  double resolution_m_;
+  std::vector<Level> levels_;
+};
+
+constexpr int kBestWallScore = 2;
+
+struct PlaceWindow {
+  Pose2 place_from_query;  // its middle
+  double half_m = 1.0;
+  double half_rad = 0.2;
+};
+
+// Poses near to this one are not looked at.
+struct NotNear {
+  Pose2 place_from_query;
+  double within_m = 0.5;
+  double within_rad = 0.2;
+};
+
+struct PlaceMatch {
+  bool found = false;  // whether any pose scores more than the least asked for
+  Pose2 place_from_query;
+  double score = 0.0;  // mean over the points, 0..1
+};
+
+PlaceMatch SearchPlace(const WallPyramid& walls, const std::vector<Eigen::Vector2d>& points,
+                       const PlaceWindow& window, double least_score,
+                       const std::optional<NotNear>& except = std::nullopt);
+
+}  // namespace depthgrid
