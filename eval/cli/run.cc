@@ -41,7 +41,7 @@ void PrintScores(const RunScores& scores) {
   };
   if (scores.map.observable) add("observable cells", *scores.map.observable);
   add("all cells", scores.map.all);
-  fmt::print("\n{}", Table(maps));
+  fmt::print("\n{}\n", Table(maps));
 }
 
 }  // namespace
@@ -69,10 +69,13 @@ void Run(const RunArguments& arguments) {
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
+  bar.Say("writing the folder and the report");
   WriteRunFolder(folder, record);
   folder.Commit();
+  bar.Clear();
   Warn(run.mapping.warnings);
   PrintScores(run.scores);
+  SayReport(arguments.common.output);
 }
 
 std::string ExperimentKeys() { return ListKeys(ExperimentOptions{}); }
