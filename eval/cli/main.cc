@@ -79,9 +79,9 @@ struct Program {
 };
 
 void AddScenes(Program& program) {
-  const auto [app, arguments] =
-      program.Add<ScenesArguments>(program.app, "scenes", "List the shipped scenes, experiments and sweeps",
-                                   "depthgrid scenes", &ListScenes);
+  const auto [app, arguments] = program.Add<ScenesArguments>(
+      program.app, "scenes", "List the shipped scenes, experiments and sweeps", "depthgrid scenes",
+      &ListScenes);
 }
 
 void AddRender(Program& program) {
