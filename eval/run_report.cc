@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "eval/map_picture.h"
-#include "eval/report_json.h"
+#include "eval/report_json_impl.h"
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
-#include "eval/worst_frames.h"
+#include "eval/worst_frames_impl.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/config.h"

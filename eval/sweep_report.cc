@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "eval/metrics/statistics.h"
-#include "eval/report_json.h"
+#include "eval/report_json_impl.h"
 #include "eval/statistics/metric_direction.h"
 #include "eval/statistics/sample_summary.h"
 #include "eval/sweep_grid.h"

@@ -1,10 +1,10 @@
-#include "eval/worst_frames.h"
-
 #include <algorithm>
 #include <numbers>
 
 #include "eval/map_picture.h"
 #include "eval/match_surface.h"
+#include "eval/report_json_impl.h"
+#include "eval/worst_frames_impl.h"
 
 namespace depthgrid {
 namespace {

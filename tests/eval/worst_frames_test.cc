@@ -1,4 +1,4 @@
-#include "eval/worst_frames.h"
+#include "eval/worst_frames_impl.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // The frames of a run that went worst, with all that explains why: scan, match surface and poses.
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "eval/frame_reference.h"
-#include "eval/report_json.h"
 
 namespace depthgrid {
 
@@ -12,8 +13,8 @@ std::vector<std::size_t> WorstRows(const std::vector<double>& badness);
 
 // One object a row: poses at the time, and if the row has a scan, what it was matched against and
 // the surface of residuals around the estimate. `truth`, one a row, may be empty.
-ReportJson WorstFramesJson(const RunFiles& run, const std::vector<std::size_t>& rows,
-                           const std::vector<std::optional<Pose2>>& truth, const GridOptions& grid,
-                           const SubmapOptions& submap);
+nlohmann::ordered_json WorstFramesJson(const RunFiles& run, const std::vector<std::size_t>& rows,
+                                       const std::vector<std::optional<Pose2>>& truth,
+                                       const GridOptions& grid, const SubmapOptions& submap);
 
 }  // namespace depthgrid
