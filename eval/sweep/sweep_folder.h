@@ -29,9 +29,8 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
 // results.csv beside the database, of what is known so far.
 void WriteResultsCsv(const SweepDatabase& database, const std::string& folder);
 
-// Joins the parts of one sweep into `folder`, which must be empty or missing (or `into_sweep`: the
-// folder that holds them). Throws InputError when parts are missing, unfinished or doubled, or of
-// another sweep, version or instruction set.
+// Joins the parts of one sweep into `folder`, which holds no sweep yet. Throws InputError when
+// parts are missing, unfinished or doubled, or of another sweep, version or instruction set.
 void MergeSweeps(const std::vector<std::string>& parts, const std::string& folder);
 
 }  // namespace depthgrid
