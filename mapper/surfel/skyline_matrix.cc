@@ -1,6 +1,11 @@
 #include "mapper/surfel/skyline_matrix.h"
 
+// Highway asks for AES with AVX2, which x86-64-v3 does not promise and nothing here uses.
+#define HWY_DISABLE_PCLMUL_AES
+#include <hwy/highway.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +18,45 @@ using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 double Dot(const double* a, const double* b, int n) {
   return ConstVector(a, n).dot(ConstVector(b, n));
+}
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::CappedTag<double, 4>;
+constexpr Lanes kLanes;
+
+// Unknowns come in threes (a pose), and so do rows that begin in one column: three rows times three
+// rows share what they load.
+constexpr int kBlock = 3;
+using Rows = std::array<double*, kBlock>;
+using Block = std::array<std::array<double, kBlock>, kBlock>;
+
+// dots[r][c] = a[r] . b[c] over n columns.
+Block Dots(const Rows& a, const Rows& b, int n) {
+  hn::Vec<Lanes> sums[kBlock][kBlock];
+  for (auto& row : sums) {
+    for (auto& sum : row) sum = hn::Zero(kLanes);
+  }
+  const int lanes = static_cast<int>(hn::Lanes(kLanes));
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    const hn::Vec<Lanes> b0 = hn::LoadU(kLanes, b[0] + i);
+    const hn::Vec<Lanes> b1 = hn::LoadU(kLanes, b[1] + i);
+    const hn::Vec<Lanes> b2 = hn::LoadU(kLanes, b[2] + i);
+    for (std::size_t r = 0; r < kBlock; ++r) {
+      const hn::Vec<Lanes> row = hn::LoadU(kLanes, a[r] + i);
+      sums[r][0] = hn::MulAdd(row, b0, sums[r][0]);
+      sums[r][1] = hn::MulAdd(row, b1, sums[r][1]);
+      sums[r][2] = hn::MulAdd(row, b2, sums[r][2]);
+    }
+  }
+  Block dots;
+  for (std::size_t r = 0; r < kBlock; ++r) {
+    for (std::size_t c = 0; c < kBlock; ++c) {
+      dots[r][c] = hn::GetLane(hn::SumOfLanes(kLanes, sums[r][c]));
+      for (int k = i; k < n; ++k) dots[r][c] += a[r][k] * b[c][k];
+    }
+  }
+  return dots;
 }
 
 }  // namespace
@@ -28,7 +72,53 @@ SkylineMatrix::SkylineMatrix(std::vector<int> first) : first_(std::move(first)) 
   values_.assign(total, 0.0);
 }
 
-bool SkylineMatrix::Factor() {
+bool SkylineMatrix::IsInBlocks() const {
+  if (size() % kBlock != 0) return false;
+  for (int i = 0; i < size(); ++i) {
+    if (First(i) != First(i - i % kBlock) || First(i) % kBlock != 0) return false;
+  }
+  return true;
+}
+
+bool SkylineMatrix::Factor() { return IsInBlocks() ? FactorByBlocks() : FactorByRows(); }
+
+bool SkylineMatrix::FactorByBlocks() {
+  const auto rows_at = [this](int i, int column) {
+    return Rows{At(i, column), At(i + 1, column), At(i + 2, column)};
+  };
+  for (int i = 0; i < size(); i += kBlock) {
+    const int begin = First(i);
+    for (int j = begin; j < i; j += kBlock) {
+      const int k = std::max(begin, First(j));
+      const Block dots = Dots(rows_at(i, k), rows_at(j, k), j - k);
+      const Rows diagonal = rows_at(j, j);
+      for (std::size_t r = 0; r < kBlock; ++r) {
+        double* x = At(i + static_cast<int>(r), j);
+        x[0] = (x[0] - dots[r][0]) / diagonal[0][0];
+        x[1] = (x[1] - dots[r][1] - x[0] * diagonal[1][0]) / diagonal[1][1];
+        x[2] = (x[2] - dots[r][2] - x[0] * diagonal[2][0] - x[1] * diagonal[2][1]) / diagonal[2][2];
+      }
+    }
+    const Rows rows = rows_at(i, begin);
+    const Block dots = Dots(rows, rows, i - begin);
+    const Rows diagonal = rows_at(i, i);
+    for (std::size_t r = 0; r < kBlock; ++r) {
+      for (std::size_t c = 0; c <= r; ++c) {
+        double value = diagonal[r][c] - dots[r][c];
+        for (std::size_t k = 0; k < c; ++k) value -= diagonal[r][k] * diagonal[c][k];
+        if (c < r) {
+          diagonal[r][c] = value / diagonal[c][c];
+        } else {
+          if (!(value > 0.0)) return false;
+          diagonal[r][r] = std::sqrt(value);
+        }
+      }
+    }
+  }
+  return true;
+}
+
+bool SkylineMatrix::FactorByRows() {
   for (int i = 0; i < size(); ++i) {
     const int begin = First(i);
     double* row = At(i, begin);

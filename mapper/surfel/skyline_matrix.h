@@ -29,6 +29,11 @@ class SkylineMatrix {
   Eigen::VectorXd Solve(Eigen::VectorXd b) const;
 
  private:
+  // Whether rows come in threes that begin in one column, at a multiple of three.
+  bool IsInBlocks() const;
+  bool FactorByBlocks();
+  bool FactorByRows();
+
   std::vector<int> first_;
   std::vector<std::size_t> begin_;
   std::vector<double> values_;

@@ -190,12 +190,14 @@ TEST(Debias, TakesAwayWhatNormalsFeignAndNothingElse) {
   EXPECT_EQ(Debiased(equations, 0.0).h, equations.h);
 }
 
-TEST(SkylineMatrix, SolvesAsDenseCholeskyDoes) {
+// Rows begin anywhere, or in threes (a pose's) at a multiple of three.
+void ExpectSolvesAsDenseCholeskyDoes(int step) {
   RandomStream random(12, RandomStage::kTest);
-  constexpr int kSize = 40;
+  constexpr int kSize = 42;
   std::vector<int> first;
-  for (int i = 0; i < kSize; ++i) {
-    first.push_back(static_cast<int>(random.Below(static_cast<std::uint64_t>(i) + 1)));
+  for (int i = 0; i < kSize; i += step) {
+    const auto column = random.Below(static_cast<std::uint64_t>(i / step) + 1);
+    first.insert(first.end(), static_cast<std::size_t>(step), step * static_cast<int>(column));
   }
   SkylineMatrix skyline(first);
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kSize, kSize);
@@ -210,11 +212,20 @@ TEST(SkylineMatrix, SolvesAsDenseCholeskyDoes) {
   }
   ASSERT_TRUE(skyline.Factor());
   EXPECT_LT((dense * skyline.Solve(b) - b).norm(), 1e-10);
-  SkylineMatrix indefinite({0, 0});
-  *indefinite.At(0, 0) = 1.0;
-  *indefinite.At(1, 0) = 2.0;
-  *indefinite.At(1, 1) = 1.0;
-  EXPECT_FALSE(indefinite.Factor());
+}
+
+TEST(SkylineMatrix, SolvesAsDenseCholeskyDoes) {
+  ExpectSolvesAsDenseCholeskyDoes(1);
+  ExpectSolvesAsDenseCholeskyDoes(3);
+}
+
+TEST(SkylineMatrix, TellsWhatIsNotPositiveDefinite) {
+  for (const int size : {2, 3}) {
+    SkylineMatrix indefinite(std::vector<int>(static_cast<std::size_t>(size), 0));
+    for (int i = 0; i < size; ++i) *indefinite.At(i, i) = 1.0;
+    *indefinite.At(1, 0) = 2.0;
+    EXPECT_FALSE(indefinite.Factor());
+  }
 }
 
 TEST(GroupLinks, NormalEquationsAreThoseOfNumericDerivatives) {
