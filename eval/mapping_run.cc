@@ -57,11 +57,12 @@ std::vector<std::optional<Pose3>> FinalPosesOf(const std::vector<FrameReport>& r
 
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle) {
+                     const GainOracle& oracle, const MatchOracle& match_oracle) {
   MappingRun run;
   run.camera = source.Camera();
   const auto start = std::chrono::steady_clock::now();
   IncrementalMapper mapper(options, run.camera, ThreadCpuUs, oracle);
+  mapper.SetMatchOracle(match_oracle);
   const int count = source.FrameCount();
   while (const std::optional<Frame> frame = source.Next()) {
     const double before_us = ThreadCpuUs();

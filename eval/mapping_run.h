@@ -35,10 +35,10 @@ struct MappingRun {
 };
 
 // `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
-// fusion.mode `oracle` only.
+// fusion.mode `oracle` only, `match_oracle` for every match when it is given.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle = {});
+                     const GainOracle& oracle = {}, const MatchOracle& match_oracle = {});
 
 // Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
 // source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own

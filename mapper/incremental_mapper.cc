@@ -37,6 +37,7 @@ struct IncrementalMapper::State {
   MapperOptions options;
   CpuClock clock;
   GainOracle oracle;
+  MatchOracle match_oracle;
   FrameScanner scanner;
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
   FrameHistory history;
@@ -97,6 +98,10 @@ IncrementalMapper::IncrementalMapper(const MapperOptions& options,
 }
 IncrementalMapper::~IncrementalMapper() = default;
 IncrementalMapper::IncrementalMapper(IncrementalMapper&&) noexcept = default;
+
+void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
+  state_->match_oracle = std::move(oracle);
+}
 
 // The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
@@ -213,6 +218,9 @@ void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
   const StageTimer timer(clock, report.times.match_us);
   if (!reference || !scan || mapped.empty()) return;
   report.match = reference->Match(scan, prediction);
+  if (match_oracle && report.match.found) {
+    report.match.map_from_base = match_oracle(report.index);
+  }
 }
 
 // Eq. 3.

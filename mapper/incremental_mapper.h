@@ -29,6 +29,10 @@ struct MapperResult {
 using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predicted_map_from_base,
                                                  const Pose2& matched_map_from_base)>;
 
+// The true pose of a frame in the map, for experiments that put it in place of the matched one;
+// what the match says of its own sureness stays.
+using MatchOracle = std::function<Pose2(int frame)>;
+
 class IncrementalMapper {
  public:
   // The camera may be absent when every frame brings a ready scan. Throws InputError for options
@@ -37,6 +41,9 @@ class IncrementalMapper {
                     CpuClock clock = {}, GainOracle oracle = {});
   ~IncrementalMapper();
   IncrementalMapper(IncrementalMapper&&) noexcept;
+
+  // From the next frame on.
+  void SetMatchOracle(MatchOracle oracle);
 
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses.

@@ -113,6 +113,15 @@ struct CompareArguments {
 };
 void CompareRuns(const CompareArguments& arguments);
 
+struct AblateArguments {
+  std::string experiment;
+  int seeds = 5;
+  std::uint64_t first_seed = 1;
+  bool json = false;
+  CommonArguments common;
+};
+void Ablate(const AblateArguments& arguments);
+
 struct ReportArguments {
   std::string folder;
 };

@@ -266,6 +266,25 @@ void AddCompare(Program& program) {
   app->add_flag("--json", arguments->json, "Print JSON instead of a table");
 }
 
+void AddAblate(Program& program) {
+  const auto [app, arguments] = program.Add<AblateArguments>(
+      program.app, "ablate",
+      "Put the truth in for each stage in turn: how much of the error each owns",
+      "depthgrid ablate living_room --seeds 10 -o /tmp/ablation", &Ablate);
+  app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
+      ->required();
+  app->add_option("--seeds", arguments->seeds, "How many; fewer than 6 prove nothing")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app->add_option("--first-seed", arguments->first_seed, "The first of them")
+      ->capture_default_str();
+  app->add_flag("--json", arguments->json, "Print JSON instead of tables");
+  AddOutput(*app, arguments->common);
+  AddSet(*app, arguments->common);
+  AddThreads(*app, arguments->common);
+  AddCache(*app, arguments->common);
+}
+
 void AddReport(Program& program) {
   const auto [app, arguments] =
       program.Add<ReportArguments>(program.app, "report", "Write a folder's HTML report (again)",
@@ -312,6 +331,7 @@ int Main(int argc, char** argv) {
   AddEval(program);
   AddRegrid(program);
   AddCompare(program);
+  AddAblate(program);
   AddReport(program);
   try {
     program.app.parse(argc, argv);

@@ -1,0 +1,69 @@
+// How much of an experiment's error each stage owns: the truth is put in for each in turn
+// (docs/statistics.md, "Ablation").
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "eval/experiment.h"
+#include "eval/statistics/paired_comparison.h"
+
+namespace depthgrid {
+
+// Which stages work on the truth instead of their input.
+struct TrueStages {
+  bool poses = false;      // SLAM's poses
+  bool depth = false;      // depth images without noise
+  bool converter = false;  // scans cast in the room: neither noise nor conversion
+  bool matcher = false;    // the true pose for every matched one
+  bool loops = false;      // SLAM closes every revisit, at once and almost exactly
+};
+
+struct AblationVariant {
+  std::string name;
+  TrueStages truth;
+  std::string against;  // the variant whose difference from this one is the stage's own
+  std::string meaning;
+};
+
+// The experiment as it is, one variant a stage, and all of them at once.
+const std::vector<AblationVariant>& AblationVariants();
+
+struct AblationRun {
+  std::string variant;
+  std::uint64_t seed = 0;
+  std::vector<std::pair<std::string, double>> metrics;  // of metrics.json
+};
+
+struct AblationPlan {
+  ExperimentOptions experiment;
+  std::vector<std::uint64_t> seeds;
+};
+
+// Every variant with every seed, by seed; `progress` counts frames.
+std::vector<AblationRun> RunAblation(const AblationPlan& plan, const RunContext& context);
+
+// What a stage owns of one score's error.
+struct StageShare {
+  std::string variant;
+  double error = 0.0;     // mean over seeds with this truth put in
+  PairedComparison gain;  // this variant against the one it is compared with; b - a is negative
+  double share = 0.0;     // mean error owned / mean error of the experiment as it is
+  double p_holm = 1.0;    // over the stages
+};
+
+struct ErrorShares {
+  std::string metric;
+  bool is_complement = false;  // the error is one less the score
+  double error = 0.0;          // of the experiment as it is
+  std::vector<StageShare> stages;
+};
+
+// For the scores that say most; those not defined in every run are left out.
+std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs);
+
+std::string AblationCsv(const std::vector<AblationRun>& runs);
+std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds);
+
+}  // namespace depthgrid

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "eval/ablation.h"
+#include "eval/metrics/statistics.h"
+#include "eval/statistics/holm.h"
+#include "eval/statistics/metric_direction.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr std::array<const char*, 5> kScores = {
+    "trajectory.online.mean_euclidean_m", "trajectory.est.mean_euclidean_m",
+    "map.observable.occupied.f1", "map.chamfer_m", "map.navigability.success_rate"};
+
+double ValueOf(const AblationRun& run, const std::string& metric) {
+  for (const auto& [name, value] : run.metrics) {
+    if (name == metric) return value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+// A variant's errors by seed: of scores that are better when higher, one less the score.
+std::vector<double> ErrorsOf(const std::vector<AblationRun>& runs, const std::string& variant,
+                             const std::string& metric) {
+  const bool complement = BetterOf(metric) == Better::kHigher;
+  std::vector<double> errors;
+  for (const AblationRun& run : runs) {
+    if (run.variant != variant) continue;
+    const double value = ValueOf(run, metric);
+    errors.push_back(complement ? 1.0 - value : value);
+  }
+  return errors;
+}
+
+bool AllFinite(const std::vector<AblationRun>& runs, const std::string& metric) {
+  return std::all_of(runs.begin(), runs.end(),
+                     [&](const AblationRun& run) { return std::isfinite(ValueOf(run, metric)); });
+}
+
+ErrorShares SharesOfScore(const std::vector<AblationRun>& runs, const std::string& metric) {
+  ErrorShares shares;
+  shares.metric = metric;
+  shares.is_complement = BetterOf(metric) == Better::kHigher;
+  const std::vector<double> as_it_is = ErrorsOf(runs, AblationVariants().front().name, metric);
+  shares.error = Summarise(as_it_is).mean;
+  const Resamples resamples(as_it_is.size());
+  std::vector<double> p_values;
+  for (const AblationVariant& variant : AblationVariants()) {
+    if (variant.against.empty()) continue;
+    const std::vector<double> errors = ErrorsOf(runs, variant.name, metric);
+    StageShare stage;
+    stage.variant = variant.name;
+    stage.error = Summarise(errors).mean;
+    stage.gain =
+        ComparePaired(ErrorsOf(runs, variant.against, metric), errors, Better::kLower, resamples);
+    stage.share = shares.error > 0.0 ? (0.0 - stage.gain.mean_difference) / shares.error : 0.0;
+    p_values.push_back(stage.gain.wilcoxon.p_value);
+    shares.stages.push_back(std::move(stage));
+  }
+  const std::vector<double> adjusted = HolmAdjusted(p_values);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) shares.stages[i].p_holm = adjusted[i];
+  return shares;
+}
+
+}  // namespace
+
+std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs) {
+  Require(!runs.empty(), "shares are of at least one run");
+  std::vector<ErrorShares> all;
+  for (const char* metric : kScores) {
+    if (AllFinite(runs, metric)) all.push_back(SharesOfScore(runs, metric));
+  }
+  return all;
+}
+
+std::string AblationCsv(const std::vector<AblationRun>& runs) {
+  std::string csv = "variant,seed";
+  for (const auto& [name, value] : runs.front().metrics) csv += "," + name;
+  csv += "\n";
+  for (const AblationRun& run : runs) {
+    fmt::format_to(std::back_inserter(csv), "{},{}", run.variant, run.seed);
+    for (const auto& column : runs.front().metrics) {
+      const double value = ValueOf(run, column.first);
+      csv += std::isnan(value) ? "," : fmt::format(",{}", value);
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds) {
+  nlohmann::ordered_json json = {{"seeds", seeds}};
+  for (const ErrorShares& score : shares) {
+    nlohmann::ordered_json& entry = json["scores"][score.metric];
+    entry["error_is"] = score.is_complement ? "one less the score" : "the score";
+    entry["error"] = score.error;
+    for (std::size_t i = 0; i < score.stages.size(); ++i) {
+      const StageShare& stage = score.stages[i];
+      nlohmann::ordered_json& cell = entry["truth_for"][stage.variant];
+      cell["compared_with"] = AblationVariants()[i + 1].against;
+      cell["error"] = stage.error;
+      cell["owned"] = 0.0 - stage.gain.mean_difference;
+      cell["share"] = stage.share;
+      cell["owned_interval95"] = nullptr;
+      if (const auto& interval = stage.gain.mean_interval) {
+        cell["owned_interval95"] = {-interval->high, -interval->low};
+      }
+      cell["p_value"] = stage.gain.wilcoxon.p_value;
+      cell["p_holm"] = stage.p_holm;
+    }
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace depthgrid

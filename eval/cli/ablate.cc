@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "eval/ablation.h"
+#include "eval/cli/commands.h"
+#include "eval/cli/console.h"
+#include "eval/cli/experiment_argument.h"
+#include "eval/output_folder.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid::cli {
+namespace {
+
+// Four digits; nothing owned is 0, not -0.
+std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }
+
+void PrintShares(const ErrorShares& score) {
+  fmt::print("\n{}{}: {} as it is\n", score.is_complement ? "1 - " : "", score.metric,
+             Short(score.error));
+  std::vector<std::vector<std::string>> rows = {
+      {"truth for", "error", "owned", "95 % interval", "share", "p", "p Holm"}};
+  for (const StageShare& stage : score.stages) {
+    const auto& interval = stage.gain.mean_interval;
+    rows.push_back(
+        {stage.variant, Short(stage.error), Short(0.0 - stage.gain.mean_difference),
+         interval ? fmt::format("[{}, {}]", Short(-interval->high), Short(-interval->low)) : "-",
+         fmt::format("{:.0f} %", 100.0 * stage.share + 0.0),
+         fmt::format("{:.3g}", stage.gain.wilcoxon.p_value), fmt::format("{:.3g}", stage.p_holm)});
+  }
+  fmt::print("{}", Table(rows));
+}
+
+void PrintLegend(std::size_t seeds) {
+  fmt::print("{} seeds; owned: what the error falls by when the truth is put in, paired by seed\n",
+             seeds);
+  constexpr int kNameWidth = 10;
+  for (const AblationVariant& variant : AblationVariants()) {
+    if (variant.against.empty()) continue;
+    fmt::print("  {:<{}}  {} (against {})\n", variant.name, kNameWidth, variant.meaning,
+               variant.against);
+  }
+}
+
+}  // namespace
+
+void Ablate(const AblateArguments& arguments) {
+  AblationPlan plan;
+  plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
+  plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
+  std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
+  OutputFolder folder(arguments.common.output, arguments.common.force);
+  RunContext context;
+  context.threads = ThreadsOr(arguments.common.threads);
+  context.cache_folder = CacheFolder(arguments.common);
+  ProgressBar bar("ablating");
+  context.progress = bar.AsProgress();
+  const std::vector<AblationRun> runs = RunAblation(plan, context);
+  const std::vector<ErrorShares> shares = SharesOf(runs);
+  const std::string json = AblationJson(shares, plan.seeds.size());
+  WriteFile(folder.File("experiment.yaml"), ToYaml(plan.experiment));
+  WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
+  WriteFile(folder.File("ablation.json"), json);
+  folder.Commit();
+  if (arguments.json) {
+    fmt::print("{}", json);
+    return;
+  }
+  PrintLegend(plan.seeds.size());
+  for (const ErrorShares& score : shares) PrintShares(score);
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,22 @@
+// The obstacle band's surfaces seen from above. Only for sim's own .cc files.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/occupancy_map.h"
+#include "sim/band_polygon.h"
+#include "sim/triangle_mesh.h"
+#include "sim/view_pyramid.h"
+
+namespace depthgrid {
+
+// The band's surfaces for rays that do not care about height.
+struct BandOutline {
+  TriangleMesh fences;         // what they look like from above, drawn out from z = 0 to 1
+  std::vector<Span> height_m;  // of the surfaces in each cell of the truth map
+};
+
+// `truth` says which cells heights are wanted of; lines are the same whatever it covers.
+BandOutline OutlineOf(const TriangleMesh& mesh, const HeightBand& band, const StateMap& truth);
+
+}  // namespace depthgrid

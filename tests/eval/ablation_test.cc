@@ -1,0 +1,80 @@
+// `depthgrid ablate`: shares worked by hand, and the program on a tiny room.
+#include "eval/ablation.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Ablation, SharesAreDifferencesFromWhatEachIsComparedWith) {
+  // Errors of two seeds; everything else of no effect.
+  const std::map<std::string, std::array<double, 2>> errors = {
+      {"as_it_is", {1.0, 3.0}},  {"poses", {0.5, 1.5}},   {"depth", {0.8, 2.8}},
+      {"converter", {0.6, 2.4}}, {"matcher", {1.0, 3.0}}, {"loops", {1.2, 3.2}},
+      {"all", {0.0, 0.0}}};
+  std::vector<AblationRun> runs;
+  for (const AblationVariant& variant : AblationVariants()) {
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+      runs.push_back({variant.name,
+                      seed,
+                      {{"trajectory.est.mean_euclidean_m", errors.at(variant.name)[seed]},
+                       {"map.observable.occupied.f1", 1.0 - errors.at(variant.name)[seed]},
+                       {"map.chamfer_m", NAN}}});
+    }
+  }
+  const std::vector<ErrorShares> shares = SharesOf(runs);
+  ASSERT_EQ(shares.size(), 2U);  // the chamfer distance is not defined
+  for (const ErrorShares& score : shares) {
+    EXPECT_EQ(score.is_complement, score.metric.ends_with("f1"));
+    EXPECT_NEAR(score.error, 2.0, 1e-12);
+    std::map<std::string, double> share;
+    for (const StageShare& stage : score.stages) share[stage.variant] = stage.share;
+    EXPECT_NEAR(share.at("poses"), 0.5, 1e-12);
+    EXPECT_NEAR(share.at("depth"), 0.1, 1e-12);
+    EXPECT_NEAR(share.at("converter"), 0.15, 1e-12);  // beyond what exact depth gives
+    EXPECT_NEAR(share.at("matcher"), 0.0, 1e-12);
+    EXPECT_NEAR(share.at("loops"), -0.1, 1e-12);
+    EXPECT_NEAR(share.at("all"), 1.0, 1e-12);
+  }
+}
+
+class ProgramAblate : public ProgramTest {};
+
+TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
+  const Outcome first = Program("ablate ./small.yaml --seeds 2 --threads 1 -o one");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("2 seeds"));
+  EXPECT_THAT(first.out, HasSubstr("matched poses are true"));
+  const Outcome second = Program("ablate ./small.yaml --seeds 2 --threads 2 --json -o two");
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_TRUE(SameFile("one/ablation.csv", "two/ablation.csv"));
+  EXPECT_EQ(second.out, ReadFile(Path("one/ablation.json")));
+  const auto json = nlohmann::json::parse(second.out);
+  const auto& online = json["scores"]["trajectory.online.mean_euclidean_m"];
+  // The truth everywhere leaves no error of the poses; every row of the table is there.
+  EXPECT_LT(online["truth_for"]["all"]["error"].get<double>(), 1e-4);
+  EXPECT_GT(online["error"].get<double>(), 1e-4);
+  const std::string csv = ReadFile(Path("one/ablation.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 7);
+}
+
+TEST_F(ProgramAblate, Refusals) {
+  for (const char* arguments :
+       {"ablate ./nothing.yaml -o out", "ablate ./small.yaml --seeds 0 -o out",
+        "ablate ./small.yaml", "ablate ./small.yaml --set framse=3 -o out"}) {
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
