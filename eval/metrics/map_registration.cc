@@ -12,6 +12,11 @@
 namespace depthgrid {
 namespace {
 
+CellSet Both(CellSet a, const CellSet& b) {
+  for (std::size_t i = 0; i < a.members.size(); ++i) a.members[i] &= b.members[i];
+  return a;
+}
+
 // The estimate's walls in cells; the motion turns them about their centroid, so that turning and
 // shifting hardly trade against each other.
 struct WallPoints {
@@ -118,25 +123,19 @@ Eigen::Vector3d BestMotion(const WallPoints& points, const CellSet& true_walls) 
 
 CellSet FacesNear(const StateMap& map, const CellSet& scored) {
   constexpr int kNearCells = 2;
-  const CellSet near = Grown(scored, kNearCells);
-  CellSet faces = WallFaces(map);
-  for (std::size_t i = 0; i < faces.members.size(); ++i) faces.members[i] &= near.members[i];
-  return faces;
+  return Both(WallFaces(map), Grown(scored, kNearCells));
 }
 
 }  // namespace
 
 CellSet WallFaces(const StateMap& map) {
-  const CellSet near_free = Grown(CellsIn(map, CellState::kFree), 1);
-  CellSet faces = CellsIn(map, CellState::kOccupied);
-  for (std::size_t i = 0; i < faces.members.size(); ++i) faces.members[i] &= near_free.members[i];
-  return faces;
+  return Both(CellsIn(map, CellState::kOccupied), Grown(CellsIn(map, CellState::kFree), 1));
 }
 
 std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
                                            const CellSet& scored) {
   const CellSet true_walls = FacesNear(truth, scored);
-  const CellSet walls = WallFaces(estimate);
+  const CellSet walls = CellsIn(estimate, CellState::kOccupied);
   if (CentresOf(true_walls).empty() || CentresOf(walls).empty()) return std::nullopt;
   const WallPoints points = PointsOf(walls);
   const Eigen::Vector3d motion = BestMotion(points, true_walls);

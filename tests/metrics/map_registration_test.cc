@@ -56,7 +56,8 @@ TEST(RegisterMap, TheSameMapStays) {
   const StateMap map = MovedRoom(kWorldFromRoom);
   const auto found = Registered(map, map);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->mean_shift_m, 0.0, 1e-4);
+  // A fiftieth of a cell: walls that are no faces take part on one side only.
+  EXPECT_NEAR(found->mean_shift_m, 0.0, 1e-3);
 }
 
 // Shifts of whole, half and odd parts of a cell, and turns: found to a fraction of a cell, half

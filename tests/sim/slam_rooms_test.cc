@@ -92,8 +92,9 @@ TEST(SlamFiles, CarryTheVerySameOutput) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SlamOutput written = DisturbTrajectory(truth, options, seed);
     WriteSlamFiles(folder, written);
-    const SlamOutput read = ReadSlamFiles(
+    const SlamInput input = ReadSlamFiles(
         {folder + "/slam.txt", folder + "/slam_final.txt", folder + "/loops.csv"}, stamps_s);
+    const SlamOutput& read = input.slam;
     EXPECT_EQ(read.live, written.live);
     EXPECT_EQ(read.final, written.final);
     EXPECT_EQ(read.loops, written.loops);

@@ -49,7 +49,9 @@ TEST(TrueScanner, SeesTheBandFromAboveAndTheSliceAtItsHeight) {
     EXPECT_NEAR(low.clear_from_m * along, 0.9 / (239.5 + 0.5) * 480.0, 0.02);
     EXPECT_EQ(low.clear_to_m, low.range_m);
     EXPECT_NEAR(level.clear_from_m, 0.4, 1e-6);
-    if (i > 0) EXPECT_GT(low.bearing_rad, obstacles.beams[i - 1].bearing_rad);
+    if (i > 0) {
+      EXPECT_GT(low.bearing_rad, obstacles.beams[i - 1].bearing_rad);
+    }
   }
   EXPECT_GT(on_box, 100);
 }
