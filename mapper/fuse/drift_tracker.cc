@@ -8,11 +8,11 @@ namespace {
 
 // Until something is learnt matches are believed: a prior that drifts would drag the young map
 // along, and what the first frames draw is never put right online.
-const Eigen::Vector3d kFirstWalk(0.01, 0.01, 0.01);
+const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
 // (docs/results.md, "Laser logs").
-constexpr double kCaution = 2.0;
+constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
