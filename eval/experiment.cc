@@ -6,17 +6,7 @@
 #include "sim/slam_surrogate.h"
 
 namespace depthgrid {
-namespace {
-
-// The surrogate's frame is the true world's, so the true pose of a frame is its pose in the map.
-GainOracle OracleOf(const Trajectory& truth) {
-  return [&truth](int frame, const Pose2& predicted, const Pose2& matched) {
-    const Pose3& true_pose = truth[static_cast<std::size_t>(frame)].world_from_camera;
-    return OracleGain(BaseOf(true_pose), predicted, matched);
-  };
-}
-
-}  // namespace
+namespace {}  // namespace
 
 RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOptions& options) {
   RunScores scores;
@@ -31,6 +21,13 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOp
 ExperimentOptions Completed(ExperimentOptions options, const Scene& scene) {
   options.mapper.scan.floor_z_m = scene.floor_z_m;
   return options;
+}
+
+GainOracle OracleOf(const Trajectory& truth) {
+  return [&truth](int frame, const Pose2& predicted, const Pose2& matched) {
+    const Pose3& true_pose = truth[static_cast<std::size_t>(frame)].world_from_camera;
+    return OracleGain(BaseOf(true_pose), predicted, matched);
+  };
 }
 
 MappingRun MapExperiment(FrameSource& source, const ExperimentOptions& completed,

@@ -41,6 +41,10 @@ struct ExperimentRun {
 // The options with what follows from the scene filled in: the height of its floor.
 ExperimentOptions Completed(ExperimentOptions options, const Scene& scene);
 
+// For fusion.mode `oracle`. The surrogate's frame is the true world's, so the true pose of a frame
+// is its pose in the map. Borrows the truth.
+GainOracle OracleOf(const Trajectory& truth);
+
 // The mapping of an experiment whose frames come from `source`.
 MappingRun MapExperiment(FrameSource& source, const ExperimentOptions& completed,
                          const World& world, const SlamOutput& slam, const Progress& progress);

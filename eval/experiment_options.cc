@@ -34,14 +34,23 @@ void ExperimentOptions::Visit(OptionsVisitor& v) {
   v.Group("metrics", metrics, "the scores of the map");
 }
 
-ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {
+ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
+                                 const std::string& base_folder) {
+  Require(!layers.empty(), "an experiment is read from something");
   ExperimentOptions options;
-  config.Take("provenance");  // a run.yaml may be run again
-  config.Read(options);
-  if (options.scene.empty()) throw InputError(config.Place(), "key 'scene' is missing");
+  for (const Config* layer : layers) layer->Read(options);
+  if (options.scene.empty()) throw InputError(layers.front()->Place(), "key 'scene' is missing");
   ResolveFile(options.scene, base_folder);
   ResolveFile(options.trajectory, base_folder);
   return options;
+}
+
+ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {
+  config.Take("provenance");  // a run.yaml may be run again
+  if (config.Has("cases")) {
+    throw InputError(config.Place(), "holds several experiments; only `depthgrid run` takes it");
+  }
+  return ReadExperiment({&config}, base_folder);
 }
 
 }  // namespace depthgrid

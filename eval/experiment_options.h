@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "eval/metrics/map_quality.h"
 #include "mapper/io/config.h"
@@ -37,7 +38,9 @@ struct ExperimentOptions {
 };
 
 // Reads an experiment and resolves its file names: those in `config` are relative to
-// `base_folder`. Throws InputError.
+// `base_folder`. Of several layers the later override the earlier. Throws InputError.
+ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
+                                 const std::string& base_folder);
 ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);
 
 }  // namespace depthgrid

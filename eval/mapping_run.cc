@@ -1,7 +1,7 @@
 #include "eval/mapping_run.h"
 
-#include <chrono>
 #include <ctime>
+#include <utility>
 
 #include "eval/metrics/association.h"
 #include "mapper/core/level.h"
@@ -55,31 +55,47 @@ std::vector<std::optional<Pose3>> FinalPosesOf(const std::vector<FrameReport>& r
 
 }  // namespace
 
+FrameRecorder::FrameRecorder(const MapperOptions& options,
+                             const std::optional<PinholeCamera>& camera, int frame_count,
+                             const GainOracle& oracle, const MatchOracle& match_oracle)
+    : start_(std::chrono::steady_clock::now()),
+      frame_count_(frame_count),
+      mapper_(options, camera, ThreadCpuUs, oracle) {
+  run_.camera = camera;
+  mapper_.SetMatchOracle(match_oracle);
+}
+
+void FrameRecorder::Add(const Frame& frame) {
+  const double before_us = ThreadCpuUs();
+  run_.reports.push_back(mapper_.AddFrame(frame));
+  run_.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
+  run_.loops.insert(run_.loops.end(), frame.loops.begin(), frame.loops.end());
+  const int position = static_cast<int>(run_.reports.size()) - 1;
+  if (frame.depth && IsSample(position, frame_count_)) {
+    run_.samples.push_back({frame.index, frame.depth});
+  }
+}
+
+MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
+  const double before_us = ThreadCpuUs();
+  run_.result = mapper_.Finish(FinalPosesOf(run_.reports, final_poses));
+  run_.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
+  run_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  return std::move(run_);
+}
+
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle, const MatchOracle& match_oracle) {
-  MappingRun run;
-  run.camera = source.Camera();
-  const auto start = std::chrono::steady_clock::now();
-  IncrementalMapper mapper(options, run.camera, ThreadCpuUs, oracle);
-  mapper.SetMatchOracle(match_oracle);
   const int count = source.FrameCount();
+  FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
+  int done = 0;
   while (const std::optional<Frame> frame = source.Next()) {
-    const double before_us = ThreadCpuUs();
-    run.reports.push_back(mapper.AddFrame(*frame));
-    run.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
-    run.loops.insert(run.loops.end(), frame->loops.begin(), frame->loops.end());
-    const int done = static_cast<int>(run.reports.size());
-    if (frame->depth && IsSample(done - 1, count)) {
-      run.samples.push_back({frame->index, frame->depth});
-    }
-    if (progress) progress(done, count);
+    recorder.Add(*frame);
+    if (progress) progress(++done, count);
   }
-  const double before_us = ThreadCpuUs();
-  run.result = mapper.Finish(FinalPosesOf(run.reports, final_poses));
-  run.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
+  MappingRun run = recorder.Finish(final_poses);
   run.warnings = source.Warnings();
-  run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return run;
 }
 

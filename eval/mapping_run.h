@@ -1,6 +1,7 @@
 // A sequence mapped from front to back, whatever it came from, and all that is worth keeping of it.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -34,8 +35,26 @@ struct MappingRun {
   double cpu_s = 0.0;  // of the mapper's thread, sources excluded where they have their own
 };
 
-// `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
-// fusion.mode `oracle` only, `match_oracle` for every match when it is given.
+// Maps a sequence whose frames are handed over one by one.
+class FrameRecorder {
+ public:
+  // `oracle` is asked by fusion.mode `oracle` only, `match_oracle` for every match when it is given.
+  FrameRecorder(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
+                int frame_count, const GainOracle& oracle = {},
+                const MatchOracle& match_oracle = {});
+
+  void Add(const Frame& frame);
+  // `final_poses`: SLAM's own final trajectory, empty if there is none. Once, at the end.
+  MappingRun Finish(const Trajectory& final_poses);
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  int frame_count_;
+  IncrementalMapper mapper_;
+  MappingRun run_;
+};
+
+// The whole of a source, front to back.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle = {}, const MatchOracle& match_oracle = {});

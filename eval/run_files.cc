@@ -25,6 +25,7 @@ RunFiles ReadRunFolder(const std::string& folder) {
   run.settings = ReadFile(path("run.yaml"));
   if (exists("metrics.json")) run.metrics_json = ReadFile(path("metrics.json"));
   run.map = ReadStates(path("map.yaml"));
+  if (exists("input_map.yaml")) run.input_map = ReadStates(path("input_map.yaml"));
   if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));
   if (exists("observable.yaml")) {
     const StateMap states = ReadStates(path("observable.yaml"));

@@ -7,6 +7,7 @@
 #include "eval/run_report.h"
 #include "eval/run_tables.h"
 #include "eval/sample_pictures.h"
+#include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
 #include "mapper/io/png.h"
@@ -65,6 +66,20 @@ void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
 std::string MetricsOf(const RunScores& scores) {
   return MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
                      &scores.map);
+}
+
+RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,
+                   const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores) {
+  RunRecord record;
+  record.settings = ToYaml(options);
+  record.scene_hash = world.scene_hash;
+  record.mapping = &mapping;
+  record.slam = &slam;
+  record.truth = &truth;
+  record.scores = &scores;
+  record.scene = &world.scene;
+  record.scan = options.mapper.scan;
+  return record;
 }
 
 std::string Provenance(const std::string& scene_hash) {

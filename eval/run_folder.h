@@ -23,6 +23,10 @@ struct RunRecord {
   double cpu_s_total = 0.0;
 };
 
+// The record of a run in a simulated room. It borrows; times are still to be filled in.
+RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,
+                   const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores);
+
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 

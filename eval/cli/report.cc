@@ -2,6 +2,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/run_report.h"
+#include "eval/study_report.h"
 #include "eval/sweep/sweep_database.h"
 #include "eval/sweep_report.h"
 #include "mapper/core/error.h"
@@ -14,6 +15,8 @@ void Report(const ReportArguments& arguments) {
   }
   if (SweepDatabase::Exists(arguments.folder)) {
     WriteSweepReport(arguments.folder);
+  } else if (IsStudyFolder(arguments.folder)) {
+    WriteStudyReport(arguments.folder);
   } else {
     WriteRunReport(arguments.folder);
   }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -9,10 +10,16 @@
 #include "eval/experiment.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
+#include "eval/shipped.h"
+#include "eval/study.h"
+#include "eval/study_run.h"
 #include "mapper/io/config.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -44,28 +51,45 @@ void PrintScores(const RunScores& scores) {
   fmt::print("\n{}\n", Table(maps));
 }
 
-}  // namespace
+std::optional<double> WallF1(const MapScore& score) {
+  const CellScores& cells = score.observable ? *score.observable : score.all;
+  return cells.occupied[kDefaultToleranceCells].f1;
+}
 
-void Run(const RunArguments& arguments) {
-  const auto start = std::chrono::steady_clock::now();
-  const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+void PrintCases(const std::vector<CaseResult>& results) {
+  std::vector<std::vector<std::string>> rows = {{"case", "published m", "input mean m", "ATE m",
+                                                 "output mean m", "ATE m", "input map F1",
+                                                 "output map F1"}};
+  const auto mean = [](const std::optional<TrajectoryScore>& score) {
+    return score ? Number(score->xy_unaligned.mean, 3) : "-";
+  };
+  const auto aligned = [](const std::optional<TrajectoryScore>& score) {
+    return score && score->xy_se2 ? Number(score->xy_se2->rmse, 3) : "-";
+  };
+  for (const CaseResult& r : results) {
+    rows.push_back({r.name, Number(r.published_mean_m, 3), mean(r.scores.slam),
+                    aligned(r.scores.slam), mean(r.scores.est), aligned(r.scores.est),
+                    Number(WallF1(r.input_map), 3), Number(WallF1(r.scores.map), 3)});
+  }
+  fmt::print("{}", Table(rows));
+}
+
+RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);
-  ProgressBar bar("mapping");
   context.progress = bar.AsProgress();
-  const ExperimentRun run = RunExperiment(options, context);
-  RunRecord record;
+  return context;
+}
+
+void RunOne(const RunArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
+  OutputFolder folder(arguments.common.output, arguments.common.force);
+  ProgressBar bar("mapping");
+  const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
+  RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   record.title = arguments.experiment;
-  record.settings = ToYaml(run.options);
-  record.scene_hash = run.world.scene_hash;
-  record.mapping = &run.mapping;
-  record.slam = &run.slam;
-  record.truth = &run.truth;
-  record.scores = &run.scores;
-  record.scene = &run.world.scene;
-  record.scan = run.options.mapper.scan;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
@@ -76,6 +100,29 @@ void Run(const RunArguments& arguments) {
   Warn(run.mapping.warnings);
   PrintScores(run.scores);
   SayReport(arguments.common.output);
+}
+
+void RunCases(const RunArguments& arguments, const std::string& path) {
+  Config overrides;
+  for (const std::string& assignment : arguments.common.set) overrides.Set(assignment);
+  const Study study =
+      ReadStudy(Config::FromFile(path), overrides, fs::path(path).parent_path().string());
+  OutputFolder folder(arguments.common.output, arguments.common.force);
+  ProgressBar bar("mapping");
+  const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
+  folder.Commit();
+  PrintCases(results);
+}
+
+}  // namespace
+
+void Run(const RunArguments& arguments) {
+  const std::string path = ResolveName(arguments.experiment, ShippedKind::kExperiment);
+  if (IsStudy(Config::FromFile(path))) {
+    RunCases(arguments, path);
+  } else {
+    RunOne(arguments);
+  }
 }
 
 std::string ExperimentKeys() { return ListKeys(ExperimentOptions{}); }

@@ -6,6 +6,7 @@
 #include "eval/cli/console.h"
 #include "eval/experiment_options.h"
 #include "eval/shipped.h"
+#include "eval/study.h"
 #include "eval/sweep/sweep_plan.h"
 #include "sim/scene.h"
 #include "sim/trajectory.h"
@@ -57,8 +58,14 @@ void ListScenes(const ScenesArguments&) {
       {"experiment", "scene", "trajectory", "frames"}};
   for (const std::string& name : ShippedNames(ShippedKind::kExperiment)) {
     const std::string path = ResolveName(name, ShippedKind::kExperiment);
+    const Config config = Config::FromFile(path);
+    if (IsStudy(config)) {
+      const std::size_t cases = ReadStudyOutline(config).cases.size();
+      experiments.push_back({name, fmt::format("{} cases", cases), "", ""});
+      continue;
+    }
     const ExperimentOptions options =
-        ReadExperiment(Config::FromFile(path), ShippedFolder(ShippedKind::kExperiment));
+        ReadExperiment(config, ShippedFolder(ShippedKind::kExperiment));
     experiments.push_back({name, options.scene,
                            options.trajectory.empty() ? "first" : options.trajectory,
                            options.frames > 0 ? fmt::format("{}", options.frames) : "whole path"});

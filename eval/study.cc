@@ -1,0 +1,103 @@
+#include "eval/study.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kLargestErrorM = 1000.0;
+const std::vector<std::string> kHeadKeys = {"title"};
+const std::vector<std::string> kCaseHeadKeys = {"name", "published_mean_m"};
+
+struct StudyHead {
+  std::string title;
+  void Visit(OptionsVisitor& v) { v.Text("title", title, "of the page"); }
+};
+
+struct CaseHead {
+  std::string name;
+  double published_mean_m = 0.0;
+  void Visit(OptionsVisitor& v) {
+    v.Text("name", name, "of the case's folder");
+    v.Number("published_mean_m", published_mean_m, {0.0, kLargestErrorM},
+             "mean Euclidean error as published; 0 is none");
+  }
+};
+
+struct NoteText {
+  StudyNote note;
+  void Visit(OptionsVisitor& v) {
+    v.Text("title", note.title, "of the paragraph");
+    v.Text("text", note.text, "plain text");
+  }
+};
+
+// A copy without these of the top-level keys.
+Config Without(const Config& config, const std::vector<std::string>& keys) {
+  std::vector<std::string> kept;
+  for (const std::string& key : config.Keys()) {
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) kept.push_back(key);
+  }
+  return config.Only(kept);
+}
+
+StudyCase CaseOf(const Config& entry) {
+  CaseHead head;
+  entry.Only(kCaseHeadKeys).Read(head);
+  // The name becomes a folder's.
+  const bool plain = std::all_of(head.name.begin(), head.name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+  if (head.name.empty() || !plain) {
+    throw InputError(entry.Place(), "name of a case is '" + head.name +
+                                        "', must be of letters, digits, '_' and '-'");
+  }
+  StudyCase study_case{head.name, std::nullopt};
+  if (head.published_mean_m > 0.0) study_case.published_mean_m = head.published_mean_m;
+  return study_case;
+}
+
+}  // namespace
+
+bool IsStudy(const Config& config) { return config.Has("cases"); }
+
+StudyOutline ReadStudyOutline(Config config) {
+  StudyOutline outline;
+  StudyHead head;
+  config.Only(kHeadKeys).Read(head);
+  outline.title = head.title;
+  for (const Config& entry : config.TakeMaps("notes")) {
+    NoteText text;
+    entry.Read(text);
+    outline.notes.push_back(text.note);
+  }
+  for (const Config& entry : config.TakeMaps("cases")) {
+    const StudyCase next = CaseOf(entry);
+    for (const StudyCase& other : outline.cases) {
+      if (other.name == next.name) {
+        throw InputError(entry.Place(), "name '" + next.name + "' is given twice");
+      }
+    }
+    outline.cases.push_back(next);
+  }
+  if (outline.cases.empty()) throw InputError(config.Place(), "'cases' must name at least one");
+  return outline;
+}
+
+Study ReadStudy(Config config, const Config& overrides, const std::string& base_folder) {
+  Study study;
+  study.outline = ReadStudyOutline(config);
+  config.TakeMaps("notes");
+  const std::vector<Config> cases = config.TakeMaps("cases");
+  const Config shared = Without(config, kHeadKeys);
+  for (const Config& entry : cases) {
+    const Config own = Without(entry, kCaseHeadKeys);
+    study.experiments.push_back(ReadExperiment({&shared, &own, &overrides}, base_folder));
+  }
+  return study;
+}
+
+}  // namespace depthgrid

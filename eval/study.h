@@ -1,0 +1,44 @@
+// A study: several experiments side by side, with the figures that others published for them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/experiment_options.h"
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+
+struct StudyCase {
+  std::string name;  // of the case's folder
+  // Mean Euclidean error of the trajectory as published; nothing for a case without.
+  std::optional<double> published_mean_m;
+};
+
+// Something a reader must know to compare with what was published.
+struct StudyNote {
+  std::string title;
+  std::string text;
+};
+
+struct StudyOutline {
+  std::string title;
+  std::vector<StudyNote> notes;
+  std::vector<StudyCase> cases;  // at least one; names differ
+};
+
+struct Study {
+  StudyOutline outline;
+  std::vector<ExperimentOptions> experiments;  // one a case
+};
+
+bool IsStudy(const Config& config);
+
+// Without looking at the experiments' keys. Throws InputError.
+StudyOutline ReadStudyOutline(Config config);
+
+// A case's keys override those at the top of the file, and `overrides` both. Throws InputError.
+Study ReadStudy(Config config, const Config& overrides, const std::string& base_folder);
+
+}  // namespace depthgrid

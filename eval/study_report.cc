@@ -1,0 +1,135 @@
+#include "eval/study_report.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "eval/map_picture.h"
+#include "eval/report_json.h"
+#include "eval/run_files.h"
+#include "eval/study.h"
+#include "eval/web_assets.h"
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = ReportJson;
+
+constexpr int kMapMarginCells = 4;
+constexpr std::size_t kMostPathPoints = 450;  // two a second of a 900-frame path
+
+struct CaseFiles {
+  StudyCase head;
+  RunFiles run;
+  std::string scene;
+  std::string pose_source;
+};
+
+std::string ValueOf(const Config& settings, const std::string& key) {
+  return settings.Has(key) ? settings.List(key).front() : "";
+}
+
+CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
+  CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", ""};
+  const Config settings = Config::FromText(files.run.settings, head.name + "/run.yaml");
+  files.scene = fs::path(ValueOf(settings, "scene")).stem().string();
+  files.pose_source = ValueOf(settings, "slam.profile");
+  return files;
+}
+
+// Corners of the path of the camera on the floor, [x, y, x, y, ...] in metres.
+Json PathJson(const Trajectory& trajectory) {
+  Json json = Json::array();
+  const std::size_t step = std::max<std::size_t>(1, trajectory.size() / kMostPathPoints);
+  for (std::size_t i = 0; i < trajectory.size(); i += step) {
+    const Pose2 base = BaseOf(trajectory[i].world_from_camera);
+    json.push_back(Rounded(base.x_m, 3));
+    json.push_back(Rounded(base.y_m, 3));
+  }
+  return json;
+}
+
+// One rectangle for all maps of a room, so that they can be held beside each other.
+std::map<std::string, GridGeometry> RoomParts(const std::vector<CaseFiles>& cases) {
+  std::map<std::string, GridGeometry> parts;
+  const auto add = [&](const std::string& scene, const StateMap& map) {
+    const GridGeometry part = KnownPart(map, kMapMarginCells);
+    const auto [entry, is_new] = parts.emplace(scene, part);
+    if (!is_new) entry->second = Union(entry->second, part);
+  };
+  for (const CaseFiles& c : cases) {
+    add(c.scene, c.run.map);
+    if (c.run.input_map) add(c.scene, *c.run.input_map);
+    if (c.run.truth_map) add(c.scene, *c.run.truth_map);
+  }
+  return parts;
+}
+
+Json RoomJson(const CaseFiles& c, const GridGeometry& part) {
+  Json json;
+  json["scene"] = c.scene;
+  json["resolution"] = part.resolution_m;
+  json["origin"] = {part.OriginM().x(), part.OriginM().y()};
+  json["width"] = part.width_cells;
+  json["height"] = part.height_cells;
+  if (c.run.truth_map) json["truth"] = PngUri(PictureOf(*c.run.truth_map, part));
+  if (c.run.truth) json["path"] = PathJson(*c.run.truth);
+  return json;
+}
+
+Json CaseJson(const CaseFiles& c, const GridGeometry& part, const Json& metrics) {
+  Json json;
+  json["name"] = c.head.name;
+  json["scene"] = c.scene;
+  json["pose_source"] = c.pose_source;
+  json["metrics"] = metrics;
+  json["output_map"] = PngUri(PictureOf(c.run.map, part));
+  if (c.run.input_map) json["input_map"] = PngUri(PictureOf(*c.run.input_map, part));
+  json["input_path"] = PathJson(c.run.slam);
+  json["output_path"] = PathJson(c.run.est);
+  return json;
+}
+
+Json StudyJson(const StudyOutline& study, const std::vector<CaseFiles>& cases,
+               const Json& metrics) {
+  const std::map<std::string, GridGeometry> parts = RoomParts(cases);
+  Json json;
+  json["notes"] = Json::array();
+  for (const StudyNote& note : study.notes) {
+    json["notes"].push_back({{"title", note.title}, {"text", note.text}});
+  }
+  json["rooms"] = Json::array();
+  json["cases"] = Json::array();
+  for (const CaseFiles& c : cases) {
+    const auto known = [&](const Json& room) { return room["scene"] == c.scene; };
+    if (std::none_of(json["rooms"].begin(), json["rooms"].end(), known)) {
+      json["rooms"].push_back(RoomJson(c, parts.at(c.scene)));
+    }
+    json["cases"].push_back(CaseJson(c, parts.at(c.scene), metrics.at("cases").at(c.head.name)));
+  }
+  return json;
+}
+
+}  // namespace
+
+bool IsStudyFolder(const std::string& folder) { return fs::exists(folder + "/study.yaml"); }
+
+void WriteStudyReport(const std::string& folder) {
+  if (!IsStudyFolder(folder)) throw InputError(folder, "is no study's folder: no study.yaml");
+  const StudyOutline outline = ReadStudyOutline(Config::FromFile(folder + "/study.yaml"));
+  std::vector<CaseFiles> cases;
+  for (const StudyCase& head : outline.cases) cases.push_back(ReadCase(folder, head));
+  try {
+    const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
+    const Json json = StudyJson(outline, cases, metrics);
+    WriteFile(folder + "/report.html", FillPage("study.html", outline.title, json.dump()));
+  } catch (const Json::exception&) {
+    throw InputError(folder + "/metrics.json", "does not hold the study's scores");
+  }
+}
+
+}  // namespace depthgrid

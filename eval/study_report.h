@@ -1,0 +1,13 @@
+// report.html of a study's folder, made from the files in it.
+#pragma once
+
+#include <string>
+
+namespace depthgrid {
+
+bool IsStudyFolder(const std::string& folder);
+
+// Throws InputError when the folder holds no study, or a case's folder is missing.
+void WriteStudyReport(const std::string& folder);
+
+}  // namespace depthgrid

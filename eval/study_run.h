@@ -1,0 +1,26 @@
+// A study from front to back: every case as a run's folder, and one page over all of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/joint_runs.h"
+#include "eval/output_folder.h"
+#include "eval/study.h"
+
+namespace depthgrid {
+
+struct CaseResult {
+  std::string name;
+  std::optional<double> published_mean_m;
+  RunScores scores;
+  MapScore input_map;  // of the map that SLAM's live poses make
+};
+
+// Runs the cases that share room and images jointly and writes into the folder's work area: a
+// folder a case, metrics.json, study.yaml (`text`, the study as it was given) and report.html. The
+// caller commits. Results are in the order of the cases.
+std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
+                                 const OutputFolder& folder, const RunContext& context);
+
+}  // namespace depthgrid

@@ -1,0 +1,100 @@
+// The page of a study: cases side by side, with published figures.
+"use strict";
+const STUDY = JSON.parse(byId("data").textContent);
+const NAMES = { ground_truth: "Ground truth", orb_slam2: "ORB-SLAM2", planar_slam: "Planar-SLAM", planar_slam_mh: "Planar-SLAM, Manhattan" };
+const nameOf = (word) => NAMES[word] ?? word.charAt(0).toUpperCase() + word.slice(1).replaceAll("_", " ");
+const casesIn = (room) => STUDY.cases.filter((c) => c.scene === room.scene);
+// The maps are light in both themes, so what is drawn on them keeps its colours.
+const PATH_COLOURS = { truth: "#009e73", input: "#d98c00", output: "#0072b2" };
+const seen = (map) => map?.observable ?? map?.all;
+
+function errorText(score) {
+  if (!score) return "–";
+  return `${fixed(score.mean_euclidean_m, 3)} (${fixed(score.ate_rmse_se2_m, 3)})`;
+}
+const linkTo = (c, text) => make("a", { href: `${c.name}/report.html` }, text);
+
+function initTable() {
+  const head = ["Poses from"];
+  for (const room of STUDY.rooms) head.push(`${nameOf(room.scene)}: published`, "input", "output");
+  const sources = [...new Set(STUDY.cases.map((c) => c.pose_source))];
+  const rows = sources.map((source) => [nameOf(source), ...STUDY.rooms.flatMap((room) => {
+    const c = casesIn(room).find((one) => one.pose_source === source);
+    if (!c) return ["–", "–", "–"];
+    return [fixed(c.metrics.published_mean_m, 3), errorText(c.metrics.trajectory.slam), linkTo(c, errorText(c.metrics.trajectory.est))];
+  })]);
+  byId("table").append(tableOf(head, rows));
+  byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
+}
+
+function figure(source, label, caption) {
+  const picture = source ? make("img", { src: source, alt: label }) : make("span", {}, "–");
+  return make("figure", {}, picture, make("figcaption", {}, caption));
+}
+
+function initMaps() {
+  for (const room of STUDY.rooms) {
+    const cases = casesIn(room);
+    const f1 = (map) => `F1 ${fixed(seen(map)?.occupied.f1, 3)}`;
+    const row = (first, figures) => make("div", { class: "figure-row" }, first, ...figures);
+    byId("maps").append(make("h3", {}, nameOf(room.scene)),
+      row(figure(room.truth, `${room.scene}: true map`, "Truth"),
+        cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${nameOf(c.pose_source)}, input: ${f1(c.metrics.input_map)}`))),
+      row(make("figure", {}), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${nameOf(c.pose_source)}, output`), `: ${f1(c.metrics.map)}`)))));
+  }
+}
+
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+// Metres, y up, drawn over the true map.
+function pathPicture(room, c) {
+  const width = room.width * room.resolution;
+  const height = room.height * room.resolution;
+  const line = (path, stroke) => {
+    const points = [];
+    for (let i = 0; i + 1 < path.length; i += 2) points.push(`${fixed(path[i] - room.origin[0], 3)},${fixed(height - (path[i + 1] - room.origin[1]), 3)}`);
+    return svg("polyline", { points: points.join(" "), stroke });
+  };
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${c.name}: trajectories` });
+  if (room.truth) picture.append(svg("image", { href: room.truth, width, height, opacity: 0.55, preserveAspectRatio: "none" }));
+  if (room.path) picture.append(line(room.path, PATH_COLOURS.truth));
+  picture.append(line(c.input_path, PATH_COLOURS.input), line(c.output_path, PATH_COLOURS.output),
+    svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: height - 0.2, y2: height - 0.2 }),
+    svg("text", { class: "bar-text", x: 0.2, y: height - 0.32 }, "1 m"));
+  return picture;
+}
+
+function initPaths() {
+  for (const room of STUDY.rooms) {
+    byId("paths").append(make("h3", {}, nameOf(room.scene)), make("div", { class: "figure-row four" },
+      ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, nameOf(c.pose_source))))));
+  }
+}
+
+function initMapTable() {
+  const values = (map) => {
+    const s = seen(map);
+    return s ? [s.occupied.precision, s.occupied.recall, s.occupied.f1].map((v) => fixed(v, 3)).concat(metres(s.chamfer_m)) : ["–", "–", "–", "–"];
+  };
+  byId("map-table").append(tableOf(
+    ["Case", "Input map: precision", "recall", "F1", "chamfer", "Output map: precision", "recall", "F1", "chamfer"],
+    STUDY.cases.map((c) => [linkTo(c, nameOf(c.name)), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
+}
+
+function initNotes() {
+  if (STUDY.notes.length === 0) { byId("notes-section").hidden = true; return; }
+  for (const note of STUDY.notes) byId("notes").append(make("dt", {}, note.title), make("dd", {}, note.text));
+}
+
+initTheme();
+initTable();
+initMaps();
+initPaths();
+initMapTable();
+initNotes();
+document.documentElement.dataset.ready = "true";

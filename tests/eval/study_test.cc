@@ -1,0 +1,131 @@
+// Several experiments side by side: `depthgrid run` of a file with cases.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/eval/browser.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr const char* kStudy = R"(
+title: Two and one
+frames: 6
+sensor: {width: 80, height: 60, noise: handa}
+mapper: {method: paper, fusion: {mode: fixed, gain: 0.5}}
+cases:
+  - {name: orb, scene: ./room.yaml, slam: {profile: orb_slam2}, published_mean_m: 0.407}
+  - {name: other_seed, scene: ./room.yaml, slam: {profile: planar_slam}, depth_seed: 9}
+  - {name: truth, scene: ./room.yaml, slam: {profile: ground_truth}}
+notes:
+  - {title: Rooms, text: are not the same.}
+)";
+
+class StudyRun : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("study.yaml", kStudy);
+  }
+};
+
+// Cases that share their images run together; nothing of that shows.
+TEST_F(StudyRun, EachCaseIsWhatItWouldBeAlone) {
+  Succeed("run ./study.yaml -o out --threads 2");
+  for (const char* name : {"orb", "other_seed", "truth"}) {
+    const std::string folder = std::string("out/") + name;
+    Succeed("run " + folder + "/run.yaml -o alone_" + name + " --threads 1");
+    // What a study's case has beyond a run.
+    for (const char* more : {"input_map.yaml", "input_map.pgm"}) {
+      EXPECT_TRUE(std::filesystem::remove(Path(folder + "/" + more)));
+    }
+    ExpectSameBytes(folder, std::string("alone_") + name);
+  }
+}
+
+TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
+  Succeed("run ./study.yaml -o out");
+  const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
+  ASSERT_EQ(metrics["cases"].size(), 3U);
+  EXPECT_EQ(metrics["cases"]["orb"]["published_mean_m"], 0.407);
+  EXPECT_EQ(metrics["cases"]["truth"]["published_mean_m"], nullptr);
+  const auto alone = nlohmann::json::parse(ReadFile(Path("out/orb/metrics.json")));
+  EXPECT_EQ(metrics["cases"]["orb"]["trajectory"], alone["trajectory"]);
+  EXPECT_EQ(metrics["cases"]["orb"]["map"], alone["map"]);
+  // The poses that came in make a map of their own, and true ones make it true.
+  EXPECT_GT(metrics["cases"]["truth"]["input_map"]["observable"]["occupied"]["f1"], 0.9);
+  EXPECT_FALSE(SameFile("out/orb/input_map.pgm", "out/truth/input_map.pgm"));
+  const Outcome again = Program("run ./study.yaml -o again --threads 1");
+  EXPECT_THAT(again.out, HasSubstr("other_seed"));
+  EXPECT_EQ(again.err, "");
+  ExpectSameBytes("out", "again");
+}
+
+TEST_F(StudyRun, OverridesHoldForEveryCase) {
+  Succeed("run ./study.yaml -o out --set frames=5 --set mapper.fusion.gain=0.25");
+  for (const char* name : {"orb", "other_seed", "truth"}) {
+    const std::string settings = ReadFile(Path(std::string("out/") + name + "/run.yaml"));
+    EXPECT_THAT(settings, HasSubstr("frames: 5"));
+    EXPECT_THAT(settings, HasSubstr("gain: 0.25"));
+  }
+}
+
+TEST_F(StudyRun, ReportWritesTheSamePageAgain) {
+  Succeed("run ./study.yaml -o out");
+  const std::string page = ReadFile(Path("out/report.html"));
+  std::filesystem::remove(Path("out/report.html"));
+  Succeed("report out");
+  EXPECT_TRUE(ReadFile(Path("out/report.html")) == page);
+}
+
+TEST_F(StudyRun, RefusesWhatMakesNoSense) {
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& says) {
+    std::string text = kStudy;
+    text.replace(text.find(from), from.size(), to);
+    Write("wrong.yaml", text);
+    const Outcome outcome = Program("run ./wrong.yaml -o out");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(says));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  };
+  refused("profile: ground_truth", "profile: ground_trth", "wrong.yaml:9");
+  refused("name: truth", "name: orb", "'orb' is given twice");
+  refused("name: truth", "name: ../truth", "'../truth'");
+  refused("name: truth, ", "", "must be of letters");
+  refused("frames: 6", "framse: 6", "'framse'");
+  refused("text: are", "txet: are", "'txet'");
+  refused("  - {name: truth, scene: ./room.yaml,", "  - {name: truth,", "'scene' is missing");
+  Write("no_cases.yaml", "cases: []\n");
+  EXPECT_THAT(Program("run ./no_cases.yaml -o out").err, HasSubstr("'cases'"));
+  for (const char* command :
+       {"render ./study.yaml -o out", "slam-calibrate ./study.yaml --target 1"}) {
+    const Outcome outcome = Program(command);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  }
+}
+
+TEST_F(StudyRun, ThePageShowsEveryCase) {
+  const std::optional<std::string> chromium = FindChromium();
+  if (!chromium) GTEST_SKIP() << "no chromium on this machine";
+  Succeed("run ./study.yaml -o out");
+  Browser browser(*chromium, root_.string() + "_browser");
+  browser.Open(Path("out/report.html"));
+  EXPECT_THAT(browser.problems(), IsEmpty());
+  // The truth, and two maps a case, all of them loaded.
+  EXPECT_EQ(browser.Evaluate("[...document.images].filter((i) => i.naturalWidth > 9).length"), 7);
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#paths polyline').length"), 9);
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#table tbody tr').length"), 3);
+  EXPECT_THAT(browser.Evaluate("document.getElementById('table').innerText").get<std::string>(),
+              HasSubstr("0.407"));
+  browser.Open(Path("out/report.html"), 400);
+  EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
+}
+
+}  // namespace
+}  // namespace depthgrid
