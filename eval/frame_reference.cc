@@ -73,9 +73,10 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
     const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
     const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
     const Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
-    submaps.Insert(rasterizer.Rasterize(*stored.scan, pose, grid.resolution_m));
+    const Scan scan = *stored.scan;
+    submaps.Insert(rasterizer.Rasterize(scan, pose, grid.resolution_m), scan, pose);
   }
-  ProbabilityGrid* matching = submaps.matching();
+  Submap* matching = submaps.matching();
   return matching != nullptr ? matching->map() : OccupancyMap{};
 }
 

@@ -16,9 +16,9 @@ PaperReference::PaperReference(const GridOptions& grid, const SubmapOptions& sub
 
 MatchResult PaperReference::Match(const std::shared_ptr<const Scan>& scan,
                                   const Prediction& prediction) {
-  ProbabilityGrid* grid = submaps_.matching();
-  if (grid == nullptr) return {};
-  return matcher_.Match(*scan, ViewOf(grid->map()), prediction.map_from_base);
+  Submap* submap = submaps_.matching();
+  if (submap == nullptr) return {};
+  return matcher_.Match(*scan, ViewOf(submap->map()), prediction.map_from_base);
 }
 
 void PaperReference::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
@@ -30,7 +30,7 @@ void PaperReference::Insert(const std::shared_ptr<const Scan>& scan, const Pose2
 }
 
 void PaperReference::Draw(const Scan& scan, const Pose2& map_from_base) {
-  submaps_.Insert(rasterizer_.Rasterize(scan, map_from_base, resolution_m_));
+  submaps_.Insert(rasterizer_.Rasterize(scan, map_from_base, resolution_m_), scan, map_from_base);
 }
 
 Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,

@@ -8,11 +8,12 @@
 #include <map>
 #include <sstream>
 
-#include "eval/input_map.h"
 #include "eval/joint_runs.h"
 #include "eval/metrics/statistics.h"
 #include "eval/shipped.h"
 #include "eval/study.h"
+#include "mapper/core/level.h"
+#include "mapper/grid/map_drawing.h"
 
 using namespace depthgrid;
 
@@ -34,7 +35,8 @@ Variant ParseVariant(const std::string& text) {
 
 struct Row {
   double input_m = 0, input_f1 = 0;  // SLAM's live poses and the map they make
-  double online_m = 0, output_m = 0, output_ate_m = 0, f1 = 0, chamfer_m = 0, us_per_frame = 0;
+  double final_m = 0, final_f1 = 0;  // SLAM's own final trajectory and its map: the match off
+  double online_m = 0, output_m = 0, output_ate_m = 0, f1 = 0, thickness_m = 0, us_per_frame = 0;
   int accepted = 0, offered = 0;
 };
 
@@ -43,17 +45,33 @@ double F1Of(const MapScore& score) {
   return cells.occupied[kDefaultToleranceCells].f1.value_or(0.0);
 }
 
+double F1At(const std::vector<Pose2>& poses, const JointRun& run, const TruthRecord& truth) {
+  MapDrawing drawing(run.options.mapper.grid);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    drawing.Add(*run.mapping.result.mapped[i].obstacles, poses[i]);
+  }
+  return F1Of(ScoreMap(truth.map, StatesOf(drawing.Map()), truth.observable));
+}
+
 Row RowOf(const JointRun& run, const TruthRecord& truth) {
-  const OccupancyMap input = InputPoseMap(run.mapping, run.options.mapper.grid);
+  std::vector<Pose2> live, final;
+  for (const MappedFrame& mapped : run.mapping.result.mapped) {
+    const auto frame = static_cast<std::size_t>(mapped.frame);
+    live.push_back(BaseOf(*run.slam.live[frame].slam_from_camera));
+    final.push_back(
+        BaseOf(run.slam.final[frame].world_from_camera));  // no profile here loses track
+  }
   Row row;
   row.input_m = run.scores.slam->xy_unaligned.mean;
-  row.input_f1 = F1Of(ScoreMap(truth.map, StatesOf(input), truth.observable));
+  row.input_f1 = F1At(live, run, truth);
+  row.final_m = ScoreTrajectory(truth.trajectory, run.slam.final)->xy_unaligned.mean;
+  row.final_f1 = F1At(final, run, truth);
   row.online_m = run.scores.online->xy_unaligned.mean;
   row.output_m = run.scores.est->xy_unaligned.mean;
   row.output_ate_m = run.scores.est->xy_se2 ? run.scores.est->xy_se2->rmse : 0.0;
   row.f1 = F1Of(run.scores.map);
-  row.chamfer_m = (run.scores.map.observable ? *run.scores.map.observable : run.scores.map.all)
-                      .chamfer_m.value_or(0.0);
+  const auto& thickness = run.scores.map.quality->thickness;
+  row.thickness_m = thickness ? thickness->mean_m : 0.0;
   row.us_per_frame = 1e6 * run.mapping.cpu_s / static_cast<double>(run.mapping.reports.size());
   row.accepted = static_cast<int>(run.mapping.result.loops.size());
   row.offered = static_cast<int>(run.mapping.loops.size());
@@ -62,28 +80,40 @@ Row RowOf(const JointRun& run, const TruthRecord& truth) {
 
 using Key = std::pair<std::string, std::string>;  // case, variant
 
+struct Group {
+  std::vector<Key> keys;
+  std::vector<int> seeds;
+  std::vector<ExperimentOptions> options;
+};
+
+double MeanOf(const std::vector<Row>& rows, double Row::*value) {
+  std::vector<double> values;
+  for (const Row& row : rows) values.push_back(row.*value);
+  return Summarise(values).mean;
+}
+
 void PrintSummary(const std::vector<Key>& keys, const std::map<Key, std::vector<Row>>& rows) {
-  fmt::print("\n{:28} {:18} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6} {:>6}\n",
-             "case", "variant", "input", "output", "sd", "q25", "q50", "q75", "max", "ATE", "worse",
-             "F1 in", "F1 out");
+  fmt::print(
+      "\n{:28} {:12}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}{:>6}{:>6}{:>7}{:>7}\n",
+      "case", "variant", "input", "final", "output", "sd", "q25", "q50", "q75", "max", "ATE",
+      "worse", "F1 in", "F1 fi", "F1 out", "thick");
   for (const Key& key : keys) {
-    std::vector<double> input, output, ate, f1_in, f1_out;
+    const std::vector<Row>& of_key = rows.at(key);
+    std::vector<double> output;
     double worse = 0;
-    for (const Row& row : rows.at(key)) {
-      input.push_back(row.input_m);
+    for (const Row& row : of_key) {
       output.push_back(row.output_m);
-      ate.push_back(row.output_ate_m);
-      f1_in.push_back(row.input_f1);
-      f1_out.push_back(row.f1);
       worse += row.output_m > row.input_m ? 1.0 : 0.0;
     }
     const auto s = Summarise(output);
     fmt::print(
-        "{:28} {:18} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:7.4f} {:6.2f} "
-        "{:6.3f} {:6.3f}\n",
-        key.first, key.second, Summarise(input).mean, s.mean, s.std, Percentile(output, 0.25),
-        Percentile(output, 0.5), Percentile(output, 0.75), s.max, Summarise(ate).mean,
-        worse / static_cast<double>(output.size()), Summarise(f1_in).mean, Summarise(f1_out).mean);
+        "{:28} {:12}{:7.3f}{:7.3f}{:7.4f}{:7.4f}{:7.4f}{:7.4f}{:7.4f}{:7.4f}{:7.4f}{:7.2f}{:6.3f}"
+        "{:6.3f}{:7.3f}{:7.3f}\n",
+        key.first, key.second, MeanOf(of_key, &Row::input_m), MeanOf(of_key, &Row::final_m), s.mean,
+        s.std, Percentile(output, 0.25), Percentile(output, 0.5), Percentile(output, 0.75), s.max,
+        MeanOf(of_key, &Row::output_ate_m), worse / static_cast<double>(output.size()),
+        MeanOf(of_key, &Row::input_f1), MeanOf(of_key, &Row::final_f1), MeanOf(of_key, &Row::f1),
+        MeanOf(of_key, &Row::thickness_m));
   }
 }
 
@@ -94,12 +124,13 @@ int main(int argc, char** argv) {
   std::string study_name = "paper";
   std::vector<std::string> variant_texts, sets, only;
   RunContext context;
-  int first_seed = 1, seeds = 20;
+  int first_seed = 1, seeds = 20, depth_seed = 1;
   app.add_option("--study", study_name);
   app.add_option("--variant", variant_texts)->required();
   app.add_option("--case", only, "only cases whose name contains one of these");
   app.add_option("--seeds", seeds);
   app.add_option("--first-seed", first_seed);
+  app.add_option("--depth-seed", depth_seed, "of the depth noise, the same for all seeds of SLAM");
   app.add_option("--set", sets)->allow_extra_args(false);
   app.add_option("--threads", context.threads);
   app.add_option("--cache", context.cache_folder);
@@ -110,16 +141,15 @@ int main(int argc, char** argv) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   std::map<Key, std::vector<Row>> rows;
   std::vector<Key> order;
-  fmt::print(
-      "case,variant,seed,input_m,input_f1,online_m,output_m,output_ate_m,f1,chamfer_m,"
-      "loops_accepted,loops_offered,time_us_per_frame\n");
+  std::map<std::string, Group> groups;  // what shares room and images runs together
   for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
-    // What shares room and images runs together.
-    std::map<std::string, std::pair<std::vector<Key>, std::vector<ExperimentOptions>>> groups;
-    std::vector<std::string> group_order;
     for (const Variant& variant : variants) {
       Config overrides = variant.keys;
       overrides.Set("seed", std::to_string(seed));
+      overrides.Set("depth_seed", std::to_string(depth_seed));
+      for (const char* dear : {"registration", "ssim", "navigation"}) {
+        overrides.Set(std::string("metrics.") + dear, "false");
+      }
       for (const std::string& set : sets) overrides.Set(set);
       const Study study = ReadStudy(Config::FromFile(path), overrides, folder);
       for (std::size_t i = 0; i < study.experiments.size(); ++i) {
@@ -129,25 +159,31 @@ int main(int argc, char** argv) {
               return name.find(part) != std::string::npos;
             });
         if (!wanted) continue;
-        const std::string shared = SharedPart(study.experiments[i]);
-        if (!groups.contains(shared)) group_order.push_back(shared);
-        groups[shared].first.push_back({name, variant.name});
-        groups[shared].second.push_back(study.experiments[i]);
+        Group& group = groups[SharedPart(study.experiments[i])];
+        group.keys.push_back({name, variant.name});
+        group.seeds.push_back(seed);
+        group.options.push_back(study.experiments[i]);
       }
     }
-    for (const std::string& shared : group_order) {
-      const auto& [keys, options] = groups.at(shared);
-      const JointRuns joint = RunJointly(options, context);
-      for (std::size_t i = 0; i < keys.size(); ++i) {
-        const Row row = RowOf(joint.runs[i], joint.truth);
-        if (!rows.contains(keys[i])) order.push_back(keys[i]);
-        rows[keys[i]].push_back(row);
-        fmt::print("{},{},{},{:.5f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:.5f},{},{},{:.0f}\n",
-                   keys[i].first, keys[i].second, seed, row.input_m, row.input_f1, row.online_m,
-                   row.output_m, row.output_ate_m, row.f1, row.chamfer_m, row.accepted, row.offered,
-                   row.us_per_frame);
-      }
-      std::fflush(stdout);
+  }
+  fmt::print(
+      "case,variant,seed,input_m,input_f1,final_m,final_f1,online_m,output_m,output_ate_m,f1,"
+      "thickness_m,loops_accepted,loops_offered,time_us_per_frame\n");
+  for (const auto& [shared, group] : groups) {
+    context.progress = [](int done, int total) {
+      if (done % 100 == 0) fmt::print(stderr, "{} of {} frames\n", done, total);
+    };
+    const JointRuns joint = RunJointly(group.options, context);
+    for (std::size_t i = 0; i < group.keys.size(); ++i) {
+      const Key& key = group.keys[i];
+      const Row row = RowOf(joint.runs[i], joint.truth);
+      if (!rows.contains(key)) order.push_back(key);
+      rows[key].push_back(row);
+      fmt::print(
+          "{},{},{},{:.5f},{:.4f},{:.5f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{},{},{:.0f}\n",
+          key.first, key.second, group.seeds[i], row.input_m, row.input_f1, row.final_m,
+          row.final_f1, row.online_m, row.output_m, row.output_ate_m, row.f1, row.thickness_m,
+          row.accepted, row.offered, row.us_per_frame);
     }
   }
   PrintSummary(order, rows);

@@ -4,19 +4,41 @@ namespace depthgrid {
 
 void SubmapOptions::Visit(OptionsVisitor& v) {
   v.Number("scans", scans, {1, 1e6}, "a submap starts every so many scans");
+  v.Choice("walls", walls,
+           {{SubmapWalls::kCounted, "counted"}, {SubmapWalls::kAveraged, "averaged"}},
+           "cells near a wall: by hits and misses, or by their mean distance to the hits");
 }
 
-void ActiveSubmaps::Insert(const ScanCells& cells) {
-  if (scan_count_ % submap_options_.scans == 0 || grids_.empty()) {
-    if (grids_.size() == 2) grids_.pop_front();
-    grids_.emplace_back(grid_options_);
+Submap::Submap(const SubmapOptions& submap, const GridOptions& grid) : grid_(grid) {
+  if (submap.walls == SubmapWalls::kAveraged) {
+    walls_.emplace(grid.resolution_m, grid.min_prob, grid.max_prob);
   }
-  for (ProbabilityGrid& grid : grids_) grid.Insert(cells);
+}
+
+void Submap::Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base) {
+  grid_.Insert(cells);
+  if (walls_) walls_->Insert(scan, map_from_base);
+  is_drawn_ = false;
+}
+
+const OccupancyMap& Submap::map() {
+  if (!walls_) return grid_.map();
+  if (!is_drawn_) drawn_ = walls_->DrawnOver(grid_.map());
+  is_drawn_ = true;
+  return drawn_;
+}
+
+void ActiveSubmaps::Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base) {
+  if (scan_count_ % submap_options_.scans == 0 || submaps_.empty()) {
+    if (submaps_.size() == 2) submaps_.pop_front();
+    submaps_.emplace_back(submap_options_, grid_options_);
+  }
+  for (Submap& submap : submaps_) submap.Insert(cells, scan, map_from_base);
   ++scan_count_;
 }
 
 void ActiveSubmaps::RestartAt(int scan_count) {
-  grids_.clear();
+  submaps_.clear();
   scan_count_ = scan_count;
 }
 

@@ -2,18 +2,44 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 
 #include "mapper/core/options.h"
 #include "mapper/grid/probability_grid.h"
+#include "mapper/grid/wall_distances.h"
 
 namespace depthgrid {
+
+// What a submap says of the cells near a wall.
+enum class SubmapWalls {
+  kCounted,   // clamped log-odds of hits and misses, as of all other cells
+  kAveraged,  // by the mean distance of the cell to the hits
+};
 
 struct SubmapOptions {
   // A new submap starts every so many scans and takes twice as many: the first half while the one
   // before it is matched against, the second half while it is matched against itself.
   int scans = 90;  // Cartographer's; 3 s at 30 Hz
+  SubmapWalls walls = SubmapWalls::kCounted;
 
   void Visit(OptionsVisitor& v);
+};
+
+// A grid that scans are matched against.
+class Submap {
+ public:
+  Submap(const SubmapOptions& submap, const GridOptions& grid);
+
+  // `cells` are those of the scan at that pose.
+  void Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base);
+  // NaN where nothing was seen. The reference stays good until the next insertion.
+  const OccupancyMap& map();
+
+ private:
+  ProbabilityGrid grid_;
+  std::optional<WallDistances> walls_;
+  OccupancyMap drawn_;  // with the walls, unless out of date
+  bool is_drawn_ = false;
 };
 
 // Which submaps the n-th scan goes into: n / scans and the one before it.
@@ -23,18 +49,18 @@ class ActiveSubmaps {
       : submap_options_(submap), grid_options_(grid) {}
 
   // Puts the next scan into every active submap.
-  void Insert(const ScanCells& cells);
+  void Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base);
   // Forgets everything and counts the next scan as the n-th.
   void RestartAt(int scan_count);
 
   // The older one, which scans are matched against; null before the first scan.
-  ProbabilityGrid* matching() { return grids_.empty() ? nullptr : &grids_.front(); }
+  Submap* matching() { return submaps_.empty() ? nullptr : &submaps_.front(); }
 
  private:
   SubmapOptions submap_options_;
   GridOptions grid_options_;
   int scan_count_ = 0;
-  std::deque<ProbabilityGrid> grids_;  // at most two, the older one first
+  std::deque<Submap> submaps_;  // at most two, the older one first
 };
 
 }  // namespace depthgrid

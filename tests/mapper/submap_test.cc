@@ -32,7 +32,7 @@ TEST(ActiveSubmaps, TheOlderOfTwoIsMatchedAgainst) {
   ActiveSubmaps submaps({.scans = 10}, {});
   EXPECT_EQ(submaps.matching(), nullptr);
   for (int n = 0; n < 45; ++n) {
-    submaps.Insert(MarkOf(n));
+    submaps.Insert(MarkOf(n), {}, {});
     // Scans 0-19 are matched against submap 0, 20-29 against submap 1 (scans 10-29), and so on.
     const int first = n < 20 ? 0 : (n / 10 - 1) * 10;
     EXPECT_EQ(RangeOf(submaps, 45), std::make_pair(first, n)) << n;
@@ -42,15 +42,15 @@ TEST(ActiveSubmaps, TheOlderOfTwoIsMatchedAgainst) {
 TEST(ActiveSubmaps, RestartsWhereAnyScanIs) {
   for (const int count : {7, 10, 25, 30}) {
     ActiveSubmaps running({.scans = 10}, {});
-    for (int n = 0; n < count; ++n) running.Insert(MarkOf(n));
+    for (int n = 0; n < count; ++n) running.Insert(MarkOf(n), {}, {});
     ActiveSubmaps restarted({.scans = 10}, {});
     const int first = std::max((count - 1) / 10 - 1, 0) * 10;
     restarted.RestartAt(first);
-    for (int n = first; n < count; ++n) restarted.Insert(MarkOf(n));
+    for (int n = first; n < count; ++n) restarted.Insert(MarkOf(n), {}, {});
     for (int n = count; n < count + 25; ++n) {
       EXPECT_EQ(RangeOf(running, 60), RangeOf(restarted, 60)) << count << " " << n;
-      running.Insert(MarkOf(n));
-      restarted.Insert(MarkOf(n));
+      running.Insert(MarkOf(n), {}, {});
+      restarted.Insert(MarkOf(n), {}, {});
     }
   }
 }
