@@ -5,7 +5,7 @@
 #include <map>
 
 #include "eval/map_picture.h"
-#include "eval/report_json.h"
+#include "eval/report_json_impl.h"
 #include "eval/run_files.h"
 #include "eval/study.h"
 #include "eval/web_assets.h"
