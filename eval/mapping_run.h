@@ -38,7 +38,8 @@ struct MappingRun {
 // Maps a sequence whose frames are handed over one by one.
 class FrameRecorder {
  public:
-  // `oracle` is asked by fusion.mode `oracle` only, `match_oracle` for every match when it is given.
+  // `oracle` is asked by fusion.mode `oracle` only, `match_oracle` for every match when it is
+  // given.
   FrameRecorder(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
                 int frame_count, const GainOracle& oracle = {},
                 const MatchOracle& match_oracle = {});

@@ -11,7 +11,7 @@ namespace {
 constexpr int kReachCells = 2;
 constexpr int kStepsPerCell = 2;
 // Of the bell that distances become probabilities by, in cells: wide enough that bicubic
-// interpolation finds its top within a tenth of a cell.
+// interpolation finds its top within a fifth of a cell.
 constexpr double kBellCells = 1.0;
 // The rectangle grows by at least this much at a time.
 constexpr int kGrowthCells = 32;
