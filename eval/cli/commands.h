@@ -76,7 +76,9 @@ void FitSlam(const SlamFitArguments& arguments);
 struct EvalTrajectoryArguments {
   std::string reference;
   std::string estimate;
-  double max_difference_s = 0.01;
+  std::string convention = "evo";
+  double max_difference_s = -1.0;  // negative: the convention's
+  std::string errors;              // CSV to write; empty: none
   bool json = false;
 };
 void EvalTrajectory(const EvalTrajectoryArguments& arguments);

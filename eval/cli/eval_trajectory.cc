@@ -2,9 +2,12 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/metrics/trajectory_drift.h"
 #include "eval/metrics/trajectory_metrics.h"
+#include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid::cli {
@@ -39,21 +42,82 @@ void PrintTable(const TrajectoryScore& score) {
                           StatisticsRow("relative, 1 m (rad)", score.rpe_metre_rotation)}));
 }
 
+void PrintDrift(const std::vector<PosePair>& pairs) {
+  std::vector<Row> rows = {
+      {"relative motion over", "motions", "rms m", "rms rad", "mean m / unit"}};
+  const auto add = [&rows](const char* unit, const std::optional<Drift>& drift) {
+    if (!drift) return;
+    rows.push_back({fmt::format("{:g} {}", drift->over, unit), std::to_string(drift->motions),
+                    fmt::format("{:.6f}", drift->translation_rms_m),
+                    fmt::format("{:.6f}", drift->rotation_rms_rad),
+                    fmt::format("{:.6f}", drift->translation_mean_m / drift->over)});
+  };
+  for (const double lag_s : {0.1, 1.0, 3.0, 10.0, 30.0}) add("s", DriftOverTime(pairs, lag_s));
+  for (const double length_m : {1.0, 2.0, 5.0, 10.0}) add("m", DriftOverPath(pairs, length_m));
+  if (rows.size() > 1) fmt::print("\n{}", Table(rows));
+}
+
+// The matched poses as two trajectories of the same stamps.
+struct Matched {
+  Trajectory reference;
+  Trajectory estimate;
+};
+Matched Match(const std::vector<PosePair>& pairs) {
+  Matched matched;
+  for (const PosePair& pair : pairs) {
+    matched.reference.push_back(pair.reference);
+    matched.estimate.push_back({pair.reference.stamp_s, pair.estimate.world_from_camera});
+  }
+  return matched;
+}
+
+std::string ErrorsCsv(const std::vector<PosePair>& pairs) {
+  const std::vector<double> xy_m = TranslationErrorsXy(pairs);
+  const std::vector<double> xyz_m = TranslationErrorsXyz(pairs);
+  const std::vector<double> rotation_rad = RotationErrors(pairs);
+  std::string csv = "stamp_s,error_xy_m,error_xyz_m,error_rotation_rad\n";
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    csv += fmt::format("{:.6f},{},{},{}\n", pairs[i].reference.stamp_s, xy_m[i], xyz_m[i],
+                       rotation_rad[i]);
+  }
+  return csv;
+}
+
+double LimitOf(const EvalTrajectoryArguments& arguments) {
+  if (arguments.max_difference_s >= 0.0) return arguments.max_difference_s;
+  return arguments.convention == "tum" ? kTumMaxStampDifferenceS : kMaxStampDifferenceS;
+}
+
 }  // namespace
 
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   const Trajectory reference = ReadTrajectory(arguments.reference);
   const Trajectory estimate = ReadTrajectory(arguments.estimate);
-  const auto score = ScoreTrajectory(reference, estimate, arguments.max_difference_s);
-  if (!score) {
-    throw InputError(arguments.estimate,
-                     fmt::format("shares no stamp with {} (within {} s)", arguments.reference,
-                                 arguments.max_difference_s));
+  const double limit_s = LimitOf(arguments);
+  const std::vector<PosePair> pairs = arguments.convention == "tum"
+                                          ? AssociateAsTum(reference, estimate, limit_s)
+                                          : Associate(reference, estimate, limit_s);
+  std::optional<TrajectoryScore> score;
+  if (arguments.convention == "tum") {
+    const Matched matched = Match(pairs);
+    score = ScoreTrajectory(matched.reference, matched.estimate, limit_s);
+    if (score) {
+      score->reference_poses = static_cast<int>(reference.size());
+      score->estimate_poses = static_cast<int>(estimate.size());
+    }
+  } else {
+    score = ScoreTrajectory(reference, estimate, limit_s);
   }
+  if (!score) {
+    throw InputError(arguments.estimate, fmt::format("shares no stamp with {} (within {} s)",
+                                                     arguments.reference, limit_s));
+  }
+  if (!arguments.errors.empty()) WriteFile(arguments.errors, ErrorsCsv(pairs));
   if (arguments.json) {
     fmt::print("{}", MetricsJson({{"est", score}}, nullptr));
   } else {
     PrintTable(*score);
+    PrintDrift(pairs);
   }
 }
 

@@ -228,9 +228,16 @@ void AddEval(Program& program) {
   trajectory->add_option("estimate", t->estimate, "Estimated trajectory")->required();
   trajectory
       ->add_option("--max-difference", t->max_difference_s,
-                   "Stamps nearer than this belong together, seconds")
-      ->check(CLI::NonNegativeNumber)
+                   "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
+      ->check(CLI::NonNegativeNumber);
+  trajectory
+      ->add_option("--convention", t->convention,
+                   "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
+      ->check(CLI::IsMember({"evo", "tum"}))
       ->capture_default_str();
+  trajectory
+      ->add_option("--errors", t->errors, "Write the errors over time to this CSV, not aligned")
+      ->type_name("FILE");
   trajectory->add_flag("--json", t->json, "Print JSON instead of a table");
   const auto [map, m] = program.Add<EvalMapArguments>(
       *eval, "map", "Agreement of a map with the true one, Nav2 YAML files",

@@ -1,0 +1,51 @@
+#include "eval/metrics/trajectory_drift.h"
+
+#include <algorithm>
+
+#include "eval/metrics/statistics.h"
+#include "eval/metrics/trajectory_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+// `along` grows from pair to pair.
+std::optional<Drift> DriftAlong(const std::vector<PosePair>& pairs,
+                                const std::vector<double>& along, double over) {
+  // Stamps and paths of exactly the wanted length come out a rounding error short.
+  constexpr double kSlack = 1e-9;
+  constexpr double kLongest = 1.5;  // times what is wanted: across gaps it is another thing
+  std::vector<RelativeStep> steps;
+  for (std::size_t from = 0; from < pairs.size(); ++from) {
+    const auto reached = std::lower_bound(along.begin() + static_cast<std::ptrdiff_t>(from),
+                                          along.end(), along[from] + over - kSlack);
+    if (reached == along.end() || *reached - along[from] > kLongest * over) continue;
+    steps.push_back({from, static_cast<std::size_t>(reached - along.begin())});
+  }
+  if (steps.empty()) return std::nullopt;
+  const RelativeErrors errors = ErrorsOf(pairs, steps);
+  const Statistics translation = Summarise(errors.translation_m);
+  return Drift{over, static_cast<int>(steps.size()), translation.rmse,
+               Summarise(errors.rotation_rad).rmse, translation.mean};
+}
+
+}  // namespace
+
+std::optional<Drift> DriftOverTime(const std::vector<PosePair>& pairs, double lag_s) {
+  std::vector<double> stamps_s;
+  for (const PosePair& pair : pairs) stamps_s.push_back(pair.reference.stamp_s);
+  return DriftAlong(pairs, stamps_s, lag_s);
+}
+
+std::optional<Drift> DriftOverPath(const std::vector<PosePair>& pairs, double length_m) {
+  std::vector<double> path_m;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double step_m = i == 0 ? 0.0
+                                 : (pairs[i].reference.world_from_camera.translation -
+                                    pairs[i - 1].reference.world_from_camera.translation)
+                                       .norm();
+    path_m.push_back(i == 0 ? 0.0 : path_m.back() + step_m);
+  }
+  return DriftAlong(pairs, path_m, length_m);
+}
+
+}  // namespace depthgrid

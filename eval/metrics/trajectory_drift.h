@@ -1,0 +1,27 @@
+// How fast an estimate drifts: the error of relative motion against the time and the path it is
+// taken over, and the error of each pose over time.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "eval/metrics/association.h"
+
+namespace depthgrid {
+
+struct Drift {
+  double over = 0.0;  // seconds, or metres of the reference's path
+  int motions = 0;
+  double translation_rms_m = 0.0;
+  double rotation_rms_rad = 0.0;
+  double translation_mean_m = 0.0;  // divided by `over`: drift a second, or a metre
+};
+
+// From every pose to the first that is at least `lag_s` later; its own lag may be longer by up to
+// half of it, else it does not count. Empty when no motion is long enough.
+std::optional<Drift> DriftOverTime(const std::vector<PosePair>& pairs, double lag_s);
+// From every pose to the first at least `length_m` of the reference's path ahead (KITTI's rule,
+// Geiger et al. 2012, with every pose a start).
+std::optional<Drift> DriftOverPath(const std::vector<PosePair>& pairs, double length_m);
+
+}  // namespace depthgrid
