@@ -1,0 +1,142 @@
+// `slam`, `slam-fit` and `slam-calibrate` as a user types them.
+#include <gmock/gmock.h>
+
+#include "mapper/io/trajectory_file.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class SlamCommands : public ProgramTest {
+ protected:
+  // A folder as a recording has it, without any image: 40 s along a line and back.
+  void WriteSequence(const std::string& name, int frames = 1200) const {
+    std::filesystem::create_directories(Path(name + "/depth"));
+    std::string images = "# depth\n";
+    std::string truth = "# truth\n";
+    for (int i = 0; i < frames; ++i) {
+      const double stamp_s = i / 30.0;
+      const int way = i < frames / 2 ? i : frames - 1 - i;
+      images += std::to_string(stamp_s) + " depth/" + std::to_string(i) + ".png\n";
+      truth += std::to_string(stamp_s) + " " + std::to_string(0.005 * way) +
+               " 0 1.1 -0.5 0.5 -0.5 0.5\n";
+    }
+    Write(name + "/depth.txt", images);
+    Write(name + "/groundtruth.txt", truth);
+  }
+  void ExpectRefusal(const std::string& arguments, const std::string& says) const {
+    SCOPED_TRACE(arguments);
+    const auto before = FilesIn("");
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(says));
+    EXPECT_EQ(FilesIn(""), before);
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  }
+};
+
+TEST_F(SlamCommands, SlamWritesLiveFinalAndLoops) {
+  WriteSequence("seq");
+  Succeed("slam seq --profile orb_slam2 --seed 4 -o one");
+  EXPECT_THAT(FilesIn("one"), ElementsAre("loops.csv", "slam.txt", "slam.yaml", "slam_final.txt"));
+  EXPECT_EQ(ReadTrajectory(Path("one/slam.txt")).size(), 1200U);
+  Succeed("slam seq --profile orb_slam2 --seed 4 -o again");
+  Succeed("slam seq --profile orb_slam2 --seed 5 -o other");
+  for (const char* file : {"/slam.txt", "/slam_final.txt", "/loops.csv", "/slam.yaml"}) {
+    EXPECT_TRUE(SameFile(std::string("one") + file, std::string("again") + file)) << file;
+  }
+  EXPECT_FALSE(SameFile("one/slam.txt", "other/slam.txt"));
+  // Coming back over the old way closes a loop, which the final trajectory knows from the start.
+  EXPECT_THAT(ReadFile(Path("one/loops.csv")), HasSubstr("\n"));
+  EXPECT_FALSE(SameFile("one/slam.txt", "one/slam_final.txt"));
+  Succeed("slam seq --profile orb_slam2 --seed 4 --set slam.loops.scenario=none -o open");
+  EXPECT_TRUE(SameFile("open/slam.txt", "open/slam_final.txt"));
+}
+
+TEST_F(SlamCommands, SlamOfTheTruthIsTheTruth) {
+  WriteSequence("seq", 60);
+  Succeed("slam seq --profile ground_truth -o out");
+  const Trajectory truth = ReadTrajectory(Path("seq/groundtruth.txt"));
+  const Trajectory live = ReadTrajectory(Path("out/slam.txt"));
+  ASSERT_EQ(live.size(), truth.size());
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    EXPECT_EQ(live[i].world_from_camera, truth[i].world_from_camera);
+  }
+}
+
+TEST_F(SlamCommands, AGainOfNothingGivesItsFilesBack) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Succeed("slam seq --profile orb_slam2 --seed 1 -o slam");
+  Succeed("run ./small.yaml --set mapper.fusion.gain=0 -o out");
+  EXPECT_TRUE(SameFile("slam/slam.txt", "out/trajectory_slam.txt"));
+  EXPECT_TRUE(SameFile("slam/slam.txt", "out/trajectory_online.txt"));
+  EXPECT_TRUE(SameFile("slam/slam_final.txt", "out/trajectory_est.txt"));
+  EXPECT_FALSE(SameFile("slam/slam.txt", "out/trajectory_truth.txt"));
+}
+
+TEST_F(SlamCommands, SlamRefusesBadInput) {
+  WriteSequence("seq", 30);
+  ExpectRefusal("slam nowhere -o out", "nowhere");
+  ExpectRefusal("slam seq --profile orb_slam -o out", "'orb_slam2'");
+  ExpectRefusal("slam seq --set slam.drift_scael=2 -o out", "'slam.drift_scale'");
+  ExpectRefusal("slam seq --set slam.loops.precision=0 -o out", "slam.loops.precision");
+  ExpectRefusal("slam seq", "--output");
+  Write("seq/groundtruth.txt", "100 0 0 1 -0.5 0.5 -0.5 0.5\n");
+  ExpectRefusal("slam seq -o out", "groundtruth.txt");
+}
+
+TEST_F(SlamCommands, FitFindsWhatSlamDid) {
+  WriteSequence("seq");
+  Succeed(
+      "slam seq --profile ground_truth --set slam.jitter_translation_m=0.004 "
+      "--set slam.jitter_rotation_deg=0.1 -o out");
+  const Outcome fit = Program("slam-fit seq/groundtruth.txt out/slam.txt");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const auto value = [&](const std::string& key) {
+    const auto at = fit.out.find("\n" + key + ": ");
+    EXPECT_NE(at, std::string::npos) << key << "\n" << fit.out;
+    return at == std::string::npos ? -1.0 : std::stod(fit.out.substr(at + key.size() + 3));
+  };
+  EXPECT_NEAR(value("jitter_translation_m"), 0.004, 0.0004);
+  EXPECT_NEAR(value("jitter_rotation_deg"), 0.1, 0.015);
+  EXPECT_NEAR(value("walk_translation_m"), 0.0, 0.001);
+}
+
+TEST_F(SlamCommands, FitRefusesBadInput) {
+  WriteSequence("seq", 30);
+  ExpectRefusal("slam-fit seq/groundtruth.txt", "--help");
+  ExpectRefusal("slam-fit seq/groundtruth.txt nothing.txt", "nothing.txt");
+  ExpectRefusal("slam-fit seq/groundtruth.txt seq/groundtruth.txt seq/groundtruth.txt", "pairs");
+  Write("later.txt", "1000 0 0 0 0 0 0 1\n");
+  ExpectRefusal("slam-fit seq/groundtruth.txt later.txt", "later.txt");
+}
+
+TEST_F(SlamCommands, CalibrateReachesItsTarget) {
+  const std::string command =
+      "slam-calibrate ./small.yaml --set frames=90 --set slam.loops.scenario=none --seeds 20 ";
+  const Outcome found = Program(command + "--target 0.05 --threads 2");
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("mean live error 0.0500 m"));
+  const auto at = found.out.find("drift_scale: ");
+  ASSERT_NE(at, std::string::npos) << found.out;
+  EXPECT_GT(std::stod(found.out.substr(at + 13)), 1.0);
+  EXPECT_EQ(Program(command + "--target 0.05 --threads 1").out, found.out);
+}
+
+TEST_F(SlamCommands, CalibrateRefusesBadInput) {
+  ExpectRefusal("slam-calibrate ./small.yaml", "--target");
+  ExpectRefusal("slam-calibrate ./small.yaml --target=-1", "--target");
+  ExpectRefusal("slam-calibrate ./nothing.yaml --target 1", "nothing.yaml");
+  ExpectRefusal("slam-calibrate ./small.yaml --target 0.1 --seeds 0", "--seeds");
+  // Nothing to scale.
+  ExpectRefusal("slam-calibrate ./small.yaml --set slam.profile=ground_truth --target 0.1",
+                "--target");
+}
+
+}  // namespace
+}  // namespace depthgrid
