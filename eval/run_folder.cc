@@ -4,12 +4,14 @@
 
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
+#include "eval/run_graph.h"
 #include "eval/run_report.h"
 #include "eval/run_tables.h"
 #include "eval/sample_pictures.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
+#include "mapper/io/matrix_poses.h"
 #include "mapper/io/png.h"
 #include "mapper/io/scan_file.h"
 #include "mapper/io/slam_files.h"
@@ -24,7 +26,9 @@ void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
   const MappingRun& run = *record.mapping;
   WriteTrajectory(folder.File("trajectory_slam.txt"), SlamTrajectory(run));
   WriteTrajectory(folder.File("trajectory_online.txt"), OnlineTrajectory(run));
-  WriteTrajectory(folder.File("trajectory_est.txt"), FinalTrajectory(run));
+  const Trajectory final = FinalTrajectory(run);
+  WriteTrajectory(folder.File("trajectory_est.txt"), final);
+  WriteFile(folder.File("trajectory_est_kitti.txt"), MatrixPosesText(final));
   if (record.truth != nullptr) {
     WriteTrajectory(folder.File("trajectory_truth.txt"), record.truth->trajectory);
   }
@@ -94,7 +98,7 @@ std::string Provenance(const std::string& scene_hash) {
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
   WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.scene_hash));
-  WriteMap(folder.File("map.yaml"), MapOf(*record.mapping));
+  WriteMap(folder.File("map.yaml"), MapOf(*record.mapping), record.map_mode);
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
   if (record.truth != nullptr) WriteTruthMaps(folder.work().string(), *record.truth);
@@ -104,6 +108,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   if (record.slam != nullptr) WriteFile(folder.File("loops.csv"), LoopsText(*record.slam));
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);
+  WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
   WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.scene, truth);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),

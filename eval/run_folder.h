@@ -6,6 +6,7 @@
 #include "eval/experiment.h"
 #include "eval/output_folder.h"
 #include "mapper/core/slam_output.h"
+#include "mapper/io/map_file.h"
 
 namespace depthgrid {
 
@@ -19,6 +20,7 @@ struct RunRecord {
   const RunScores* scores = nullptr;
   const Scene* scene = nullptr;  // nothing for recorded data
   ScanOptions scan;              // the mapper's
+  MapMode map_mode = MapMode::kTrinary;
   double wall_s_total = 0.0;
   double cpu_s_total = 0.0;
 };

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "mapper/io/map_file.h"
+
 namespace depthgrid::cli {
 
 // Arguments of several commands; none of them but `set` ever changes a result.
@@ -30,8 +32,15 @@ struct RenderArguments {
 };
 void Render(const RenderArguments& arguments);
 
+// How a result is written; part of no result.
+struct OutputArguments {
+  MapMode map_mode = MapMode::kTrinary;
+  std::string video;  // empty: none
+};
+
 struct RunArguments {
   std::string experiment;
+  OutputArguments output;
   CommonArguments common;
 };
 void Run(const RunArguments& arguments);
@@ -46,6 +55,7 @@ struct MapArguments {
   std::string format;  // the three replace keys of `sequence` when not empty
   std::string camera;
   std::string world_up;
+  OutputArguments output;
   CommonArguments common;
 };
 void Map(const MapArguments& arguments);
@@ -132,6 +142,7 @@ void Report(const ReportArguments& arguments);
 struct RegridArguments {
   std::string folder;
   double resolution_m = 0.05;
+  MapMode map_mode = MapMode::kTrinary;
 };
 void Regrid(const RegridArguments& arguments);
 

@@ -48,6 +48,23 @@ void AddCache(CLI::App& app, CommonArguments& common) {
   app.add_flag("--no-cache", common.no_cache, "Render everything anew");
 }
 
+// The transformer alone would show its numbers in messages.
+void AddMapMode(CLI::App& app, MapMode& mode) {
+  const std::map<std::string, MapMode> modes = {
+      {"trinary", MapMode::kTrinary}, {"scale", MapMode::kScale}, {"raw", MapMode::kRaw}};
+  app.add_option_function<std::string>(
+         "--map-mode", [&mode, modes](const std::string& name) { mode = modes.at(name); },
+         "What the map's shades mean, as Nav2's modes: trinary, scale or raw")
+      ->check(CLI::IsMember({"trinary", "scale", "raw"}))
+      ->type_name("MODE");
+}
+
+void AddOutputForms(CLI::App& app, OutputArguments& output) {
+  AddMapMode(app, output.map_mode);
+  app.add_option("--video", output.video, "Write a video of the map growing (MP4, by ffmpeg)")
+      ->type_name("FILE");
+}
+
 // --keys prints and ends, whatever else is given, like --help.
 void AddKeys(CLI::App& app, std::string (*keys)()) {
   app.add_flag_callback(
@@ -126,6 +143,7 @@ void AddMap(Program& program) {
                   "Axis of the poses' world that points up: x, -x, y, -y, z, -z or auto")
       ->type_name("AXIS");
   AddOutput(*app, arguments->common);
+  AddOutputForms(*app, arguments->output);
   AddSet(*app, arguments->common);
   AddKeys(*app, &MapKeys);
 }
@@ -142,6 +160,7 @@ void AddRun(Program& program) {
   app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
       ->required();
   AddOutput(*app, arguments->common);
+  AddOutputForms(*app, arguments->output);
   AddSet(*app, arguments->common);
   AddThreads(*app, arguments->common);
   AddCache(*app, arguments->common);
@@ -309,6 +328,7 @@ void AddRegrid(Program& program) {
   app->add_option("--resolution", arguments->resolution_m, "Cell size, metres")
       ->required()
       ->check(CLI::PositiveNumber);
+  AddMapMode(*app, arguments->map_mode);
 }
 
 // One line, whatever the message holds.

@@ -5,9 +5,11 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/map_video.h"
 #include "eval/mapping_run.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
+#include "eval/video_writer.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
@@ -115,6 +117,7 @@ void Map(const MapArguments& arguments) {
   settings.poses = arguments.poses;
   settings.final_poses = arguments.final_poses;
   settings.loops = arguments.loops;
+  if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, config, settings, warnings);
@@ -127,14 +130,19 @@ void Map(const MapArguments& arguments) {
   record.settings = ToYaml(settings);
   record.mapping = &run;
   record.scan = settings.mapper.scan;
+  record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   WriteRunFolder(folder, record);
+  if (!arguments.output.video.empty()) {
+    WriteMapVideo(arguments.output.video, run, settings.mapper.grid);
+  }
   folder.Commit();
   bar.Clear();
   SayResult(run);
   SayReport(arguments.common.output);
+  std::fflush(stdout);
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   Warn(warnings);
 }

@@ -42,7 +42,7 @@ void Regrid(const RegridArguments& arguments) {
   MapDrawing drawing(options);
   for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
   const fs::path map = folder / fmt::format("map_{}.yaml", arguments.resolution_m);
-  WriteMap(map.string(), drawing.Map());
+  WriteMap(map.string(), drawing.Map(), arguments.map_mode);
   fmt::print("{}\n", map.string());
 }
 

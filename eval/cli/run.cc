@@ -8,11 +8,14 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment.h"
+#include "eval/map_video.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
 #include "eval/shipped.h"
 #include "eval/study.h"
 #include "eval/study_run.h"
+#include "eval/video_writer.h"
+#include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 
@@ -85,16 +88,21 @@ RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
 void RunOne(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
+  if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   record.title = arguments.experiment;
+  record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
   bar.Say("writing the folder and the report");
   WriteRunFolder(folder, record);
+  if (!arguments.output.video.empty()) {
+    WriteMapVideo(arguments.output.video, run.mapping, run.options.mapper.grid);
+  }
   folder.Commit();
   bar.Clear();
   Warn(run.mapping.warnings);
@@ -103,6 +111,9 @@ void RunOne(const RunArguments& arguments) {
 }
 
 void RunCases(const RunArguments& arguments, const std::string& path) {
+  if (!arguments.output.video.empty()) {
+    throw InputError("--video " + arguments.output.video, "shows one run; run a case by itself");
+  }
   Config overrides;
   for (const std::string& assignment : arguments.common.set) overrides.Set(assignment);
   const Study study =

@@ -4,6 +4,7 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 #include "mapper/core/error.h"
@@ -90,6 +91,19 @@ std::optional<Pose3> ReadMatrixPose(const std::string& path) {
 
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path) {
   return ParseMatrixPoses(ReadFile(path), path);
+}
+
+std::string MatrixPosesText(const Trajectory& trajectory) {
+  std::string text;
+  for (const StampedPose& stamped : trajectory) {
+    const Eigen::Matrix3d rotation = stamped.world_from_camera.rotation.toRotationMatrix();
+    const Eigen::Vector3d& translation = stamped.world_from_camera.translation;
+    for (int row = 0; row < 3; ++row) {
+      fmt::format_to(std::back_inserter(text), "{} {} {} {}{}", rotation(row, 0), rotation(row, 1),
+                     rotation(row, 2), translation[row], row == 2 ? "\n" : " ");
+    }
+  }
+  return text;
 }
 
 }  // namespace depthgrid

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mapper/core/pose3.h"
+#include "mapper/core/trajectory.h"
 
 namespace depthgrid {
 
@@ -20,5 +20,8 @@ std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string&
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path);
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
                                                    const std::string& place);
+
+// KITTI's form: the upper three rows of each pose's matrix on one line, no stamps.
+std::string MatrixPosesText(const Trajectory& trajectory);
 
 }  // namespace depthgrid

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <span>
-#include <string_view>
 
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -130,15 +129,18 @@ bool SameBearings(const StoredScan& a, const StoredScan& b) {
 }  // namespace
 
 std::vector<StoredScan> ReadScans(const std::string& path) {
-  const std::string bytes = ReadFile(path);
-  Reader reader(bytes, path);
+  return ParseScans(ReadFile(path), path);
+}
+
+std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& place) {
+  Reader reader(bytes, place);
   reader.RequireMagic();
   const auto count = reader.Take<std::uint32_t>();
   reader.RequireRoom(count, kScanBytes);
   std::vector<StoredScan> scans;
   ScanTaker taker;
   for (std::uint32_t i = 0; i < count; ++i) scans.push_back(taker.Take(reader));
-  if (!reader.empty()) throw InputError(path, "goes on behind its last scan");
+  if (!reader.empty()) throw InputError(place, "goes on behind its last scan");
   return scans;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mapper/core/kept_scan.h"
@@ -20,6 +21,8 @@ struct StoredScan {
 
 // Throws InputError for a file that is missing, truncated or something else.
 std::vector<StoredScan> ReadScans(const std::string& path);
+// The same from the file's bytes.
+std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& place);
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans);
 
 }  // namespace depthgrid

@@ -1,0 +1,40 @@
+// MP4 files (H.264), written by the program `ffmpeg` (Debian package of that name).
+#pragma once
+
+#include <string>
+
+#include "mapper/core/rgb_image.h"
+
+namespace depthgrid {
+
+// Throws InputError for a file that cannot be a video or when there is no ffmpeg to write it: said
+// before hours of mapping, not after.
+void RequireVideo(const std::string& path);
+
+// Frames in, a file at the end. The same frames give the same bytes with the same ffmpeg.
+class VideoWriter {
+ public:
+  // All frames have this size. Throws std::runtime_error when ffmpeg cannot be started.
+  VideoWriter(std::string path, int width_px, int height_px, int frames_per_s);
+  // Without Finish() nothing is left behind.
+  ~VideoWriter();
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
+
+  void Add(const RgbImage& frame);
+  // Throws std::runtime_error when ffmpeg failed.
+  void Finish();
+
+ private:
+  void Close();
+
+  std::string path_;
+  std::string temporary_;
+  int width_px_;
+  int height_px_;
+  int pipe_ = -1;
+  int process_ = -1;
+  int status_ = -1;
+};
+
+}  // namespace depthgrid

@@ -1,0 +1,226 @@
+// Recorded data through the program: each kind of input detected, named and mapped; damage counted
+// and survived; each form of output.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "mapper/io/map_file.h"
+#include "mapper/io/trajectory_file.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ProgramFormats : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Succeed("render ./small.yaml --no-colour --set sensor.noise=none -o seq");
+  }
+  // What `map` says on standard output.
+  std::string Mapped(const std::string& arguments) const {
+    const Outcome outcome = Program("map " + arguments + " -o out --force");
+    EXPECT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+    return outcome.out;
+  }
+  Trajectory Truth() const { return ReadTrajectory(Path("seq/groundtruth.txt")); }
+  std::vector<std::string> DepthFiles() const {
+    std::vector<std::string> files;
+    for (const std::string& file : FilesIn("seq/depth")) files.push_back("seq/depth/" + file);
+    return files;
+  }
+  static std::string Row(const Eigen::Matrix3d& r, const Eigen::Vector3d& t, int row) {
+    std::ostringstream text;
+    text.precision(17);
+    text << r(row, 0) << " " << r(row, 1) << " " << r(row, 2) << " " << t[row];
+    return text.str();
+  }
+  static std::string Matrix(const Pose3& pose, const char* between) {
+    const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
+    std::string text;
+    for (int row = 0; row < 3; ++row) text += Row(r, pose.translation, row) + between;
+    return text + "0 0 0 1";
+  }
+  // The distance of the estimates to the truth, both as they are.
+  double ErrorM() const {
+    const Trajectory truth = Truth();
+    const Trajectory estimate = ReadTrajectory(Path("out/trajectory_est.txt"));
+    EXPECT_EQ(estimate.size(), truth.size());
+    double worst_m = 0.0;
+    for (std::size_t i = 0; i < std::min(truth.size(), estimate.size()); ++i) {
+      worst_m = std::max(worst_m, (truth[i].world_from_camera.translation -
+                                   estimate[i].world_from_camera.translation)
+                                      .head<2>()
+                                      .norm());
+    }
+    return worst_m;
+  }
+  static constexpr const char* kTrustPoses =
+      " --set mapper.fusion.mode=fixed --set mapper.fusion.gain=0";
+};
+
+TEST_F(ProgramFormats, ATumFolderWithItsOwnOrGivenPoses) {
+  EXPECT_THAT(Mapped(std::string("seq") + kTrustPoses),
+              AllOf(HasSubstr("seq: TUM RGB-D folder, 12 frames\n"),
+                    HasSubstr("poses: groundtruth.txt of the folder\n"),
+                    HasSubstr("mapped 12 of 12 frames\n")));
+  const std::string map = ReadFile(Path("out/map.pgm"));
+  Mapped(std::string("seq --poses seq/groundtruth.txt --format tum") + kTrustPoses);
+  EXPECT_EQ(ReadFile(Path("out/map.pgm")), map);
+}
+
+// The same frames in the layouts of other data sets give the same map.
+TEST_F(ProgramFormats, FramesWithMatricesAreTheSameFrames) {
+  Mapped(std::string("seq") + kTrustPoses);
+  const std::string map = ReadFile(Path("out/map.pgm"));
+  fs::create_directory(Path("frames"));
+  std::string list;
+  const Trajectory truth = Truth();
+  const auto depth = DepthFiles();
+  ASSERT_EQ(depth.size(), truth.size());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    const std::string stem = "frames/frame-" + std::to_string(i);
+    fs::copy_file(Path(depth[i]), Path(stem + ".depth.png"));
+    Write(stem + ".pose.txt", Matrix(truth[i].world_from_camera, "\n") + "\n");
+    list += Matrix(truth[i].world_from_camera, " ") + "\n";
+  }
+  fs::copy_file(Path("seq/camera.yaml"), Path("frames/camera.yaml"));
+  EXPECT_THAT(Mapped(std::string("frames") + kTrustPoses),
+              HasSubstr("frames: folder of frames, 12 frames\n"));
+  EXPECT_TRUE(ReadFile(Path("out/map.pgm")) == map);
+  for (const std::string& file : FilesIn("frames")) {
+    if (file.ends_with("pose.txt")) fs::remove(Path("frames/" + file));
+  }
+  Write("frames/poses.txt", list);
+  Mapped(std::string("frames") + kTrustPoses);
+  EXPECT_TRUE(ReadFile(Path("out/map.pgm")) == map);
+  Mapped(std::string("seq --poses frames/poses.txt") + kTrustPoses);
+  EXPECT_TRUE(ReadFile(Path("out/map.pgm")) == map);
+}
+
+TEST_F(ProgramFormats, AWorldInCameraAxesIsMadeLevel) {
+  const Trajectory truth = Truth();
+  const Pose3 first_from_world = Inverse(truth[0].world_from_camera);
+  Trajectory slam;
+  for (const StampedPose& pose : truth) {
+    slam.push_back({pose.stamp_s, first_from_world * pose.world_from_camera});
+  }
+  WriteTrajectory(Path("slam.txt"), slam);
+  const std::string said = Mapped(std::string("seq --poses slam.txt") + kTrustPoses);
+  EXPECT_THAT(said, AllOf(HasSubstr("removed "), HasSubstr("the camera is 1.1")));
+  // As many walls as with upright poses.
+  const auto walls = [&] {
+    const OccupancyMap map = ReadMap(Path("out/map.yaml")).map;
+    return std::count(map.occupied_prob.begin(), map.occupied_prob.end(), 1.0F);
+  };
+  const auto found = static_cast<double>(walls());
+  Mapped(std::string("seq") + kTrustPoses);
+  EXPECT_NEAR(found, static_cast<double>(walls()), 0.3 * found);
+  EXPECT_GT(found, 20.0);
+}
+
+TEST_F(ProgramFormats, ALaserLog) {
+  std::string log = "# made by hand\nPARAM laser_front_laser_resolution 1\n";
+  for (int i = 0; i < 5; ++i) {
+    log += "FLASER 5 2.0 2.1 2.2 2.1 2.0 0 0 0 0 0 0 " + std::to_string(i) + ".0 host 0\n";
+  }
+  Write("robot.log", log + "FLASER 5 2.0 2.1\n");
+  const Outcome outcome = Program("map robot.log -o out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("robot.log: CARMEN laser log, 5 frames\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: robot.log:8: FLASER with damaged readings"));
+  EXPECT_EQ(Program("map robot.log --poses seq/groundtruth.txt -o out2").exit_code, 2);
+}
+
+TEST_F(ProgramFormats, AForcedKindThatDoesNotFitIsRefused) {
+  for (const char* kind : {"icl", "frames", "carmen", "kinect"}) {
+    const Outcome outcome = Program(std::string("map seq --format ") + kind + " -o out");
+    EXPECT_EQ(outcome.exit_code, 2) << kind;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(fs::exists(Path("out")));
+  }
+}
+
+TEST_F(ProgramFormats, DamageIsCountedAtTheEnd) {
+  const auto depth = DepthFiles();
+  fs::remove(Path(depth[3]));
+  WriteFile(Path(depth[5]), ReadFile(Path(depth[5])).substr(0, 100));
+  std::string poses = "# stamp tx ty tz qx qy qz qw\n";
+  const Trajectory truth = Truth();
+  for (std::size_t i = truth.size(); i-- > 0;) {  // backwards, one without a pose, one twice
+    if (i == 7) {
+      poses += std::to_string(truth[i].stamp_s) + " nan 0 0 0 0 0 1\n";
+    } else {
+      poses += TrajectoryText({truth[i]});
+      if (i == 2) poses += TrajectoryText({truth[i]});
+    }
+  }
+  Write("poses.txt", poses);
+  const Outcome outcome = Program("map seq --poses poses.txt -o out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("mapped 9 of 12 frames, 1 without a pose\n"));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("poses.txt: 1 poses with NaN"), HasSubstr("rows earlier than"),
+                    HasSubstr("1 rows with a stamp already given"),
+                    HasSubstr("2 depth images missing or damaged"),
+                    HasSubstr("1 of 12 frames have no pose")));
+}
+
+TEST_F(ProgramFormats, LoopsOfEveryKind) {
+  const Trajectory truth = Truth();
+  const auto stamp = [&](std::size_t i) { return std::to_string(truth[i].stamp_s); };
+  const Pose3 last_from_first =
+      Inverse(truth.back().world_from_camera) * truth.front().world_from_camera;
+  const Eigen::Matrix3d r = last_from_first.rotation.toRotationMatrix();
+  std::string tcm;
+  for (int row = 0; row < 3; ++row) tcm += " " + Row(r, last_from_first.translation, row);
+  Write("events.txt", "LOOP 11 " + stamp(11) + " 0 " + stamp(0) + " Tcm" + tcm + "\n");
+  EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops events.txt"),
+              HasSubstr("1 loop closures from ORB-SLAM2 events\n"));
+  Write("stamped.txt", stamp(0) + " " + stamp(11) + " 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops stamped.txt"),
+              HasSubstr("1 loop closures from stamped loops\n"));
+  EXPECT_EQ(Program("map seq --loops events.txt -o out2").exit_code, 2);
+}
+
+TEST_F(ProgramFormats, MapsInEveryModeOfNav2) {
+  Mapped("seq");
+  const StateMap trinary = StatesOf(ReadMap(Path("out/map.yaml")).map);
+  for (const char* mode : {"scale", "raw"}) {
+    Mapped(std::string("seq --map-mode ") + mode);
+    EXPECT_THAT(ReadFile(Path("out/map.yaml")), HasSubstr(std::string("mode: ") + mode));
+    EXPECT_EQ(StatesOf(ReadMap(Path("out/map.yaml")).map).states, trinary.states) << mode;
+  }
+  Succeed("regrid out --resolution 0.05 --map-mode trinary");
+  EXPECT_EQ(StatesOf(ReadMap(Path("out/map_0.05.yaml")).map).states, trinary.states);
+  EXPECT_EQ(Program("map seq --map-mode grey -o out2").exit_code, 2);
+}
+
+TEST_F(ProgramFormats, TrajectoriesAndGraphForOtherPrograms) {
+  Mapped("seq");
+  const std::string kitti = ReadFile(Path("out/trajectory_est_kitti.txt"));
+  EXPECT_EQ(std::count(kitti.begin(), kitti.end(), '\n'), 12);
+  const std::string graph = ReadFile(Path("out/pose_graph.g2o"));
+  EXPECT_THAT(graph, AllOf(HasSubstr("VERTEX_SE2 0 "), HasSubstr("VERTEX_SE2 11 "),
+                           HasSubstr("EDGE_SE2 10 11 ")));
+  EXPECT_FALSE(FilesIn("out/frames").empty());  // beams over the depth image
+}
+
+TEST_F(ProgramFormats, AVideoTheSameEachTime) {
+  if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no ffmpeg";
+  Mapped("seq --video one.mp4");
+  Mapped("seq --video two.mp4");
+  EXPECT_GT(ReadFile(Path("one.mp4")).size(), 1000U);
+  EXPECT_EQ(ReadFile(Path("one.mp4")).substr(4, 4), "ftyp");
+  EXPECT_TRUE(SameFile("one.mp4", "two.mp4"));
+  const Outcome outcome = Program("map seq --video nowhere/one.mp4 -o out2");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_FALSE(fs::exists(Path("out2")));
+}
+
+}  // namespace
+}  // namespace depthgrid

@@ -1,0 +1,196 @@
+#include "tests/fuzz/targets.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "eval/csv_table.h"
+#include "mapper/core/error.h"
+#include "mapper/io/camera_formats.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/config.h"
+#include "mapper/io/icl_folder.h"
+#include "mapper/io/loop_events.h"
+#include "mapper/io/map_file.h"
+#include "mapper/io/pgm.h"
+#include "mapper/io/png.h"
+#include "mapper/io/pose_file.h"
+#include "mapper/io/scan_file.h"
+#include "mapper/io/sequence.h"
+#include "mapper/io/slam_jumps.h"
+#include "mapper/io/tum_folder.h"
+#include "sim/ply_file.h"
+#include "sim/scene_file.h"
+#include "sim/slam_options.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// For parsers of files: a folder of this process, in memory where there is such a place.
+class Scratch {
+ public:
+  Scratch() {
+    const fs::path base = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+    folder_ = base / ("depthgrid_fuzz." + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  std::string Put(const std::string& name, std::string_view bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary | std::ios::trunc) << bytes;
+    return (folder_ / name).string();
+  }
+
+ private:
+  fs::path folder_;
+};
+
+const Scratch& TheScratch() {
+  static const Scratch scratch;
+  return scratch;
+}
+
+template <typename Parse>
+bool Accepts(Parse parse) {
+  try {
+    parse();
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+const std::vector<double>& Stamps() {
+  static const std::vector<double> stamps = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+  return stamps;
+}
+
+bool TryDepthPng(std::string_view bytes) {
+  return Accepts([&] { DecodeDepthPng(bytes, {}, "x"); });
+}
+
+bool TryColourPng(std::string_view bytes) {
+  const bool rgb = Accepts([&] { DecodeRgbPng(bytes, "x"); });
+  return Accepts([&] { DecodeRgbaPng(bytes, "x"); }) || rgb;
+}
+
+// What is accepted must also survive what is done with it next.
+bool TryTrajectory(std::string_view bytes) {
+  return Accepts([&] {
+    std::vector<std::string> warnings;
+    SlamOutput slam = SlamOutputOf(ParsePoses(std::string(bytes), "x", Stamps(), warnings));
+    const std::vector<int> jumps = FindJumps(slam.live, slam.final);
+    LoopsFromRevision(slam.live, slam.final, jumps);
+    StartEpochs(jumps, slam.live);
+  });
+}
+
+bool TryLoopEvents(std::string_view bytes) {
+  return Accepts([&] { ParseSlamEvents(std::string(bytes), "x", Stamps(), 0.02); });
+}
+
+bool TryCamera(std::string_view bytes) {
+  return Accepts([&] { ParseCameraDescription(std::string(bytes), "x"); });
+}
+
+bool TryFileList(std::string_view bytes) {
+  return Accepts([&] { ParseFileList(std::string(bytes), "x"); });
+}
+
+bool TryRayLengths(std::string_view bytes) {
+  static const PinholeCamera camera{4, 3, 3.0, 3.0, 1.5, 1.0, {}};
+  return Accepts([&] { ParseRayLengths(std::string(bytes), camera, "x"); });
+}
+
+bool TryCarmen(std::string_view bytes) {
+  return Accepts([&] {
+    const auto source = OpenCarmenLog(TheScratch().Put("x.log", bytes));
+    while (source->Next()) continue;
+  });
+}
+
+bool TryPgm(std::string_view bytes) {
+  return Accepts([&] { DecodePgm(bytes, "x"); });
+}
+
+// The YAML text, a line `====`, the image.
+bool TryMap(std::string_view bytes) {
+  constexpr std::string_view kSeparator = "\n====\n";
+  const std::size_t end = std::min(bytes.find(kSeparator), bytes.size());
+  const std::string yaml = TheScratch().Put("x.yaml", bytes.substr(0, end));
+  TheScratch().Put("x.pgm", bytes.substr(std::min(end + kSeparator.size(), bytes.size())));
+  return Accepts([&] { AlignedMap(ReadMap(yaml)); });
+}
+
+struct SomeOptions {
+  SlamOptions slam;
+  SequenceOptions sequence;
+  void Visit(OptionsVisitor& v) {
+    v.Group("slam", slam, "how SLAM errs");
+    v.Group("sequence", sequence, "the sequence");
+  }
+};
+
+bool TrySettings(std::string_view bytes) {
+  return Accepts([&] {
+    SomeOptions options;
+    Config::FromText(std::string(bytes), "x").Read(options);
+    Config::FromText(ToYaml(options), "written").Read(options);
+  });
+}
+
+bool TryScans(std::string_view bytes) {
+  return Accepts([&] { ParseScans(bytes, "x"); });
+}
+
+bool TryCsv(std::string_view bytes) {
+  return Accepts([&] { ReadCsv(TheScratch().Put("x.csv", bytes)); });
+}
+
+bool TrySceneYaml(std::string_view bytes) {
+  return Accepts([&] { ReadSceneFile(TheScratch().Put("x.yaml", bytes)); });
+}
+
+bool TryPly(std::string_view bytes) {
+  return Accepts([&] { ReadPly(TheScratch().Put("x.ply", bytes)); });
+}
+
+}  // namespace
+
+const std::vector<FuzzTarget>& FuzzTargets() {
+  static const std::vector<FuzzTarget> targets = {{"depth_png", TryDepthPng},
+                                                  {"colour_png", TryColourPng},
+                                                  {"trajectory", TryTrajectory},
+                                                  {"loop_events", TryLoopEvents},
+                                                  {"camera", TryCamera},
+                                                  {"file_list", TryFileList},
+                                                  {"ray_lengths", TryRayLengths},
+                                                  {"carmen", TryCarmen},
+                                                  {"pgm", TryPgm},
+                                                  {"map", TryMap},
+                                                  {"settings", TrySettings},
+                                                  {"scans", TryScans},
+                                                  {"csv", TryCsv},
+                                                  {"scene", TrySceneYaml},
+                                                  {"ply", TryPly}};
+  return targets;
+}
+
+const FuzzTarget& FuzzTargetNamed(const std::string& name) {
+  for (const FuzzTarget& target : FuzzTargets()) {
+    if (target.name == name) return target;
+  }
+  throw std::out_of_range("no fuzz target " + name);
+}
+
+}  // namespace depthgrid

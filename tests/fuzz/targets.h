@@ -1,0 +1,22 @@
+// Every parser of the program as a function of bytes: any input must either be read or be refused
+// with an InputError. Fuzzed with libFuzzer (./dev fuzz) and run over the seeds by the tests.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace depthgrid {
+
+struct FuzzTarget {
+  std::string name;  // of its folder in tests/fuzz/seeds
+  // Throws nothing but InputError, which it does not let out. Aborts (by a sanitizer or an
+  // exception) when the parser is at fault.
+  bool (*accepts)(std::string_view bytes);
+};
+
+const std::vector<FuzzTarget>& FuzzTargets();
+// Throws std::out_of_range.
+const FuzzTarget& FuzzTargetNamed(const std::string& name);
+
+}  // namespace depthgrid
