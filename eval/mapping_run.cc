@@ -61,8 +61,8 @@ FrameRecorder::FrameRecorder(const MapperOptions& options,
     : start_(std::chrono::steady_clock::now()),
       frame_count_(frame_count),
       mapper_(options, camera, ThreadCpuUs, oracle) {
-  run_.camera = camera;
   mapper_.SetMatchOracle(match_oracle);
+  run_.camera = camera;
 }
 
 void FrameRecorder::Add(const Frame& frame) {
@@ -86,9 +86,11 @@ MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
 
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle, const MatchOracle& match_oracle) {
+                     const GainOracle& oracle, const MatchOracle& match_oracle,
+                     const std::optional<PriorMap>& prior) {
   const int count = source.FrameCount();
   FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
+  if (prior) recorder.StartFrom(*prior);
   int done = 0;
   while (const std::optional<Frame> frame = source.Next()) {
     recorder.Add(*frame);

@@ -44,6 +44,8 @@ class FrameRecorder {
                 int frame_count, const GainOracle& oracle = {},
                 const MatchOracle& match_oracle = {});
 
+  // Before the first frame: the run goes on in a finished map.
+  void StartFrom(const PriorMap& prior) { mapper_.StartFrom(prior); }
   void Add(const Frame& frame);
   // `final_poses`: SLAM's own final trajectory, empty if there is none. Once, at the end.
   MappingRun Finish(const Trajectory& final_poses);
@@ -56,9 +58,13 @@ class FrameRecorder {
 };
 
 // The whole of a source, front to back.
+// `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
+// fusion.mode `oracle` only, `match_oracle` for every match when it is given. With `prior` the run
+// goes on in a finished map.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle = {}, const MatchOracle& match_oracle = {});
+                     const GainOracle& oracle = {}, const MatchOracle& match_oracle = {},
+                     const std::optional<PriorMap>& prior = {});
 
 // Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
 // source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own

@@ -57,12 +57,23 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 
+// matched.bin only where what is matched is not what the map is drawn from.
 void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
-  std::vector<StoredScan> stored;
-  for (const MappedFrame& mapped : run.result.mapped) {
-    stored.push_back({mapped.frame, mapped.stamp_s, mapped.map_from_base, mapped.obstacles});
+  std::vector<StoredScan> drawn;
+  std::vector<StoredScan> matched;
+  bool same = true;
+  const auto& frames = run.result.mapped;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const MappedFrame& frame = frames[i];
+    // A prior map's frames have numbers below 0, however many maps it came from.
+    const int number =
+        frame.frame < 0 ? static_cast<int>(i) - static_cast<int>(frames.size()) : frame.frame;
+    drawn.push_back({number, frame.stamp_s, frame.map_from_base, frame.obstacles});
+    matched.push_back({number, frame.stamp_s, frame.map_from_base, frame.scan});
+    same = same && frame.scan == frame.obstacles;
   }
-  WriteScans(folder.File("scans.bin"), stored);
+  WriteScans(folder.File("scans.bin"), drawn);
+  if (!same) WriteScans(folder.File("matched.bin"), matched);
 }
 
 }  // namespace

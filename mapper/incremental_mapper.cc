@@ -31,6 +31,10 @@ bool SearchesLoops(const MapperOptions& options) {
 // The last motion goes on for this long at most; after a longer gap it says nothing.
 constexpr double kLongestExtrapolationS = 0.5;
 
+// How well the place in a prior map is known where a run starts (mapper/match/find_place.h refines
+// to a fraction of a cell; SLAM's own frame may be off by more).
+const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
+
 }  // namespace
 
 struct IncrementalMapper::State {
@@ -49,6 +53,9 @@ struct IncrementalMapper::State {
   ScanArchive matched_scans;
   ScanArchive obstacle_scans;
   std::vector<MappedFrame> mapped;
+  bool has_prior = false;
+  bool fixed_map = false;            // of a prior map that is only localised in
+  std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
 
   State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
         GainOracle orc)
@@ -103,6 +110,26 @@ void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
   state_->match_oracle = std::move(oracle);
 }
 
+void IncrementalMapper::StartFrom(PriorMap prior) {
+  Require(state_->history.records().empty(), "a prior map comes before the first frame");
+  state_->mapped = std::move(prior.frames);
+  for (std::size_t i = 0; i < state_->mapped.size(); ++i) {
+    MappedFrame& frame = state_->mapped[i];
+    Require(frame.frame < 0, "frames of a prior map have numbers below 0");
+    // Its poses are all that is known of how it moved.
+    if (i > 0) {
+      frame.slam_motion = Between(state_->mapped[i - 1].map_from_base, frame.map_from_base);
+    }
+    if (state_->reference) {
+      state_->reference->Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
+                                Eigen::Matrix3d::Zero());
+    }
+  }
+  state_->has_prior = true;
+  state_->fixed_map = prior.fixed;
+  state_->prior_start = prior.map_from_slam;
+}
+
 // The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   FrameReport report = state_->Begin(frame);
@@ -142,7 +169,7 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
 void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
-  if (!reference || mapped.empty()) return;
+  if (!reference || mapped.empty() || mapped.back().frame < 0) return;
   if (frame.loops.empty()) {
     if (rounds.IsDue(static_cast<int>(mapped.size()))) AdjustBetweenFrames();
     return;
@@ -210,6 +237,11 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
     Anchor(better);
   }
   filter_epoch = record.epoch;
+  if (prior_start) {
+    const Eigen::Matrix3d covariance = kStartSigma.cwiseProduct(kStartSigma).asDiagonal();
+    filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base, covariance);
+    prior_start.reset();
+  }
   return filter.Predict(slam_from_base, record.stamp_s);
 }
 
@@ -250,7 +282,7 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
 void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& fused,
                                       FrameReport& report) {
   const StageTimer timer(clock, report.times.insert_us);
-  if (!scans.matched) return;
+  if (!scans.matched || fixed_map) return;
   MappedFrame frame = AsMapped(scans, fused.map_from_base);
   frame.match = report.match;
   history.newest().mapped = static_cast<int>(mapped.size());
@@ -303,7 +335,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const FrameScans& scans,
   frame.obstacles =
       scans.obstacles == scans.matched ? frame.scan : obstacle_scans.Keep(*scans.obstacles);
   frame.map_from_base = map_from_base;
-  if (!mapped.empty()) {
+  if (!mapped.empty() && mapped.back().frame >= 0) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
     if (before.epoch == record.epoch) {
       frame.slam_motion =
@@ -325,7 +357,11 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
           "SLAM's final trajectory has one entry a frame");
   MapperResult result;
   result.mapped = state_->mapped;
-  if (state_->reference) {
+  if (state_->fixed_map || (state_->has_prior && !state_->reference)) {
+    std::vector<Pose2> map_from_base;
+    for (const MappedFrame& frame : result.mapped) map_from_base.push_back(frame.map_from_base);
+    result.map_from_camera = FinalPoses(state_->history, map_from_base);
+  } else if (state_->reference) {
     state_->FinishByAdjusting(result);
   } else {
     state_->FinishWithSlam(slam_final, result);

@@ -33,6 +33,16 @@ using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predict
 // what the match says of its own sureness stays.
 using MatchOracle = std::function<Pose2(int frame)>;
 
+// A finished map to go on from.
+struct PriorMap {
+  // In order of time, at final poses; their `frame` is below 0.
+  std::vector<MappedFrame> frames;
+  // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees.
+  Pose2 map_from_slam;
+  // Localise only: nothing is inserted, no pose and no cell of the prior map changes.
+  bool fixed = false;
+};
+
 class IncrementalMapper {
  public:
   // The camera may be absent when every frame brings a ready scan. Throws InputError for options
@@ -44,6 +54,9 @@ class IncrementalMapper {
 
   // From the next frame on.
   void SetMatchOracle(MatchOracle oracle);
+
+  // Before the first frame. The result's `mapped` then begins with the prior frames.
+  void StartFrom(PriorMap prior);
 
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses.

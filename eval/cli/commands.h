@@ -55,6 +55,8 @@ struct MapArguments {
   std::string format;  // the three replace keys of `sequence` when not empty
   std::string camera;
   std::string world_up;
+  std::string map;        // a run's folder to go on from; empty: none
+  bool localise = false;  // in that map, without changing it
   OutputArguments output;
   CommonArguments common;
 };

@@ -142,6 +142,13 @@ void AddMap(Program& program) {
   app->add_option("--up", arguments->world_up,
                   "Axis of the poses' world that points up: x, -x, y, -y, z, -z or auto")
       ->type_name("AXIS");
+  app->add_option(
+         "--map", arguments->map,
+         "Go on in the finished map of this run's folder: its scans stay, new ones are added")
+      ->type_name("DIR");
+  app->add_flag("--localise", arguments->localise,
+                "With --map: find the poses in that map and leave it as it is")
+      ->needs("--map");
   AddOutput(*app, arguments->common);
   AddOutputForms(*app, arguments->output);
   AddSet(*app, arguments->common);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -8,8 +9,10 @@
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
 #include "eval/output_folder.h"
+#include "eval/prior_run.h"
 #include "eval/run_folder.h"
 #include "eval/video_writer.h"
+#include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
@@ -17,11 +20,15 @@
 namespace depthgrid::cli {
 namespace {
 
+constexpr int kAllScansInOneSubmap = 1'000'000;
+
 struct MapSettings {
   std::string input;
   std::string poses;
   std::string final_poses;
   std::string loops;
+  std::string map;
+  bool localise = false;
   SequenceOptions sequence;
   MapperOptions mapper;
 
@@ -30,6 +37,8 @@ struct MapSettings {
     v.Text("poses", poses, "SLAM's live poses");
     v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
     v.Text("loops", loops, "SLAM's events");
+    v.Text("map", map, "the finished run it went on from");
+    v.Flag("localise", localise, "whether that map was left as it is");
     v.Group("sequence", sequence, "how the recorded sequence is read");
     v.Group("mapper", mapper, "the mapper");
   }
@@ -89,6 +98,27 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   return sequence;
 }
 
+// The finished map to go on from, and where in it the sequence begins.
+std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& settings) {
+  if (arguments.map.empty()) return {};
+  PriorMap prior = ReadPriorRun(arguments.map);
+  prior.fixed = arguments.localise;
+  // The paper's chain reads the last two submaps only: here one holds everything.
+  settings.mapper.submap.scans = kAllScansInOneSubmap;
+  const auto slam = ReadSlam(arguments, settings.sequence);
+  Sequence sequence = OpenSequence(arguments.input, settings.sequence,
+                                   slam ? std::optional(slam->slam) : std::nullopt);
+  const auto start = FindStart(prior, *sequence.source, settings.mapper);
+  if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
+  prior.map_from_slam = start->map_from_slam;
+  fmt::print(
+      "{}: {} scans; the sequence begins at ({:.2f}, {:.2f}, {:.1f} degrees) of it, {:.0f} % "
+      "of what it sees fits ({:.0f} % elsewhere)\n",
+      arguments.map, prior.frames.size(), start->map_from_slam.x_m, start->map_from_slam.y_m,
+      DegFromRad(start->map_from_slam.yaw_rad), 100.0 * start->score, 100.0 * start->second_score);
+  return prior;
+}
+
 void SayResult(const MappingRun& run) {
   int posed = 0;
   int rejected = 0;
@@ -96,7 +126,10 @@ void SayResult(const MappingRun& run) {
     posed += report.slam_from_camera ? 1 : 0;
     rejected += report.loops_rejected;
   }
-  fmt::print("mapped {} of {} frames", run.result.mapped.size(), run.reports.size());
+  const auto& mapped = run.result.mapped;
+  const auto added =
+      std::count_if(mapped.begin(), mapped.end(), [](const auto& m) { return m.frame >= 0; });
+  fmt::print("mapped {} of {} frames", added, run.reports.size());
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
     fmt::print(", {} without a pose", lost);
   }
@@ -117,13 +150,17 @@ void Map(const MapArguments& arguments) {
   settings.poses = arguments.poses;
   settings.final_poses = arguments.final_poses;
   settings.loops = arguments.loops;
+  settings.map = arguments.map;
+  settings.localise = arguments.localise;
   if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, config, settings, warnings);
+  const std::optional<PriorMap> prior = OpenPrior(arguments, settings);
   ProgressBar bar("mapping");
   const MappingRun run =
-      MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress());
+  const MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
+                                   bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
   RunRecord record;
   record.title = arguments.input;

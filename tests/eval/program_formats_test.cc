@@ -222,5 +222,32 @@ TEST_F(ProgramFormats, AVideoTheSameEachTime) {
   EXPECT_FALSE(fs::exists(Path("out2")));
 }
 
+// A second camera through the same room, in a frame of its own, in the finished map of the first.
+TEST_F(ProgramFormats, AFinishedMapIsLocalisedInAndExtended) {
+  Succeed("map seq -o first --set mapper.fusion.mode=fixed");
+  Trajectory moved;
+  for (const StampedPose& pose : Truth()) {
+    const Pose3 other_from_world = Lift(Pose2{4.0, -1.0, 2.0});
+    moved.push_back({pose.stamp_s, other_from_world * pose.world_from_camera});
+  }
+  WriteTrajectory(Path("moved.txt"), moved);
+  for (const char* method : {"surfel", "paper"}) {
+    const std::string settings =
+        std::string(" --set mapper.fusion.mode=fixed --set mapper.method=") + method;
+    EXPECT_THAT(Mapped("seq --poses moved.txt --map first --localise" + settings),
+                HasSubstr("first: 12 scans; the sequence begins at"));
+    for (const char* file : {"map.pgm", "map.yaml", "scans.bin", "matched.bin"}) {
+      EXPECT_TRUE(SameFile(std::string("out/") + file, std::string("first/") + file)) << file;
+    }
+    EXPECT_LT(ErrorM(), 0.1) << method;
+    EXPECT_THAT(Mapped("seq --poses moved.txt --map first" + settings),
+                HasSubstr("mapped 12 of 12 frames"));
+    EXPECT_LT(ErrorM(), 0.1) << method;
+    EXPECT_GT(ReadFile(Path("out/scans.bin")).size(), ReadFile(Path("first/scans.bin")).size());
+  }
+  EXPECT_EQ(Program("map seq --map seq -o out2").exit_code, 2);
+  EXPECT_EQ(Program("map seq --localise -o out2").exit_code, 2);
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -1,0 +1,83 @@
+#include "eval/prior_run.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "mapper/core/error.h"
+#include "mapper/core/level.h"
+#include "mapper/grid/map_drawing.h"
+#include "mapper/io/scan_file.h"
+#include "mapper/scan/frame_scans.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Scans that say where a run begins: so many, so far apart in time, so that a camera with a narrow
+// view has looked around a little.
+constexpr int kStartScans = 8;
+constexpr double kStartSpacingS = 0.5;
+// SLAM's drift over the scans that are laid over the map together.
+constexpr double kStartPathM = 3.0;
+
+std::vector<PlacedScan> FirstScans(FrameSource& source, const MapperOptions& options) {
+  FrameScanner scanner(source.Camera(), options.scan);
+  std::vector<PlacedScan> scans;
+  double last_stamp_s = 0.0;
+  int epoch = 0;
+  while (const auto frame = source.Next()) {
+    if (!frame->slam_from_camera) continue;
+    if (!scans.empty() && frame->slam_epoch != epoch) break;
+    if (!scans.empty() && frame->stamp_s - last_stamp_s < kStartSpacingS) continue;
+    const FrameScans both = scanner.ScansOf(*frame);
+    if (!both.obstacles) continue;
+    const Pose2 slam_from_base = BaseOf(*frame->slam_from_camera);
+    if (!scans.empty()) {
+      const Pose2 moved = Between(scans.front().slam_from_base, slam_from_base);
+      if (std::hypot(moved.x_m, moved.y_m) > kStartPathM) break;
+    }
+    scans.push_back({both.obstacles, slam_from_base});
+    last_stamp_s = frame->stamp_s;
+    epoch = frame->slam_epoch;
+    if (static_cast<int>(scans.size()) == kStartScans) break;
+  }
+  return scans;
+}
+
+}  // namespace
+
+PriorMap ReadPriorRun(const std::string& folder) {
+  const fs::path drawn_path = fs::path(folder) / "scans.bin";
+  const fs::path matched_path = fs::path(folder) / "matched.bin";
+  if (!fs::exists(fs::path(folder) / "run.yaml")) {
+    throw InputError(folder, "is no run's folder: it has no run.yaml");
+  }
+  const std::vector<StoredScan> drawn = ReadScans(drawn_path.string());
+  const std::vector<StoredScan> matched =
+      fs::exists(matched_path) ? ReadScans(matched_path.string()) : drawn;
+  if (drawn.empty()) throw InputError(drawn_path.string(), "holds no scan");
+  if (matched.size() != drawn.size()) {
+    throw InputError(matched_path.string(), "does not belong to scans.bin");
+  }
+  PriorMap prior;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    MappedFrame frame;
+    frame.frame = static_cast<int>(i) - static_cast<int>(drawn.size());
+    frame.stamp_s = drawn[i].stamp_s;
+    frame.obstacles = drawn[i].scan;
+    frame.scan = matched[i].scan;
+    frame.map_from_base = drawn[i].map_from_base;
+    prior.frames.push_back(std::move(frame));
+  }
+  return prior;
+}
+
+std::optional<FoundPlace> FindStart(const PriorMap& prior, FrameSource& source,
+                                    const MapperOptions& options) {
+  MapDrawing drawing(options.grid);
+  for (const MappedFrame& frame : prior.frames) drawing.Add(*frame.obstacles, frame.map_from_base);
+  return FindPlace(drawing.Map(), FirstScans(source, options), Pose2{});
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,32 @@
+// Where in a finished map a robot begins, when nobody says: a few scans of its first metres laid
+// over the whole map.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/occupancy_map.h"
+#include "mapper/core/scan.h"
+
+namespace depthgrid {
+
+struct PlacedScan {
+  std::shared_ptr<const Scan> scan;
+  Pose2 slam_from_base;
+};
+
+struct FoundPlace {
+  Pose2 map_from_slam;
+  // Share of the returns that lie on the map's walls, 0 to 1, each worth less the farther it lies.
+  double score = 0.0;
+  // That of the best place elsewhere (1 m or 30 degrees away): near `score`, the place is a guess.
+  double second_score = 0.0;
+};
+
+// Tries every free cell and heading, then refines the best. `guess`, SLAM's frame being the map's,
+// wins when it is as good. Nothing when the map has no wall, or the scans no return.
+std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
+                                    const Pose2& guess);
+
+}  // namespace depthgrid

@@ -1,0 +1,100 @@
+#include "mapper/match/find_place.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+struct Wall {
+  Eigen::Vector2d from;
+  Eigen::Vector2d to;
+};
+
+// An L-shaped room: no turn of it looks like another.
+const std::vector<Wall> kWalls = {{{0, 0}, {6, 0}}, {{6, 0}, {6, 2}}, {{6, 2}, {3, 2}},
+                                  {{3, 2}, {3, 5}}, {{3, 5}, {0, 5}}, {{0, 5}, {0, 0}}};
+
+OccupancyMap Drawn() {
+  OccupancyMap map(GridGeometry{0.05, {-4, -4}, 130, 110});
+  map.occupied_prob.assign(map.occupied_prob.size(), 0.1F);
+  for (const Wall& wall : kWalls) {
+    for (double share = 0.0; share <= 1.0; share += 0.002) {
+      const Cell cell = CellOf(wall.from + share * (wall.to - wall.from), 0.05);
+      map.occupied_prob[map.geometry.Index(cell)] = 0.9F;
+    }
+  }
+  return map;
+}
+
+double RangeAlong(const Eigen::Vector2d& at, const Eigen::Vector2d& way) {
+  double nearest_m = 100.0;
+  for (const Wall& wall : kWalls) {
+    Eigen::Matrix2d a;
+    a << way, wall.from - wall.to;
+    if (std::abs(a.determinant()) < 1e-9) continue;
+    const Eigen::Vector2d solved = a.inverse() * (wall.from - at);
+    if (solved.x() > 0.0 && solved.y() >= 0.0 && solved.y() <= 1.0) {
+      nearest_m = std::min(nearest_m, solved.x());
+    }
+  }
+  return nearest_m;
+}
+
+// 58 degrees wide, as a depth camera's.
+PlacedScan ScanAt(const Pose2& map_from_base, const Pose2& map_from_slam) {
+  Scan scan;
+  for (int i = -30; i <= 30; ++i) {
+    Beam beam;
+    beam.bearing_rad = static_cast<float>(RadFromDeg(i));
+    const double angle_rad = map_from_base.yaw_rad + beam.bearing_rad;
+    beam.range_m = static_cast<float>(RangeAlong({map_from_base.x_m, map_from_base.y_m},
+                                                 {std::cos(angle_rad), std::sin(angle_rad)}));
+    beam.hit = true;
+    scan.beams.push_back(beam);
+  }
+  return {std::make_shared<const Scan>(scan), Inverse(map_from_slam) * map_from_base};
+}
+
+// Turning on the spot shows enough; SLAM's frame is anywhere.
+TEST(FindPlace, FindsTheFrameOfThePosesFromAFewScans) {
+  const OccupancyMap map = Drawn();
+  RandomStream random(3, RandomStage::kTest);
+  for (int trial = 0; trial < 3; ++trial) {
+    const Pose2 map_from_slam{random.Uniform(-9, 9), random.Uniform(-9, 9), random.Uniform(-3, 3)};
+    const Eigen::Vector2d at(random.Uniform(0.5, 2.5), random.Uniform(0.5, 4.5));
+    std::vector<PlacedScan> scans;
+    for (int i = 0; i < 5; ++i) {
+      scans.push_back(ScanAt({at.x(), at.y(), WrapAngle(0.7 * i)}, map_from_slam));
+    }
+    const auto found = FindPlace(map, scans, Pose2{});
+    ASSERT_TRUE(found);
+    const Pose2 error = Between(map_from_slam * scans[0].slam_from_base,
+                                found->map_from_slam * scans[0].slam_from_base);
+    EXPECT_LT(std::hypot(error.x_m, error.y_m), 0.05);
+    EXPECT_LT(std::abs(error.yaw_rad), RadFromDeg(2.0));
+    EXPECT_GT(found->score, 0.8);
+    EXPECT_LT(found->second_score, 0.9 * found->score);
+  }
+}
+
+TEST(FindPlace, AGuessThatFitsIsKept) {
+  const Pose2 map_from_slam{0.02, -0.01, 0.01};
+  const auto found = FindPlace(Drawn(), {ScanAt({1.0, 1.0, 0.3}, map_from_slam)}, Pose2{});
+  ASSERT_TRUE(found);
+  EXPECT_LT(std::hypot(found->map_from_slam.x_m, found->map_from_slam.y_m), 0.1);
+}
+
+TEST(FindPlace, NothingToFind) {
+  EXPECT_FALSE(FindPlace(Drawn(), {}, Pose2{}));
+  EXPECT_FALSE(FindPlace(OccupancyMap(GridGeometry{0.05, {0, 0}, 20, 20}),
+                         {ScanAt({1.0, 1.0, 0.3}, {})}, Pose2{}));
+  EXPECT_FALSE(FindPlace(Drawn(), {{std::make_shared<const Scan>(), Pose2{}}}, Pose2{}));
+}
+
+}  // namespace
+}  // namespace depthgrid
