@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/grid/map_drawing.h"
@@ -14,31 +15,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Scans that say where a run begins: so many, so far apart in time, so that a camera with a narrow
-// view has looked around a little.
+// Scans that say where a run begins: so many, each of another view, so that a camera with a narrow
+// one has looked around a little.
 constexpr int kStartScans = 8;
-constexpr double kStartSpacingS = 0.5;
+constexpr double kNextViewM = 0.3;
+constexpr double kNextViewRad = RadFromDeg(12.0);
 // SLAM's drift over the scans that are laid over the map together.
 constexpr double kStartPathM = 3.0;
+
+bool IsNextView(const Pose2& last, const Pose2& now) {
+  const Pose2 moved = Between(last, now);
+  return std::hypot(moved.x_m, moved.y_m) > kNextViewM || std::abs(moved.yaw_rad) > kNextViewRad;
+}
 
 std::vector<PlacedScan> FirstScans(FrameSource& source, const MapperOptions& options) {
   FrameScanner scanner(source.Camera(), options.scan);
   std::vector<PlacedScan> scans;
-  double last_stamp_s = 0.0;
   int epoch = 0;
   while (const auto frame = source.Next()) {
     if (!frame->slam_from_camera) continue;
     if (!scans.empty() && frame->slam_epoch != epoch) break;
-    if (!scans.empty() && frame->stamp_s - last_stamp_s < kStartSpacingS) continue;
+    const Pose2 slam_from_base = BaseOf(*frame->slam_from_camera);
+    if (!scans.empty() && !IsNextView(scans.back().slam_from_base, slam_from_base)) continue;
     const FrameScans both = scanner.ScansOf(*frame);
     if (!both.obstacles) continue;
-    const Pose2 slam_from_base = BaseOf(*frame->slam_from_camera);
     if (!scans.empty()) {
       const Pose2 moved = Between(scans.front().slam_from_base, slam_from_base);
       if (std::hypot(moved.x_m, moved.y_m) > kStartPathM) break;
     }
     scans.push_back({both.obstacles, slam_from_base});
-    last_stamp_s = frame->stamp_s;
     epoch = frame->slam_epoch;
     if (static_cast<int>(scans.size()) == kStartScans) break;
   }

@@ -13,7 +13,7 @@ namespace depthgrid {
 // The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError.
 PriorMap ReadPriorRun(const std::string& folder);
 
-// Where `source`, read from its beginning for a second or a metre, begins in the map. Nothing when
+// Where `source`, read from its beginning for a few metres, begins in the map. Nothing when
 // no scan of it shows anything.
 std::optional<FoundPlace> FindStart(const PriorMap& prior, FrameSource& source,
                                     const MapperOptions& options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <filesystem>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -21,6 +22,8 @@ namespace depthgrid::cli {
 namespace {
 
 constexpr int kAllScansInOneSubmap = 1'000'000;
+// Another place in a finished map that fits this nearly as well is a doubt.
+constexpr double kUncertainShare = 0.9;
 
 struct MapSettings {
   std::string input;
@@ -99,7 +102,8 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
 }
 
 // The finished map to go on from, and where in it the sequence begins.
-std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& settings) {
+std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& settings,
+                                  std::vector<std::string>& warnings) {
   if (arguments.map.empty()) return {};
   PriorMap prior = ReadPriorRun(arguments.map);
   prior.fixed = arguments.localise;
@@ -112,14 +116,28 @@ std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& se
   if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
   prior.map_from_slam = start->map_from_slam;
   fmt::print(
-      "{}: {} scans; the sequence begins at ({:.2f}, {:.2f}, {:.1f} degrees) of it, {:.0f} % "
-      "of what it sees fits ({:.0f} % elsewhere)\n",
+      "{}: {} scans; SLAM's frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
+      "elsewhere {:.2f}\n",
       arguments.map, prior.frames.size(), start->map_from_slam.x_m, start->map_from_slam.y_m,
-      DegFromRad(start->map_from_slam.yaw_rad), 100.0 * start->score, 100.0 * start->second_score);
+      DegFromRad(start->map_from_slam.yaw_rad), start->score, start->second_score);
+  if (start->second_score > kUncertainShare * start->score) {
+    warnings.push_back(arguments.map +
+                       ": where in it the sequence begins is uncertain, another place "
+                       "fits nearly as well");
+  }
   return prior;
 }
 
-void SayResult(const MappingRun& run) {
+// What was only localised in stays as it is, byte for byte.
+void KeepMap(const std::string& from, const OutputFolder& folder) {
+  namespace fs = std::filesystem;
+  for (const char* name : {"map.yaml", "map.pgm", "map.scale.png", "scans.bin", "matched.bin"}) {
+    fs::remove(folder.File(name));
+    if (fs::exists(fs::path(from) / name)) fs::copy_file(fs::path(from) / name, folder.File(name));
+  }
+}
+
+void SayResult(const MappingRun& run, bool localised) {
   int posed = 0;
   int rejected = 0;
   for (const FrameReport& report : run.reports) {
@@ -129,7 +147,11 @@ void SayResult(const MappingRun& run) {
   const auto& mapped = run.result.mapped;
   const auto added =
       std::count_if(mapped.begin(), mapped.end(), [](const auto& m) { return m.frame >= 0; });
-  fmt::print("mapped {} of {} frames", added, run.reports.size());
+  if (localised) {
+    fmt::print("placed {} of {} frames", posed, run.reports.size());
+  } else {
+    fmt::print("mapped {} of {} frames", added, run.reports.size());
+  }
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
     fmt::print(", {} without a pose", lost);
   }
@@ -156,11 +178,10 @@ void Map(const MapArguments& arguments) {
   OutputFolder folder(arguments.common.output, arguments.common.force);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, config, settings, warnings);
-  const std::optional<PriorMap> prior = OpenPrior(arguments, settings);
+  const std::optional<PriorMap> prior = OpenPrior(arguments, settings, warnings);
   ProgressBar bar("mapping");
   const MappingRun run =
-  const MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
-                                   bar.AsProgress(), {}, {}, prior);
+      MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
   RunRecord record;
   record.title = arguments.input;
@@ -175,9 +196,10 @@ void Map(const MapArguments& arguments) {
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run, settings.mapper.grid);
   }
+  if (arguments.localise) KeepMap(arguments.map, folder);
   folder.Commit();
   bar.Clear();
-  SayResult(run);
+  SayResult(run, arguments.localise);
   SayReport(arguments.common.output);
   std::fflush(stdout);
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());

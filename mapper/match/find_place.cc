@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "mapper/core/angle.h"
 
@@ -13,6 +14,8 @@ namespace {
 constexpr std::size_t kPoints = 320;
 constexpr std::size_t kCoarsePoints = 64;
 constexpr double kCoarseStepM = 0.1;
+// A map holds what was seen, and a camera does not see where it stands.
+constexpr double kMarginM = 2.0;
 constexpr int kHeadings = 90;  // 4 degrees apart: 0.2 m at 3 m, which the score's width bridges
 // A return this far from a wall still counts exp(-1/2).
 constexpr double kCoarseSigmaM = 0.15;
@@ -22,16 +25,20 @@ constexpr std::size_t kRefined = 60;
 constexpr double kElsewhereM = 1.0;
 constexpr double kElsewhereRad = RadFromDeg(30.0);
 // The guess needs this share of the best score.
-constexpr double kGuessShare = 0.95;
+constexpr double kGuessShare = 0.9;
+// Where along its way a beam asks whether the map is free, and what the answer is worth beside its
+// end: walls alone fit in many places, also outside of the map, where no free space does.
+constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
+constexpr double kFreeWorth = 0.5;
 
-// Distance to the nearest wall, cut at kFarthestM.
+// Distance to the nearest wall, cut at kFarthestM, and what the cells are.
 class WallDistance {
  public:
   explicit WallDistance(const OccupancyMap& map)
       : geometry_(map.geometry), distance_m_(map.geometry.size(), static_cast<float>(kFarthestM)) {
-    const StateMap states = StatesOf(map);
+    states_ = StatesOf(map).states;
     for (std::size_t i = 0; i < distance_m_.size(); ++i) {
-      if (states.states[i] != CellState::kOccupied) continue;
+      if (states_[i] != CellState::kOccupied) continue;
       distance_m_[i] = 0.0F;
       any_ = true;
     }
@@ -42,6 +49,13 @@ class WallDistance {
   double At(const Eigen::Vector2d& point_m) const {
     const Cell cell = CellOf(point_m, geometry_.resolution_m);
     return geometry_.Contains(cell) ? distance_m_[geometry_.Index(cell)] : kFarthestM;
+  }
+  // 1 free, 0 not seen, -1 a wall.
+  int FreeAt(const Eigen::Vector2d& point_m) const {
+    const Cell cell = CellOf(point_m, geometry_.resolution_m);
+    if (!geometry_.Contains(cell)) return 0;
+    const CellState state = states_[geometry_.Index(cell)];
+    return state == CellState::kUnknown ? 0 : state == CellState::kFree ? 1 : -1;
   }
 
  private:
@@ -76,10 +90,16 @@ class WallDistance {
 
   GridGeometry geometry_;
   std::vector<float> distance_m_;
+  std::vector<CellState> states_;
   bool any_ = false;
 };
 
-using Points = std::vector<Eigen::Vector2d>;
+// A return, with the sensor that saw it.
+struct Return {
+  Eigen::Vector2d from;
+  Eigen::Vector2d to;
+};
+using Points = std::vector<Return>;
 
 // Every n-th return of all scans, in the axes of the first scan's base.
 Points PointsOf(const std::vector<PlacedScan>& scans, std::size_t wanted) {
@@ -88,7 +108,8 @@ Points PointsOf(const std::vector<PlacedScan>& scans, std::size_t wanted) {
   for (const PlacedScan& placed : scans) {
     const Pose2 first_from_base = first_from_slam * placed.slam_from_base;
     for (const Beam& beam : placed.scan->beams) {
-      if (beam.hit) all.push_back(first_from_base * EndPoint(beam));
+      if (!beam.hit) continue;
+      all.push_back({first_from_base.translation(), first_from_base * EndPoint(beam)});
     }
   }
   Points chosen;
@@ -103,13 +124,20 @@ double ScoreOf(const WallDistance& walls, const Points& points, const Pose2& map
   const double c = std::cos(map_from_first.yaw_rad);
   const double s = std::sin(map_from_first.yaw_rad);
   double sum = 0.0;
-  for (const Eigen::Vector2d& p : points) {
-    const double d = walls.At({map_from_first.x_m + c * p.x() - s * p.y(),
-                               map_from_first.y_m + s * p.x() + c * p.y()}) /
-                     sigma_m;
+  const auto in_map = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d(map_from_first.x_m + c * p.x() - s * p.y(),
+                           map_from_first.y_m + s * p.x() + c * p.y());
+  };
+  for (const Return& point : points) {
+    const Eigen::Vector2d from = in_map(point.from);
+    const Eigen::Vector2d to = in_map(point.to);
+    const double d = walls.At(to) / sigma_m;
     sum += std::exp(-0.5 * d * d);
+    int free = 0;
+    for (const double share : kOnTheWay) free += walls.FreeAt(from + share * (to - from));
+    sum += kFreeWorth * free / static_cast<double>(std::size(kOnTheWay));
   }
-  return sum / static_cast<double>(points.size());
+  return sum / ((1.0 + kFreeWorth) * static_cast<double>(points.size()));
 }
 
 struct Candidate {
@@ -123,8 +151,9 @@ std::vector<Candidate> Coarse(const OccupancyMap& map, const WallDistance& walls
   const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
   const GridGeometry& g = map.geometry;
   const int step = std::max(1, static_cast<int>(std::lround(kCoarseStepM / g.resolution_m)));
-  for (int y = 0; y < g.height_cells; y += step) {
-    for (int x = 0; x < g.width_cells; x += step) {
+  const int margin = static_cast<int>(std::lround(kMarginM / g.resolution_m));
+  for (int y = -margin; y < g.height_cells + margin; y += step) {
+    for (int x = -margin; x < g.width_cells + margin; x += step) {
       const Cell cell{g.min_cell.x + x, g.min_cell.y + y};
       // The robot's own place may not have been seen, but it is no wall.
       if (StateOf(map.At(cell), {}) == CellState::kOccupied) continue;

@@ -18,7 +18,7 @@ struct PlacedScan {
 
 struct FoundPlace {
   Pose2 map_from_slam;
-  // Share of the returns that lie on the map's walls, 0 to 1, each worth less the farther it lies.
+  // 1 where every return lies on a wall of the map and comes there through free space.
   double score = 0.0;
   // That of the best place elsewhere (1 m or 30 degrees away): near `score`, the place is a guess.
   double second_score = 0.0;

@@ -235,7 +235,7 @@ TEST_F(ProgramFormats, AFinishedMapIsLocalisedInAndExtended) {
     const std::string settings =
         std::string(" --set mapper.fusion.mode=fixed --set mapper.method=") + method;
     EXPECT_THAT(Mapped("seq --poses moved.txt --map first --localise" + settings),
-                HasSubstr("first: 12 scans; the sequence begins at"));
+                HasSubstr("first: 12 scans; SLAM's frame lies at ("));
     for (const char* file : {"map.pgm", "map.yaml", "scans.bin", "matched.bin"}) {
       EXPECT_TRUE(SameFile(std::string("out/") + file, std::string("first/") + file)) << file;
     }
