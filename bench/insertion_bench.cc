@@ -53,7 +53,8 @@ Loop SubmapLoop(int beams, bool plain) {
     ActiveSubmaps submaps({}, {});
     ForEachScan(beams, state, [&](const auto& scan, const Pose2& pose) {
       submaps.Insert(plain ? CellsOfScanPlain(builder.Build(*scan, pose, 0.05))
-                           : rasterizer.Rasterize(*scan, pose, 0.05));
+                           : rasterizer.Rasterize(*scan, pose, 0.05),
+                     *scan, pose);
       benchmark::DoNotOptimize(submaps.matching()->map().occupied_prob.data());
     });
   };

@@ -1,11 +1,10 @@
-#include "eval/worst_frames_impl.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "eval/match_surface.h"
+#include "eval/worst_frames_impl.h"
 
 namespace depthgrid {
 namespace {

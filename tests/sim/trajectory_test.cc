@@ -221,7 +221,7 @@ TEST(CheckClearance, NamesThePlace) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "path: frame 3 at (3.12, 1.00, 1.20) is 0.125 m from geometry, must be at least "
-                 "0.25 m");
+                 "0.250 m");
   }
 }
 
