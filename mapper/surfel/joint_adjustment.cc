@@ -85,15 +85,23 @@ std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d
   return links;
 }
 
+// By the median: where a group sees only walls along one direction nothing but the prior holds it,
+// and a mean square of such groups' errors would let go of the prior everywhere.
 Eigen::Vector3d MotionSigma(const Problem& problem, const std::vector<Pose2>& map_from_group) {
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  constexpr double kSigmaOfMedian = 1.4826;  // of |error|, normal distribution
   const std::vector<GroupLink> links = MotionLinks(problem, Eigen::Vector3d::Ones());
-  for (const GroupLink& link : links) {
-    const Eigen::Vector3d error = LinkError(link, map_from_group).cwiseQuotient(link.sigma);
-    squares += error.cwiseProduct(error);
+  if (links.empty()) return kLeastMotionSigma;
+  Eigen::Vector3d sigma;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> errors;
+    for (const GroupLink& link : links) {
+      errors.push_back(std::abs(LinkError(link, map_from_group)[axis] / link.sigma[axis]));
+    }
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    sigma[axis] = kSigmaOfMedian * *middle;
   }
-  const auto count = static_cast<double>(std::max<std::size_t>(links.size(), 1));
-  return (squares / count).cwiseSqrt().cwiseMax(kLeastMotionSigma);
+  return sigma.cwiseMax(kLeastMotionSigma);
 }
 
 double GateOf(int round, const JointOptions& options) {

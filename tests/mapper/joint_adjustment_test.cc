@@ -1,0 +1,73 @@
+#include "mapper/surfel/joint_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+constexpr int kGroups = 40;
+constexpr double kStep_m = 0.2;
+constexpr int kFramesPerGroup = 5;
+
+// Two walls along x on both sides of the camera: nothing says how far along them it is.
+std::vector<Surfel> CorridorSeen() {
+  std::vector<Surfel> surfels;
+  for (double x_m = 0.5; x_m < 3.0; x_m += 0.05) {
+    for (const double side : {-1.0, 1.0}) {
+      Surfel surfel;
+      surfel.point_m = {x_m, side};
+      surfel.normal = {0.0, -side};
+      surfel.information = 1e6;
+      surfel.normal_information = 1e4;
+      surfels.push_back(surfel);
+    }
+  }
+  return surfels;
+}
+
+struct Corridor {
+  std::vector<SurfelGroup> groups;
+  std::vector<GroupMotion> motions;
+};
+
+// Along the corridor with a prior that errs by 1 mm to and fro, but for one motion, that of a jump
+// which SLAM did not announce.
+Corridor WalkWithAJump(double jump_m) {
+  Corridor corridor;
+  for (int g = 0; g < kGroups; ++g) {
+    SurfelGroup group;
+    group.first_frame = g * kFramesPerGroup;
+    group.frames = kFramesPerGroup;
+    group.map_from_group = {g * kStep_m, 0.0, 0.0};
+    group.surfels = CorridorSeen();
+    corridor.groups.push_back(group);
+    const double error_m = g % 2 == 0 ? 0.001 : -0.001;
+    const double motion_m = kStep_m + (g == kGroups / 2 ? jump_m : error_m);
+    corridor.motions.push_back({true, {motion_m, 0.0, 0.0}, kFramesPerGroup});
+  }
+  return corridor;
+}
+
+TEST(JointAdjustment, OneWrongMotionDoesNotMakeThePriorWorthless) {
+  const Corridor corridor = WalkWithAJump(3.0);
+  JointOptions options;
+  options.rounds = 0;  // as it is judged before anything has moved
+  const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {}, options);
+  // 1 mm in five frames. As a root mean square it would be 95 mm a frame.
+  EXPECT_NEAR(result.motion_sigma.x(), 1.4826 * 0.0002, 1e-6);
+}
+
+TEST(JointAdjustment, WhatOnlyThePriorHoldsStays) {
+  const Corridor corridor = WalkWithAJump(0.001);
+  const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {}, {});
+  for (std::size_t g = 0; g < result.map_from_group.size(); ++g) {
+    const Pose2 moved = Between(corridor.groups[g].map_from_group, result.map_from_group[g]);
+    EXPECT_LT(std::hypot(moved.x_m, moved.y_m), 0.01) << g;
+    EXPECT_LT(std::abs(moved.yaw_rad), 0.001) << g;
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
