@@ -24,10 +24,18 @@ constexpr std::size_t kCandidates = 300;
 constexpr std::size_t kVoterStep = 3;
 constexpr std::size_t kMinFloorPatches = 200;
 constexpr double kMinFloorShare = 0.02;  // of all patches
+// Of one image, to have a say in what is level.
+constexpr std::size_t kMinViewPatches = 40;
+constexpr double kWanderShare = 0.9;
 
 constexpr double kHeightBinM = 0.05;
 // The floor is the lowest level whose bin has this share of the fullest one.
 constexpr double kFloorPeakShare = 0.25;
+// The images agree on the floor when this share of them has its lowest surface this near to it.
+constexpr double kAgreeM = 0.1;
+constexpr double kAgreeShare = 0.5;
+// Where they do not, this many of the first ones say where the floor is.
+constexpr std::size_t kFirstViews = 3;
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
@@ -36,11 +44,6 @@ double Median(std::vector<double> values) {
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
-
-struct Plane {
-  Eigen::Vector3d up;
-  double height_m = 0.0;  // up . point
-};
 
 // The direction that most normals share, of a few hundred tried.
 template <typename Patches>
@@ -70,51 +73,148 @@ std::vector<Eigen::Vector3d> LevelPoints(const Patches& patches, const Eigen::Ve
   return points;
 }
 
-// Height of the lowest level that holds many of the points.
-double LowestLevel(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
-  double low = up.dot(points.front()), high = low;
-  for (const Eigen::Vector3d& point : points) {
-    low = std::min(low, up.dot(point));
-    high = std::max(high, up.dot(point));
+// How many points lie how high, in bins of kHeightBinM.
+struct Levels {
+  double low_m = 0.0;
+  std::vector<int> bins;
+
+  Levels(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
+    low_m = up.dot(points.front());
+    double high_m = low_m;
+    for (const Eigen::Vector3d& point : points) {
+      low_m = std::min(low_m, up.dot(point));
+      high_m = std::max(high_m, up.dot(point));
+    }
+    bins.resize(static_cast<std::size_t>((high_m - low_m) / kHeightBinM) + 1);
+    for (const Eigen::Vector3d& point : points) {
+      ++bins[static_cast<std::size_t>((up.dot(point) - low_m) / kHeightBinM)];
+    }
   }
-  std::vector<int> bins(static_cast<std::size_t>((high - low) / kHeightBinM) + 1, 0);
-  for (const Eigen::Vector3d& point : points) {
-    ++bins[static_cast<std::size_t>((up.dot(point) - low) / kHeightBinM)];
+
+  double HeightM(std::size_t bin) const {
+    return low_m + (static_cast<double>(bin) + 0.5) * kHeightBinM;
   }
-  const double enough = kFloorPeakShare * *std::max_element(bins.begin(), bins.end());
-  std::size_t k = 0;
-  while (bins[k] < enough) ++k;
-  while (k + 1 < bins.size() && bins[k + 1] > bins[k]) ++k;
-  return low + (static_cast<double>(k) + 0.5) * kHeightBinM;
+  double FullestM() const {
+    const auto fullest = std::max_element(bins.begin(), bins.end());
+    return HeightM(static_cast<std::size_t>(fullest - bins.begin()));
+  }
+  // The lowest that holds many of the points.
+  double LowestM() const {
+    const double enough = kFloorPeakShare * *std::max_element(bins.begin(), bins.end());
+    std::size_t k = 0;
+    while (bins[k] < enough) ++k;
+    while (k + 1 < bins.size() && bins[k + 1] > bins[k]) ++k;
+    return HeightM(k);
+  }
+};
+
+// How the points near a height scatter around their mean; the least spread is across the plane.
+struct PlaneFit {
+  std::size_t points = 0;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+};
+
+PlaneFit FitNear(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up,
+                 double height_m, double band_m) {
+  PlaneFit fit;
+  const auto near = [&](const Eigen::Vector3d& point) {
+    return std::abs(up.dot(point) - height_m) <= band_m;
+  };
+  for (const Eigen::Vector3d& point : points) {
+    if (!near(point)) continue;
+    ++fit.points;
+    fit.mean += point;
+  }
+  if (fit.points == 0) return fit;
+  fit.mean /= static_cast<double>(fit.points);
+  for (const Eigen::Vector3d& point : points) {
+    if (near(point)) fit.scatter += (point - fit.mean) * (point - fit.mean).transpose();
+  }
+  return fit;
 }
 
-// The plane through the points near the given one; over all frames, far points make it precise.
-std::optional<Plane> FitNear(const std::vector<Eigen::Vector3d>& points, const Plane& plane,
-                             double band_m, std::size_t needed) {
-  std::vector<Eigen::Vector3d> near;
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points) {
-    if (std::abs(plane.up.dot(point) - plane.height_m) > band_m) continue;
-    near.push_back(point);
-    mean += point;
-  }
-  if (near.size() < needed) return {};
-  mean /= static_cast<double>(near.size());
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : near) {
-    scatter += (point - mean) * (point - mean).transpose();
-  }
-  Eigen::Vector3d normal =
+Eigen::Vector3d NormalOf(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d normal =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
-  if (normal.dot(plane.up) < 0.0) normal = -normal;
-  return Plane{normal, normal.dot(mean)};
+  return normal.dot(up) < 0.0 ? Eigen::Vector3d(-normal) : normal;
+}
+
+struct Direction {
+  Eigen::Vector3d up;
+  double wander_rad = 0.0;
+};
+
+// Up as the common normal of the largest level surface of each image. Every image's surface has a
+// height of its own: a table's is as level as the floor, and SLAM's height drifts (0.6 m of drift
+// tilted one plane through all of it by 2.9 degrees).
+template <typename Views>
+std::optional<Direction> CommonUp(const Views& views, Eigen::Vector3d up) {
+  std::vector<PlaneFit> fits;
+  for (const double band_m : kFitBandM) {
+    fits.clear();
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (const auto& view : views) {
+      const std::vector<Eigen::Vector3d> level = LevelPoints(view.patches, up);
+      if (level.size() < kMinViewPatches) continue;
+      const PlaneFit fit = FitNear(level, up, Levels(level, up).FullestM(), band_m);
+      if (fit.points < kMinViewPatches) continue;
+      scatter += fit.scatter;
+      fits.push_back(fit);
+    }
+    if (fits.empty()) return {};
+    up = NormalOf(scatter, up);
+  }
+  std::vector<double> angles_rad;
+  for (const PlaneFit& fit : fits) {
+    angles_rad.push_back(std::acos(std::min(1.0, up.dot(NormalOf(fit.scatter, up)))));
+  }
+  std::sort(angles_rad.begin(), angles_rad.end());
+  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(fits.size()));
+  return Direction{up, angles_rad[std::min(rank, fits.size() - 1)]};
+}
+
+struct FloorOfViews {
+  double height_m = 0.0;  // up . point
+  double camera_height_m = 0.0;
+};
+
+// The floor is the lowest of all surfaces where the images agree on it, and the camera's height is
+// that above it. With SLAM's height drifting it is where the first images have it, and the camera's
+// height is that above each image's own lowest surface.
+template <typename Views>
+FloorOfViews FloorUnder(const Views& views, const std::vector<Eigen::Vector3d>& level,
+                        const Eigen::Vector3d& up) {
+  const double lowest_m = Levels(level, up).LowestM();
+  std::vector<double> floors_m, above_own_m, above_lowest_m;
+  for (const auto& view : views) {
+    const double camera_m = up.dot(view.camera);
+    above_lowest_m.push_back(camera_m - lowest_m);
+    const std::vector<Eigen::Vector3d> own = LevelPoints(view.patches, up);
+    if (own.size() < kMinViewPatches) continue;
+    const double own_m = Levels(own, up).LowestM();
+    const PlaneFit fit = FitNear(own, up, own_m, kHeightBinM);
+    floors_m.push_back(fit.points > 0 ? up.dot(fit.mean) : own_m);
+    above_own_m.push_back(camera_m - floors_m.back());
+  }
+  const auto agreeing = std::count_if(floors_m.begin(), floors_m.end(), [&](double floor_m) {
+    return std::abs(floor_m - lowest_m) <= kAgreeM;
+  });
+  if (!floors_m.empty() &&
+      static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(floors_m.size())) {
+    floors_m.resize(std::min(floors_m.size(), kFirstViews));
+    return {Median(floors_m), Median(above_own_m)};
+  }
+  const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
+  return {floor_m, Median(above_lowest_m) + lowest_m - floor_m};
 }
 
 }  // namespace
 
 void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
                         const Pose3& world_from_camera) {
-  cameras_.push_back(world_from_camera.translation);
+  View& view = views_.emplace_back();
+  view.camera = world_from_camera.translation;
   image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
   const int step_px = std::max(1, image.width_px / kPatchesAcross);
   const int base_px = std::max(2, static_cast<int>(kBaselineShare * image.width_px));
@@ -133,38 +233,37 @@ void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
       const Eigen::Vector3d along_v = point_at(u, v + base_px) - point_at(u, v - base_px);
       // x right times y down points away from the camera.
       const Eigen::Vector3d normal = along_v.cross(along_u).normalized();
-      patches_.push_back({world_from_camera * point_at(u, v), world_from_camera.rotation * normal});
+      view.patches.push_back(
+          {world_from_camera * point_at(u, v), world_from_camera.rotation * normal});
     }
   }
 }
 
 std::optional<Gravity> GravityFinder::Find() const {
-  if (cameras_.empty() || image_up_.norm() == 0.0) return {};
+  if (views_.empty() || image_up_.norm() == 0.0) return {};
   const Eigen::Vector3d image_up = image_up_.normalized();
-  std::vector<Patch> upward;
-  for (const Patch& patch : patches_) {
-    if (patch.normal.dot(image_up) > kMaxFromImageUp) upward.push_back(patch);
+  std::vector<View> upward;
+  std::vector<Patch> together;
+  std::size_t patches = 0;
+  for (const View& view : views_) {
+    patches += view.patches.size();
+    View& kept = upward.emplace_back();
+    kept.camera = view.camera;
+    for (const Patch& patch : view.patches) {
+      if (patch.normal.dot(image_up) > kMaxFromImageUp) kept.patches.push_back(patch);
+    }
+    together.insert(together.end(), kept.patches.begin(), kept.patches.end());
   }
-  const std::size_t needed =
-      std::max(kMinFloorPatches,
-               static_cast<std::size_t>(kMinFloorShare * static_cast<double>(patches_.size())));
-  if (upward.size() < needed) return {};
-  Plane floor{CommonNormal(upward), 0.0};
-  for (std::size_t round = 0; round < std::size(kFitBandM); ++round) {
-    const std::vector<Eigen::Vector3d> level = LevelPoints(upward, floor.up);
-    if (level.size() < needed) return {};
-    if (round == 0) floor.height_m = LowestLevel(level, floor.up);
-    const auto fitted = FitNear(level, floor, kFitBandM[round], needed);
-    if (!fitted) return {};
-    floor = *fitted;
-  }
-  std::vector<double> heights_m;
-  for (const Eigen::Vector3d& position : cameras_) {
-    heights_m.push_back(floor.up.dot(position) - floor.height_m);
-  }
-  const double camera_height_m = Median(heights_m);
-  if (camera_height_m <= 0.0) return {};
-  return Gravity{floor.up, floor.height_m, camera_height_m};
+  const std::size_t needed = std::max(
+      kMinFloorPatches, static_cast<std::size_t>(kMinFloorShare * static_cast<double>(patches)));
+  if (together.size() < needed) return {};
+  const auto direction = CommonUp(upward, CommonNormal(together));
+  if (!direction) return {};
+  const std::vector<Eigen::Vector3d> level = LevelPoints(together, direction->up);
+  if (level.size() < needed) return {};
+  const FloorOfViews floor = FloorUnder(upward, level, direction->up);
+  if (floor.camera_height_m <= 0.0) return {};
+  return Gravity{direction->up, direction->wander_rad, floor.height_m, floor.camera_height_m};
 }
 
 }  // namespace depthgrid

@@ -14,8 +14,13 @@ namespace depthgrid {
 
 struct Gravity {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
-  double floor_m = 0.0;          // of the floor along `up`: up . point
-  double camera_height_m = 0.0;  // median over the frames
+  // By how much up differs from image to image: SLAM's tilt wanders and normals have errors. Nine
+  // of ten images are nearer.
+  double wander_rad = 0.0;
+  // Of the floor along `up`: up . point. Where SLAM's height drifts so much that the images do not
+  // agree on one floor, as the first images have it.
+  double floor_m = 0.0;
+  double camera_height_m = 0.0;  // above the floor, median over the frames
 };
 
 class GravityFinder {
@@ -32,8 +37,11 @@ class GravityFinder {
     Eigen::Vector3d point;   // in the world
     Eigen::Vector3d normal;  // towards the camera
   };
-  std::vector<Patch> patches_;
-  std::vector<Eigen::Vector3d> cameras_;                // positions
+  struct View {
+    Eigen::Vector3d camera;  // its position
+    std::vector<Patch> patches;
+  };
+  std::vector<View> views_;
   Eigen::Vector3d image_up_ = Eigen::Vector3d::Zero();  // sum over the frames, in the world
 };
 

@@ -115,7 +115,7 @@ Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& op
         fmt::format("no floor seen in the images, taking {} as up", NameOf(sequence.usual_up)));
     return AxisOf(sequence.usual_up);
   }
-  const WorldUp axis = NearestAxis(gravity->up_in_world);
+  const WorldUp axis = NearestAxis(gravity->up_in_world, gravity->wander_rad);
   const Eigen::Vector3d up = axis == WorldUp::kAuto ? gravity->up_in_world : AxisOf(axis);
   result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
   const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));

@@ -1,5 +1,6 @@
 #include "mapper/io/world_up.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mapper/core/angle.h"
@@ -10,7 +11,7 @@ namespace {
 
 constexpr WorldUp kAxes[] = {WorldUp::kX,      WorldUp::kMinusX, WorldUp::kY,
                              WorldUp::kMinusY, WorldUp::kZ,      WorldUp::kMinusZ};
-const double kSnap = std::cos(RadFromDeg(1.0));
+constexpr double kSnapRad = RadFromDeg(1.0);
 
 }  // namespace
 
@@ -40,9 +41,10 @@ std::string NameOf(WorldUp up) {
   return kNames[static_cast<int>(up)];
 }
 
-WorldUp NearestAxis(const Eigen::Vector3d& up) {
+WorldUp NearestAxis(const Eigen::Vector3d& up, double within_rad) {
+  const double enough = std::cos(std::max(within_rad, kSnapRad));
   for (const WorldUp axis : kAxes) {
-    if (up.dot(AxisOf(axis)) > kSnap) return axis;
+    if (up.dot(AxisOf(axis)) > enough) return axis;
   }
   return WorldUp::kAuto;
 }

@@ -17,9 +17,10 @@ AnalyticRoom FurnishedRoom() {
   return room;
 }
 
-// A dozen views turning round in a room, whose poses are told in a world turned by `turned_by`.
+// A dozen views turning round in a room, whose poses are told in a world turned by `turned_by` and
+// rise by `drift_up_m` from the first to the last.
 GravityFinder Views(const AnalyticRoom& room, const Eigen::Quaterniond& turned_by, double pitch_rad,
-                    double noise) {
+                    double noise, double drift_up_m = 0.0) {
   const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
   RandomStream random(8, RandomStage::kTest);
   GravityFinder finder;
@@ -28,7 +29,8 @@ GravityFinder Views(const AnalyticRoom& room, const Eigen::Quaterniond& turned_b
                                     pitch_rad + 0.1 * std::sin(2.0 * i), 0.15 * std::cos(3.0 * i));
     DepthImage image = room.Render(camera, pose);
     for (float& z_m : image.z_m) z_m *= static_cast<float>(1.0 + noise * random.Normal());
-    finder.Add(image, camera, Pose3{turned_by, Eigen::Vector3d(4, 5, 6)} * pose);
+    const Pose3 drift{Eigen::Quaterniond::Identity(), {0.0, 0.0, drift_up_m * i / 11.0}};
+    finder.Add(image, camera, Pose3{turned_by, Eigen::Vector3d(4, 5, 6)} * drift * pose);
   }
   return finder;
 }
@@ -58,6 +60,19 @@ TEST(Gravity, FindsUpInAnyTurnedWorld) {
   EXPECT_EQ(cases, 12);
 }
 
+// One plane through all views was 3 degrees off.
+TEST(Gravity, DriftInHeightTiltsNothing) {
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(RadFromDeg(26.0), Eigen::Vector3d::UnitX()));
+  const Eigen::Vector3d up = turned * Eigen::Vector3d::UnitZ();
+  const auto gravity = Views(FurnishedRoom(), turned, 0.3, 0.01, -0.8).Find();
+  ASSERT_TRUE(gravity);
+  EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3);
+  EXPECT_LT(gravity->wander_rad, RadFromDeg(2.0));
+  EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.03);
+  // Where the first of them have it.
+  EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)) - 0.8 / 11.0, 0.03);
+}
+
 TEST(Gravity, SaysNothingWithoutAFloor) {
   // Looking up at walls and ceiling.
   EXPECT_FALSE(Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), -0.7, 0.0).Find());
@@ -79,6 +94,8 @@ TEST(WorldUp, RotationsMakeTheAxisZ) {
   };
   EXPECT_EQ(NearestAxis(tilted(0.9)), WorldUp::kZ);
   EXPECT_EQ(NearestAxis(tilted(1.1)), WorldUp::kAuto);
+  EXPECT_EQ(NearestAxis(tilted(1.9), RadFromDeg(2.0)), WorldUp::kZ);
+  EXPECT_EQ(NearestAxis(tilted(0.9), RadFromDeg(0.5)), WorldUp::kZ);
 }
 
 TEST(WorldUp, TheIdentityReturnsPosesBitForBit) {
