@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 // x86-64-v3 has AVX2 without AES, which nothing here needs.
 #define HWY_DISABLE_PCLMUL_AES
@@ -66,17 +68,37 @@ HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start
   }
 }
 
+// Linear in the row.
+struct SlopeBound {
+  float at_0 = 0.0F, per_row = 0.0F;
+  float At(int row) const { return at_0 + per_row * static_cast<float>(row); }
+};
+
+// No ray of a strip rises less or more a depth, rounding included.
+struct SlopeBounds {
+  SlopeBound lowest, highest;
+};
+
 // A strip: the lanes of one vector, from lane `lane` of the block on, and a chunk of rows.
 struct Strip {
   const DepthImage& image;
   const ReturnLimits& limits;
-  const SliceBand& slice;
+  const std::optional<SliceBand>& slice;
   const BearingBlock& block;
   std::size_t lane;
+  const SlopeBounds& slopes;
   RowRange rows;
   // First column any lane needs in each row.
   HWY_ALIGN std::array<int, kChunkRows> start;
   HWY_ALIGN std::array<float, kChunkRows> start_f;
+};
+
+// What lies in a group of rows: of the nearest and the farthest depth and the outer rays.
+enum class Content : std::uint8_t {
+  kAnything,
+  kNoSlice,  // nothing in the slice
+  kInBand,   // ... and all usable and in the band
+  kPassing,  // ... and all usable and outside the band
 };
 
 // DepthBetween of bearing_returns.h.
@@ -92,8 +114,42 @@ HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
   return hn::IfThenElse(same_surface, between, apart);
 }
 
-template <Fetch kFetch, bool kAllRows, bool kSlice>
-HWY_NOINLINE void SampleStrip(const Strip& strip, const SampleRows& out, BlockSamples& found) {
+// Rows of a strip, and where their group begins in the block.
+struct Group {
+  RowRange rows;
+  bool all_rows;  // every lane takes part in all of them
+  std::size_t at_row, at_group;
+};
+
+HWY_INLINE Content ContentOf(Floats d, const Strip& strip, const Group& group, Vec z_min,
+                             Vec z_max) {
+  const Vec min_depth = hn::Set(d, strip.limits.min_depth_m);
+  const bool usable = group.all_rows && hn::AllTrue(d, hn::Ge(z_min, min_depth));
+  const Vec near = hn::Max(z_min, min_depth);  // of what is usable
+  const auto [lowest, highest] = strip.slopes;
+  const auto [first, last] = group.rows;
+  const Vec low = hn::Set(d, std::min(lowest.At(first), lowest.At(last)));
+  const Vec high = hn::Set(d, std::max(highest.At(first), highest.At(last)));
+  const Vec bottom = hn::Min(hn::Mul(near, low), hn::Mul(z_max, low));
+  const Vec top = hn::Max(hn::Mul(near, high), hn::Mul(z_max, high));
+  const auto outside = [&](float from_m, float to_m) HWY_ATTR {
+    return hn::AllTrue(d,
+                       hn::Or(hn::Lt(top, hn::Set(d, from_m)), hn::Gt(bottom, hn::Set(d, to_m))));
+  };
+  if (strip.slice && !outside(strip.slice->low_m, strip.slice->high_m)) return Content::kAnything;
+  if (!usable) return Content::kNoSlice;
+  if (outside(strip.limits.low_m, strip.limits.high_m)) return Content::kPassing;
+  const bool in_band = hn::AllTrue(d, hn::And(hn::Ge(bottom, hn::Set(d, strip.limits.low_m)),
+                                              hn::Le(top, hn::Set(d, strip.limits.high_m))));
+  return in_band ? Content::kInBand : Content::kNoSlice;
+}
+
+// The samples of a group that holds what `kContent` says; right only if it does. Returns what it
+// does hold.
+template <Fetch kFetch, bool kAllRows, Content kContent>
+HWY_NOINLINE Content SampleGroup(const Strip& strip, const Group& group, const SampleRows& out) {
+  constexpr bool kSlice = kContent == Content::kAnything;
+  constexpr bool kMixed = kContent == Content::kAnything || kContent == Content::kNoSlice;
   const Floats d;
   const BearingBlock& block = strip.block;
   const std::size_t i = strip.lane;
@@ -105,53 +161,61 @@ HWY_NOINLINE void SampleStrip(const Strip& strip, const SampleRows& out, BlockSa
   const Vec low = hn::Set(d, strip.limits.low_m), high = hn::Set(d, strip.limits.high_m);
   const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
   const Vec max_column = hn::Set(d, LastColumn(strip.image.width_px));
-  Vec nearest = hn::Load(d, &found.nearest[i]);
-  Vec farthest = hn::Load(d, &found.farthest[i]);
-  Vec row = hn::Set(d, static_cast<float>(strip.rows.first));
-  const float* HWY_RESTRICT pixels = strip.image.Row(strip.rows.first);
-  const std::size_t at =
-      static_cast<std::size_t>(strip.rows.first - block.rows.first) * kBlockBearings + i;
-  float* HWY_RESTRICT samples = out.samples + at;
-  float* HWY_RESTRICT slice = kSlice ? out.slice + at : nullptr;
-  const Vec slice_low = hn::Set(d, strip.slice.low_m), slice_high = hn::Set(d, strip.slice.high_m);
-  Vec slice_nearest = hn::Load(d, &found.slice_nearest[i]);
-  const std::size_t ahead = strip.rows.last + static_cast<int>(kChunkRows) < strip.image.height_px
-                                ? kChunkRows * width
-                                : 0;
-  const auto count = static_cast<std::size_t>(strip.rows.last - strip.rows.first + 1);
-  for (std::size_t r = 0; r < count; ++r) {
+  const SliceBand& level_band = kSlice ? *strip.slice : SliceBand{};
+  const Vec slice_low = hn::Set(d, level_band.low_m), slice_high = hn::Set(d, level_band.high_m);
+  Vec nearest = unusable, slice_nearest = passing, z_min = unusable, z_max = hn::Zero(d);
+  Vec row = hn::Set(d, static_cast<float>(group.rows.first));
+  const float* HWY_RESTRICT pixels = strip.image.Row(group.rows.first);
+  float* HWY_RESTRICT samples = out.band.samples + group.at_row + i;
+  float* HWY_RESTRICT slice = kSlice ? out.slice.samples + group.at_row + i : nullptr;
+  const bool has_next = group.rows.last + static_cast<int>(kChunkRows) < strip.image.height_px;
+  const std::size_t ahead = has_next ? kChunkRows * width : 0;
+  const auto begin = static_cast<std::size_t>(group.rows.first - strip.rows.first);
+  const auto end = static_cast<std::size_t>(group.rows.last - strip.rows.first + 1);
+  for (std::size_t r = begin; r < end; ++r) {
     const Vec u = hn::Min(hn::Max(hn::Add(u0, hn::Mul(u1, row)), hn::Zero(d)), max_column);
     const Vec column = hn::Floor(u);
     const Pixels both = FetchPixels<kFetch>(d, pixels, strip.start[r], strip.start_f[r], column);
     const Vec z = DepthBetweenLanes(d, both, hn::Sub(u, column));
-    const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
-    const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
-    const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
-    Mask usable = hn::Ge(z, min_depth);
+    Vec sample = passing;
+    if constexpr (kContent != Content::kPassing) {
+      sample = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
+    }
+    Mask inside;
     if constexpr (!kAllRows) {
-      usable = hn::And(usable, hn::And(hn::Ge(row, hn::Load(d, &block.first[i])),
-                                       hn::Le(row, hn::Load(d, &block.last[i]))));
+      inside = hn::And(hn::Ge(row, hn::Load(d, &block.first[i])),
+                       hn::Le(row, hn::Load(d, &block.last[i])));
     }
-    const Vec sample = hn::IfThenElse(usable, hn::IfThenElse(marks, range, passing), unusable);
+    if constexpr (kMixed) {
+      const Vec range = sample;
+      const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
+      const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
+      Mask usable = hn::Ge(z, min_depth);
+      if constexpr (!kAllRows) usable = hn::And(usable, inside);
+      sample = hn::IfThenElse(usable, hn::IfThenElse(marks, range, passing), unusable);
+      if constexpr (kSlice) {
+        const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
+        const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
+        hn::Store(level_sample, d, slice);
+        slice_nearest = hn::Min(slice_nearest, level_sample);
+        slice += kBlockBearings;
+      }
+    }
     hn::Store(sample, d, samples);
-    nearest = hn::Min(nearest, sample);
-    farthest = hn::Max(farthest, sample);
-    if constexpr (kSlice) {
-      const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
-      const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
-      hn::Store(level_sample, d, slice);
-      slice_nearest = hn::Min(slice_nearest, level_sample);
-      slice += kBlockBearings;
-    }
+    if constexpr (kContent != Content::kPassing) nearest = hn::Min(nearest, sample);
+    z_min = hn::Min(z_min, kAllRows ? z : hn::IfThenElse(inside, z, unusable));
+    z_max = hn::Max(z_max, kAllRows ? z : hn::IfThenElseZero(inside, z));
     // The next chunk of rows; the processor does not foresee steps of a whole image row.
     hwy::Prefetch(pixels + ahead + strip.start[r]);
     row = hn::Add(row, hn::Set(d, 1.0F));
     pixels += width;
     samples += kBlockBearings;
   }
-  hn::Store(nearest, d, &found.nearest[i]);
-  hn::Store(farthest, d, &found.farthest[i]);
-  if constexpr (kSlice) hn::Store(slice_nearest, d, &found.slice_nearest[i]);
+  if constexpr (kContent == Content::kPassing) nearest = passing;
+  hn::Store(nearest, d, out.band.nearest + group.at_group + i);
+  hn::Store(z_min, d, out.band.least_depth + group.at_group + i);
+  if constexpr (kSlice) hn::Store(slice_nearest, d, out.slice.nearest + group.at_group + i);
+  return ContentOf(d, strip, group, z_min, z_max);
 }
 
 // Columns are monotonic in the bearing while all rays look ahead, so the outer lanes bound them.
@@ -197,139 +261,117 @@ void FindStarts(Fetch fetch, Strip& strip) {
 }
 
 template <Fetch kFetch>
-void SampleStripBy(const Strip& strip, const SampleRows& out, BlockSamples& found) {
-  const RowRange& shared = strip.block.shared_rows;
-  const RowRange& slice = strip.block.slice_rows;
-  const bool all_rows = strip.rows.first >= shared.first && strip.rows.last <= shared.last;
-  const bool sliced = strip.rows.first <= slice.last && strip.rows.last >= slice.first;
-  if (sliced) {
-    return all_rows ? SampleStrip<kFetch, true, true>(strip, out, found)
-                    : SampleStrip<kFetch, false, true>(strip, out, found);
+Content SampleGroupAs(Content content, const Strip& strip, const Group& group,
+                      const SampleRows& out) {
+  if (!group.all_rows) {
+    return content == Content::kAnything
+               ? SampleGroup<kFetch, false, Content::kAnything>(strip, group, out)
+               : SampleGroup<kFetch, false, Content::kNoSlice>(strip, group, out);
   }
-  return all_rows ? SampleStrip<kFetch, true, false>(strip, out, found)
-                  : SampleStrip<kFetch, false, false>(strip, out, found);
+  switch (content) {
+    case Content::kPassing:
+      return SampleGroup<kFetch, true, Content::kPassing>(strip, group, out);
+    case Content::kInBand:
+      return SampleGroup<kFetch, true, Content::kInBand>(strip, group, out);
+    case Content::kNoSlice:
+      return SampleGroup<kFetch, true, Content::kNoSlice>(strip, group, out);
+    case Content::kAnything:
+      break;
+  }
+  return SampleGroup<kFetch, true, Content::kAnything>(strip, group, out);
 }
 
-void SampleChunk(Strip& strip, const SampleRows& out, BlockSamples& found) {
+// Each group is taken for what the one before held; where that is wrong it is done again.
+template <Fetch kFetch>
+Content SampleStrip(Content content, const Strip& strip, const SampleRows& out) {
+  const RowRange& shared = strip.block.shared_rows;
+  constexpr int kStep = static_cast<int>(kGroupRows);
+  for (int first = strip.rows.first; first <= strip.rows.last; first += kStep) {
+    const RowRange rows{first, std::min(first + kStep - 1, strip.rows.last)};
+    const auto row = static_cast<std::size_t>(first - strip.block.rows.first);
+    const Group group{rows, rows.first >= shared.first && rows.last <= shared.last,
+                      row * kBlockBearings, row / kGroupRows * kBlockBearings};
+    const Content taken_for = content;
+    content = SampleGroupAs<kFetch>(taken_for, strip, group, out);
+    const bool right = taken_for == content || taken_for == Content::kAnything ||
+                       (taken_for == Content::kNoSlice && content != Content::kAnything);
+    if (!right) SampleGroupAs<kFetch>(content, strip, group, out);
+  }
+  return content;
+}
+
+Content SampleChunk(Content content, Strip& strip, const SampleRows& out) {
   const Fetch fetch = FetchFor(strip);
   FindStarts(fetch, strip);
   switch (fetch) {
     case Fetch::kOneVector:
-      return SampleStripBy<Fetch::kOneVector>(strip, out, found);
+      return SampleStrip<Fetch::kOneVector>(content, strip, out);
     case Fetch::kTwoVectors:
-      return SampleStripBy<Fetch::kTwoVectors>(strip, out, found);
+      return SampleStrip<Fetch::kTwoVectors>(content, strip, out);
     case Fetch::kGather:
-      return SampleStripBy<Fetch::kGather>(strip, out, found);
+      break;
+  }
+  return SampleStrip<Fetch::kGather>(content, strip, out);
+}
+
+// Between two rows the smallest of linear functions is nowhere below its chord, the largest nowhere
+// above.
+SlopeBounds BoundSlopes(const BearingBlock& block, std::size_t lane) {
+  const Floats d;
+  const Vec g0 = hn::Load(d, &block.g0[lane]), g1 = hn::Load(d, &block.g1[lane]);
+  const auto first = static_cast<float>(block.rows.first);
+  const auto last = static_cast<float>(block.rows.last);
+  const Vec at_first = hn::Add(g0, hn::Mul(g1, hn::Set(d, first)));
+  const Vec at_last = hn::Add(g0, hn::Mul(g1, hn::Set(d, last)));
+  // Of sums and products in single precision, here and of each sample: 2^-24 each.
+  constexpr float kRounding = 2e-6F;
+  const Vec size = hn::Add(hn::Abs(g0), hn::Mul(hn::Abs(g1), hn::Set(d, last)));
+  const float spare = kRounding * hn::GetLane(hn::MaxOfLanes(d, size));
+  const auto chord = [&](float from, float to) {
+    const float per_row = (to - from) / std::max(last - first, 1.0F);
+    return SlopeBound{from - per_row * first, per_row};
+  };
+  return {chord(hn::GetLane(hn::MinOfLanes(d, at_first)) - spare,
+                hn::GetLane(hn::MinOfLanes(d, at_last)) - spare),
+          chord(hn::GetLane(hn::MaxOfLanes(d, at_first)) + spare,
+                hn::GetLane(hn::MaxOfLanes(d, at_last)) + spare)};
+}
+
+void SmallestOfGroups(const float* HWY_RESTRICT groups, std::size_t count, BlockLane& smallest) {
+  const Floats d;
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    Vec least = hn::Load(d, groups + i);
+    for (std::size_t g = 1; g < count; ++g) {
+      least = hn::Min(least, hn::Load(d, groups + g * kBlockBearings + i));
+    }
+    hn::Store(least, d, &smallest[i]);
   }
 }
 
-void SampleAll(const DepthImage& image, const ReturnLimits& limits, const SliceBand& slice,
-               const BearingBlock& block, const SampleRows& out, BlockSamples& found) {
-  const std::size_t lanes = hn::Lanes(Floats());
+void SampleAll(const DepthImage& image, const ReturnLimits& limits,
+               const std::optional<SliceBand>& slice, const BearingBlock& block,
+               const SampleRows& out, BlockSamples& found) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
   constexpr int kStep = static_cast<int>(kChunkRows);
+  std::array<SlopeBounds, kBlockBearings> slopes;
+  std::array<Content, kBlockBearings> contents;
+  contents.fill(slice ? Content::kAnything : Content::kNoSlice);
+  for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
+    slopes[lane / lanes] = BoundSlopes(block, lane);
+  }
   for (int first = block.rows.first; first <= block.rows.last; first += kStep) {
     const RowRange rows{first, std::min(first + kStep - 1, block.rows.last)};
     for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
-      Strip strip{image, limits, slice, block, lane, rows, {}, {}};
-      SampleChunk(strip, out, found);
+      Strip strip{image, limits, slice, block, lane, slopes[lane / lanes], rows, {}, {}};
+      Content& content = contents[lane / lanes];
+      content = SampleChunk(content, strip, out);
     }
   }
-}
-
-// Sum and number of a lane's samples in [from, to].
-struct Running {
-  Vec from, to, sum, count;
-
-  HWY_INLINE void Add(Floats d, Vec sample) {
-    const Mask inside = hn::And(hn::Ge(sample, from), hn::Le(sample, to));
-    sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
-    count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0F)));
-  }
-};
-
-void MeanLanes(const float* HWY_RESTRICT samples, std::size_t rows, const BlockLane& low,
-               const BlockLane& high, const BlockLane& otherwise, BlockMean& out) {
-  const Floats d;
-  const std::size_t lanes = hn::Lanes(d);
-  const auto start = [&](std::size_t i) HWY_ATTR {
-    return Running{hn::Load(d, &low[i]), hn::Load(d, &high[i]), hn::Zero(d), hn::Zero(d)};
-  };
-  const auto finish = [&](const Running& running, std::size_t i) HWY_ATTR {
-    const Mask any = hn::Gt(running.count, hn::Zero(d));
-    const Vec mean = hn::Div(running.sum, hn::Max(running.count, hn::Set(d, 1.0F)));
-    hn::Store(hn::IfThenElse(any, mean, hn::Load(d, &otherwise[i])), d, &out.mean[i]);
-    hn::Store(running.count, d, &out.count[i]);
-  };
-  // Two vectors at a time: the additions of one wait for each other, those of the other fill in.
-  static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
-  for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
-    Running a = start(i), b = start(i + lanes);
-    for (std::size_t r = 0; r < rows; ++r) {
-      const float* HWY_RESTRICT row = samples + r * kBlockBearings + i;
-      a.Add(d, hn::Load(d, row));
-      b.Add(d, hn::Load(d, row + lanes));
-    }
-    finish(a, i);
-    finish(b, i + lanes);
-  }
-}
-
-// The longest run between two usable rows so far.
-struct Gap {
-  Vec from, to;
-};
-HWY_INLINE Gap Longer(Mask here, Vec from, Vec to, const Gap& gap) {
-  const Mask longer = hn::And(here, hn::Gt(hn::Sub(to, from), hn::Sub(gap.to, gap.from)));
-  return {hn::IfThenElse(longer, from, gap.from), hn::IfThenElse(longer, to, gap.to)};
-}
-
-// Lanes of which every row was usable.
-void SeeAll(const BearingBlock& block, std::size_t i, BlockViews& out) {
-  const Floats d;
-  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-  hn::Store(hn::Set(d, static_cast<float>(block.rows.first)), d, &out.first[i]);
-  hn::Store(hn::Set(d, static_cast<float>(block.rows.last)), d, &out.last[i]);
-  for (BlockLane* from : {&out.below_from, &out.above_from}) hn::Store(zero, d, &(*from)[i]);
-  for (BlockLane* to : {&out.below_to, &out.above_to}) hn::Store(one, d, &(*to)[i]);
-}
-
-void ViewLanes(const BearingBlock& block, const BlockLane& farthest,
-               const float* HWY_RESTRICT samples, BlockViews& out) {
-  const Floats d;
-  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
-    if (hn::AllTrue(d, hn::Lt(hn::Load(d, &farthest[i]), hn::Set(d, kUnusable)))) {
-      SeeAll(block, i, out);
-      continue;
-    }
-    const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
-    Vec first = zero, last = hn::Set(d, -1.0F);
-    // A run needs a row between: the difference of its ends exceeds one.
-    Gap below{zero, one}, above{zero, one};
-    Vec row = hn::Set(d, static_cast<float>(block.rows.first));
-    bool all_before = false;  // every lane was usable in the row before
-    for (std::size_t r = 0; r < block.RowCount(); ++r) {
-      const Vec sample = hn::Load(d, samples + r * kBlockBearings + i);
-      const Mask usable = hn::Lt(sample, hn::Set(d, kUnusable));
-      const bool all = hn::AllTrue(d, usable);
-      if (HWY_UNLIKELY(!all || !all_before)) {
-        const Mask started = hn::Ge(last, zero);
-        const Mask ends_gap = hn::And(usable, started);
-        const Mask high = hn::Gt(hn::Add(g0, hn::Mul(g1, row)), zero);
-        above = Longer(hn::And(ends_gap, high), last, row, above);
-        below = Longer(hn::AndNot(high, ends_gap), last, row, below);
-        first = hn::IfThenElse(hn::AndNot(started, usable), row, first);
-      }
-      last = hn::IfThenElse(usable, row, last);
-      all_before = all;
-      row = hn::Add(row, one);
-    }
-    hn::Store(first, d, &out.first[i]);
-    hn::Store(last, d, &out.last[i]);
-    hn::Store(below.from, d, &out.below_from[i]);
-    hn::Store(below.to, d, &out.below_to[i]);
-    hn::Store(above.from, d, &out.above_from[i]);
-    hn::Store(above.to, d, &out.above_to[i]);
+  SmallestOfGroups(out.band.least_depth, block.GroupCount(), found.least_depth);
+  SmallestOfGroups(out.band.nearest, block.GroupCount(), found.nearest);
+  if (slice) {
+    SmallestOfGroups(out.slice.nearest, block.GroupCount(), found.slice_nearest);
   }
 }
 
@@ -341,32 +383,15 @@ HWY_AFTER_NAMESPACE();
 namespace depthgrid::internal {
 
 HWY_EXPORT(SampleAll);
-HWY_EXPORT(MeanLanes);
-HWY_EXPORT(ViewLanes);
 
 BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
                          const std::optional<SliceBand>& slice, const BearingBlock& block,
                          const SampleRows& rows) {
   BlockSamples found;
-  found.nearest.fill(kUnusable);
-  found.farthest.fill(0.0F);
-  found.slice_nearest.fill(kPassing);
+  if (slice) std::fill_n(rows.slice.nearest, block.GroupCount() * kBlockBearings, kPassing);
   HWY_DYNAMIC_DISPATCH(SampleAll)
-  (image, limits, slice.value_or(SliceBand{}), block, rows, found);
+  (image, limits, slice, block, rows, found);
   return found;
-}
-
-BlockMean MeanWithin(const float* samples, std::size_t rows, const BlockLane& low,
-                     const BlockLane& high, const BlockLane& otherwise) {
-  BlockMean mean;
-  HWY_DYNAMIC_DISPATCH(MeanLanes)(samples, rows, low, high, otherwise, mean);
-  return mean;
-}
-
-BlockViews FindViews(const BearingBlock& block, const BlockLane& farthest, const float* samples) {
-  BlockViews views;
-  HWY_DYNAMIC_DISPATCH(ViewLanes)(block, farthest, samples, views);
-  return views;
 }
 
 }  // namespace depthgrid::internal

@@ -5,37 +5,8 @@
 #include "mapper/scan/bearing_block.h"
 
 namespace depthgrid::internal {
-namespace {
-
-// The rows of which some lane can see a surface in the slice: from min_depth on, the slice is seen
-// within these slopes (heights are z (g0 + g1 v)).
-RowRange SliceRows(const BearingBlock& block, const ReturnLimits& limits, const SliceBand& slice) {
-  if (!(limits.min_depth_m > 0.0F)) return block.rows;
-  constexpr float kRowsToSpare = 1.0F;  // more than any rounding
-  constexpr float kLeastSlope = 1e-6F;  // a row; a camera's is a hundredth or more
-  const float low = slice.low_m / limits.min_depth_m;
-  const float high = slice.high_m / limits.min_depth_m;
-  float first = static_cast<float>(block.rows.last);
-  float last = static_cast<float>(block.rows.first);
-  for (std::size_t i = 0; i < block.bearings; ++i) {
-    if (!(std::abs(block.g1[i]) > kLeastSlope)) return block.rows;
-    const float per_slope = 1.0F / block.g1[i];
-    const float a = (low - block.g0[i]) * per_slope;
-    const float b = (high - block.g0[i]) * per_slope;
-    first = std::min(first, std::min(a, b));
-    last = std::max(last, std::max(a, b));
-  }
-  const auto within = [&](float row) {
-    return static_cast<int>(
-        std::clamp(row, static_cast<float>(block.rows.first), static_cast<float>(block.rows.last)));
-  };
-  return {within(first - kRowsToSpare), within(last + kRowsToSpare)};
-}
-
-}  // namespace
-
 BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
-                              const ReturnLimits& limits, const std::optional<SliceBand>& slice) {
+                              const ReturnLimits& limits) {
   BearingBlock block;
   block.bearings = std::min(kBlockBearings, lines.size() - begin);
   block.rows = {limits.last_row + 1, limits.first_row - 1};
@@ -62,7 +33,6 @@ BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t
       block.all_ahead = block.all_ahead && block.h0[i] + block.h1[i] * static_cast<float>(v) > 0.0F;
     }
   }
-  if (slice && block.RowCount() > 0) block.slice_rows = SliceRows(block, limits, *slice);
   return block;
 }
 

@@ -9,29 +9,41 @@
 namespace depthgrid {
 namespace {
 
+using internal::BandSamples;
 using internal::BearingBlock;
 using internal::BlockLane;
 using internal::BlockMean;
 using internal::BlockSamples;
 using internal::BlockViews;
 using internal::kBlockBearings;
+using internal::kGroupRows;
 using internal::SampleRows;
 
 using Lanes = ReturnsMemory::Lanes;
 constexpr std::size_t kLanesPerRow = sizeof(BlockLane) / sizeof(Lanes);
 
-// Room for so many rows of samples.
-float* Rows(std::vector<Lanes>& lanes, std::size_t rows) {
-  if (rows * kLanesPerRow > lanes.size()) lanes.resize(rows * kLanesPerRow);
-  return lanes.data()->lane;
+// Room for the samples and the smallest ones of a block.
+BandSamples RoomFor(const BearingBlock& block, std::vector<Lanes>& lanes) {
+  const std::size_t rows = block.RowCount();
+  const std::size_t needed = (rows + 2 * block.GroupCount()) * kLanesPerRow;
+  if (needed > lanes.size()) lanes.resize(needed);
+  float* const samples = lanes.data()->lane;
+  float* const nearest = samples + rows * kBlockBearings;
+  return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
 
-// The samples of a block's bearings in some rows, and the smallest of each.
-struct BandSamples {
-  const float* samples = nullptr;
-  std::size_t rows = 0;
-  const BlockLane& nearest;
-};
+// Every sample of a lane, as SampleAt gives them.
+std::span<const float> SamplesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
+                                 const ReturnLimits& limits, std::vector<float>& column) {
+  column.clear();
+  for (std::size_t r = 0; r < rows; ++r) {
+    const bool any_near =
+        band.nearest[r / kGroupRows * kBlockBearings + lane] <= limits.max_range_m;
+    const float sample = any_near ? band.samples[r * kBlockBearings + lane] : kPassing;
+    column.push_back(sample <= limits.max_range_m ? sample : kPassing);
+  }
+  return column;
+}
 
 RowRange RangeOf(float first, float last) {
   return {static_cast<int>(first), static_cast<int>(last)};
@@ -41,50 +53,52 @@ RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, t
 
 // FindNearest for a block. Lanes whose smallest sample is not supported by others (a stray pixel)
 // are done one by one.
-void FindNearestOfBlock(const BandSamples& band, std::size_t bearings, const ReturnLimits& limits,
+void FindNearestOfBlock(const BearingBlock& block, const BandSamples& band,
+                        const BlockLane& nearest, const ReturnLimits& limits,
                         const NoiseWindow& window, std::vector<float>& column,
                         BearingReturns* returns) {
+  const std::size_t rows = block.RowCount();
   BlockLane width, high;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    width[i] = window.At(band.nearest[i]);
-    high[i] = std::min(band.nearest[i] + width[i], limits.max_range_m);
+    width[i] = window.At(nearest[i]);
+    high[i] = std::min(nearest[i] + width[i], limits.max_range_m);
   }
-  const BlockMean first =
-      internal::MeanWithin(band.samples, band.rows, band.nearest, high, band.nearest);
+  const BlockMean first = internal::MeanWithin(band, rows, nearest, high, nearest);
   BlockLane low;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     const float half_m = 0.5F * width[i];
     low[i] = first.mean[i] - half_m;
     high[i] = std::min(first.mean[i] + half_m, limits.max_range_m);
   }
-  const BlockMean second = internal::MeanWithin(band.samples, band.rows, low, high, first.mean);
-  for (std::size_t i = 0; i < bearings; ++i) {
-    if (band.nearest[i] > limits.max_range_m) continue;
+  const BlockMean second = internal::MeanWithin(band, rows, low, high, first.mean);
+  for (std::size_t i = 0; i < block.bearings; ++i) {
+    if (nearest[i] > limits.max_range_m) continue;
     if (first.count[i] >= static_cast<float>(limits.min_returns)) {
       returns[i].hit = true;
       returns[i].range_m = second.mean[i];
-      continue;
+    } else {
+      FindNearest(SamplesOf(band, rows, i, limits, column), limits, window, returns[i]);
     }
-    column.clear();
-    for (std::size_t r = 0; r < band.rows; ++r) {
-      const float sample = band.samples[r * kBlockBearings + i];
-      column.push_back(sample <= limits.max_range_m ? sample : kPassing);
-    }
-    FindNearest(column, limits, window, returns[i]);
   }
 }
 
-void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const float* samples,
-                      BearingReturns* returns) {
+void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const BandSamples& band,
+                      float min_depth_m, BearingReturns* returns) {
   const bool all_usable =
-      *std::max_element(found.farthest.begin(), found.farthest.end()) < kUnusable;
+      *std::min_element(found.least_depth.begin(), found.least_depth.end()) >= min_depth_m;
   if (all_usable) {
-    for (std::size_t i = 0; i < block.bearings; ++i) returns[i].seen = block.rows;
+    for (std::size_t i = 0; i < block.bearings; ++i) {
+      if (block.first[i] <= block.last[i]) {
+        returns[i].seen = RangeOf(block.first[i], block.last[i]);
+      }
+    }
     return;
   }
-  const BlockViews views = internal::FindViews(block, found.farthest, samples);
+  const BlockViews views = internal::FindViews(block, found.least_depth, band, min_depth_m);
   for (std::size_t i = 0; i < block.bearings; ++i) {
-    returns[i].seen = RangeOf(views.first[i], views.last[i]);
+    if (views.first[i] <= views.last[i]) {
+      returns[i].seen = RangeOf(views.first[i], views.last[i]);
+    }
     returns[i].gap_below = GapOf(views.below_from[i], views.below_to[i]);
     returns[i].gap_above = GapOf(views.above_from[i], views.above_to[i]);
   }
@@ -99,26 +113,18 @@ const ImageReturns& FindReturns(const DepthImage& image, const std::vector<Beari
   all.obstacles.assign(lines.size(), {});
   all.slice.assign(slice ? lines.size() : 0, {});
   for (std::size_t begin = 0; begin < lines.size(); begin += kBlockBearings) {
-    const BearingBlock block = internal::MakeBearingBlock(lines, begin, limits, slice);
-    const std::size_t rows = block.RowCount();
-    if (rows == 0) continue;
-    const SampleRows out{Rows(memory.samples, rows),
-                         slice ? Rows(memory.slice_samples, rows) : nullptr};
+    const BearingBlock block = internal::MakeBearingBlock(lines, begin, limits);
+    if (block.RowCount() == 0) continue;
+    const SampleRows out{RoomFor(block, memory.samples),
+                         slice ? RoomFor(block, memory.slice_samples) : BandSamples{}};
     const BlockSamples found = internal::SampleBlock(image, limits, slice, block, out);
     BearingReturns* const obstacles = &all.obstacles[begin];
-    FindNearestOfBlock({out.samples, rows, found.nearest}, block.bearings, limits, window,
-                       memory.column, obstacles);
-    FindViewsOfBlock(block, found, out.samples, obstacles);
+    FindViewsOfBlock(block, found, out.band, limits.min_depth_m, obstacles);
+    if (slice) std::copy_n(obstacles, block.bearings, &all.slice[begin]);
+    FindNearestOfBlock(block, out.band, found.nearest, limits, window, memory.column, obstacles);
     if (!slice) continue;
-    for (std::size_t i = 0; i < block.bearings; ++i) {
-      BearingReturns& returns = all.slice[begin + i] = obstacles[i];
-      returns.hit = false;
-      returns.range_m = 0.0F;
-    }
-    const auto skipped = static_cast<std::size_t>(block.slice_rows.first - block.rows.first);
-    const auto taken = static_cast<std::size_t>(block.slice_rows.last - block.slice_rows.first + 1);
-    FindNearestOfBlock({out.slice + skipped * kBlockBearings, taken, found.slice_nearest},
-                       block.bearings, limits, window, memory.column, &all.slice[begin]);
+    FindNearestOfBlock(block, out.slice, found.slice_nearest, limits, window, memory.column,
+                       &all.slice[begin]);
   }
   return all;
 }

@@ -1,0 +1,165 @@
+// Means and views of the samples a block left (bearing_block.h).
+#include "mapper/scan/bearing_block.h"
+
+// x86-64-v3 has AVX2 without AES, which nothing here needs.
+#define HWY_DISABLE_PCLMUL_AES
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mapper/scan/bearing_block_means.cc"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::internal {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::CappedTag<float, kBlockBearings>;
+using Vec = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+
+// Sum and number of a lane's samples in [from, to].
+struct Running {
+  Vec from, to, sum, count;
+
+  HWY_INLINE void Add(Floats d, Vec sample) {
+    const Mask inside = hn::And(hn::Ge(sample, from), hn::Le(sample, to));
+    sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
+    count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0F)));
+  }
+};
+
+void MeanLanes(const BandSamples& band, std::size_t rows, const BlockLane& low,
+               const BlockLane& high, const BlockLane& otherwise, BlockMean& out) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  const auto start = [&](std::size_t i) HWY_ATTR {
+    return Running{hn::Load(d, &low[i]), hn::Load(d, &high[i]), hn::Zero(d), hn::Zero(d)};
+  };
+  const auto finish = [&](const Running& running, std::size_t i) HWY_ATTR {
+    const Mask any = hn::Gt(running.count, hn::Zero(d));
+    const Vec mean = hn::Div(running.sum, hn::Max(running.count, hn::Set(d, 1.0F)));
+    hn::Store(hn::IfThenElse(any, mean, hn::Load(d, &otherwise[i])), d, &out.mean[i]);
+    hn::Store(running.count, d, &out.count[i]);
+  };
+  static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
+  for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
+    Running a = start(i), b = start(i + lanes);
+    for (std::size_t first = 0; first < rows; first += kGroupRows) {
+      const float* HWY_RESTRICT nearest = band.nearest + first / kGroupRows * kBlockBearings + i;
+      const bool near_a = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest), a.to));
+      const bool near_b = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest + lanes), b.to));
+      if (!near_a && !near_b) continue;
+      const float* HWY_RESTRICT row = band.samples + first * kBlockBearings + i;
+      const float* const end = row + std::min(kGroupRows, rows - first) * kBlockBearings;
+      if (near_a && near_b) {
+        // The additions of one wait for each other, those of the other fill in.
+        for (; row != end; row += kBlockBearings) {
+          a.Add(d, hn::Load(d, row));
+          b.Add(d, hn::Load(d, row + lanes));
+        }
+      } else if (near_a) {
+        for (; row != end; row += kBlockBearings) a.Add(d, hn::Load(d, row));
+      } else {
+        for (; row != end; row += kBlockBearings) b.Add(d, hn::Load(d, row + lanes));
+      }
+    }
+    finish(a, i);
+    finish(b, i + lanes);
+  }
+}
+
+// The longest run between two usable rows so far.
+struct Gap {
+  Vec from, to;
+};
+HWY_INLINE Gap Longer(Mask here, Vec from, Vec to, const Gap& gap) {
+  const Mask longer = hn::And(here, hn::Gt(hn::Sub(to, from), hn::Sub(gap.to, gap.from)));
+  return {hn::IfThenElse(longer, from, gap.from), hn::IfThenElse(longer, to, gap.to)};
+}
+
+// Lanes of which every row was usable.
+void SeeAll(const BearingBlock& block, std::size_t i, BlockViews& out) {
+  const Floats d;
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  hn::Store(hn::Load(d, &block.first[i]), d, &out.first[i]);
+  hn::Store(hn::Load(d, &block.last[i]), d, &out.last[i]);
+  for (BlockLane* from : {&out.below_from, &out.above_from}) hn::Store(zero, d, &(*from)[i]);
+  for (BlockLane* to : {&out.below_to, &out.above_to}) hn::Store(one, d, &(*to)[i]);
+}
+
+void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const BandSamples& band,
+               float min_depth_m, BlockViews& out) {
+  const Floats d;
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F), min_depth = hn::Set(d, min_depth_m);
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    if (hn::AllTrue(d, hn::Ge(hn::Load(d, &least_depth[i]), min_depth))) {
+      SeeAll(block, i, out);
+      continue;
+    }
+    const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
+    Vec first = zero, last = hn::Set(d, -1.0F);
+    // A run needs a row between: the difference of its ends exceeds one.
+    Gap below{zero, one}, above{zero, one};
+    bool all_before = false;  // every lane was usable in the row before
+    for (int v = block.rows.first; v <= block.rows.last; ++v) {
+      const auto r = static_cast<std::size_t>(v - block.rows.first);
+      const bool in_shared = v > block.shared_rows.first && v <= block.shared_rows.last;
+      if (all_before && r % kGroupRows == 0 && in_shared) {
+        const Vec least = hn::Load(d, band.least_depth + r / kGroupRows * kBlockBearings + i);
+        const int group_last = std::min(v + static_cast<int>(kGroupRows) - 1, block.rows.last);
+        if (group_last <= block.shared_rows.last && hn::AllTrue(d, hn::Ge(least, min_depth))) {
+          v = group_last;
+          last = hn::Set(d, static_cast<float>(v));
+          continue;
+        }
+      }
+      const Vec row = hn::Set(d, static_cast<float>(v));
+      const Vec sample = hn::Load(d, band.samples + r * kBlockBearings + i);
+      const Mask usable = hn::Lt(sample, hn::Set(d, kUnusable));
+      const bool all = hn::AllTrue(d, usable);
+      if (HWY_UNLIKELY(!all || !all_before)) {
+        const Mask started = hn::Ge(last, zero);
+        const Mask ends_gap = hn::And(usable, started);
+        const Mask high = hn::Gt(hn::Add(g0, hn::Mul(g1, row)), zero);
+        above = Longer(hn::And(ends_gap, high), last, row, above);
+        below = Longer(hn::AndNot(high, ends_gap), last, row, below);
+        first = hn::IfThenElse(hn::AndNot(started, usable), row, first);
+      }
+      last = hn::IfThenElse(usable, row, last);
+      all_before = all;
+    }
+    hn::Store(first, d, &out.first[i]);
+    hn::Store(last, d, &out.last[i]);
+    hn::Store(below.from, d, &out.below_from[i]);
+    hn::Store(below.to, d, &out.below_to[i]);
+    hn::Store(above.from, d, &out.above_from[i]);
+    hn::Store(above.to, d, &out.above_to[i]);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace depthgrid::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace depthgrid::internal {
+
+HWY_EXPORT(MeanLanes);
+HWY_EXPORT(ViewLanes);
+
+BlockMean MeanWithin(const BandSamples& band, std::size_t rows, const BlockLane& low,
+                     const BlockLane& high, const BlockLane& otherwise) {
+  BlockMean mean;
+  HWY_DYNAMIC_DISPATCH(MeanLanes)(band, rows, low, high, otherwise, mean);
+  return mean;
+}
+
+BlockViews FindViews(const BearingBlock& block, const BlockLane& least_depth,
+                     const BandSamples& band, float min_depth_m) {
+  BlockViews views;
+  HWY_DYNAMIC_DISPATCH(ViewLanes)(block, least_depth, band, min_depth_m, views);
+  return views;
+}
+
+}  // namespace depthgrid::internal
+#endif  // HWY_ONCE
