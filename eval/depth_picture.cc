@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "eval/canvas.h"
-#include "mapper/core/level.h"
 #include "mapper/scan/depth_to_scan.h"
 
 namespace depthgrid {
@@ -35,8 +34,8 @@ Colour DepthColour(double nearness) {
 // The pixel of a point given ahead, to the left and above the camera, level; nothing behind it.
 class LevelProjection {
  public:
-  LevelProjection(const PinholeCamera& camera, const Pose3& slam_from_camera)
-      : camera_(camera), camera_from_level_(LevelFromCamera(slam_from_camera).conjugate()) {}
+  LevelProjection(const PinholeCamera& camera, const CameraStand& stand)
+      : camera_(camera), camera_from_level_(stand.level_from_camera.conjugate()) {}
 
   std::optional<Eigen::Vector2d> PixelOf(const Eigen::Vector3d& point_in_level) const {
     constexpr double kNearestDepthM = 0.05;
@@ -85,19 +84,20 @@ RgbImage DepthPicture(const DepthImage& depth, double max_depth_m) {
 }
 
 RgbImage DepthPictureWithBeams(const DepthImage& depth, const PinholeCamera& camera,
-                               const Pose3& slam_from_camera, const Scan& scan,
+                               const CameraStand& stand, const Scan& scan,
                                const ScanOptions& options) {
   constexpr std::size_t kClearStretchEvery = 16;  // beams; all of them would hide the picture
   Canvas canvas(DepthPicture(depth, options.max_range_m));
   const DepthToScan converter(camera, options);
-  const double height_m = converter.CameraHeightM(depth, slam_from_camera);
-  const LevelProjection projection(camera, slam_from_camera);
+  const LevelProjection projection(camera, stand);
   for (std::size_t i = kClearStretchEvery / 2; i < scan.beams.size(); i += kClearStretchEvery) {
     const Beam& beam = scan.beams[i];
-    if (beam.clear_to_m > beam.clear_from_m) DrawClearStretch(canvas, projection, beam, height_m);
+    if (beam.clear_to_m > beam.clear_from_m) {
+      DrawClearStretch(canvas, projection, beam, stand.height_m);
+    }
   }
   const double dot_px = std::max(1.0, camera.width_px / 320.0);
-  for (const Eigen::Vector2d& pixel : converter.HitPixels(depth, slam_from_camera, scan)) {
+  for (const Eigen::Vector2d& pixel : converter.HitPixels(depth, stand, scan)) {
     if (pixel.x() >= 0.0) canvas.Disc(pixel, dot_px, kHit);
   }
   return canvas.image();

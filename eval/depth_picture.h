@@ -3,9 +3,9 @@
 
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
-#include "mapper/core/pose3.h"
 #include "mapper/core/rgb_image.h"
 #include "mapper/core/scan.h"
+#include "mapper/scan/camera_stand.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
@@ -16,7 +16,7 @@ RgbImage DepthPicture(const DepthImage& depth, double max_depth_m);
 // The same with the scan: the pixel of each hit, and on the floor the stretch of some bearings that
 // was found free.
 RgbImage DepthPictureWithBeams(const DepthImage& depth, const PinholeCamera& camera,
-                               const Pose3& slam_from_camera, const Scan& scan,
+                               const CameraStand& stand, const Scan& scan,
                                const ScanOptions& options);
 
 }  // namespace depthgrid

@@ -29,11 +29,11 @@ const FrameReport* ReportOf(const MappingRun& run, int frame) {
 RgbImage PictureOf(const SampleFrame& sample, const MappingRun& run, const ScanOptions& options) {
   const MappedFrame* mapped = MappedOf(run, sample.frame);
   const FrameReport* report = ReportOf(run, sample.frame);
-  if (mapped == nullptr || report == nullptr || !report->slam_from_camera || !run.camera) {
+  if (mapped == nullptr || report == nullptr || !report->stand || !run.camera) {
     return DepthPicture(*sample.depth, options.max_range_m);
   }
-  return DepthPictureWithBeams(*sample.depth, *run.camera, *report->slam_from_camera,
-                               *mapped->obstacles, options);
+  return DepthPictureWithBeams(*sample.depth, *run.camera, *report->stand, *mapped->obstacles,
+                               options);
 }
 
 }  // namespace

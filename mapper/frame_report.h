@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mapper/core/pose3.h"
+#include "mapper/scan/camera_stand.h"
 
 namespace depthgrid {
 
@@ -53,6 +54,7 @@ struct FrameReport {
   int loops_accepted = 0;            // loop events of this frame that entered the graph
   int loops_rejected = 0;
   bool inserted = false;
+  std::optional<CameraStand> stand;  // of a depth image: what its scan was made with
   StageTimes times;
 };
 

@@ -22,12 +22,6 @@ int HitCount(const Scan& scan) {
                                         [](const Beam& beam) { return beam.hit; }));
 }
 
-bool SearchesLoops(const MapperOptions& options) {
-  const LoopSearchUse use = options.loops.search.use;
-  return use == LoopSearchUse::kOn ||
-         (use == LoopSearchUse::kAuto && options.method == MapperMethod::kSurfel);
-}
-
 // The last motion goes on for this long at most; after a longer gap it says nothing.
 constexpr double kLongestExtrapolationS = 0.5;
 
@@ -69,7 +63,7 @@ struct IncrementalMapper::State {
                                                     : RoundOptions{.first_frames = 0}) {
     if (options.fusion.TrustsSlamAlone()) return;
     reference = MakeReference(options);
-    if (SearchesLoops(options)) loop_search.emplace(options.loops.search, options.loops.overlap);
+    if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
   }
 
   FrameReport Begin(const Frame& frame);
@@ -160,6 +154,7 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   const StageTimer timer(clock, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
   if (scans.matched) report.beams = HitCount(*scans.matched);
+  report.stand = scans.stand;
   return scans;
 }
 

@@ -30,6 +30,11 @@ struct MapperOptions {
   SurfelOptions surfel;
   RoundOptions rounds;
 
+  // Method surfel takes what it finds well; the paper's chain is as the paper has it.
+  bool SearchesLoops() const {
+    return loops.search.use == LoopSearchUse::kOn ||
+           (loops.search.use == LoopSearchUse::kAuto && method == MapperMethod::kSurfel);
+  }
   void Visit(OptionsVisitor& v);
 };
 

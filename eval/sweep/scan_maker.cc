@@ -1,5 +1,6 @@
 #include "eval/sweep/scan_maker.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -13,6 +14,7 @@ namespace depthgrid {
 namespace {
 
 constexpr const char* kScanFolder = "/scans";  // below the cache folder
+constexpr int kImagesPerThread = 8;            // held at a time: 1.2 MB each
 
 // Sets read from the same depth images.
 struct DepthJob {
@@ -67,14 +69,38 @@ std::vector<DepthJob> JobsOf(const std::vector<ScanSet*>& sets, const std::strin
   return jobs;
 }
 
-void ScanFrame(const DepthJob& job, std::size_t index) {
-  const auto depth = std::make_shared<const DepthImage>(job.sensor->Image(static_cast<int>(index)));
-  for (std::size_t i = 0; i < job.sets.size(); ++i) {
-    Frame frame;
-    frame.depth = depth;
-    frame.slam_from_camera = job.sets[i]->slam.live[index].slam_from_camera;
-    FrameScanner scanner = job.scanners[i];  // a thread's own: it has memory
-    job.sets[i]->scans[index] = scanner.ScansOf(frame);
+// Images are made in any order, some at a time; each set reads them in the order of time, because
+// the floor is followed from frame to frame.
+void ScanBlock(DepthJob& job, int first, int count, int threads) {
+  std::vector<std::shared_ptr<const DepthImage>> images(static_cast<std::size_t>(count));
+  ForEachIndex(images.size(), threads, [&](std::size_t k) {
+    images[k] = std::make_shared<const DepthImage>(job.sensor->Image(first + static_cast<int>(k)));
+  });
+  ForEachIndex(job.sets.size(), threads, [&](std::size_t i) {
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      const std::size_t index = static_cast<std::size_t>(first) + k;
+      const SlamPose& pose = job.sets[i]->slam.live[index];
+      Frame frame;
+      frame.depth = images[k];
+      frame.slam_from_camera = pose.slam_from_camera;
+      frame.slam_epoch = pose.epoch;
+      job.sets[i]->scans[index] = job.scanners[i].ScansOf(frame);
+    }
+  });
+}
+
+void ScanJob(DepthJob& job, const ScanMakerContext& context) {
+  const int frames = job.sensor->FrameCount();
+  const int block = kImagesPerThread * context.threads;
+  for (int first = 0; first < frames; first += block) {
+    const int count = std::min(block, frames - first);
+    try {
+      ScanBlock(job, first, count, context.threads);
+    } catch (const std::exception& error) {
+      for (ScanSet* set : job.sets) set->failure = error.what();
+      return;
+    }
+    for (int i = 0; i < count; ++i) context.tick();
   }
 }
 
@@ -84,24 +110,8 @@ void MakeScans(const std::vector<ScanSet*>& sets, const ScanMakerContext& contex
   std::optional<ScanCache> cache;
   if (!context.cache_folder.empty()) cache.emplace(context.cache_folder + kScanFolder);
   const std::vector<ScanSet*> missing = Missing(sets, cache, context);
-  const std::vector<DepthJob> jobs = JobsOf(missing, context.cache_folder);
-  std::vector<std::pair<std::size_t, std::size_t>> frames;  // job, frame
-  for (std::size_t job = 0; job < jobs.size(); ++job) {
-    const int count = jobs[job].sensor->FrameCount();
-    for (int i = 0; i < count; ++i) frames.emplace_back(job, static_cast<std::size_t>(i));
-  }
-  std::mutex mutex;
-  ForEachIndex(frames.size(), context.threads, [&](std::size_t i) {
-    const DepthJob& job = jobs[frames[i].first];
-    try {
-      ScanFrame(job, frames[i].second);
-    } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex);
-      for (ScanSet* set : job.sets) set->failure = error.what();
-    }
-    const std::lock_guard lock(mutex);
-    context.tick();
-  });
+  std::vector<DepthJob> jobs = JobsOf(missing, context.cache_folder);
+  for (DepthJob& job : jobs) ScanJob(job, context);
   if (!cache) return;
   ForEachIndex(missing.size(), context.threads, [&](std::size_t i) {
     if (missing[i]->failure.empty()) cache->Store(ContentKey(*missing[i]), missing[i]->scans);

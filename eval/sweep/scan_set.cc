@@ -8,7 +8,7 @@ namespace depthgrid {
 namespace {
 
 // Counts up whenever the same input may give other scans.
-constexpr int kScanFormat = 1;
+constexpr int kScanFormat = 2;
 
 void Add(ContentHash& hash, const Pose3& pose) {
   for (const double v : pose.rotation.coeffs()) hash.Value(v);
@@ -44,6 +44,7 @@ std::string ContentKey(const ScanSet& set) {
   ContentHash hash = DepthHash(set);
   hash.Text(ToYaml(set.options.mapper.scan));
   for (const SlamPose& pose : set.slam.live) {
+    hash.Value(pose.epoch);
     hash.Value(pose.slam_from_camera.has_value());
     if (pose.slam_from_camera) Add(hash, *pose.slam_from_camera);
   }

@@ -6,10 +6,8 @@
 #include <sstream>
 
 #include "mapper/core/error.h"
-#include "mapper/core/level.h"
 #include "mapper/scan/bearing_returns.h"
 #include "mapper/scan/clear_interval.h"
-#include "mapper/scan/floor_height.h"
 
 namespace depthgrid {
 namespace {
@@ -29,11 +27,11 @@ struct Reading {
   const DepthImage* image = nullptr;
 };
 
-Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera,
-                  const Pose3& slam_from_camera, int beams, ScanMemory& memory) {
+Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera, const CameraStand& stand,
+                  int beams, ScanMemory& memory) {
   Require(depth.width_px == camera.width_px && depth.height_px == camera.height_px,
           "depth images have the camera's size");
-  const Eigen::Quaterniond level_from_camera = LevelFromCamera(slam_from_camera);
+  const Eigen::Quaterniond& level_from_camera = stand.level_from_camera;
   Reading reading;
   reading.transposed = LinesRunAlongRows(camera, level_from_camera);
   if (reading.transposed) Transpose(depth, memory.transposed);
@@ -131,51 +129,36 @@ DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options
   RequireBelow("min_range_m", options.min_range_m, "max_range_m", options.max_range_m);
 }
 
-double DepthToScan::CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const {
-  if (options_.floor == FloorSource::kImage) {
-    const auto seen = CameraHeightFromFloor(depth, camera_, LevelFromCamera(slam_from_camera));
-    if (seen) return *seen;
-  }
-  return slam_from_camera.translation.z() - options_.floor_z_m;
-}
-
-Scan DepthToScan::Convert(const DepthImage& depth, const Pose3& slam_from_camera) const {
-  return ConvertAtHeight(depth, slam_from_camera, CameraHeightM(depth, slam_from_camera));
-}
-
-Scan DepthToScan::ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
-                                  double camera_height_m) const {
+Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) const {
   ScanMemory memory;
-  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams, memory);
-  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, camera_height_m);
+  const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  return ScanOf(memory, returns.obstacles, camera_height_m, options_);
+  return ScanOf(memory, returns.obstacles, stand.height_m, options_);
 }
 
-ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const Pose3& slam_from_camera,
+ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& stand,
                                   double slice_half_height_m, ScanMemory& memory) const {
-  const double camera_height_m = CameraHeightM(depth, slam_from_camera);
-  const Reading reading = ReadingOf(depth, camera_, slam_from_camera, options_.beams, memory);
-  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, camera_height_m);
+  const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
   const ReturnLimits slice_limits =
       LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m);
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                             SliceBand{slice_limits.low_m, slice_limits.high_m},
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  return {ScanOf(memory, returns.obstacles, camera_height_m, options_),
+  return {ScanOf(memory, returns.obstacles, stand.height_m, options_),
           ScanOf(memory, returns.slice, slice_half_height_m, slice_options)};
 }
 
 std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
-                                                    const Pose3& slam_from_camera,
+                                                    const CameraStand& stand,
                                                     const Scan& scan) const {
   ScanMemory memory;
   const Reading reading =
-      ReadingOf(depth, camera_, slam_from_camera, static_cast<int>(scan.beams.size()), memory);
-  const ReturnLimits limits =
-      LimitsOf(options_, camera_, reading.transposed, CameraHeightM(depth, slam_from_camera));
+      ReadingOf(depth, camera_, stand, static_cast<int>(scan.beams.size()), memory);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   std::vector<Eigen::Vector2d> pixels(scan.beams.size(), {-1.0, -1.0});
   for (std::size_t k = 0; k < scan.beams.size(); ++k) {
     if (!scan.beams[k].hit) continue;

@@ -7,9 +7,9 @@
 
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
-#include "mapper/core/pose3.h"
 #include "mapper/core/scan.h"
 #include "mapper/scan/bearing_returns.h"
+#include "mapper/scan/camera_stand.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
@@ -35,21 +35,20 @@ class DepthToScan {
   // (frame sources undo it).
   DepthToScan(const PinholeCamera& camera, const ScanOptions& options);
 
-  // The scan in base axes. The pose gives roll, pitch and, for FloorSource::kPose, the height.
-  Scan Convert(const DepthImage& depth, const Pose3& slam_from_camera) const;
-  // With the camera's height above the floor from elsewhere.
-  Scan ConvertAtHeight(const DepthImage& depth, const Pose3& slam_from_camera,
-                       double camera_height_m) const;
-  // Convert, and what ConvertAtHeight would give for a band of this half height around the camera;
-  // the image is read once for both.
-  ScanPair ConvertBoth(const DepthImage& depth, const Pose3& slam_from_camera,
+  // The scan in base axes.
+  Scan Convert(const DepthImage& depth, const CameraStand& stand) const;
+  // Roll, pitch and height as the pose has them.
+  Scan Convert(const DepthImage& depth, const Pose3& slam_from_camera) const {
+    return Convert(depth, StandOf(slam_from_camera, options_.floor_z_m));
+  }
+  // Convert, and the same for a band of this half height around the camera; the image is read once
+  // for both.
+  ScanPair ConvertBoth(const DepthImage& depth, const CameraStand& stand,
                        double slice_half_height_m, ScanMemory& memory) const;
-  // The height Convert uses: of the pose, or of the floor seen in the image.
-  double CameraHeightM(const DepthImage& depth, const Pose3& slam_from_camera) const;
 
   // For drawing the scan over the image it came from: the pixel (u, v) of each beam's hit, (-1, -1)
   // for beams without.
-  std::vector<Eigen::Vector2d> HitPixels(const DepthImage& depth, const Pose3& slam_from_camera,
+  std::vector<Eigen::Vector2d> HitPixels(const DepthImage& depth, const CameraStand& stand,
                                          const Scan& scan) const;
 
  private:

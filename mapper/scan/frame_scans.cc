@@ -30,25 +30,26 @@ std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
     // The other modes read few rows at the camera's height already.
     : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0) {
-  if (camera) converter_.emplace(*camera, options);
+  if (!camera) return;
+  converter_.emplace(*camera, options);
+  floor_.emplace(*camera, options);
 }
 
 FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (frame.scan) {
     const std::shared_ptr<const Scan> scan = SoundPart(frame.scan);
-    return {scan, frame.matched_scan ? SoundPart(frame.matched_scan) : scan};
+    return {scan, frame.matched_scan ? SoundPart(frame.matched_scan) : scan, std::nullopt};
   }
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(converter_.has_value(), "a source of depth images has a camera");
+  const CameraStand stand = floor_->Follow(*frame.depth, *frame.slam_from_camera, frame.slam_epoch);
   if (slice_half_height_m_ <= 0.0) {
-    const auto scan =
-        std::make_shared<const Scan>(converter_->Convert(*frame.depth, *frame.slam_from_camera));
-    return {scan, scan};
+    const auto scan = std::make_shared<const Scan>(converter_->Convert(*frame.depth, stand));
+    return {scan, scan, stand};
   }
-  ScanPair scans =
-      converter_->ConvertBoth(*frame.depth, *frame.slam_from_camera, slice_half_height_m_, memory_);
+  ScanPair scans = converter_->ConvertBoth(*frame.depth, stand, slice_half_height_m_, memory_);
   return {std::make_shared<const Scan>(std::move(scans.obstacles)),
-          std::make_shared<const Scan>(std::move(scans.slice))};
+          std::make_shared<const Scan>(std::move(scans.slice)), stand};
 }
 
 }  // namespace depthgrid

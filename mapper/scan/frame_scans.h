@@ -10,12 +10,14 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/scan/depth_to_scan.h"
+#include "mapper/scan/floor_tracker.h"
 
 namespace depthgrid {
 
 struct FrameScans {
   std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
   std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
+  std::optional<CameraStand> stand = {};  // of depth images
 };
 
 class FrameScanner {
@@ -24,11 +26,13 @@ class FrameScanner {
   FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options);
 
   // Of a ready scan both are that scan, less beams that are not finite numbers or start behind the
-  // sensor: those say nothing. Without image, scan or pose both are null.
+  // sensor: those say nothing. Without image, scan or pose both are null. Frames come in order: the
+  // floor is followed from one to the next.
   FrameScans ScansOf(const Frame& frame);
 
  private:
   std::optional<DepthToScan> converter_;
+  std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
   ScanMemory memory_;
 };

@@ -19,8 +19,9 @@ void ScanOptions::Visit(OptionsVisitor& v) {
   v.Number("slice_half_height_m", slice_half_height_m, {0.0, 1.0},
            "half the height of the level slice around the camera that is matched; 0 matches the "
            "obstacle scan");
-  v.Choice("floor", floor, {{FloorSource::kPose, "pose"}, {FloorSource::kImage, "image"}},
-           "camera height above the floor: from the pose or from the floor seen in the image");
+  v.Choice(
+      "floor", floor, {{FloorSource::kPose, "pose"}, {FloorSource::kImage, "image"}},
+      "camera height and tilt over the floor: from the pose or from the floor seen in the image");
   v.Number("floor_z_m", floor_z_m, {-1e6, 1e6}, "z of the floor in the frame of the poses");
 }
 

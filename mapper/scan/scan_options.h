@@ -12,10 +12,10 @@ enum class ScanMode {
   kCentreRow,  // the paper's: one row, read like a laser
 };
 
-// Where the camera's height above the floor comes from.
+// Where the camera's height above the floor comes from, and which way is up.
 enum class FloorSource {
   kPose,   // the pose's z less floor_z_m
-  kImage,  // the floor plane seen in the image; the pose where none is seen
+  kImage,  // the floor plane seen in the images, followed where none is seen
 };
 
 struct ScanOptions {
@@ -40,8 +40,10 @@ struct ScanOptions {
   // matches the obstacle scan. 0.1 m keeps three rows or more of the image up to 6 m with a tilted
   // camera and is thin against furniture.
   double slice_half_height_m = 0.1;
-  FloorSource floor = FloorSource::kPose;
-  double floor_z_m = 0.0;  // the floor in the frame of the poses
+  // SLAM drifts in height, roll and pitch too: with its poses the floor turns into walls
+  // (docs/results.md, "Heights and tilts").
+  FloorSource floor = FloorSource::kImage;
+  double floor_z_m = 0.0;  // the floor in the frame of the poses; kImage begins there
 
   void Visit(OptionsVisitor& v);
 };

@@ -64,11 +64,11 @@ TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
     Frame frame = WallFrame();
     frame.slam_from_camera = TiltedCamera({}, kCameraHeightM, pitch_rad, 0.5 * pitch_rad);
     const FrameScans scans = scanner.ScansOf(frame);
-    EXPECT_EQ(*scans.obstacles,
-              DepthToScan(camera, options).Convert(*frame.depth, *frame.slam_from_camera));
-    EXPECT_EQ(*scans.matched, DepthToScan(camera, slice)
-                                  .ConvertAtHeight(*frame.depth, *frame.slam_from_camera,
-                                                   options.slice_half_height_m));
+    ASSERT_TRUE(scans.stand.has_value());
+    CameraStand at_camera = *scans.stand;
+    at_camera.height_m = options.slice_half_height_m;
+    EXPECT_EQ(*scans.obstacles, DepthToScan(camera, options).Convert(*frame.depth, *scans.stand));
+    EXPECT_EQ(*scans.matched, DepthToScan(camera, slice).Convert(*frame.depth, at_camera));
   }
 }
 

@@ -1,0 +1,94 @@
+#include "mapper/scan/floor_tracker.h"
+
+#include <cmath>
+#include <utility>
+
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+// Around where the floor is expected, a surface is the floor: what SLAM drifts from one sight of it
+// to the next, and the tilt's error times the distance.
+constexpr double kNearM = 0.12;
+// The same where it was not seen yet, and only the pose says anything.
+constexpr double kNearPoseM = 0.35;
+// Heights that a pose may have if its z is that of the floor's frame; z of a recording often begins
+// at 0.
+constexpr double kLeastPoseHeightM = 0.1;
+constexpr double kMostPoseHeightM = 3.0;
+// A lower surface is the floor, and what was taken for it a table; a few frames in a row must say
+// so. A higher one is mostly a table that hides the floor; only if it stays did SLAM jump.
+constexpr int kFramesToBelieveLower = 5;
+constexpr int kFramesToBelieveHigher = 60;
+// What SLAM errs from frame to frame (docs/slam_surrogate.md: 0.1-0.2 degrees, 2-5 mm), with
+// something to spare; before the floor was seen, tilts as recordings have them.
+constexpr double kStepSigmaM = 0.03;
+constexpr double kStepSigmaRad = RadFromDeg(0.3);
+constexpr double kFirstSigmaM = 0.1;
+constexpr double kFirstSigmaRad = RadFromDeg(2.0);
+
+}  // namespace
+
+CameraStand FloorTracker::StandOver(const Floor& floor, const Pose3& slam_from_camera) const {
+  const Eigen::Quaterniond level_from_slam =
+      Eigen::Quaterniond::FromTwoVectors(floor.up, Eigen::Vector3d::UnitZ());
+  const Pose3 turned{(level_from_slam * slam_from_camera.rotation).normalized(),
+                     slam_from_camera.translation};
+  return {LevelFromCamera(turned), floor.up.dot(slam_from_camera.translation) + floor.offset_m};
+}
+
+bool FloorTracker::Believes(double height_m, double expected_m) {
+  const bool pose_is_height = expected_m > kLeastPoseHeightM && expected_m < kMostPoseHeightM;
+  if (!seen_ && !pose_is_height) return true;
+  const double higher_m = height_m - expected_m;
+  const double near_m = seen_ ? kNearM : kNearPoseM;
+  if (std::abs(higher_m) <= near_m) {
+    other_frames_ = 0;
+    return true;
+  }
+  if (other_frames_ == 0 || std::abs(higher_m - other_higher_m_) > kNearM) other_frames_ = 0;
+  other_higher_m_ = higher_m;
+  ++other_frames_;
+  // The floor lower than thought is the camera higher above it.
+  const int enough = higher_m > 0.0 ? kFramesToBelieveLower : kFramesToBelieveHigher;
+  if (other_frames_ < enough) return false;
+  other_frames_ = 0;
+  return true;
+}
+
+CameraStand FloorTracker::Follow(const DepthImage& image, const Pose3& slam_from_camera,
+                                 int epoch) {
+  if (source_ == FloorSource::kPose) return StandOf(slam_from_camera, floor_z_m_);
+  if (epoch_ != epoch) {
+    epoch_ = epoch;
+    floor_.up = Eigen::Vector3d::UnitZ();
+    floor_.offset_m = height_m_ ? *height_m_ - slam_from_camera.translation.z() : -floor_z_m_;
+    seen_ = false;
+    other_frames_ = 0;
+  }
+  LookAt(image, slam_from_camera);
+  const CameraStand stand = StandOver(floor_, slam_from_camera);
+  if (seen_ || height_m_) height_m_ = stand.height_m;
+  return stand;
+}
+
+void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera) {
+  const CameraStand expected = StandOver(floor_, slam_from_camera);
+  memory_ = LevelPointsOf(image, camera_, expected.level_from_camera, std::move(memory_));
+  const std::optional<double> height_m = LowestSurface(memory_);
+  if (!height_m || !Believes(*height_m, expected.height_m)) return;
+  FloorPrior prior{expected.height_m, kStepSigmaM, kStepSigmaRad};
+  if (!seen_ || std::abs(*height_m - expected.height_m) > kNearM) {
+    prior = {*height_m, kFirstSigmaM, kFirstSigmaRad};
+  }
+  const std::optional<FloorPlane> plane = FitFloor(memory_, prior);
+  if (!plane) return;
+  const Eigen::Quaterniond slam_from_level =
+      slam_from_camera.rotation * expected.level_from_camera.conjugate();
+  floor_.up = (slam_from_level * plane->up).normalized();
+  floor_.offset_m = plane->height_m - floor_.up.dot(slam_from_camera.translation);
+  seen_ = true;
+}
+
+}  // namespace depthgrid
