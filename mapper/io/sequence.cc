@@ -11,6 +11,7 @@
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/gravity.h"
 #include "mapper/io/icl_folder.h"
+#include "mapper/io/slam_jumps.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
 
@@ -84,6 +85,15 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
   if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
   return sequence;
+}
+
+// A folder's own poses do not say where SLAM corrected itself: it is read off them.
+void FindCorrections(SlamOutput& slam, std::vector<std::string>& notes) {
+  const std::vector<int> jumps = FindJumps(slam.live, {});
+  if (jumps.empty()) return;
+  notes.push_back(
+      fmt::format("the poses jump at {} frames: no motion is taken there", jumps.size()));
+  StartEpochs(jumps, slam.live);
 }
 
 // From a few images spread over the recording.
@@ -214,6 +224,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                                ? TumSequence(path, options, slam, result.notes)
                            : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
                                                             : FrameSequence(path, options, slam);
+  if (!slam) FindCorrections(sequence.slam, result.notes);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(sequence, options.recording, result)
                                  : AxisOf(options.world_up);

@@ -9,6 +9,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
+#include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/mapper/analytic_room.h"
@@ -95,6 +96,20 @@ TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
     ++cases;
   }
   EXPECT_EQ(cases, 2);
+}
+
+TEST_F(SequenceTest, AJumpOfTheFoldersOwnPosesIsNoMotion) {
+  Trajectory poses = WriteRoom();
+  for (std::size_t i = 6; i < poses.size(); ++i) {
+    poses[i].world_from_camera.translation.x() += 5.0;
+  }
+  WriteTrajectory(folder_ + "/groundtruth.txt", poses);
+  const Sequence sequence = OpenSequence(folder_);
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("the poses jump at ")));
+  std::vector<int> epochs;
+  while (const auto frame = sequence.source->Next()) epochs.push_back(frame->slam_epoch);
+  ASSERT_EQ(epochs.size(), 12U);
+  EXPECT_LT(epochs[5], epochs[6]);
 }
 
 TEST_F(SequenceTest, AFixedAxisIsTakenAsSaid) {
