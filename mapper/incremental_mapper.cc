@@ -25,8 +25,7 @@ int HitCount(const Scan& scan) {
 // The last motion goes on for this long at most; after a longer gap it says nothing.
 constexpr double kLongestExtrapolationS = 0.5;
 
-// How well the place in a prior map is known where a run starts (mapper/match/find_place.h refines
-// to a fraction of a cell; SLAM's own frame may be off by more).
+// How well a run's start in a prior map is known; SLAM's own frame may be off by more.
 const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 
 }  // namespace
@@ -183,10 +182,11 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   if (provisional) Anchor(outcome.map_from_base.back());
 }
 
-// Poses and map corrected together while the run goes on; the newest frame keeps its place in the
-// map.
+// Poses and map corrected together while the run goes on.
 void IncrementalMapper::State::AdjustBetweenFrames() {
-  MoveTo(loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine).map_from_base);
+  const Adjustment adjustment = loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine);
+  MoveTo(adjustment.map_from_base);
+  if (adjustment.motion_spread) filter.BoundMotion(*adjustment.motion_spread);
 }
 
 // Those that the mapper finds itself. The frame's online estimate stays as it was given.

@@ -8,6 +8,7 @@
 
 #include "mapper/core/kept_scan.h"
 #include "mapper/frame_report.h"
+#include "mapper/fuse/motion_noise.h"
 
 namespace depthgrid {
 
@@ -35,6 +36,8 @@ struct PlanarLoop {
 struct Adjustment {
   std::vector<Pose2> map_from_base;  // one a mapped frame; the first is unchanged
   std::vector<bool> loop_accepted;   // one a loop given
+  // How SLAM's motion errs, as the adjusted poses tell; empty where they are too few.
+  std::optional<MotionSpread> motion_spread;
 };
 
 // How much an adjustment may cost, and what for.

@@ -52,14 +52,27 @@ Scores Score(const std::vector<Pose2>& truth, const std::vector<Pose2>& est) {
   return s;
 }
 
+// The prior errs from a later frame on only.
+std::vector<Pose2> PerfectAtFirst(const std::vector<Pose2>& truth,
+                                  const std::vector<Pose2>& odometry, int perfect_frames) {
+  std::vector<Pose2> later = {truth.front()};
+  for (std::size_t k = 1; k < truth.size(); ++k) {
+    const std::vector<Pose2>& moved = static_cast<int>(k) < perfect_frames ? truth : odometry;
+    later.push_back(later.back() * Between(moved[k - 1], moved[k]));
+  }
+  return later;
+}
+
 struct Run {
   Scores prior, online, final;
   double frame_us = 0, finish_us = 0, match_us = 0, insert_us = 0;
 };
 
 Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOptions& laser,
-        const OdometryOptions& odo, const MapperOptions& options, int seed, bool verbose) {
-  const auto odometry = DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed));
+        const OdometryOptions& odo, const MapperOptions& options, int seed, int perfect_frames,
+        bool verbose) {
+  const auto odometry = PerfectAtFirst(
+      truth, DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed)), perfect_frames);
   IncrementalMapper mapper(options, std::nullopt, NowUs);
   Run run;
   std::vector<Pose2> online, final;
@@ -111,7 +124,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> worlds, sets;
   LaserOptions laser;
   OdometryOptions odo;
-  int first_seed = 1, seeds = 3, threads = 2;
+  int first_seed = 1, seeds = 3, threads = 2, perfect_frames = 0;
   bool verbose = false;
   app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
   app.add_option("--seeds", seeds);
@@ -128,6 +141,7 @@ int main(int argc, char** argv) {
   app.add_option("--bias-time", odo.bias_time_frames);
   app.add_option("--jitter", odo.jitter_m);
   app.add_option("--jitter-deg", odo.jitter_deg);
+  app.add_option("--perfect-frames", perfect_frames, "the prior errs from this frame on only");
   app.add_option("--set", sets);
   app.add_flag("-v", verbose);
   CLI11_PARSE(app, argc, argv);
@@ -151,7 +165,7 @@ int main(int argc, char** argv) {
       jobs.push_back(std::async(std::launch::async, [&, t] {
         for (int i = t; i < seeds; i += threads)
           runs[static_cast<std::size_t>(i)] =
-              Map(world, truth, laser, odo, options, first_seed + i, verbose);
+              Map(world, truth, laser, odo, options, first_seed + i, perfect_frames, verbose);
       }));
     }
     for (auto& j : jobs) j.get();

@@ -32,6 +32,9 @@ class CorrectionFilter {
   // The map was corrected: the last pose is now where this correction puts it.
   void SetCorrection(const Pose2& map_from_slam);
 
+  // `learned`: how SLAM's motion errs, as an adjustment of all poses tells.
+  void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }
+
   const Pose2& map_from_slam() const { return map_from_slam_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }
 

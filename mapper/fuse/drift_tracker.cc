@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid {
 namespace {
@@ -16,9 +17,24 @@ constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
+// Times what the adjusted poses say, which is too small: they are drawn towards the prior.
+constexpr double kBoundSigmas = 2.0;
+// Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
+// was the most, with one that drifts by 4 cm it is above 1,000 (docs/results.md).
+constexpr double kMostChi2 = 200.0;
+
 }  // namespace
 
-DriftTracker::DriftTracker() : next_fit_(kFirstFit) { noise_.walk = kFirstWalk; }
+DriftTracker::DriftTracker() { StartAnew(); }
+
+void DriftTracker::StartAnew() {
+  learner_ = MotionNoiseLearner();
+  noise_ = MotionNoise();
+  noise_.walk = kFirstWalk;
+  next_fit_ = kFirstFit;
+  spread_.reset();
+  evidence_ = DriftEvidence();
+}
 
 DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
   return Predicted(state_, Between(last_->slam_from_base, slam_from_base), noise_);
@@ -48,6 +64,7 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
       if (update.fused.map_from_base == map_from_base) {
         next = update.state;
         matched = match;
+        if (spread_) TestBound(PredictionOf(predicted, noise_), match);
       }
     } else if (PredictionOf(predicted, noise_).map_from_base == map_from_base) {
       next = predicted;
@@ -68,7 +85,29 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
   noise_ = learner_.Fit();
   noise_.walk *= kCaution;
   noise_.bias *= kCaution;
+  Bound();
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
+}
+
+void DriftTracker::BoundMotion(const MotionSpread& spread) {
+  spread_ = spread;
+  evidence_ = DriftEvidence();
+  Bound();
+}
+
+// A bias sums up with the number of frames, a walk with its root.
+void DriftTracker::Bound() {
+  if (!spread_) return;
+  const Eigen::Vector3d sigma = kBoundSigmas * spread_->sigma;
+  noise_.bias = noise_.bias.cwiseMin(sigma);
+  noise_.walk = noise_.walk.cwiseMin(std::sqrt(spread_->frames) * sigma);
+}
+
+// When SLAM begins to drift all that was learnt of it is wrong.
+void DriftTracker::TestBound(const Prediction& prediction, const MatchResult& match) {
+  evidence_.Add(InnovationOf(prediction.map_from_base, match.map_from_base),
+                InnovationWeight(prediction, match.information));
+  if (evidence_.Chi2() > kMostChi2) StartAnew();
 }
 
 }  // namespace depthgrid

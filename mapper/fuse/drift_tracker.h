@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "mapper/fuse/drift_evidence.h"
 #include "mapper/fuse/drift_filter.h"
 #include "mapper/fuse/motion_noise.h"
 
@@ -20,6 +21,11 @@ class DriftTracker {
   void Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance, const MatchResult& match);
 
+  // How SLAM's motion errs, as an adjustment of all poses tells. What is learnt from the matches
+  // alone is bounded by it: these are made against what the filter's own estimates drew, whose
+  // wandering looks like SLAM's. Innovations that speak against the bound lift it.
+  void BoundMotion(const MotionSpread& spread);
+
   const MotionNoise& noise() const { return noise_; }
 
  private:
@@ -29,10 +35,15 @@ class DriftTracker {
   };
   DriftState StateAt(const Pose2& slam_from_base) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
+  void Bound();
+  void TestBound(const Prediction& prediction, const MatchResult& match);
+  void StartAnew();
 
   MotionNoise noise_;
   MotionNoiseLearner learner_;
-  int next_fit_;
+  std::optional<MotionSpread> spread_;
+  DriftEvidence evidence_;  // against it
+  int next_fit_ = 0;
   DriftState state_;
   std::optional<Last> last_;
 };

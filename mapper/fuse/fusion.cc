@@ -59,11 +59,14 @@ FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match) {
   return fused;
 }
 
+Eigen::Matrix3d InnovationWeight(const Prediction& prediction, const Eigen::Matrix3d& information) {
+  return (Eigen::Matrix3d::Identity() + information * prediction.covariance).inverse() *
+         information;
+}
+
 double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,
                       const Eigen::Vector3d& innovation) {
-  const Eigen::Matrix3d weight =
-      (Eigen::Matrix3d::Identity() + information * prediction.covariance).inverse() * information;
-  return innovation.dot(weight * innovation);
+  return innovation.dot(InnovationWeight(prediction, information) * innovation);
 }
 
 Eigen::Matrix3d AdjointOf(const Pose2& b_from_a) {

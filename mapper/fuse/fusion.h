@@ -34,7 +34,10 @@ FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
 // update without inverting P or L, either of which may be singular.
 FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
 
-// nu^T (P + L^-1)^-1 nu = nu^T (I + L P)^-1 L nu.
+// Inverse covariance of the innovation, (P + L^-1)^-1 = (I + L P)^-1 L; L may be singular.
+Eigen::Matrix3d InnovationWeight(const Prediction& prediction, const Eigen::Matrix3d& information);
+
+// nu^T (P + L^-1)^-1 nu.
 double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,
                       const Eigen::Vector3d& innovation);
 

@@ -20,6 +20,13 @@ struct MotionNoise {
   Eigen::Vector3d bias_kept = Eigen::Vector3d::Constant(0.98);
 };
 
+// The same as seen from poses and map adjusted together: the error of SLAM's motion over stretches
+// of so many frames, as that of one frame if it grows with their number.
+struct MotionSpread {
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
+  double frames = 1.0;
+};
+
 // Variances of the summed error over 1, 2, 4, ... frames tell the three parts apart: jitter's stays
 // the same, that of a walk grows with the number of frames, that of a bias with its square until
 // the bias has changed.

@@ -14,6 +14,9 @@ const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
 // chain together in the first step, which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
 constexpr int kLoopIterations = 5;
+// Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where
+// they were and are known to be wrong.
+constexpr double kSettledShare = 0.7;
 // Holds the first group where it is.
 constexpr double kAnchor = 1e12;
 // Keeps the factorisation alive when something is not determined at all; far below any information.
@@ -105,7 +108,7 @@ Eigen::Vector3d MotionSigma(const Problem& problem, const std::vector<Pose2>& ma
 }
 
 double GateOf(int round, const JointOptions& options) {
-  const double share = options.rounds > 1 ? round / (options.rounds - 1.0) : 1.0;
+  const double share = options.rounds > 1 ? std::min(round / (options.rounds - 1.0), 1.0) : 1.0;
   return options.first_gate_m * std::pow(options.last_gate_m / options.first_gate_m, share);
 }
 
@@ -135,12 +138,17 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   }
   result.motion_sigma = MotionSigma(problem, result.map_from_group);
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
-  for (int round = 0; round < problem.options.rounds; ++round) {
+  bool settled = true;
+  for (int round = 0;
+       round < problem.options.rounds || (!settled && round < problem.options.most_rounds);
+       ++round) {
+    const Eigen::Vector3d sigma_before = result.motion_sigma;
     if (!AdjustOnce(problem, loops, GateOf(round, problem.options), result.motion_sigma,
                     result.map_from_group)) {
       break;
     }
     result.motion_sigma = MotionSigma(problem, result.map_from_group);
+    settled = (result.motion_sigma.array() >= kSettledShare * sigma_before.array()).all();
   }
   return result;
 }
@@ -159,6 +167,8 @@ GroupLink AsLoop(GroupLink link, double huber_sigmas) {
 void JointOptions::Visit(OptionsVisitor& v) {
   v.Group("groups", groups, "frames that move as one");
   v.Number("rounds", rounds, {0, 1000}, "how often landmarks are found and all poses solved");
+  v.Number("most_rounds", most_rounds, {0, 1000},
+           "rounds go on to so many while the prior turns out better with each");
   v.Number("refine_rounds", refine_rounds, {0, 1000}, "the same during the run, without new loops");
   v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first gate then");
   v.Number("first_gate_m", first_gate_m, {0.01, 10.0},

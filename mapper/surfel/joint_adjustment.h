@@ -12,6 +12,8 @@ namespace depthgrid {
 struct JointOptions {
   SurfelGroupOptions groups;
   int rounds = 6;
+  // They go on to so many while the prior turns out better with each.
+  int most_rounds = 6;
   // Rounds and first gate of adjustments during the run without new loops.
   int refine_rounds = 3;
   double refine_gate_m = 0.2;

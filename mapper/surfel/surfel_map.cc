@@ -52,6 +52,10 @@ std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
 // How well groups' poses are known to be adjusted, before each frame is looked at.
 const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 
+// Fewer groups do not tell how the prior errs: from the seven of the first 60 frames a prior that
+// drifts 0.375 m was called nearly perfect (docs/results.md).
+constexpr int kMinGroupsForSpread = 20;
+
 }  // namespace
 
 void SurfelOptions::Visit(OptionsVisitor& v) {
@@ -131,6 +135,11 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
                                            links, JointOptionsFor(effort));
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
+  const auto group_count = static_cast<int>(groups.groups().size());
+  if (group_count >= kMinGroupsForSpread) {
+    adjustment.motion_spread = {result.motion_sigma,
+                                static_cast<double>(frames.size()) / group_count};
+  }
   adjustment.map_from_base = effort == AdjustEffort::kFinish
                                  ? SmoothedOver(frames, groups, result.map_from_group)
                                  : PosesOf(groups.places(), result.map_from_group);

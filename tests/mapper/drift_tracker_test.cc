@@ -1,0 +1,94 @@
+#include "mapper/fuse/drift_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mapper/core/rng.h"
+#include "mapper/fuse/drift_evidence.h"
+
+namespace depthgrid {
+namespace {
+
+const Eigen::Vector3d kMatchSigma(0.01, 0.01, 0.002);
+
+Eigen::Matrix3d MatchInformation() {
+  return kMatchSigma.cwiseProduct(kMatchSigma).cwiseInverse().asDiagonal();
+}
+
+TEST(DriftEvidence, WhiteInnovationsGiveThreeInTheMean) {
+  RandomStream random(4, RandomStage::kTest);
+  DriftEvidence evidence;
+  double sum = 0.0;
+  constexpr int kStart = 200;
+  constexpr int kFrames = 20000;
+  for (int i = 0; i < kStart + kFrames; ++i) {
+    const Eigen::Vector3d unit(random.Normal(), random.Normal(), random.Normal());
+    evidence.Add(kMatchSigma.cwiseProduct(unit), MatchInformation());
+    if (i >= kStart) sum += evidence.Chi2();
+  }
+  // 20,000 / 59 independent values of variance 6: the mean is known to 0.13.
+  EXPECT_NEAR(sum / kFrames, 3.0, 0.4);
+}
+
+TEST(DriftEvidence, GrowsWithTheSquareOfASteadyInnovation) {
+  // Half a sigma forward: the weights of 30 frames' memory sum up to 30, so 1.967 * 30 / 4.
+  DriftEvidence evidence;
+  for (int i = 0; i < 1000; ++i) evidence.Add({0.005, 0.0, 0.0}, MatchInformation());
+  EXPECT_NEAR(evidence.Chi2(), (2.0 - 1.0 / 30.0) * 30.0 * 0.25, 0.01);
+  // What no match sees counts nothing.
+  DriftEvidence blind;
+  for (int i = 0; i < 1000; ++i) blind.Add({0.005, 0.0, 0.0}, Eigen::Matrix3d::Zero());
+  EXPECT_EQ(blind.Chi2(), 0.0);
+}
+
+// The camera stands still; SLAM creeps forward by `creep_m` a frame. Mean error over the frames.
+double ErrorM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m, std::uint64_t seed) {
+  RandomStream random(seed, RandomStage::kTest);
+  double sum_m = 0.0;
+  for (int i = 0; i < frames; ++i) {
+    slam = slam * Pose2{creep_m, 0.0, 0.0};
+    MatchResult match;
+    match.found = true;
+    match.information = MatchInformation();
+    match.map_from_base = Pose2::FromVector(kMatchSigma.cwiseProduct(
+        Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal())));
+    const FusedPose fused = tracker.Fuse(slam, match);
+    tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
+    sum_m += fused.map_from_base.translation().norm();
+  }
+  return sum_m / frames;
+}
+
+const MotionSpread kNearlyPerfect{.sigma = {1e-5, 1e-5, 2e-6}, .frames = 6.0};
+
+TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
+  DriftTracker free, bound;
+  Pose2 slam;
+  ErrorM(free, slam, 30, 0.0, 1);
+  ErrorM(bound, slam, 30, 0.0, 1);
+  const MotionNoise before = bound.noise();
+  bound.BoundMotion(kNearlyPerfect);
+  EXPECT_GT(before.walk.maxCoeff() + before.bias.maxCoeff(), 1e-4);
+  EXPECT_LE(bound.noise().bias.x(), 2e-5);
+  EXPECT_LE(bound.noise().walk.x(), 2e-5 * std::sqrt(6.0));
+  // And what is learnt later is bounded too.
+  ErrorM(bound, slam, 100, 0.0, 2);
+  EXPECT_LE(bound.noise().walk.x(), 2e-5 * std::sqrt(6.0));
+}
+
+TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
+  DriftTracker tracker;
+  Pose2 slam;
+  ErrorM(tracker, slam, 100, 0.0, 1);
+  tracker.BoundMotion(kNearlyPerfect);
+  ErrorM(tracker, slam, 200, 0.0, 2);
+  EXPECT_LE(tracker.noise().bias.x(), 2e-5);
+  // SLAM begins to drift by 3 mm a frame. Until that is certain the estimate drifts along.
+  ErrorM(tracker, slam, 100, 0.003, 3);
+  EXPECT_GT(tracker.noise().walk.x() + tracker.noise().bias.x(), 1e-3);
+  EXPECT_LT(ErrorM(tracker, slam, 100, 0.003, 4), 0.02);
+}
+
+}  // namespace
+}  // namespace depthgrid
