@@ -67,8 +67,12 @@ void Say(const std::vector<std::string>& lines) {
 // SLAM's files, when there are any.
 std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceOptions& options) {
   const bool laser = FormatOf(arguments.input, options) == SequenceFormat::kCarmen;
-  for (const std::string& file : {arguments.poses, arguments.final_poses, arguments.loops}) {
+  for (const std::string& file : {arguments.poses, arguments.final_poses}) {
     if (laser && !file.empty()) throw InputError(file, "a laser log brings its own poses");
+  }
+  if (laser && !arguments.loops.empty()) {
+    return ReadLoops(arguments.loops, SequenceStamps(arguments.input, options),
+                     options.recording.max_stamp_difference_s);
   }
   if (arguments.poses.empty()) {
     for (const std::string& file : {arguments.final_poses, arguments.loops}) {

@@ -34,10 +34,41 @@ Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
   return beam;
 }
 
+// The second one's camera in the first one's, from the same of the lasers.
+LoopClosure CameraLoop(LoopClosure loop) {
+  const Pose3 laser_from_camera = CameraOf(Pose2{}, 0.0);
+  loop.first_from_second = Inverse(laser_from_camera) * loop.first_from_second * laser_from_camera;
+  return loop;
+}
+
+// Gaps that are too narrow for an opening clear no farther than the hits beside them.
+void NarrowGaps(Scan& scan, double narrowest_m) {
+  std::vector<Beam>& beams = scan.beams;
+  const auto is_gap = [](const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; };
+  for (std::size_t first = 1; first + 1 < beams.size(); ++first) {
+    if (!beams[first - 1].hit || !is_gap(beams[first])) continue;
+    std::size_t after = first;
+    while (after < beams.size() && is_gap(beams[after])) ++after;
+    if (after == beams.size()) return;
+    const Beam& left = beams[after];
+    const Beam& right = beams[first - 1];
+    if (left.hit) {
+      const float nearer_m = std::min(left.range_m, right.range_m);
+      const bool is_narrow = nearer_m * (left.bearing_rad - right.bearing_rad) < narrowest_m;
+      for (std::size_t i = first; is_narrow && i < after; ++i) {
+        beams[i].clear_to_m = std::min(beams[i].clear_to_m, nearer_m);
+      }
+    }
+    first = after - 1;
+  }
+}
+
 class CarmenLogSource : public FrameSource {
  public:
-  CarmenLogSource(std::string path, const CarmenLogOptions& options)
+  CarmenLogSource(std::string path, const CarmenLogOptions& options,
+                  const std::vector<LoopClosure>& loops)
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
+    for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     Rewind();
     while (NextScan()) ++frame_count_;
     const int lines = line_number_;
@@ -62,6 +93,9 @@ class CarmenLogSource : public FrameSource {
     frame.stamp_s = line->stamp_s;
     frame.scan = std::make_shared<const Scan>(ScanOf(*line, options_));
     frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
+    for (const LoopClosure& loop : loops_) {
+      if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
+    }
     return frame;
   }
   std::optional<PinholeCamera> Camera() const override { return std::nullopt; }
@@ -126,6 +160,7 @@ class CarmenLogSource : public FrameSource {
 
   std::string path_;
   CarmenLogOptions options_;
+  std::vector<LoopClosure> loops_;
   std::ifstream file_;
   std::vector<char> line_;
   std::size_t line_size_ = 0;
@@ -144,6 +179,8 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
+  v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},
+           "readings without return in a gap narrower than this clear up to the nearer hit beside");
 }
 
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
@@ -156,12 +193,13 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
         line.first_bearing_rad + static_cast<double>(i) * line.bearing_step_rad;
     scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], scan.max_range_m, options));
   }
+  NarrowGaps(scan, options.no_return_gap_m);
   return scan;
 }
 
-std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,
-                                           const CarmenLogOptions& options) {
-  return std::make_unique<CarmenLogSource>(path, options);
+std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path, const CarmenLogOptions& options,
+                                           const std::vector<LoopClosure>& loops) {
+  return std::make_unique<CarmenLogSource>(path, options, loops);
 }
 
 }  // namespace depthgrid

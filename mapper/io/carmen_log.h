@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/core/options.h"
@@ -21,6 +22,10 @@ struct CarmenLogOptions {
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;
   // so it clears this far only, as Cartographer's missing_data_ray_length (5 m) does.
   double no_return_clear_m = 5.0;
+  // A gap of readings without return that is narrower than this between two hits is no opening but
+  // glass, a shiny edge or a fault: it clears up to the nearer hit only, or the fringe of each such
+  // beam shows beyond every wall. 0.3 m is less than what a robot drives through.
+  double no_return_gap_m = 0.3;
 
   void Visit(OptionsVisitor& v);
 };
@@ -31,7 +36,11 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 // Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that
 // are damaged, truncated or out of time order are left out and counted in Warnings(). Throws
 // InputError for a file that cannot be read or holds no scan at all.
+//
+// `loops`, ordered by the frame that reports them, join scans: the second laser's pose in the first
+// one's axes (x forward, y left, z up).
 std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,
-                                           const CarmenLogOptions& options = {});
+                                           const CarmenLogOptions& options = {},
+                                           const std::vector<LoopClosure>& loops = {});
 
 }  // namespace depthgrid

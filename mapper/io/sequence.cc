@@ -204,6 +204,10 @@ std::vector<double> SequenceStamps(const std::string& path, const SequenceOption
     recording = ListFrameFolder(path, options.recording).recording;
   }
   std::vector<double> stamps_s;
+  if (format == SequenceFormat::kCarmen) {
+    const auto source = OpenCarmenLog(path, options.laser);
+    while (const auto frame = source->Next()) stamps_s.push_back(frame->stamp_s);
+  }
   for (const RecordedImage& image : recording.images) {
     stamps_s.push_back(image.stamp_s + options.recording.time_offset_s);
   }
@@ -216,8 +220,9 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   Sequence result;
   result.kind = NameOf(format);
   if (format == SequenceFormat::kCarmen) {
-    if (slam) throw InputError(path, "a laser log brings its own poses");
-    result.source = OpenCarmenLog(path, options.laser);
+    if (slam && !slam->live.empty()) throw InputError(path, "a laser log brings its own poses");
+    result.source =
+        OpenCarmenLog(path, options.laser, slam ? slam->loops : std::vector<LoopClosure>{});
     return result;
   }
   DepthSequence sequence = format == SequenceFormat::kTum

@@ -44,11 +44,13 @@ SequenceFormat DetectFormat(const std::string& path);
 SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options);
 std::string NameOf(SequenceFormat format);
 
-// Stamps of the frames by the clock of the poses (time_offset_s added); none for a laser log.
+// Stamps of the frames by the clock of the poses (time_offset_s added), for a laser log of its
+// scans.
 std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options = {});
 
 // `slam` replaces the folder's own poses; a TUM folder has none but groundtruth.txt, which is taken
-// with a note. Throws InputError.
+// with a note. For a laser log it may hold loops, between lasers (OpenCarmenLog). Throws
+// InputError.
 Sequence OpenSequence(const std::string& path, const SequenceOptions& options = {},
                       const std::optional<SlamOutput>& slam = {});
 

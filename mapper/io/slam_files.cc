@@ -170,6 +170,19 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output) {
   WriteFile(folder + "/loops.csv", LoopsText(output));
 }
 
+SlamInput ReadLoops(const std::string& path, const std::vector<double>& frame_stamps_s,
+                    double max_difference_s) {
+  SlamInput input;
+  const SlamEvents events = ParseSlamEvents(ReadFile(path), path, frame_stamps_s, max_difference_s);
+  input.warnings = events.warnings;
+  for (const SlamEvent& event : events.events) {
+    if (event.loop) input.slam.loops.push_back(*event.loop);
+  }
+  input.notes.push_back(
+      fmt::format("{} loop closures from {}", input.slam.loops.size(), events.kind));
+  return input;
+}
+
 SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
                         const SlamReading& reading) {
   const double max_difference_s = reading.max_difference_s;

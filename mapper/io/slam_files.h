@@ -49,4 +49,8 @@ struct SlamReading {
 SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
                         const SlamReading& reading = {});
 
+// A file of loops by itself, for recordings that bring their poses.
+SlamInput ReadLoops(const std::string& path, const std::vector<double>& frame_stamps_s,
+                    double max_difference_s);
+
 }  // namespace depthgrid

@@ -59,14 +59,23 @@ struct Step {
   Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();
 };
 
+// Seconds in a unit of the stamps: ICL-NUIM's are the images' numbers, recorded at 30 Hz.
+double StampUnitS(const std::vector<SlamPose>& live) {
+  const auto is_number = [](const SlamPose& pose) {
+    return pose.stamp_s == std::floor(pose.stamp_s);
+  };
+  return std::all_of(live.begin(), live.end(), is_number) ? 1.0 / 30.0 : 1.0;
+}
+
 std::vector<Step> StepsOf(const std::vector<SlamPose>& live) {
+  const double unit_s = StampUnitS(live);
   std::vector<Step> steps;
   std::optional<std::size_t> before;
   for (std::size_t i = 0; i < live.size(); ++i) {
     if (!live[i].slam_from_camera) continue;
     if (before && live[i].stamp_s > live[*before].stamp_s) {
       Step step{static_cast<int>(*before), static_cast<int>(i),
-                live[i].stamp_s - live[*before].stamp_s,
+                (live[i].stamp_s - live[*before].stamp_s) * unit_s,
                 Between(*live[*before].slam_from_camera, *live[i].slam_from_camera)};
       step.velocity = step.motion.translation / step.duration_s;
       step.turn_rate = LogRotation(step.motion.rotation) / step.duration_s;

@@ -103,6 +103,23 @@ TEST(CarmenLog, OptionsLimitRanges) {
   EXPECT_EQ(frames[1].scan->beams[2].clear_to_m, 1.0F);  // exactly the maximum: no return
 }
 
+// Beams a degree apart: two between hits at 4 and 5 m are 4 m x 3 degrees = 0.21 m wide, seven are
+// 0.56 m.
+TEST(CarmenLog, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
+  CarmenScan line;
+  line.bearing_step_rad = RadFromDeg(1.0);
+  line.range_m = {4, 90, 90, 5, 5, 90, 90, 90, 90, 90, 90, 90, 4, 90};
+  const Scan scan = ScanOf(line, {});
+  for (const std::size_t i : {1U, 2U}) {
+    EXPECT_FALSE(scan.beams[i].hit) << i;
+    EXPECT_EQ(scan.beams[i].clear_to_m, 4.0F) << i;
+  }
+  for (const std::size_t i : {5U, 8U, 11U, 13U}) EXPECT_EQ(scan.beams[i].clear_to_m, 5.0F) << i;
+  CarmenLogOptions wide;
+  wide.no_return_gap_m = 0.0;
+  EXPECT_EQ(ScanOf(line, wide).beams[1].clear_to_m, 5.0F);
+}
+
 TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
   const std::string good = kRobotLaser;
   std::string text = good;
