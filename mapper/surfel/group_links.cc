@@ -20,7 +20,7 @@ double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_grou
   return LinkError(link, map_from_group).cwiseQuotient(link.sigma).norm();
 }
 
-void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, SkylineMatrix& h,
+void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, PoseMatrix& h,
              Eigen::VectorXd& g) {
   const Eigen::Vector3d error = LinkError(link, map_from_group);
   Eigen::Vector3d weight = link.sigma.cwiseProduct(link.sigma).cwiseInverse();
@@ -31,17 +31,11 @@ void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, Sk
   const Eigen::Matrix3d by_first = -AdjointOf(second_from_first);
   const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
   const Eigen::Matrix3d first_block = by_first.transpose() * weighted;
-  const int i = 3 * link.first;
-  const int j = 3 * link.second;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column <= row; ++column) {
-      *h.At(i + row, i + column) += first_block(row, column);
-    }
-    for (int column = 0; column < 3; ++column) *h.At(j + row, i + column) += weighted(row, column);
-    *h.At(j + row, j + row) += weight[row];
-  }
-  g.segment<3>(i) -= weighted.transpose() * error;
-  g.segment<3>(j) -= weight.cwiseProduct(error);
+  h.AddBlock(link.first, link.first, first_block);
+  h.AddBlock(link.second, link.first, weighted);
+  h.AddBlock(link.second, link.second, weight.asDiagonal().toDenseMatrix());
+  g.segment<3>(3 * link.first) -= weighted.transpose() * error;
+  g.segment<3>(3 * link.second) -= weight.cwiseProduct(error);
 }
 
 }  // namespace depthgrid

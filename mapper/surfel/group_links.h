@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mapper/core/pose2.h"
-#include "mapper/surfel/skyline_matrix.h"
+#include "mapper/surfel/pose_matrix.h"
 
 namespace depthgrid {
 
@@ -25,7 +25,7 @@ double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_grou
 
 // Adds the link to the normal equations h step = g of small motions of all groups, three rows a
 // group.
-void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, SkylineMatrix& h,
+void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, PoseMatrix& h,
              Eigen::VectorXd& g);
 
 }  // namespace depthgrid

@@ -4,28 +4,6 @@
 #include <cmath>
 
 namespace depthgrid {
-namespace {
-
-// h(rows, columns) -= left * right^T for two different groups.
-void SubtractOuter(int row_place, int column_place, const Eigen::Vector3d& left,
-                   const Eigen::Vector3d& right, SkylineMatrix& h) {
-  for (int row = 0; row < 3; ++row) {
-    double* out = h.At(row_place + row, column_place);
-    out[0] -= left[row] * right[0];
-    out[1] -= left[row] * right[1];
-    out[2] -= left[row] * right[2];
-  }
-}
-
-void AddToOwnBlock(int place, const Eigen::Matrix3d& block, SkylineMatrix& h) {
-  for (int row = 0; row < 3; ++row) {
-    double* out = h.At(place + row, place);
-    for (int column = 0; column <= row; ++column) out[column] += block(row, column);
-  }
-}
-
-}  // namespace
-
 Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
                      const std::vector<Pose2>& map_from_group, const AssociationGate& gate) {
   std::vector<Sighting> in_time;
@@ -59,7 +37,7 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   const Surfel& landmark = store_[sighting.landmark];
   const Surfel& local = *sighting.surfel;
   Row row;
-  row.place = 3 * sighting.group;
+  row.group = sighting.group;
   row.error_m = OffsetFrom(landmark, motion * local.point_m);
   const double sigmas = std::abs(row.error_m) * std::sqrt(local.information);
   row.weight = local.information * std::min(1.0, huber_sigmas / sigmas);
@@ -67,8 +45,8 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   return row;
 }
 
-void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas,
-                      SkylineMatrix& h, Eigen::VectorXd& g) const {
+void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, PoseMatrix& h,
+                      Eigen::VectorXd& g) const {
   std::vector<Motion2> motions;
   for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
   std::vector<Row> rows;
@@ -91,20 +69,19 @@ void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sig
     sums.clear();
     for (const Row& row : rows) {
       const Eigen::Vector3d weighted_row = row.weight * row.jacobian;
-      g.segment<3>(row.place) -= (row.error_m - offset_m) * weighted_row;
-      AddToOwnBlock(row.place, weighted_row * row.jacobian.transpose(), h);
-      if (!sums.empty() && sums.back().first == row.place) {
+      g.segment<3>(3 * row.group) -= (row.error_m - offset_m) * weighted_row;
+      h.AddBlock(row.group, row.group, weighted_row * row.jacobian.transpose());
+      if (!sums.empty() && sums.back().first == row.group) {
         sums.back().second += weighted_row;
       } else {
-        sums.emplace_back(row.place, weighted_row);
+        sums.emplace_back(row.group, weighted_row);
       }
     }
     for (std::size_t k = 0; k < sums.size(); ++k) {
       const Eigen::Vector3d scaled = sums[k].second / weights;
-      for (std::size_t l = 0; l < k; ++l) {
-        SubtractOuter(sums[k].first, sums[l].first, scaled, sums[l].second, h);
+      for (std::size_t l = 0; l <= k; ++l) {
+        h.AddBlock(sums[k].first, sums[l].first, -scaled * sums[l].second.transpose());
       }
-      AddToOwnBlock(sums[k].first, -scaled * sums[k].second.transpose(), h);
     }
   }
 }

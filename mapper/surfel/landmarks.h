@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "mapper/surfel/skyline_matrix.h"
+#include "mapper/surfel/pose_matrix.h"
 #include "mapper/surfel/surfel_groups.h"
 
 namespace depthgrid {
@@ -28,12 +28,12 @@ class Landmarks {
   // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
   // offset along its normal is an unknown too; it is eliminated (Schur complement), which couples
   // all groups that saw the landmark.
-  void AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, SkylineMatrix& h,
+  void AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, PoseMatrix& h,
              Eigen::VectorXd& g) const;
 
  private:
   struct Row {
-    int place = 0;  // of the group's first row
+    int group = 0;
     double weight = 0.0;
     double error_m = 0.0;
     Eigen::Vector3d jacobian;

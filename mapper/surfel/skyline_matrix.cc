@@ -72,6 +72,14 @@ SkylineMatrix::SkylineMatrix(std::vector<int> first) : first_(std::move(first)) 
   values_.assign(total, 0.0);
 }
 
+void SkylineMatrix::AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) {
+  for (int row = 0; row < kBlock; ++row) {
+    double* out = At(kBlock * row_pose + row, kBlock * column_pose);
+    const int columns = row_pose == column_pose ? row + 1 : kBlock;
+    for (int column = 0; column < columns; ++column) out[column] += block(row, column);
+  }
+}
+
 bool SkylineMatrix::IsInBlocks() const {
   if (size() % kBlock != 0) return false;
   for (int i = 0; i < size(); ++i) {

@@ -7,14 +7,16 @@
 #include <cstddef>
 #include <vector>
 
+#include "mapper/surfel/pose_matrix.h"
+
 namespace depthgrid {
 
-class SkylineMatrix {
+class SkylineMatrix : public PoseMatrix {
  public:
   // Zero; first[i] <= i is the first column of row i.
   explicit SkylineMatrix(std::vector<int> first);
 
-  int size() const { return static_cast<int>(first_.size()); }
+  int size() const override { return static_cast<int>(first_.size()); }
   int First(int row) const { return first_[static_cast<std::size_t>(row)]; }
   // Element (row, column), First(row) <= column <= row, and what lies right of it in the row.
   double* At(int row, int column) {
@@ -23,10 +25,12 @@ class SkylineMatrix {
   const double* At(int row, int column) const {
     return values_.data() + begin_[static_cast<std::size_t>(row)] + (column - First(row));
   }
-  // Becomes the lower factor L of L L^T. False when the matrix is not positive definite.
-  bool Factor();
-  // Solves L L^T x = b, after Factor().
-  Eigen::VectorXd Solve(Eigen::VectorXd b) const;
+  // The blocks given lie in the rows.
+  void AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) override;
+  double& Diagonal(int i) override { return *At(i, i); }
+  // Becomes the lower factor L of L L^T.
+  bool Factor() override;
+  Eigen::VectorXd Solve(Eigen::VectorXd b) const override;
 
  private:
   // Whether rows come in threes that begin in one column, at a multiple of three.
