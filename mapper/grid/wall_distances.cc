@@ -1,7 +1,10 @@
 #include "mapper/grid/wall_distances.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "mapper/grid/wall_normals.h"
 
 namespace depthgrid {
 namespace {
@@ -10,6 +13,8 @@ namespace {
 // the bicubic interpolation around the wall reaches.
 constexpr int kReachCells = 2;
 constexpr int kStepsPerCell = 2;
+// A wall's direction is that of the hits this far to either side.
+constexpr double kNormalReachCells = 2.0;
 // Of the bell that distances become probabilities by, in cells: wide enough that bicubic
 // interpolation finds its top within a fifth of a cell.
 constexpr double kBellCells = 1.0;
@@ -48,14 +53,16 @@ void WallDistances::GrowToContain(const std::vector<Eigen::Vector2d>& points_in_
 }
 
 void WallDistances::Insert(const Scan& scan, const Pose2& map_from_base) {
-  hits_in_map_.clear();
-  for (const Beam& beam : scan.beams) {
-    if (beam.hit) hits_in_map_.push_back(map_from_base * EndPoint(beam));
-  }
-  if (hits_in_map_.empty()) return;
-  GrowToContain(hits_in_map_);
   const double resolution_m = geometry_.resolution_m;
-  for (const Eigen::Vector2d& hit : hits_in_map_) {
+  const std::vector<WallHit> hits = WallHits(scan, kNormalReachCells * resolution_m);
+  if (hits.empty()) return;
+  hits_in_map_.clear();
+  for (const WallHit& hit : hits) hits_in_map_.push_back(map_from_base * hit.point);
+  GrowToContain(hits_in_map_);
+  const Eigen::Rotation2Dd turn(map_from_base.yaw_rad);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const Eigen::Vector2d& hit = hits_in_map_[i];
+    const Eigen::Vector2d normal = turn * hits[i].normal;
     const Eigen::Vector2d along = (hit - map_from_base.translation()).normalized();
     Cell last = CellOf(hit - (kReachCells + 1) * resolution_m * along, resolution_m);
     for (int step = -kReachCells * kStepsPerCell; step <= kReachCells * kStepsPerCell; ++step) {
@@ -64,7 +71,7 @@ void WallDistances::Insert(const Scan& scan, const Pose2& map_from_base) {
       if (cell == last) continue;
       last = cell;
       Mean& mean = means_[geometry_.Index(cell)];
-      mean.sum_m += static_cast<float>((CellCentre(cell, resolution_m) - hit).dot(along));
+      mean.sum_m += static_cast<float>((CellCentre(cell, resolution_m) - hit).dot(normal));
       mean.count += 1.0F;
     }
   }

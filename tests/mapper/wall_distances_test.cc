@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mapper/grid/wall_normals.h"
 #include "mapper/paper_reference.h"
 #include "tests/mapper/planar_world.h"
 
@@ -28,6 +29,56 @@ TEST(WallDistances, AreThoseOfTheCellCentresBehindTheHits) {
   EXPECT_NEAR(drawn.At({19, 0}), bell(-0.035), 1e-3);
   EXPECT_NEAR(drawn.At({21, 0}), bell(0.065), 1e-3);
   EXPECT_NEAR(drawn.At({18, 0}), bell(-0.085), 1e-3);
+}
+
+TEST(WallDistances, AreAcrossTheWallHoweverItIsSeen) {
+  // A wall at 45 degrees through (1, 0): the distance of (x, y) behind it is (x + y - 1) / sqrt 2.
+  const PlanarWorld wall = {{{3.0, -2.0}, {-1.0, 2.0}}};
+  const Scan scan = ScanOf(wall, {}, {.beams = 200, .field_of_view_rad = RadFromDeg(40.0)});
+  for (const WallHit& hit : WallHits(scan, 0.1)) {
+    EXPECT_NEAR(hit.normal.x(), std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(hit.normal.y(), std::sqrt(0.5), 1e-5);
+  }
+  WallDistances distances(0.05, 0.1, 0.9);
+  distances.Insert(scan, {});
+  const OccupancyMap drawn = distances.DrawnOver({});
+  for (const Cell cell : {Cell{19, 0}, Cell{20, -1}, Cell{17, 2}, Cell{22, -2}}) {
+    const Eigen::Vector2d centre = CellCentre(cell, 0.05);
+    const double behind_m = (centre.x() + centre.y() - 1.0) * std::sqrt(0.5);
+    EXPECT_NEAR(drawn.At(cell), 0.1 + 0.8 * std::exp(-0.5 * behind_m * behind_m / 0.0025), 1e-3);
+  }
+}
+
+TEST(WallHits, WithoutNeighboursFaceTheSensor) {
+  Scan scan;
+  scan.beams = {{.bearing_rad = -0.3F, .range_m = 2.0F, .hit = true},
+                {.bearing_rad = 0.3F, .range_m = 4.0F, .hit = true},
+                {.bearing_rad = 0.4F, .range_m = 4.0F}};
+  const std::vector<WallHit> hits = WallHits(scan, 0.1);
+  ASSERT_EQ(hits.size(), 2U);
+  EXPECT_NEAR((hits[0].normal - Eigen::Vector2d(std::cos(-0.3), std::sin(-0.3))).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((hits[1].point - 4.0 * hits[1].normal).norm(), 0.0, 1e-6);
+  EXPECT_TRUE(WallHits({}, 0.1).empty());
+}
+
+// Each scan ends on a stretch of wall that the map does not have yet; its cells at the end are hit
+// on one side only. The turn must not be pulled along.
+TEST(WallDistances, DoNotTurnAViewThatMovesAlongAWall) {
+  const PlanarWorld wall = {{{2.0, -20.0}, {2.0, 20.0}}};
+  PaperReference reference({}, {.walls = SubmapWalls::kAveraged}, {}, {});
+  constexpr int kScans = 30;
+  double pulled_rad = 0.0;
+  for (int i = 0; i <= kScans; ++i) {
+    const Pose2 truth{0.0, 0.0, 0.01 * i};
+    const auto scan = std::make_shared<Scan>(
+        ScanOf(wall, truth, {.beams = 640, .field_of_view_rad = RadFromDeg(58.0)}));
+    if (i > 0) {
+      const MatchResult match = reference.Match(scan, {.map_from_base = truth});
+      pulled_rad += Between(truth, match.map_from_base).yaw_rad;
+    }
+    reference.Insert(scan, truth, {});
+  }
+  EXPECT_LT(std::abs(pulled_rad / kScans), 2e-4);
 }
 
 // Wherever the walls lie within their cells, true scans match at their true pose.

@@ -1,0 +1,21 @@
+// The direction across the wall that each hit of a scan lies on.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/scan.h"
+
+namespace depthgrid {
+
+// A hit with the unit normal of its wall, away from the sensor; base axes.
+struct WallHit {
+  Eigen::Vector2d point;
+  Eigen::Vector2d normal;
+};
+
+// The hits in the order of the beams. The normal is that of the line through the neighbouring hits
+// within `reach_m` without a jump of more than `reach_m`; where they make no line, the beam's own
+// direction.
+std::vector<WallHit> WallHits(const Scan& scan, double reach_m);
+
+}  // namespace depthgrid
