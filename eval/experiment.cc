@@ -1,5 +1,6 @@
 #include "eval/experiment.h"
 
+#include "eval/slam_noise.h"
 #include "eval/synthetic_source.h"
 #include "mapper/core/level.h"
 #include "mapper/fuse/fusion.h"
@@ -20,6 +21,8 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOp
 
 ExperimentOptions Completed(ExperimentOptions options, const Scene& scene) {
   options.mapper.scan.floor_z_m = scene.floor_z_m;
+  SlamNoiseOptions& noise = options.mapper.fusion.slam_noise;
+  if (noise.source == SlamNoiseSource::kProfile) noise = NoiseOf(options.slam);
   return options;
 }
 

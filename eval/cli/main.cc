@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <functional>
 
 #include "eval/cli/commands.h"
@@ -200,6 +201,16 @@ void AddSweep(Program& program) {
   AddKeys(*app, &ExperimentKeys);
 }
 
+// CLI11 reads -3 as 2^64 - 3 and takes what is too large for the largest number.
+void AddSeed(CLI::App& app, const char* flag, std::uint64_t& seed, const char* meaning) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && *stop == '\0' ? "" : "'" + text + "' is no whole number";
+  };
+  app.add_option(flag, seed, meaning)->check(refusal)->capture_default_str();
+}
+
 void AddSlam(Program& program) {
   const auto [app, arguments] = program.Add<SlamArguments>(
       program.app, "slam", "Disturb a sequence's true trajectory as a SLAM system would",
@@ -207,7 +218,7 @@ void AddSlam(Program& program) {
   app->add_option("sequence", arguments->sequence, "A TUM folder with groundtruth.txt")->required();
   app->add_option("--profile", arguments->profile, "Which system, as slam.profile of an experiment")
       ->capture_default_str();
-  app->add_option("--seed", arguments->seed, "Of the errors")->capture_default_str();
+  AddSeed(*app, "--seed", arguments->seed, "Of the errors");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common);
 }
@@ -226,8 +237,7 @@ void AddSlamCalibrate(Program& program) {
   app->add_option("--seeds", arguments->seeds, "How many runs to average")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app->add_option("--first-seed", arguments->first_seed, "The first of them")
-      ->capture_default_str();
+  AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
   AddSet(*app, arguments->common);
   AddThreads(*app, arguments->common);
 }
@@ -309,8 +319,7 @@ void AddAblate(Program& program) {
   app->add_option("--seeds", arguments->seeds, "How many; fewer than 6 prove nothing")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app->add_option("--first-seed", arguments->first_seed, "The first of them")
-      ->capture_default_str();
+  AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
   app->add_flag("--json", arguments->json, "Print JSON instead of tables");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common);

@@ -93,6 +93,10 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
                                    slam ? std::optional(slam->slam) : std::nullopt);
   // Poses alone are not known to be final ones.
   if (slam && arguments.final_poses.empty()) sequence.final_poses.clear();
+  if (settings.mapper.fusion.slam_noise.source == SlamNoiseSource::kProfile) {
+    throw InputError("mapper.fusion.slam_noise.source",
+                     "profile needs a run; of a recording no profile is known");
+  }
   if (!config.Has("mapper.scan.floor_z_m") && sequence.floor_z_m) {
     settings.mapper.scan.floor_z_m = *sequence.floor_z_m;
   }

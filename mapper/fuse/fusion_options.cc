@@ -3,6 +3,9 @@
 namespace depthgrid {
 
 void SlamNoiseOptions::Visit(OptionsVisitor& v) {
+  v.Choice("source", source,
+           {{SlamNoiseSource::kSetting, "setting"}, {SlamNoiseSource::kProfile, "profile"}},
+           "the values below, or those of the run's slam.profile in their place");
   v.Number("jitter_m", jitter_m, {0.0, 1.0}, "white error of each pose, metres");
   v.Number("jitter_rad", jitter_rad, {0.0, 1.0}, "white error of each heading, radians");
   v.Number("walk_m_per_sqrt_s", walk_m_per_sqrt_s, {0.0, 1.0}, "random walk of the position");

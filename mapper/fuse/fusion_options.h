@@ -12,9 +12,14 @@ enum class PriorMode {
   kAbsolute,  // every frame starts from SLAM's pose itself
 };
 
+enum class SlamNoiseSource {
+  kSetting,  // the values beside it
+  kProfile,  // worked out from the profile that SLAM was disturbed with; a run's, not a recording's
+};
+
 enum class FusionMode {
   kFixed,     // K is a setting
-  kKalman,    // K from SLAM's covariance (a setting) and the match's (from the matcher)
+  kKalman,    // K from SLAM's covariance (slam_noise) and the match's (from the matcher)
   kLearned,   // K as with kalman, SLAM's covariance learnt from the matches as well
   kAdaptive,  // K per axis such that the innovations become white
   kOracle,    // K given from outside, for experiments that know the truth
@@ -24,6 +29,7 @@ enum class FusionMode {
 // pose, the rest grows with time, path and turning. Defaults: ORB-SLAM2 on TUM fr2/desk, error of
 // relative motion over 0.03-60 s (docs/math.md).
 struct SlamNoiseOptions {
+  SlamNoiseSource source = SlamNoiseSource::kSetting;
   double jitter_m = 0.0024;
   double jitter_rad = 0.0035;
   double walk_m_per_sqrt_s = 0.007;

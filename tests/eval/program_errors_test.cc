@@ -114,6 +114,16 @@ TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("eval", {"--help"});
 }
 
+TEST_F(ProgramErrors, SeedsAreWholeNumbers) {
+  for (const std::string seed : {"-3", "1.5", "nan", "abc", "99999999999999999999", "''"}) {
+    for (const char* command : {"slam seq -o out --seed", "ablate ./small.yaml -o out --first-seed",
+                                "slam-calibrate ./small.yaml --target 0.1 --first-seed"}) {
+      ExpectRefusal(std::string(command) + " " + seed, {"seed"});
+    }
+    ExpectRefusal("run ./small.yaml -o out --set seed=" + seed, {"seed", "whole number"});
+  }
+}
+
 TEST_F(ProgramErrors, AFolderThatIsNotEmptyStaysAsItIs) {
   std::filesystem::create_directory(Path("mine"));
   Write("mine/map.pgm", "precious");
