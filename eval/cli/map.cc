@@ -147,10 +147,8 @@ void KeepMap(const std::string& from, const OutputFolder& folder) {
 
 void SayResult(const MappingRun& run, bool localised) {
   int posed = 0;
-  int rejected = 0;
   for (const FrameReport& report : run.reports) {
     posed += report.slam_from_camera ? 1 : 0;
-    rejected += report.loops_rejected;
   }
   const auto& mapped = run.result.mapped;
   const auto added =
@@ -163,9 +161,17 @@ void SayResult(const MappingRun& run, bool localised) {
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
     fmt::print(", {} without a pose", lost);
   }
-  if (!run.loops.empty()) {
-    fmt::print("; {} of {} loop closures taken", run.result.loops.size(), run.loops.size());
-  }
+  // The others that entered the graph are the mapper's own.
+  const auto is_given = [&](const PlanarLoop& loop) {
+    const auto frame = [&](int i) { return mapped[static_cast<std::size_t>(i)].frame; };
+    return std::any_of(run.loops.begin(), run.loops.end(), [&](const LoopClosure& given) {
+      return given.first_frame == frame(loop.first) && given.second_frame == frame(loop.second);
+    });
+  };
+  const auto taken = std::count_if(run.result.loops.begin(), run.result.loops.end(), is_given);
+  const auto found = static_cast<std::ptrdiff_t>(run.result.loops.size()) - taken;
+  if (!run.loops.empty()) fmt::print("; {} of {} loop closures taken", taken, run.loops.size());
+  if (found > 0) fmt::print("; {} loop closures found", found);
   fmt::print("\n");
 }
 
