@@ -61,6 +61,26 @@ Json ToJson(const CellScores& scores) {
           {"confusion", confusion}};
 }
 
+Json ToJson(const std::vector<Drift>& drifts, const char* over) {
+  Json rows = Json::array();
+  for (const Drift& drift : drifts) {
+    rows.push_back({{over, drift.over},
+                    {"motions", drift.motions},
+                    {"translation_rms_m", drift.translation_rms_m},
+                    {"rotation_rms_rad", drift.rotation_rms_rad},
+                    {"translation_mean_m", drift.translation_mean_m}});
+  }
+  return rows;
+}
+
+// Mean drift a unit, from the motions over so much of it.
+Json DriftAt(const std::vector<Drift>& drifts, double over) {
+  for (const Drift& drift : drifts) {
+    if (drift.over == over) return drift.translation_mean_m / drift.over;
+  }
+  return nullptr;
+}
+
 Json ToJson(const TrajectoryScore& score) {
   return {
       {"mean_euclidean_m", score.xy_unaligned.mean},
@@ -76,6 +96,8 @@ Json ToJson(const TrajectoryScore& score) {
       {"rpe_frame_rmse_rad", RmseOf(score.rpe_frame_rotation)},
       {"rpe_metre_rmse_m", RmseOf(score.rpe_metre_translation)},
       {"rpe_metre_rmse_rad", RmseOf(score.rpe_metre_rotation)},
+      {"drift_m_per_s", DriftAt(score.drift_over_time, 10.0)},
+      {"drift_m_per_m", DriftAt(score.drift_over_path, 1.0)},
       {"reference_poses", score.reference_poses},
       {"estimate_poses", score.estimate_poses},
       {"matched_poses", score.matched_poses},
@@ -96,6 +118,9 @@ Json ToJson(const TrajectoryScore& score) {
         {"frame_rad", ToJson(score.rpe_frame_rotation)},
         {"metre_m", ToJson(score.rpe_metre_translation)},
         {"metre_rad", ToJson(score.rpe_metre_rotation)}}},
+      {"drift",
+       {{"over_time", ToJson(score.drift_over_time, "s")},
+        {"over_path", ToJson(score.drift_over_path, "m")}}},
   };
 }
 

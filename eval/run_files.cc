@@ -43,4 +43,9 @@ RunFiles ReadRunFolder(const std::string& folder) {
   return run;
 }
 
+std::string SettingOf(const Config& settings, const std::string& key) {
+  const std::string value = settings.Has(key) ? settings.List(key).front() : "";
+  return value == "\"\"" ? "" : value;  // YAML of an empty text
+}
+
 }  // namespace depthgrid

@@ -9,6 +9,7 @@
 #include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/trajectory.h"
+#include "mapper/io/config.h"
 #include "mapper/io/scan_file.h"
 
 namespace depthgrid {
@@ -31,5 +32,11 @@ struct RunFiles {
 
 // Throws InputError when the folder is no run's, or a file of it is damaged.
 RunFiles ReadRunFolder(const std::string& folder);
+
+// How much of the unknown is shown around a map.
+constexpr int kMapMarginCells = 4;
+
+// A setting as text, empty when it is not there or empty.
+std::string SettingOf(const Config& settings, const std::string& key);
 
 }  // namespace depthgrid

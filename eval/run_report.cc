@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-constexpr int kMapMarginCells = 4;
 constexpr double kSameStampS = 1e-6;  // as files write stamps
 
 Json MapJson(const RunFiles& run) {
@@ -163,14 +162,9 @@ Json SamplesJson(const std::string& folder) {
   return json;
 }
 
-std::string ValueOf(const Config& settings, const std::string& key) {
-  const std::string value = settings.Has(key) ? settings.List(key).front() : "";
-  return value == "\"\"" ? "" : value;  // YAML of an empty text
-}
-
 std::string TitleOf(const Config& settings) {
   for (const char* key : {"scene", "input"}) {
-    const std::string value = ValueOf(settings, key);
+    const std::string value = SettingOf(settings, key);
     if (!value.empty()) return fs::path(value).stem().string();
   }
   return "Run";
@@ -179,7 +173,7 @@ std::string TitleOf(const Config& settings) {
 std::string SubtitleOf(const Config& settings, std::size_t frames) {
   std::string text = fmt::format("{} frames", frames);
   const auto add = [&](const char* name, const char* key) {
-    const std::string value = ValueOf(settings, key);
+    const std::string value = SettingOf(settings, key);
     if (!value.empty()) text += fmt::format(", {} {}", name, value);
   };
   add("trajectory", "trajectory");
@@ -188,7 +182,7 @@ std::string SubtitleOf(const Config& settings, std::size_t frames) {
   add("seed", "seed");
   add("mapper", "mapper.method");
   add("fusion", "mapper.fusion.mode");
-  if (ValueOf(settings, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
+  if (SettingOf(settings, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
   return text;
 }
 

@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-constexpr int kMapMarginCells = 4;
 constexpr std::size_t kMostPathPoints = 450;  // two a second of a 900-frame path
 
 struct CaseFiles {
@@ -29,15 +28,11 @@ struct CaseFiles {
   std::string pose_source;
 };
 
-std::string ValueOf(const Config& settings, const std::string& key) {
-  return settings.Has(key) ? settings.List(key).front() : "";
-}
-
 CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
   CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", ""};
   const Config settings = Config::FromText(files.run.settings, head.name + "/run.yaml");
-  files.scene = fs::path(ValueOf(settings, "scene")).stem().string();
-  files.pose_source = ValueOf(settings, "slam.profile");
+  files.scene = fs::path(SettingOf(settings, "scene")).stem().string();
+  files.pose_source = SettingOf(settings, "slam.profile");
   return files;
 }
 

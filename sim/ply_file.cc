@@ -16,8 +16,6 @@
 namespace depthgrid {
 namespace {
 
-bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
 // The file's text from front to back.
 class PlyParser {
  public:
@@ -64,16 +62,16 @@ class PlyParser {
   }
 
   double AsciiNumber() {
-    while (at_ < text_.size() && IsSpace(text_[at_])) ++at_;
+    while (at_ < text_.size() && IsPlySpace(text_[at_])) ++at_;
     if (at_ >= text_.size()) FailCutOff();
     const char* begin = text_.data() + at_;
     const char* end = text_.data() + text_.size();
     if (*begin == '+') ++begin;
     double number = 0.0;
     const auto [stop, error] = std::from_chars(begin, end, number);
-    if (error == std::errc::invalid_argument || (stop != end && !IsSpace(*stop))) {
+    if (error == std::errc::invalid_argument || (stop != end && !IsPlySpace(*stop))) {
       std::size_t word_end = at_;
-      while (word_end < text_.size() && !IsSpace(text_[word_end]) && word_end - at_ < 32)
+      while (word_end < text_.size() && !IsPlySpace(text_[word_end]) && word_end - at_ < 32)
         ++word_end;
       Fail(fmt::format("'{}' is not a number", text_.substr(at_, word_end - at_)));
     }

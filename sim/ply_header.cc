@@ -22,14 +22,12 @@ std::optional<PlyType> TypeNamed(std::string_view name) {
   return {};
 }
 
-bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
-
 std::vector<std::string> Words(std::string_view line) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < line.size();) {
-    while (i < line.size() && IsSpace(line[i])) ++i;
+    while (i < line.size() && IsPlySpace(line[i])) ++i;
     const std::size_t start = i;
-    while (i < line.size() && !IsSpace(line[i])) ++i;
+    while (i < line.size() && !IsPlySpace(line[i])) ++i;
     if (i > start) words.emplace_back(line.substr(start, i - start));
   }
   return words;
@@ -115,6 +113,8 @@ class HeaderReader {
 };
 
 }  // namespace
+
+bool IsPlySpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 PlyHeader ReadPlyHeader(std::string_view text, const std::string& path) {
   return HeaderReader(text, path).Read();

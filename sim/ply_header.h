@@ -35,6 +35,8 @@ struct PlyHeader {
   std::size_t bytes = 0;  // where the numbers begin
 };
 
+bool IsPlySpace(char c);
+
 // Throws InputError naming `path` and the line.
 PlyHeader ReadPlyHeader(std::string_view text, const std::string& path);
 

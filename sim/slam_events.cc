@@ -16,10 +16,6 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-double StepS(const SlamRun& run, std::size_t to) {
-  return run.truth[to].stamp_s - run.truth[to - 1].stamp_s;
-}
-
 }  // namespace
 
 std::vector<SlamEvent> FindEvents(const SlamRun& run) {
@@ -28,7 +24,7 @@ std::vector<SlamEvent> FindEvents(const SlamRun& run) {
   std::vector<double> steps_s;
   std::vector<double> errors_m;
   for (std::size_t to = 1; to < run.truth.size(); ++to) {
-    steps_s.push_back(StepS(run, to));
+    steps_s.push_back(run.StepS(to));
     errors_m.push_back(MotionError(run, to - 1, to).translation.norm());
   }
   const double gap_s = kGapSteps * Median(steps_s);

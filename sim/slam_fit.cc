@@ -32,10 +32,6 @@ RunEvents EventsOf(const SlamRun& run) {
   return found;
 }
 
-double StepS(const SlamRun& run, std::size_t to) {
-  return run.truth[to].stamp_s - run.truth[to - 1].stamp_s;
-}
-
 // Regression through the origin of the sideways shift on the turn: p - R p of a pivot p = (0, 0, d)
 // is d (-w_y, w_x, 0) to first order.
 void FitPivot(const std::vector<RunEvents>& runs, SlamFit& fit) {
@@ -230,7 +226,7 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs) {
     fit.tracked_s += run.truth.back().stamp_s - run.truth.front().stamp_s;
     for (const SlamEvent& event : found.back().events) fit.tracked_s -= event.lost_s;
     for (std::size_t to = 1; to < run.truth.size(); ++to) {
-      least_step_s = std::min(least_step_s, StepS(run, to));
+      least_step_s = std::min(least_step_s, run.StepS(to));
     }
   }
   if (poses < kFewestPoses) {

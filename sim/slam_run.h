@@ -11,6 +11,9 @@ namespace depthgrid {
 struct SlamRun {
   Trajectory truth;
   Trajectory estimate;
+
+  // From the pose before `to` until `to`.
+  double StepS(std::size_t to) const { return truth[to].stamp_s - truth[to - 1].stamp_s; }
 };
 
 // The error of the estimated motion between two poses, in axes of the camera at the later one.

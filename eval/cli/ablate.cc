@@ -13,9 +13,6 @@
 namespace depthgrid::cli {
 namespace {
 
-// Four digits; nothing owned is 0, not -0.
-std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }
-
 void PrintShares(const ErrorShares& score) {
   fmt::print("\n{}{}: {} as it is\n", score.is_complement ? "1 - " : "", score.metric,
              Short(score.error));

@@ -40,9 +40,6 @@ const char* TextOf(Verdict verdict) {
   return "not told apart";
 }
 
-// Four significant digits, whatever the size.
-std::string Short(double value) { return fmt::format("{:.4g}", value); }
-
 std::vector<std::string> RowOf(const MetricComparison& c) {
   const PairedComparison& p = c.paired;
   const std::string interval =

@@ -97,14 +97,20 @@ std::string Table(const std::vector<std::vector<std::string>>& rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i == 0) {
-        fmt::format_to(std::back_inserter(line), "{:<{}}", row[i], widths[i]);
+        line += fmt::format("{:<{}}", row[i], widths[i]);
       } else {
-        fmt::format_to(std::back_inserter(line), "  {:>{}}", row[i], widths[i]);
+        line += fmt::format("  {:>{}}", row[i], widths[i]);
       }
     }
     text += line + "\n";
   }
   return text;
+}
+
+std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }  // -0 as 0
+
+std::string Number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
 
 int ThreadsOr(int requested) { return requested > 0 ? requested : UsableThreads(); }

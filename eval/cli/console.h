@@ -51,6 +51,11 @@ void ThrowIfInterrupted();
 // Columns as wide as their widest cell; the first is left-aligned, the others right-aligned.
 std::string Table(const std::vector<std::vector<std::string>>& rows);
 
+// Four significant digits, whatever the size.
+std::string Short(double value);
+// "-" for nothing.
+std::string Number(const std::optional<double>& value, int digits);
+
 int ThreadsOr(int requested);
 
 }  // namespace depthgrid::cli

@@ -18,10 +18,6 @@ namespace fs = std::filesystem;
 
 using Row = std::vector<std::string>;
 
-std::string Number(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
 OccupancyMap ReadAligned(const std::string& path) { return AlignedMap(ReadMap(path)); }
 
 StateMap ReadStates(const std::string& path) { return StatesOf(ReadAligned(path)); }

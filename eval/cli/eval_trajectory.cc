@@ -2,7 +2,6 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
-#include "eval/metrics/trajectory_drift.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
@@ -42,18 +41,17 @@ void PrintTable(const TrajectoryScore& score) {
                           StatisticsRow("relative, 1 m (rad)", score.rpe_metre_rotation)}));
 }
 
-void PrintDrift(const std::vector<PosePair>& pairs) {
+void PrintDrift(const TrajectoryScore& score) {
   std::vector<Row> rows = {
       {"relative motion over", "motions", "rms m", "rms rad", "mean m / unit"}};
-  const auto add = [&rows](const char* unit, const std::optional<Drift>& drift) {
-    if (!drift) return;
-    rows.push_back({fmt::format("{:g} {}", drift->over, unit), std::to_string(drift->motions),
-                    fmt::format("{:.6f}", drift->translation_rms_m),
-                    fmt::format("{:.6f}", drift->rotation_rms_rad),
-                    fmt::format("{:.6f}", drift->translation_mean_m / drift->over)});
+  const auto add = [&rows](const char* unit, const Drift& drift) {
+    rows.push_back({fmt::format("{:g} {}", drift.over, unit), std::to_string(drift.motions),
+                    fmt::format("{:.6f}", drift.translation_rms_m),
+                    fmt::format("{:.6f}", drift.rotation_rms_rad),
+                    fmt::format("{:.6f}", drift.translation_mean_m / drift.over)});
   };
-  for (const double lag_s : {0.1, 1.0, 3.0, 10.0, 30.0}) add("s", DriftOverTime(pairs, lag_s));
-  for (const double length_m : {1.0, 2.0, 5.0, 10.0}) add("m", DriftOverPath(pairs, length_m));
+  for (const Drift& drift : score.drift_over_time) add("s", drift);
+  for (const Drift& drift : score.drift_over_path) add("m", drift);
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
 }
 
@@ -117,7 +115,7 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
     fmt::print("{}", MetricsJson({{"est", score}}, nullptr));
   } else {
     PrintTable(*score);
-    PrintDrift(pairs);
+    PrintDrift(*score);
   }
 }
 

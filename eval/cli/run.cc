@@ -26,10 +26,6 @@ namespace fs = std::filesystem;
 
 double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-std::string Number(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
-}
-
 void PrintScores(const RunScores& scores) {
   const auto row = [](const char* name, const std::optional<TrajectoryScore>& score) {
     if (!score) return std::vector<std::string>{name, "-", "-", "-"};

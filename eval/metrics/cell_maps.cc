@@ -41,6 +41,11 @@ ScoredMaps OnOneGeometry(const StateMap& truth, const StateMap& estimate,
   return maps;
 }
 
+CellSet InBoth(CellSet a, const CellSet& b) {
+  for (std::size_t i = 0; i < a.members.size(); ++i) a.members[i] &= b.members[i];
+  return a;
+}
+
 std::vector<Eigen::Vector2d> CentresOf(const CellSet& set) {
   std::vector<Eigen::Vector2d> centres;
   for (std::size_t i = 0; i < set.members.size(); ++i) {

@@ -15,6 +15,8 @@ CellSet OnGeometry(const CellSet& set, const GridGeometry& geometry);
 
 CellSet CellsIn(const StateMap& map, CellState state);
 CellSet KnownCells(const StateMap& map);
+// Of one geometry.
+CellSet InBoth(CellSet a, const CellSet& b);
 
 // Truth and estimate on the rectangle that holds both, with the cells to be scored: the observable
 // ones, or those whose truth is known when nothing was said about what is observable.

@@ -12,11 +12,6 @@
 namespace depthgrid {
 namespace {
 
-CellSet Both(CellSet a, const CellSet& b) {
-  for (std::size_t i = 0; i < a.members.size(); ++i) a.members[i] &= b.members[i];
-  return a;
-}
-
 // The estimate's walls in cells; the motion turns them about their centroid, so that turning and
 // shifting hardly trade against each other.
 struct WallPoints {
@@ -123,13 +118,13 @@ Eigen::Vector3d BestMotion(const WallPoints& points, const CellSet& true_walls) 
 
 CellSet FacesNear(const StateMap& map, const CellSet& scored) {
   constexpr int kNearCells = 2;
-  return Both(WallFaces(map), Grown(scored, kNearCells));
+  return InBoth(WallFaces(map), Grown(scored, kNearCells));
 }
 
 }  // namespace
 
 CellSet WallFaces(const StateMap& map) {
-  return Both(CellsIn(map, CellState::kOccupied), Grown(CellsIn(map, CellState::kFree), 1));
+  return InBoth(CellsIn(map, CellState::kOccupied), Grown(CellsIn(map, CellState::kFree), 1));
 }
 
 std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,

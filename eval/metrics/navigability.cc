@@ -66,13 +66,13 @@ bool Collides(const std::vector<Cell>& path, const CellSet& truly_passable) {
   return false;
 }
 
-struct Tally {
+struct PlanTally {
   Navigability result;
   double length_ratios = 0.0;
 };
 
 void Run(const Errand& errand, const CellSet& true_plan, const CellSet& judge, const CellSet& plan,
-         Tally& tally) {
+         PlanTally& tally) {
   const GridPaths true_ways(true_plan, errand.start, errand.goals);
   const GridPaths ways(plan, errand.start, errand.goals);
   for (const Cell& goal : errand.goals) {
@@ -104,7 +104,7 @@ std::optional<Navigability> Navigate(const StateMap& truth, const StateMap& esti
   const CellSet true_plan = Passable(truth, keep_m);
   const CellSet judge = Passable(truth, options.robot_radius_m);
   const CellSet plan = Passable(estimate, keep_m);
-  Tally tally;
+  PlanTally tally;
   for (const Errand& errand : DrawErrands(true_plan, allowed, options)) {
     Run(errand, true_plan, judge, plan, tally);
   }

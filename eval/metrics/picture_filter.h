@@ -29,6 +29,10 @@ struct Shades {
 };
 Picture PictureOfStates(const StateMap& map, const Shades& shades, int margin_cells);
 
+// The window of structural similarity, 11 x 11 (Wang et al. 2004).
+constexpr double kWindowSigmaPx = 1.5;
+constexpr int kWindowRadiusPx = 5;
+
 // Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; pixels nearer
 // than the radius to the edge keep what can be said of them from inside.
 Picture Smoothed(const Picture& picture, double sigma_px, int radius_px);

@@ -4,19 +4,15 @@
 #include "eval/metrics/picture_filter.h"
 
 namespace depthgrid {
-namespace {
-
-constexpr double kSigmaPx = 1.5;
-constexpr int kRadiusPx = 5;  // 11 x 11
-
-}  // namespace
 
 std::optional<double> Ssim(const StateMap& truth, const StateMap& estimate, const CellSet& scored) {
   constexpr double kC1 = 0.01 * 0.01;
   constexpr double kC2 = 0.03 * 0.03;
-  const Picture x = PictureOfStates(truth, {}, kRadiusPx);
-  const Picture y = PictureOfStates(estimate, {}, kRadiusPx);
-  const auto smoothed = [](const Picture& p) { return Smoothed(p, kSigmaPx, kRadiusPx); };
+  const Picture x = PictureOfStates(truth, {}, kWindowRadiusPx);
+  const Picture y = PictureOfStates(estimate, {}, kWindowRadiusPx);
+  const auto smoothed = [](const Picture& p) {
+    return Smoothed(p, kWindowSigmaPx, kWindowRadiusPx);
+  };
   const Picture mean_x = smoothed(x);
   const Picture mean_y = smoothed(y);
   const Picture xx = smoothed(Product(x, x));
@@ -27,8 +23,8 @@ std::optional<double> Ssim(const StateMap& truth, const StateMap& estimate, cons
   for (std::size_t i = 0; i < scored.members.size(); ++i) {
     if (scored.members[i] == 0) continue;
     const auto width = static_cast<std::size_t>(scored.geometry.width_cells);
-    const std::size_t at =
-        x.Index(static_cast<int>(i % width) + kRadiusPx, static_cast<int>(i / width) + kRadiusPx);
+    const std::size_t at = x.Index(static_cast<int>(i % width) + kWindowRadiusPx,
+                                   static_cast<int>(i / width) + kWindowRadiusPx);
     const double mx = mean_x.values[at];
     const double my = mean_y.values[at];
     const double covariance = xy.values[at] - mx * my;

@@ -2,6 +2,7 @@
 // taken over, and the error of each pose over time.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,11 @@ struct Drift {
   double rotation_rms_rad = 0.0;
   double translation_mean_m = 0.0;  // divided by `over`: drift a second, or a metre
 };
+
+// The times and lengths drift is told for; 10 s and 1 m are where relative motion errs by drift and
+// no longer by the jitter of single poses.
+constexpr std::array<double, 5> kDriftLagsS = {0.1, 1.0, 3.0, 10.0, 30.0};
+constexpr std::array<double, 4> kDriftLengthsM = {1.0, 2.0, 5.0, 10.0};
 
 // From every pose to the first that is at least `lag_s` later; its own lag may be longer by up to
 // half of it, else it does not count. Empty when no motion is long enough.

@@ -74,6 +74,15 @@ void ScoreRelative(const std::vector<PosePair>& pairs, TrajectoryScore& score) {
   score.rpe_metre_rotation = SummariseIfAny(by_metre.rotation_rad);
 }
 
+void ScoreDrift(const std::vector<PosePair>& pairs, TrajectoryScore& score) {
+  for (const double lag_s : kDriftLagsS) {
+    if (const auto drift = DriftOverTime(pairs, lag_s)) score.drift_over_time.push_back(*drift);
+  }
+  for (const double length_m : kDriftLengthsM) {
+    if (const auto drift = DriftOverPath(pairs, length_m)) score.drift_over_path.push_back(*drift);
+  }
+}
+
 }  // namespace
 
 std::vector<double> TranslationErrorsXy(const std::vector<PosePair>& pairs) {
@@ -142,6 +151,7 @@ std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
   score.reference_path_m = PathLength(pairs);
   ScoreAbsolute(pairs, score);
   ScoreRelative(pairs, score);
+  ScoreDrift(pairs, score);
   return score;
 }
 

@@ -8,6 +8,7 @@
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/association.h"
 #include "eval/metrics/statistics.h"
+#include "eval/metrics/trajectory_drift.h"
 
 namespace depthgrid {
 
@@ -55,6 +56,8 @@ struct TrajectoryScore {
   std::optional<Statistics> rpe_frame_rotation;     // radians
   std::optional<Statistics> rpe_metre_translation;  // metres, delta 1 m of path
   std::optional<Statistics> rpe_metre_rotation;
+  std::vector<Drift> drift_over_time;  // those of kDriftLagsS and
+  std::vector<Drift> drift_over_path;  // of kDriftLengthsM that the trajectory is long enough for
 };
 
 // Empty when no stamps are shared.

@@ -10,8 +10,6 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kSigmaPx = 1.5;
-constexpr int kRadiusPx = 5;
 constexpr int kApartPx = 2;  // a corner is the strongest within so many cells
 
 // Half the difference of the neighbours along x (dx = 1) or y (dy = 1); zero at the edge.
@@ -32,12 +30,12 @@ Picture Slope(const Picture& picture, int dx, int dy) {
 Picture CornerResponse(const StateMap& map) {
   constexpr double kHarrisK = 0.04;
   const Picture walls =
-      Smoothed(PictureOfStates(map, {0.0, 0.0, 1.0}, kRadiusPx + kApartPx), 1.0, 3);
+      Smoothed(PictureOfStates(map, {0.0, 0.0, 1.0}, kWindowRadiusPx + kApartPx), 1.0, 3);
   const Picture dx = Slope(walls, 1, 0);
   const Picture dy = Slope(walls, 0, 1);
-  const Picture xx = Smoothed(Product(dx, dx), kSigmaPx, kRadiusPx);
-  const Picture xy = Smoothed(Product(dx, dy), kSigmaPx, kRadiusPx);
-  const Picture yy = Smoothed(Product(dy, dy), kSigmaPx, kRadiusPx);
+  const Picture xx = Smoothed(Product(dx, dx), kWindowSigmaPx, kWindowRadiusPx);
+  const Picture xy = Smoothed(Product(dx, dy), kWindowSigmaPx, kWindowRadiusPx);
+  const Picture yy = Smoothed(Product(dy, dy), kWindowSigmaPx, kWindowRadiusPx);
   Picture response = xx;
   for (std::size_t i = 0; i < response.values.size(); ++i) {
     const double trace = xx.values[i] + yy.values[i];

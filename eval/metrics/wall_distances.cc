@@ -68,12 +68,6 @@ double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
   return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
 
-CellSet Both(const CellSet& a, const CellSet& b) {
-  CellSet both = a;
-  for (std::size_t i = 0; i < both.members.size(); ++i) both.members[i] &= b.members[i];
-  return both;
-}
-
 }  // namespace
 
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
@@ -102,7 +96,7 @@ WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& w
   constexpr double kBucketCells = 4.0;
   const double bucket_m = kBucketCells * resolution_m;
   const auto forth_m = NearestDistances(counted, true_points, bucket_m);
-  const auto back_m = NearestDistances(CentresOf(Both(true_walls, scored)), points, bucket_m);
+  const auto back_m = NearestDistances(CentresOf(InBoth(true_walls, scored)), points, bucket_m);
   if (!forth_m.empty()) score.estimate_to_truth_m = Summarise(forth_m).mean;
   if (!back_m.empty()) score.truth_to_estimate_m = Summarise(back_m).mean;
   if (forth_m.empty() || back_m.empty()) return score;

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExtension = ".scans";
-constexpr std::uint32_t kMagic = 0x31534744;  // "DGS1"
+constexpr const char* kScansExtension = ".scans";
+constexpr std::uint32_t kScansMagic = 0x31534744;  // "DGS1"
 constexpr int kNumbersABeam = 5;
 
 // Values of this machine's own layout, one behind the other: the key holds the instruction set.
@@ -88,7 +88,9 @@ ScanCache::ScanCache(const std::string& folder, std::uint64_t size_limit_bytes)
   if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
 }
 
-fs::path ScanCache::PathOf(const std::string& key) const { return folder_ / (key + kExtension); }
+fs::path ScanCache::PathOf(const std::string& key) const {
+  return folder_ / (key + kScansExtension);
+}
 
 std::optional<std::vector<FrameScans>> ScanCache::Load(const std::string& key) const {
   const fs::path path = PathOf(key);
@@ -96,7 +98,7 @@ std::optional<std::vector<FrameScans>> ScanCache::Load(const std::string& key) c
   try {
     const std::string bytes = ReadFile(path.string());
     ByteReader header(bytes);
-    if (header.Get<std::uint32_t>() != kMagic) return std::nullopt;
+    if (header.Get<std::uint32_t>() != kScansMagic) return std::nullopt;
     const auto checksum = header.Get<std::uint64_t>();
     const auto content = std::string_view(bytes).substr(sizeof(std::uint32_t) + sizeof checksum);
     if (ChecksumOf(content) != checksum) return std::nullopt;
@@ -126,7 +128,7 @@ void ScanCache::Store(const std::string& key, const std::vector<FrameScans>& sca
   }
   const std::string bytes = content.Take();
   ByteWriter file;
-  file.Put(kMagic);
+  file.Put(kScansMagic);
   file.Put(ChecksumOf(bytes));
   const std::string whole = file.Take() + bytes;
   if (whole.size() > size_limit_bytes_) return;
@@ -149,7 +151,7 @@ void ScanCache::MakeRoom(std::uint64_t bytes) const {
   for (auto it = fs::directory_iterator(folder_, error); !error && it != fs::directory_iterator();
        it.increment(error)) {
     std::error_code vanished;  // another program may be cleaning up
-    if (it->path().extension() != kExtension) continue;
+    if (it->path().extension() != kScansExtension) continue;
     Entry entry{it->last_write_time(vanished), it->path(), it->file_size(vanished)};
     if (vanished) continue;
     total += entry.bytes;

@@ -10,8 +10,10 @@
 namespace depthgrid {
 namespace {
 
-// Enough for the mapper to have something to match against; a third of a second to make.
-constexpr std::size_t kPilotFrames = 24;
+// What a run costs however short it is, and what each frame adds, told apart by two runs; a second
+// to make.
+constexpr std::size_t kShortFrames = 24;
+constexpr std::size_t kLongFrames = 60;
 
 double CpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -19,9 +21,20 @@ double CpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 struct PilotTimes {
   std::size_t frames = 0;  // of the whole run
   double scan_s = 0.0;     // a frame, made for all runs of a group
-  double map_s = 0.0;      // a frame
-  double score_s = 0.0;    // a run
+  double run_s = 0.0;      // mapping and scores of all frames
 };
+
+// Of a run that ends after so many frames.
+double RunS(const ScanSet& whole, std::size_t frames, const TruthRecord& truth) {
+  ScanSet set = whole;
+  set.slam.live.resize(frames);
+  set.scans.resize(frames);
+  const double before_s = CpuS();
+  ScannedSource source(set);
+  const MappingRun mapping = MapExperiment(source, set.options, *set.world, set.slam, {});
+  SweepMetrics(Score(mapping, truth, set.options.metrics));
+  return CpuS() - before_s;
+}
 
 PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepContext& context) {
   SweepInputs inputs(context.threads);
@@ -29,12 +42,12 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   const auto truth = inputs.TruthOf(set.options);
   PilotTimes times;
   times.frames = set.slam.live.size();
-  const std::size_t pilot = std::min(times.frames, kPilotFrames);
+  const std::size_t pilot = std::min(times.frames, kLongFrames);
   set.slam.live.resize(pilot);
   set.scans.resize(pilot);
   const SyntheticSensor sensor(*set.world, set.options, context.cache_folder);
   FrameScanner scanner(set.world->camera, set.options.mapper.scan);
-  double before_s = CpuS();
+  const double before_s = CpuS();
   for (std::size_t i = 0; i < pilot; ++i) {
     Frame frame;
     frame.depth = std::make_shared<const DepthImage>(sensor.Image(static_cast<int>(i)));
@@ -43,13 +56,15 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
     set.scans[i] = scanner.ScansOf(frame);
   }
   times.scan_s = (CpuS() - before_s) / static_cast<double>(pilot);
-  before_s = CpuS();
-  ScannedSource source(set);
-  const MappingRun mapping = MapExperiment(source, set.options, *set.world, set.slam, {});
-  times.map_s = (CpuS() - before_s) / static_cast<double>(pilot);
-  before_s = CpuS();
-  SweepMetrics(Score(mapping, *truth, set.options.metrics));
-  times.score_s = CpuS() - before_s;
+  const std::size_t few = std::min(pilot, kShortFrames);
+  RunS(set, few, *truth);  // the first pays for what later ones find ready
+  const double few_s = RunS(set, few, *truth);
+  times.run_s = few_s;
+  if (pilot > few) {
+    const double a_frame_s =
+        std::max(0.0, RunS(set, pilot, *truth) - few_s) / static_cast<double>(pilot - few);
+    times.run_s += a_frame_s * static_cast<double>(times.frames - few);
+  }
   return times;
 }
 
@@ -67,9 +82,8 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
     const PlannedRun& first = plan.runs[static_cast<std::size_t>(runs.front())];
     const PilotTimes times = TimesOfFirstFrames(plan.OptionsOf(first), context);
     const auto frames = static_cast<double>(times.frames);
-    const double run_s = frames * times.map_s + times.score_s;
     estimate.cpu_s =
-        estimate.scan_sets * frames * times.scan_s + static_cast<double>(runs.size()) * run_s;
+        estimate.scan_sets * frames * times.scan_s + static_cast<double>(runs.size()) * times.run_s;
   } catch (const std::exception&) {
     // The run itself will say what is wrong with it.
   }

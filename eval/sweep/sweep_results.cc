@@ -14,7 +14,7 @@ namespace depthgrid {
 namespace {
 
 // RFC 4180: quotes only where a comma, a quote or a line end asks for them.
-std::string Cell(const std::string& text) {
+std::string CsvCell(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted(1, '"');
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
@@ -22,7 +22,7 @@ std::string Cell(const std::string& text) {
   return quoted;
 }
 
-std::string Cell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 [[noreturn]] void FailFinding(const std::string& folder, const char* what, const std::string& name,
                               const std::vector<std::string>& names) {
@@ -65,19 +65,20 @@ SweepResults ReadSweep(const std::string& folder) { return SweepDatabase::Open(f
 
 std::string ResultsCsv(const SweepResults& results) {
   std::vector<std::string> cells = {"run", "point"};
-  for (const SweepParameter& parameter : results.parameters) cells.push_back(Cell(parameter.key));
+  for (const SweepParameter& parameter : results.parameters)
+    cells.push_back(CsvCell(parameter.key));
   cells.emplace_back("failed");
-  for (const SweepColumn& column : results.metrics) cells.push_back(Cell(column.name));
-  for (const SweepColumn& column : results.times) cells.push_back(Cell(column.name));
+  for (const SweepColumn& column : results.metrics) cells.push_back(CsvCell(column.name));
+  for (const SweepColumn& column : results.times) cells.push_back(CsvCell(column.name));
   std::string csv = fmt::format("{}\n", fmt::join(cells, ","));
   for (std::size_t row = 0; row < results.rows(); ++row) {
     cells = {fmt::format("{}", results.runs[row]), fmt::format("{}", results.points[row])};
     for (const SweepParameter& parameter : results.parameters) {
-      cells.push_back(Cell(parameter.texts[row]));
+      cells.push_back(CsvCell(parameter.texts[row]));
     }
     cells.emplace_back(results.failures[row].empty() ? "0" : "1");
-    for (const SweepColumn& column : results.metrics) cells.push_back(Cell(column.values[row]));
-    for (const SweepColumn& column : results.times) cells.push_back(Cell(column.values[row]));
+    for (const SweepColumn& column : results.metrics) cells.push_back(CsvCell(column.values[row]));
+    for (const SweepColumn& column : results.times) cells.push_back(CsvCell(column.values[row]));
     fmt::format_to(std::back_inserter(csv), "{}\n", fmt::join(cells, ","));
   }
   return csv;

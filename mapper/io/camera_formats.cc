@@ -191,7 +191,7 @@ bool StartsWithNumber(const std::string& text) {
   return !rows.empty() && ParseNumber(rows.front().fields.front()).has_value();
 }
 
-CameraDescription Parse(const std::string& text, const std::string& place) {
+CameraDescription ParseCamera(const std::string& text, const std::string& place) {
   if (text.empty()) throw InputError(place, "is empty, must describe a camera");
   if (StartsWithNumber(text)) return FromMatrix(text, place);
   if (text.find("Camera.fx:") != std::string::npos ||
@@ -209,7 +209,7 @@ CameraDescription Parse(const std::string& text, const std::string& place) {
 }  // namespace
 
 CameraDescription ParseCameraDescription(const std::string& text, const std::string& place) {
-  CameraDescription camera = Parse(text, place);
+  CameraDescription camera = ParseCamera(text, place);
   PinholeCamera& pinhole = camera.file.camera;
   if (pinhole.fy_px < 0.0) {
     camera.y_up = true;

@@ -36,7 +36,7 @@ void RequireUniqueKeys(const YAML::Node& node, const std::string& place) {
   }
 }
 
-YAML::Node Parse(const std::string& text, const std::string& place) {
+YAML::Node ParseYaml(const std::string& text, const std::string& place) {
   try {
     YAML::Node node = YAML::Load(text);
     return node;
@@ -90,7 +90,7 @@ Config Config::FromFile(const std::string& path) {
 Config Config::FromText(const std::string& text, const std::string& place) {
   auto tree = std::make_unique<Tree>();
   tree->place = place;
-  tree->root = Parse(text, place);
+  tree->root = ParseYaml(text, place);
   if (tree->root.IsNull()) throw InputError(place, "is empty");
   if (!tree->root.IsMap()) throw InputError(place, "must be a map of keys");
   RequireUniqueKeys(tree->root, place);
@@ -109,7 +109,7 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
                  const std::string& given_place) {
   const std::string place =
       given_place.empty() ? "--set " + key_path + "=" + yaml_value : given_place;
-  const YAML::Node value = Parse(yaml_value, place);
+  const YAML::Node value = ParseYaml(yaml_value, place);
   const auto parts = SplitPath(key_path);
   YAML::Node node = tree_->root;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 // As in the conversion to scans: less than 3 % apart is one surface up to 86 degrees of incidence.
-constexpr float kSameSurfaceShare = 0.03F;
+constexpr float kOneSurfaceShare = 0.03F;
 
 float DepthAt(const DepthImage& image, const Eigen::Vector2f& pixel) {
   const int nearest_u = static_cast<int>(std::lround(pixel.x()));
@@ -24,7 +24,7 @@ float DepthAt(const DepthImage& image, const Eigen::Vector2f& pixel) {
   const float z01 = image.At(u, v + 1), z11 = image.At(u + 1, v + 1);
   const float low = std::min({z00, z10, z01, z11});
   const float high = std::max({z00, z10, z01, z11});
-  if (!(low > 0.0F) || high - low > kSameSurfaceShare * low) {
+  if (!(low > 0.0F) || high - low > kOneSurfaceShare * low) {
     return image.At(nearest_u, nearest_v);
   }
   const float a = std::clamp(pixel.x() - static_cast<float>(u), 0.0F, 1.0F);

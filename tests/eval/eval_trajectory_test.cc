@@ -1,0 +1,66 @@
+// `eval trajectory` from its command line, on trajectories whose errors are known by hand.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// 12 s along x at 1 m/s; the estimate goes 2 % too far and, from 6 s on, 0.3 m to the side.
+class EvalTrajectory : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    std::string truth;
+    std::string estimate;
+    for (int i = 0; i <= 12; ++i) {
+      truth += fmt::format("{} {} 0 0 0 0 0 1\n", i, i);
+      estimate += fmt::format("{} {} {} 0 0 0 0 1\n", i, 1.02 * i, i >= 6 ? 0.3 : 0.0);
+    }
+    Write("truth.txt", truth);
+    Write("estimate.txt", estimate);
+  }
+};
+
+TEST_F(EvalTrajectory, JsonHasDriftAMetreAndASecond) {
+  const auto json =
+      nlohmann::json::parse(Program("eval trajectory truth.txt estimate.txt --json").out);
+  const auto& est = json["trajectory"]["est"];
+  // 11 of 12 motions of a metre err by 0.02, the one to the side by sqrt(0.02^2 + 0.3^2).
+  const double metre = (11 * 0.02 + std::hypot(0.02, 0.3)) / 12.0;
+  EXPECT_NEAR(est["drift_m_per_m"].get<double>(), metre, 1e-9);
+  // All three motions of 10 s contain the step.
+  EXPECT_NEAR(est["drift_m_per_s"].get<double>(), std::hypot(0.2, 0.3) / 10.0, 1e-9);
+  EXPECT_EQ(est["drift"]["over_time"].back()["s"], 10.0);
+  EXPECT_EQ(est["drift"]["over_path"].size(), 4U);
+}
+
+TEST_F(EvalTrajectory, WritesTheErrorsOverTime) {
+  Succeed("eval trajectory truth.txt estimate.txt --errors errors.csv");
+  const std::string csv = ReadFile(Path("errors.csv"));
+  EXPECT_THAT(csv,
+              StartsWith("stamp_s,error_xy_m,error_xyz_m,error_rotation_rad\n0.000000,0,0,0\n"));
+  EXPECT_THAT(csv, HasSubstr("\n5.000000,0.09999999999999964,0.09999999999999964,0\n"));
+}
+
+// evo takes the nearest stamp within 0.01 s, TUM's scripts within 0.02 s.
+TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
+  std::string late;
+  for (int i = 0; i <= 12; ++i) late += fmt::format("{} {} 0 0 0 0 0 1\n", i + 0.015, i);
+  Write("late.txt", late);
+  const Outcome evo = Program("eval trajectory truth.txt late.txt");
+  EXPECT_EQ(evo.exit_code, 2);
+  EXPECT_THAT(evo.err, HasSubstr("shares no stamp"));
+  EXPECT_THAT(Program("eval trajectory truth.txt late.txt --convention tum").out,
+              HasSubstr("13 of 13 reference and 13 estimated poses matched"));
+}
+
+}  // namespace
+}  // namespace depthgrid
