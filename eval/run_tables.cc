@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "eval/consistency.h"
 #include "eval/metrics/statistics.h"
 #include "mapper/core/level.h"
 
@@ -26,12 +27,12 @@ std::string ErrorCell(const std::optional<Pose3>& pose, const Pose3* truth) {
 }
 
 std::string MatchCells(const FrameReport& report) {
-  if (!report.match.found) return ",,,,,,,,";
+  if (!report.match.found) return ",,,,,,,,,,";
   const auto& g = report.gain;
   const auto& i = report.innovation;
-  return fmt::format("{},{},{},{},{},{},{},{},{}", g[0], g[1], g[2], i[0], i[1], i[2],
-                     report.match.score, report.match.iterations,
-                     report.innovation_rejected ? 1 : 0);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", g[0], g[1], g[2], i[0], i[1], i[2],
+                     report.innovation_chi2, DirectionsSeen(report.match), report.match.score,
+                     report.match.iterations, report.innovation_rejected ? 1 : 0);
 }
 
 std::string CovarianceCells(const Eigen::Matrix3d& c) {
@@ -41,7 +42,8 @@ std::string CovarianceCells(const Eigen::Matrix3d& c) {
 constexpr const char* kFrameColumns =
     "frame,stamp_s,slam_epoch,slam_x_m,slam_y_m,slam_yaw_rad,map_x_m,map_y_m,map_yaw_rad,"
     "gain_forward,gain_left,gain_yaw,innovation_forward_m,innovation_left_m,innovation_yaw_rad,"
-    "match_score,match_iterations,innovation_rejected,cov_xx,cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
+    "innovation_chi2,innovation_directions,match_score,match_iterations,innovation_rejected,cov_xx,"
+    "cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
     "cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,slam_error_m,map_error_m\n";
 
 }  // namespace

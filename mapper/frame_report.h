@@ -46,6 +46,7 @@ struct FrameReport {
   Pose2 map_from_slam;                   // the correction after this frame
   MatchResult match;
   std::array<double, 3> innovation = {};  // match against prediction in base axes: m, m, rad
+  double innovation_chi2 = 0.0;           // against the covariance of prediction and match together
   std::array<double, 3> gain = {};        // the share of the innovation taken, per base axis
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();       // of the estimate, base axes; zero if not tracked

@@ -270,6 +270,7 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
     report.gain[static_cast<std::size_t>(axis)] = fused.gain(axis, axis);
   }
   report.covariance = fused.covariance;
+  report.innovation_chi2 = fused.innovation_chi2;
   report.innovation_rejected = fused.rejected;
   return fused;
 }

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <future>
 
+#include "eval/consistency.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/io/carmen_line.h"
@@ -65,6 +66,7 @@ std::vector<Pose2> PerfectAtFirst(const std::vector<Pose2>& truth,
 
 struct Run {
   Scores prior, online, final;
+  std::vector<ChiSquareSample> nis, nees;
   double frame_us = 0, finish_us = 0, match_us = 0, insert_us = 0;
 };
 
@@ -76,6 +78,8 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
   IncrementalMapper mapper(options, std::nullopt, NowUs);
   Run run;
   std::vector<Pose2> online, final;
+  std::vector<FrameReport> reports;
+  std::vector<JudgedPose> judged;
   CarmenLogOptions log;
   for (std::size_t k = 0; k < truth.size(); ++k) {
     CarmenScan line;
@@ -91,6 +95,8 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
     const FrameReport report = mapper.AddFrame(frame);
     online.push_back(BaseOf(*report.map_from_camera));
+    judged.push_back({truth[k], online[k], report.covariance});
+    reports.push_back(report);
     run.frame_us += report.times.total_us;
     run.match_us += report.times.match_us;
     run.insert_us += report.times.insert_us;
@@ -112,10 +118,23 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
   run.match_us /= n;
   run.insert_us /= n;
   for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
+  run.nis = InnovationSamples(reports);
+  run.nees = RelativeMotionSamples(judged, kConsistencyFrames);
   run.prior = Score(truth, odometry);
   run.online = Score(truth, online);
   run.final = Score(truth, final);
   return run;
+}
+void PrintConsistency(const char* name, const std::vector<Run>& runs,
+                      std::vector<ChiSquareSample> Run::*samples) {
+  std::vector<ChiSquareSample> all;
+  for (const Run& run : runs) {
+    all.insert(all.end(), (run.*samples).begin(), (run.*samples).end());
+  }
+  const std::optional<Consistency> c = ConsistencyOf(all);
+  if (!c) return;
+  std::printf("  %-5s a degree %.2f (95 %%: %.2f to %.2f) within 95 %%: %.3f of %d\n", name,
+              c->mean, c->low, c->high, c->share_within_95, c->count);
 }
 }  // namespace
 
@@ -195,5 +214,7 @@ int main(int argc, char** argv) {
         "%.4f\n",
         shown.c_str(), mean.online.mean, mean.online.ate, won, mean.final.mean, mean.final.ate, wfn,
         wat, worse_on, worse_fn);
+    PrintConsistency("NIS", runs, &Run::nis);
+    PrintConsistency("NEES", runs, &Run::nees);
   }
 }

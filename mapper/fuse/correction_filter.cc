@@ -40,12 +40,22 @@ FusedPose CorrectionFilter::Fuse(const Pose2& slam_from_base, const Prediction& 
   MatchResult humble = match;
   humble.information /= options_.match_overconfidence;
   const Eigen::Vector3d innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
-  if (options_.gate_chi2 > 0.0 &&
-      InnovationChi2(prediction, humble.information, innovation) > options_.gate_chi2) {
+  const double chi2 = InnovationChi2(prediction, humble.information, innovation);
+  if (options_.gate_chi2 > 0.0 && chi2 > options_.gate_chi2) {
     unmatched.innovation = innovation;
+    unmatched.innovation_chi2 = chi2;
     unmatched.rejected = true;
     return unmatched;
   }
+  FusedPose fused = FuseByMode(slam_from_base, prediction, humble, outside_gain);
+  fused.innovation_chi2 = chi2;
+  return fused;
+}
+
+FusedPose CorrectionFilter::FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
+                                       const MatchResult& humble,
+                                       const Eigen::Vector3d& outside_gain) {
+  const Eigen::Vector3d innovation = InnovationOf(prediction.map_from_base, humble.map_from_base);
   switch (options_.mode) {
     case FusionMode::kLearned:
       last_match_ = humble;

@@ -45,6 +45,9 @@ class CorrectionFilter {
   };
 
   bool Learns() const;
+  // `humble`: the match, its information divided by `match_overconfidence`.
+  FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
+                       const MatchResult& humble, const Eigen::Vector3d& outside_gain);
   Eigen::Vector3d AdaptedGain(const Eigen::Vector3d& innovation);
 
   FusionOptions options_;

@@ -18,7 +18,7 @@ constexpr double kCaution = 1.4;
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
 // Times what the adjusted poses say, which is too small: they are drawn towards the prior.
-constexpr double kBoundSigmas = 2.0;
+constexpr double kBoundSigmas = 3.5;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/results.md).
 constexpr double kMostChi2 = 200.0;

@@ -15,6 +15,7 @@ struct FusedPose {
   Eigen::Vector3d innovation = Eigen::Vector3d::Zero();
   Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double innovation_chi2 = 0.0;
   bool rejected = false;  // by the gate
 };
 

@@ -70,11 +70,11 @@ TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   const MotionNoise before = bound.noise();
   bound.BoundMotion(kNearlyPerfect);
   EXPECT_GT(before.walk.maxCoeff() + before.bias.maxCoeff(), 1e-4);
-  EXPECT_LE(bound.noise().bias.x(), 2e-5);
-  EXPECT_LE(bound.noise().walk.x(), 2e-5 * std::sqrt(6.0));
+  EXPECT_LE(bound.noise().bias.x(), 3.5e-5);
+  EXPECT_LE(bound.noise().walk.x(), 3.5e-5 * std::sqrt(6.0));
   // And what is learnt later is bounded too.
   ErrorM(bound, slam, 100, 0.0, 2);
-  EXPECT_LE(bound.noise().walk.x(), 2e-5 * std::sqrt(6.0));
+  EXPECT_LE(bound.noise().walk.x(), 3.5e-5 * std::sqrt(6.0));
 }
 
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
@@ -83,7 +83,7 @@ TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   ErrorM(tracker, slam, 100, 0.0, 1);
   tracker.BoundMotion(kNearlyPerfect);
   ErrorM(tracker, slam, 200, 0.0, 2);
-  EXPECT_LE(tracker.noise().bias.x(), 2e-5);
+  EXPECT_LE(tracker.noise().bias.x(), 3.5e-5);
   // SLAM begins to drift by 3 mm a frame. Until that is certain the estimate drifts along.
   ErrorM(tracker, slam, 100, 0.003, 3);
   EXPECT_GT(tracker.noise().walk.x() + tracker.noise().bias.x(), 1e-3);
