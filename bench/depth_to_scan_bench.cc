@@ -83,15 +83,15 @@ void AddFrameScansCase(int width_px, const std::string& name, const ScanOptions&
 }
 
 [[maybe_unused]] const bool added = [] {
-  const ScanOptions full;
+  ScanOptions full;
+  full.floor = FloorSource::kPose;
   ScanOptions centre_row;
   centre_row.mode = ScanMode::kCentreRow;
   ScanOptions row_band;
   row_band.mode = ScanMode::kRowBand;
-  ScanOptions floor;
-  floor.floor = FloorSource::kImage;
+  const ScanOptions floor;  // the default
   for (const int width_px : {320, 640, 1280}) AddFrameScansCase(width_px, "both scans", full);
-  AddFrameScansCase(640, "both scans, floor seen", floor);
+  AddFrameScansCase(640, "both scans, floor followed", floor);
   AddScanCase({"obstacles", full});
   AddScanCase({"obstacles, no noise", full, 640, 0.0, true});
   AddScanCase({"obstacles, 1 % missing", full, 640, 0.01});
