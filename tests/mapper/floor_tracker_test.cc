@@ -66,6 +66,13 @@ TEST(FloorTracker, WhereNoFloorIsSeenThePoseCounts) {
     EXPECT_EQ(stand.height_m, kHeightM) << pitch_deg;
     EXPECT_NEAR(TiltErrorDeg(stand, pose), 0.0, 1e-5) << pitch_deg;
   }
+  // A wall that ends at the image's edge, 17 cm above the floor.
+  AnalyticRoom near_wall;
+  near_wall.walls = {{-3.0, -6.0, 0.0}, {2.5, 6.0, 2.5}};
+  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(-5.0), 0.0);
+  const CameraStand stand =
+      FloorTracker(camera, {}).Follow(near_wall.Render(camera, pose), pose, 0);
+  EXPECT_EQ(stand.height_m, kHeightM);
 }
 
 TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
