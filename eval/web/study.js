@@ -8,22 +8,30 @@ const casesIn = (room) => STUDY.cases.filter((c) => c.scene === room.scene);
 const PATH_COLOURS = { truth: "#009e73", input: "#d98c00", output: "#0072b2" };
 const seen = (map) => map?.observable ?? map?.all;
 
-function errorText(score) {
-  if (!score) return "–";
-  return `${fixed(score.mean_euclidean_m, 3)} (${fixed(score.ate_rmse_se2_m, 3)})`;
-}
+// Without alignment, and aligned.
+const errorCells = (score) => [fixed(score?.mean_euclidean_m, 3), fixed(score?.ate_rmse_se2_m, 3)];
 const linkTo = (c, text) => make("a", { href: `${c.name}/report.html` }, text);
 
+// Rooms above what the errors are of, above how they are taken.
+function tableHead() {
+  const group = (text, columns, rows = 1) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, rowspan: rows }, text);
+  const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5));
+  const what = STUDY.rooms.flatMap(() => [group("paper", 1), group("input", 2), group("output", 2)]);
+  const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned RMSE", "mean", "aligned RMSE"].map((text) => group(text, 1)));
+  return make("thead", {}, make("tr", {}, group("Poses from", 1, 3), ...rooms), make("tr", {}, ...what), make("tr", {}, ...how));
+}
+
 function initTable() {
-  const head = ["Poses from"];
-  for (const room of STUDY.rooms) head.push(`${nameOf(room.scene)}: published`, "input", "output");
   const sources = [...new Set(STUDY.cases.map((c) => c.pose_source))];
   const rows = sources.map((source) => [nameOf(source), ...STUDY.rooms.flatMap((room) => {
     const c = casesIn(room).find((one) => one.pose_source === source);
-    if (!c) return ["–", "–", "–"];
-    return [fixed(c.metrics.published_mean_m, 3), errorText(c.metrics.trajectory.slam), linkTo(c, errorText(c.metrics.trajectory.est))];
+    if (!c) return Array(5).fill("–");
+    const output = errorCells(c.metrics.trajectory.est).map((text) => linkTo(c, text));
+    return [fixed(c.metrics.published_mean_m, 3), ...errorCells(c.metrics.trajectory.slam), ...output];
   })]);
-  byId("table").append(tableOf(head, rows));
+  const table = tableOf([], rows);
+  table.tHead.replaceWith(tableHead());
+  byId("table").append(table);
   byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
 }
 
