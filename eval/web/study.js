@@ -17,7 +17,7 @@ function tableHead() {
   const group = (text, columns, rows = 1) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, rowspan: rows }, text);
   const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5));
   const what = STUDY.rooms.flatMap(() => [group("paper", 1), group("input", 2), group("output", 2)]);
-  const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned RMSE", "mean", "aligned RMSE"].map((text) => group(text, 1)));
+  const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned", "mean", "aligned"].map((text) => group(text, 1)));
   return make("thead", {}, make("tr", {}, group("Poses from", 1, 3), ...rooms), make("tr", {}, ...what), make("tr", {}, ...how));
 }
 
