@@ -66,9 +66,27 @@ Progress ProgressBar::AsProgress() {
 
 void SayReport(const std::string& folder) { fmt::print("look at {}/report.html\n", folder); }
 
+std::string Printable(std::string text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    // Bytes that the first one announces; those that follow are 10xxxxxx.
+    const unsigned char first = byte(i);
+    const std::size_t length = first < 0x80                     ? 1
+                               : first >= 0xc2 && first < 0xe0  ? 2
+                               : first >= 0xe0 && first < 0xf0  ? 3
+                               : first >= 0xf0 && first <= 0xf4 ? 4
+                                                                : 0;
+    bool sound = length > 0 && i + length <= text.size() && first >= 0x20 && first != 0x7f;
+    for (std::size_t k = 1; sound && k < length; ++k) sound = (byte(i + k) & 0xc0) == 0x80;
+    if (!sound) text[i] = '?';
+    i += sound ? length : 1;
+  }
+  return text;
+}
+
 void Warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
-    fmt::print(stderr, "depthgrid: warning: {}\n", warning);
+    fmt::print(stderr, "depthgrid: warning: {}\n", Printable(warning));
   }
 }
 

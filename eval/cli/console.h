@@ -42,6 +42,10 @@ class ProgressBar {
 
 // Where the page of what was done lies.
 void SayReport(const std::string& folder);
+// One line whatever it quotes of a damaged file: control characters and bytes that are no UTF-8
+// become '?'.
+std::string Printable(std::string text);
+
 void Warn(const std::vector<std::string>& warnings);
 
 // Ctrl-C makes the next progress report throw, so that half-written output is removed.

@@ -67,6 +67,11 @@ TEST_F(ProgramErrors, MissingAndEmptyFiles) {
   ExpectRefusal("regrid . --resolution 0.05", {"run.yaml"});
 }
 
+TEST_F(ProgramErrors, QuotedBytesOfADamagedFileStayReadable) {
+  Write("noise.txt", "\x07\x1b\xb7\xff 2 3 4 5 6 7 8\n");
+  ExpectRefusal("eval trajectory noise.txt noise.txt", {"noise.txt:1: '?\?\?\?' is not a number"});
+}
+
 TEST_F(ProgramErrors, ScenesThatCannotBeUsed) {
   Write("empty_scene.yaml", "name: void\nshapes: []\n");
   ExpectRefusal("render ./empty_scene.yaml -o out", {"empty_scene.yaml"});
