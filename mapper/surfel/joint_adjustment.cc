@@ -42,8 +42,8 @@ std::vector<int> ChainEnvelope(std::size_t groups, const std::vector<GroupLink>&
   return first;
 }
 
-// Factors that cost more in order of time, in multiplications, are taken sparse: a tenth of a second.
-// Below, rows without gaps are faster than any order.
+// Factors that cost more in order of time, in multiplications, are taken sparse: a tenth of a
+// second. Below, rows without gaps are faster than any order.
 constexpr double kCostOfSparse = 3e8;
 
 std::unique_ptr<PoseMatrix> MatrixOf(const std::vector<int>& first_group) {
