@@ -138,7 +138,8 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   landmarks.ExtendEnvelope(first);
   const auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
-  landmarks.AddTo(map_from_group, options.huber_sigmas, *h, g);
+  const double factor = options.judge_misfit ? landmarks.VarianceFactor(map_from_group) : 1.0;
+  landmarks.AddTo(map_from_group, {options.huber_sigmas, factor}, *h, g);
   for (const GroupLink& link : MotionLinks(problem, motion_sigma)) {
     AddLink(link, map_from_group, *h, g);
   }
@@ -192,6 +193,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
   v.Number("landmark_m", landmark_m, {0.005, 1.0}, "length of a landmark");
   v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between normals of one landmark, at most");
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+  v.Flag("judge_misfit", judge_misfit,
+         "whether landmarks that groups see at different places are believed less");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
   v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
            "a loop farther from the adjusted poses is taken out");

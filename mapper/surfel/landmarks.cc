@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "mapper/surfel/misfit.h"
 
 namespace depthgrid {
 Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
@@ -33,20 +36,48 @@ void Landmarks::ExtendEnvelope(std::vector<int>& first) const {
 }
 
 Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
-                                double huber_sigmas) const {
+                                const SightingTrust& trust) const {
   const Surfel& landmark = store_[sighting.landmark];
   const Surfel& local = *sighting.surfel;
   Row row;
   row.group = sighting.group;
   row.error_m = OffsetFrom(landmark, motion * local.point_m);
-  const double sigmas = std::abs(row.error_m) * std::sqrt(local.information);
-  row.weight = local.information * std::min(1.0, huber_sigmas / sigmas);
+  const double information = local.information / trust.variance_factor;
+  const double sigmas = std::abs(row.error_m) * std::sqrt(information);
+  row.weight = information * std::min(1.0, trust.huber_sigmas / sigmas);
   row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
   return row;
 }
 
-void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, PoseMatrix& h,
-                      Eigen::VectorXd& g) const {
+double Landmarks::VarianceFactor(const std::vector<Pose2>& map_from_group) const {
+  std::vector<Motion2> motions;
+  for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
+  const SightingTrust as_claimed{std::numeric_limits<double>::infinity(), 1.0};
+  Misfit misfit;
+  std::vector<Row> rows;
+  for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
+    if (SeenByOneGroup(landmark)) continue;
+    rows.clear();
+    double weights = 0.0;
+    double weighted_error = 0.0;
+    for (std::size_t i = begin_[landmark]; i < begin_[landmark + 1]; ++i) {
+      const auto group = static_cast<std::size_t>(sightings_[i].group);
+      rows.push_back(RowOf(sightings_[i], motions[group], as_claimed));
+      weights += rows.back().weight;
+      weighted_error += rows.back().weight * rows.back().error_m;
+    }
+    for (const Row& row : rows) {
+      // The mean has the sighting in it, so less than the sighting's variance is left.
+      const double variance = 1.0 / row.weight - 1.0 / weights;
+      if (variance > 0.0)
+        misfit.Add((row.error_m - weighted_error / weights) / std::sqrt(variance));
+    }
+  }
+  return misfit.VarianceFactor();
+}
+
+void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTrust& trust,
+                      PoseMatrix& h, Eigen::VectorXd& g) const {
   std::vector<Motion2> motions;
   for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
   std::vector<Row> rows;
@@ -54,13 +85,13 @@ void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, double huber_sig
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
     const std::size_t begin = begin_[landmark];
     const std::size_t end = begin_[landmark + 1];
-    if (sightings_[begin].group == sightings_[end - 1].group) continue;  // says nothing of poses
+    if (SeenByOneGroup(landmark)) continue;  // says nothing of poses
     rows.clear();
     double weights = 0.0;
     double weighted_error = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const auto group = static_cast<std::size_t>(sightings_[i].group);
-      rows.push_back(RowOf(sightings_[i], motions[group], huber_sigmas));
+      rows.push_back(RowOf(sightings_[i], motions[group], trust));
       weights += rows.back().weight;
       weighted_error += rows.back().weight * rows.back().error_m;
     }

@@ -16,6 +16,13 @@ struct Sighting {
   const Surfel* surfel = nullptr;  // in the group's axes
 };
 
+// How sightings count: larger residuals than so many sigmas linearly, variances so many times what
+// the surfels claim.
+struct SightingTrust {
+  double huber_sigmas = 2.5;
+  double variance_factor = 1.0;
+};
+
 class Landmarks {
  public:
   // Merges what the groups saw, placed at the given poses.
@@ -25,10 +32,12 @@ class Landmarks {
   const SurfelStore& store() const { return store_; }
   // Lowers first[group] to the earliest group that shares a landmark with it.
   void ExtendEnvelope(std::vector<int>& first) const;
+  // Of the offsets of sightings from their landmarks, at these poses.
+  double VarianceFactor(const std::vector<Pose2>& map_from_group) const;
   // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
   // offset along its normal is an unknown too; it is eliminated (Schur complement), which couples
   // all groups that saw the landmark.
-  void AddTo(const std::vector<Pose2>& map_from_group, double huber_sigmas, PoseMatrix& h,
+  void AddTo(const std::vector<Pose2>& map_from_group, const SightingTrust& trust, PoseMatrix& h,
              Eigen::VectorXd& g) const;
 
  private:
@@ -38,7 +47,10 @@ class Landmarks {
     double error_m = 0.0;
     Eigen::Vector3d jacobian;
   };
-  Row RowOf(const Sighting& sighting, const Motion2& motion, double huber_sigmas) const;
+  bool SeenByOneGroup(std::size_t landmark) const {
+    return sightings_[begin_[landmark]].group == sightings_[begin_[landmark + 1] - 1].group;
+  }
+  Row RowOf(const Sighting& sighting, const Motion2& motion, const SightingTrust& trust) const;
 
   SurfelStore store_;
   std::vector<Sighting> sightings_;  // by landmark, then by group

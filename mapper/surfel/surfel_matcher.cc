@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/surfel/misfit.h"
+
 namespace depthgrid {
 namespace {
 
@@ -49,6 +51,8 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("along_m", along_m, {0.01, 10.0}, "farther along the wall nothing is associated");
   v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between associated normals, at most");
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+  v.Flag("judge_misfit", judge_misfit,
+         "whether a match whose surfels fit worse than their noise explains is believed less");
   v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
   v.Number("debias", debias, {0.0, 100.0},
            "a direction with less than this times the information that noisy normals feign is "
@@ -61,6 +65,7 @@ SurfelMatcher::Evaluation SurfelMatcher::Evaluate(const std::vector<Surfel>& pie
                                                   const Pose2& map_from_base) const {
   Evaluation evaluation;
   NormalEquations& equations = evaluation.equations;
+  Misfit misfit;
   const Motion2 motion(map_from_base);
   const double min_cosine = std::cos(RadFromDeg(options_.max_angle_deg));
   const double floor_rad2 = options_.normal_floor_rad * options_.normal_floor_rad;
@@ -84,8 +89,15 @@ SurfelMatcher::Evaluation SurfelMatcher::Evaluate(const std::vector<Surfel>& pie
     equations.h += weight * row * row.transpose();
     equations.g -= weight * error_m * row;
     equations.false_h += weight * normal_variance * tangent_row * tangent_row.transpose();
+    misfit.Add(sigmas);
     ++evaluation.used;
     evaluation.explained += sigmas < kExplainedSigmas ? 1 : 0;
+  }
+  if (options_.judge_misfit) {
+    const double factor = misfit.VarianceFactor();
+    equations.h /= factor;
+    equations.g /= factor;
+    equations.false_h /= factor;
   }
   return evaluation;
 }

@@ -15,6 +15,7 @@ struct SurfelMatchOptions {
   double along_m = 0.075;          // nor farther along the wall: the map's surfels are 5 cm apart
   double max_angle_deg = 45.0;     // nor with normals farther apart
   double huber_sigmas = 2.5;       // larger residuals count linearly
+  bool judge_misfit = true;        // information over the Misfit of the matched surfels
   double normal_floor_rad = 0.01;  // no normal is known better
   double debias = 3.0;             // threshold of Debiased()
   int max_iterations = 10;

@@ -1,0 +1,40 @@
+// What the sensor's errors are really like, told by how badly surfels fit that should lie on each
+// other (docs/math.md, "Errors that beams share").
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace depthgrid {
+
+// Collects residuals in units of the sigma they were expected to have; no memory of its own grows.
+class Misfit {
+ public:
+  void Add(double sigmas) {
+    const auto bin = static_cast<std::size_t>(std::abs(sigmas) * kBinsPerSigma);
+    ++counts_[std::min(bin, kBins - 1)];
+    ++count_;
+  }
+  // Variance over expected variance, by the median, which wrong associations do not move; at least
+  // 1: where things fit better than expected, nothing is believed more.
+  double VarianceFactor() const {
+    constexpr double kSigmaOfMedian = 1.4826;  // of |residual|, normal distribution
+    std::uint32_t below = 0;
+    std::size_t bin = 0;
+    while (bin + 1 < kBins && 2 * (below + counts_[bin]) < count_) below += counts_[bin++];
+    const double sigma = kSigmaOfMedian * (static_cast<double>(bin) + 0.5) / kBinsPerSigma;
+    return std::max(1.0, sigma * sigma);
+  }
+
+ private:
+  static constexpr double kBinsPerSigma = 10.0;
+  static constexpr std::size_t kBins = 4000;  // 400 sigma
+
+  std::array<std::uint32_t, kBins> counts_{};
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace depthgrid
