@@ -20,6 +20,12 @@ const StampedPose& Nearest(const Trajectory& poses, double stamp_s) {
 
 }  // namespace
 
+PosePair PairOf(StampedPose reference, StampedPose estimate) {
+  reference.world_from_camera.rotation.normalize();
+  estimate.world_from_camera.rotation.normalize();
+  return {reference, estimate};
+}
+
 std::vector<PosePair> Associate(const Trajectory& reference, const Trajectory& estimate,
                                 double max_difference_s) {
   std::vector<PosePair> pairs;
@@ -30,7 +36,7 @@ std::vector<PosePair> Associate(const Trajectory& reference, const Trajectory& e
   for (const StampedPose& pose : shorter) {
     const StampedPose& nearest = Nearest(longer, pose.stamp_s);
     if (!(std::abs(nearest.stamp_s - pose.stamp_s) <= max_difference_s)) continue;
-    pairs.push_back(reference_is_longer ? PosePair{nearest, pose} : PosePair{pose, nearest});
+    pairs.push_back(reference_is_longer ? PairOf(nearest, pose) : PairOf(pose, nearest));
   }
   return pairs;
 }

@@ -16,6 +16,10 @@ struct PosePair {
   StampedPose estimate;
 };
 
+// With rotations of unit length: files print nine digits, and what is left out would reach relative
+// motions as 1e-8 m.
+PosePair PairOf(StampedPose reference, StampedPose estimate);
+
 // For each pose of the shorter trajectory (the estimate, when both are as long) the pose of the
 // other with the nearest stamp, the first on ties, if it is within the limit; no interpolation. A
 // pose of the longer trajectory may serve twice, as in evo.

@@ -32,7 +32,7 @@ std::vector<PosePair> AssociateAsTum(const Trajectory& reference, const Trajecto
   std::vector<PosePair> pairs;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     if (partner[i] < 0) continue;
-    pairs.push_back({reference[i], estimate[static_cast<std::size_t>(partner[i])]});
+    pairs.push_back(PairOf(reference[i], estimate[static_cast<std::size_t>(partner[i])]));
   }
   return pairs;
 }
