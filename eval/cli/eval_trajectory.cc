@@ -89,8 +89,10 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
 }  // namespace
 
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
-  const Trajectory reference = ReadTrajectory(arguments.reference);
-  const Trajectory estimate = ReadTrajectory(arguments.estimate);
+  std::vector<std::string> warnings;
+  const Trajectory reference = ReadTrajectory(arguments.reference, warnings);
+  const Trajectory estimate = ReadTrajectory(arguments.estimate, warnings);
+  Warn(warnings);
   const double limit_s = LimitOf(arguments);
   const std::vector<PosePair> pairs = arguments.convention == "tum"
                                           ? AssociateAsTum(reference, estimate, limit_s)

@@ -71,7 +71,7 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
     if (laser && !file.empty()) throw InputError(file, "a laser log brings its own poses");
   }
   if (laser && !arguments.loops.empty()) {
-    return ReadLoops(arguments.loops, SequenceStamps(arguments.input, options),
+    return ReadLoops(arguments.loops, SequenceFrames(arguments.input, options),
                      options.recording.max_stamp_difference_s);
   }
   if (arguments.poses.empty()) {
@@ -80,10 +80,11 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
     }
     return {};
   }
-  const std::vector<double> stamps_s = SequenceStamps(arguments.input, options);
   return ReadSlamFiles(
-      {arguments.poses, arguments.final_poses, arguments.loops}, stamps_s,
-      {options.recording.max_stamp_difference_s, options.recording.interpolate_poses});
+      {arguments.poses, arguments.final_poses, arguments.loops},
+      SequenceFrames(arguments.input, options),
+      {options.recording.max_stamp_difference_s, options.recording.interpolate_poses,
+       options.recording.max_interpolation_gap_s});
 }
 
 Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSettings& settings,

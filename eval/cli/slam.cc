@@ -1,4 +1,5 @@
 #include "eval/cli/commands.h"
+#include "eval/cli/console.h"
 #include "eval/output_folder.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -20,7 +21,9 @@ Trajectory TrueFrames(const std::string& folder) {
   for (const StampedPose& pose : truth) stamps_s.push_back(pose.stamp_s);
   const RecordingOptions options;
   Trajectory frames;
-  for (const RecordedImage& image : ListTumFolder(folder, options).images) {
+  const Recording recording = ListTumFolder(folder, options);
+  Warn(recording.warnings);
+  for (const RecordedImage& image : recording.images) {
     const auto nearest = NearestStamp(stamps_s, image.stamp_s, options.max_stamp_difference_s);
     if (!nearest) {
       throw InputError(truth_path, "has no pose for the image at " + std::to_string(image.stamp_s));

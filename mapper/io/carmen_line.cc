@@ -157,7 +157,7 @@ CarmenLine ParseCarmenLine(std::string_view line) {
   if (name == "FLASER") return ParseFlaser(tokens);
   if (name == "ROBOTLASER1") return ParseRobotLaser(tokens);
   if (IsMessageName(name)) return CarmenOther{};
-  return CarmenDamage{"a line that begins with no message name"};
+  return CarmenDamage{"a line that begins with no message name", false};
 }
 
 std::string RobotLaserLine(const CarmenScan& scan, double accuracy) {

@@ -24,6 +24,7 @@ struct CarmenOther {};
 // A damaged line, and what is wrong with it.
 struct CarmenDamage {
   std::string reason;
+  bool is_scan = true;  // it begins as a scan
 };
 
 using CarmenLine = std::variant<CarmenScan, CarmenOther, CarmenDamage>;

@@ -70,14 +70,17 @@ class CarmenLogSource : public FrameSource {
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     Rewind();
-    while (NextScan()) ++frame_count_;
+    while (const auto scan = NextScan()) {
+      names_.stamps_s.push_back(scan->stamp_s);
+      names_.numbers.push_back(lines_of_scans_ - 1);
+    }
     const int lines = line_number_;
     for (const auto& [reason, seen] : problems_) {
       warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
                                           : fmt::format("{}:{}: {} ({} such lines)", path_,
                                                         seen.first_line, reason, seen.count));
     }
-    if (frame_count_ == 0) {
+    if (names_.stamps_s.empty()) {
       throw InputError(path_,
                        fmt::format("no usable FLASER or ROBOTLASER1 line among {} lines{}", lines,
                                    warnings_.empty() ? "" : "; first: " + warnings_[0]));
@@ -99,8 +102,9 @@ class CarmenLogSource : public FrameSource {
     return frame;
   }
   std::optional<PinholeCamera> Camera() const override { return std::nullopt; }
-  int FrameCount() const override { return frame_count_; }
+  int FrameCount() const override { return static_cast<int>(names_.stamps_s.size()); }
   std::vector<std::string> Warnings() const override { return warnings_; }
+  const FrameNames& Names() const { return names_; }
 
  private:
   struct Problem {
@@ -112,6 +116,7 @@ class CarmenLogSource : public FrameSource {
     file_ = std::ifstream(path_, std::ios::binary);
     if (!file_) throw InputError(path_, "cannot be read");
     line_number_ = 0;
+    lines_of_scans_ = 0;
     next_index_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
   }
@@ -144,15 +149,20 @@ class CarmenLogSource : public FrameSource {
   std::optional<CarmenScan> NextScan() {
     while (ReadLine()) {
       CarmenLine line = ParseCarmenLine({line_.data(), line_size_});
-      if (const auto* damage = std::get_if<CarmenDamage>(&line)) Note(damage->reason);
+      if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
+        Note(damage->reason);
+        lines_of_scans_ += damage->is_scan ? 1 : 0;
+      }
       auto* scan = std::get_if<CarmenScan>(&line);
       if (scan == nullptr) continue;
+      if (scan->stamp_s != last_stamp_s_) ++lines_of_scans_;
       // Also what drops the second of two messages written for one scan.
       if (scan->stamp_s <= last_stamp_s_) {
         Note("a scan that is not later than the one before it");
         continue;
       }
       last_stamp_s_ = scan->stamp_s;
+      if (file_.eof()) Note("the last line has no line end; it is used, but may be cut");
       return std::move(*scan);
     }
     return std::nullopt;
@@ -166,7 +176,8 @@ class CarmenLogSource : public FrameSource {
   std::size_t line_size_ = 0;
   int line_number_ = 0;
   int next_index_ = 0;
-  int frame_count_ = 0;
+  std::int64_t lines_of_scans_ = 0;
+  FrameNames names_;
   double last_stamp_s_ = 0.0;
   std::map<std::string, Problem> problems_;
   std::vector<std::string> warnings_;
@@ -195,6 +206,10 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
   }
   NarrowGaps(scan, options.no_return_gap_m);
   return scan;
+}
+
+FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options) {
+  return CarmenLogSource(path, options, {}).Names();
 }
 
 std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path, const CarmenLogOptions& options,

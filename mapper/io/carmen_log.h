@@ -10,6 +10,7 @@
 #include "mapper/core/frame.h"
 #include "mapper/core/options.h"
 #include "mapper/io/carmen_line.h"
+#include "mapper/io/frame_names.h"
 
 namespace depthgrid {
 
@@ -29,6 +30,10 @@ struct CarmenLogOptions {
 
   void Visit(OptionsVisitor& v);
 };
+
+// The scans' stamps, and their numbers among the lines that are scans: damaged ones count, those
+// with the stamp of the scan before do not.
+FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {});
 
 // What a line's readings mean.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMaxNormError = 1e-3;
 constexpr std::size_t kCsvColumns = 14;
+constexpr std::size_t kCsvColumnsWithStamps = 17;
 
 // The fields of one line, empty ones included; SplitRows has no empty fields.
 std::vector<std::string_view> SplitAtCommas(std::string_view line) {
@@ -42,31 +43,36 @@ void RequirePossible(const LoopClosure& loop, const std::string& place) {
 // Fields of one row of loops.csv, each error naming the line.
 class CsvRow {
  public:
-  CsvRow(std::string_view row, const std::string& place, std::size_t frame_count)
-      : fields_(SplitAtCommas(row)), place_(place), frame_count_(frame_count) {
-    if (fields_.size() != kCsvColumns) {
-      throw InputError(place_,
-                       fmt::format("has {} columns, must have {}", fields_.size(), kCsvColumns));
+  CsvRow(std::string_view row, const std::string& place)
+      : fields_(SplitAtCommas(row)), place_(place) {
+    if (fields_.size() != kCsvColumns && fields_.size() != kCsvColumnsWithStamps) {
+      throw InputError(place_, fmt::format("has {} columns, must have {} or {}", fields_.size(),
+                                           kCsvColumns, kCsvColumnsWithStamps));
     }
   }
-  SlamEvent Parse() const {
+  CsvEvent Parse() const {
     if (fields_[0] != "loop" && fields_[0] != "relocalisation") {
       throw InputError(place_,
                        fmt::format("kind is '{}', must be loop or relocalisation", fields_[0]));
     }
-    SlamEvent event;
-    event.frame = Frame(1);
-    event.epoch = Whole(2);
-    if (fields_[0] == "loop") event.loop = Loop(event.frame);
-    return event;
+    CsvEvent row;
+    row.event.frame = Whole(1);
+    row.event.epoch = Whole(2);
+    const bool is_loop = fields_[0] == "loop";
+    if (is_loop) row.event.loop = Loop(row.event.frame);
+    if (fields_.size() == kCsvColumns) return row;
+    row.stamp_s = Value(14);
+    if (is_loop) row.first_stamp_s = Value(15);
+    if (is_loop) row.second_stamp_s = Value(16);
+    return row;
   }
 
  private:
   LoopClosure Loop(int reported_at_frame) const {
     LoopClosure loop;
     loop.reported_at_frame = reported_at_frame;
-    loop.first_frame = Frame(3);
-    loop.second_frame = Frame(4);
+    loop.first_frame = Whole(3);
+    loop.second_frame = Whole(4);
     loop.first_from_second = {Eigen::Quaterniond(Value(11), Value(8), Value(9), Value(10)),
                               {Value(5), Value(6), Value(7)}};
     loop.sigma_translation_m = Value(12);
@@ -90,18 +96,9 @@ class CsvRow {
     }
     return static_cast<int>(value);
   }
-  int Frame(std::size_t column) const {
-    const int frame = Whole(column);
-    if (static_cast<std::size_t>(frame) >= frame_count_) {
-      throw InputError(
-          place_, fmt::format("frame {} is not among the {} input frames", frame, frame_count_));
-    }
-    return frame;
-  }
 
   std::vector<std::string_view> fields_;
   const std::string& place_;
-  std::size_t frame_count_;
 };
 
 double FieldNumber(const TextRow& row, std::size_t field, const std::string& path) {
@@ -140,8 +137,8 @@ std::optional<int> FrameFinder::At(double stamp_s) const {
   return nearest ? std::optional(static_cast<int>(*nearest)) : std::nullopt;
 }
 
-SlamEvent ParseCsvEvent(std::string_view row, const std::string& place, std::size_t frame_count) {
-  return CsvRow(row, place, frame_count).Parse();
+CsvEvent ParseCsvEvent(std::string_view row, const std::string& place) {
+  return CsvRow(row, place).Parse();
 }
 
 FoundEvent ParseOrbEvent(const TextRow& row, const std::string& path, const FrameFinder& frames) {

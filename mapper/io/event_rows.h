@@ -22,8 +22,15 @@ class FrameFinder {
   double max_difference_s_;
 };
 
-// A row of loops.csv (mapper/io/slam_files.h lists the columns), its place for errors.
-SlamEvent ParseCsvEvent(std::string_view row, const std::string& place, std::size_t frame_count);
+// A row of loops.csv (mapper/io/slam_files.h lists the columns), with the frames as it names them.
+struct CsvEvent {
+  SlamEvent event;  // frames by their numbers in the recording
+  // Stamps of the event's frame and of the loop's two, where the row has them.
+  std::optional<double> stamp_s;
+  std::optional<double> first_stamp_s;
+  std::optional<double> second_stamp_s;
+};
+CsvEvent ParseCsvEvent(std::string_view row, const std::string& place);
 
 // A line of ORB-SLAM2's events: any number of events (GBA_DONE is none). Empty and `missing` set
 // when it is of a frame that is not there.

@@ -7,6 +7,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/numbered_images.h"
 #include "mapper/io/png.h"
@@ -83,17 +84,11 @@ std::string CameraPathOf(const fs::path& folder) {
 std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& images,
                                           const fs::path& folder, Recording& recording) {
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
-    auto poses = ReadMatrixPoses(list->string());
-    if (poses.size() != images.size()) {
-      recording.warnings.push_back(fmt::format("{}: {} poses for {} images, paired from the first",
-                                               list->string(), poses.size(), images.size()));
-    }
-    poses.resize(images.size());
-    return poses;
+    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording, 0.0),
+                       list->string(), recording.warnings);
   }
   std::vector<std::optional<Pose3>> poses;
-  int damaged = 0;
-  std::string first;
+  Tally damaged;
   for (const NumberedImage& image : images) {
     poses.emplace_back();
     const auto path = PoseFileOf(image, folder);
@@ -101,13 +96,10 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
     try {
       poses.back() = ReadMatrixPose(path->string());
     } catch (const InputError& error) {
-      if (damaged++ == 0) first = error.what();
+      damaged.Add(error.what());
     }
   }
-  if (damaged > 0) {
-    recording.warnings.push_back(
-        fmt::format("{}: {} pose files damaged (first: {})", recording.name, damaged, first));
-  }
+  damaged.AppendTo(recording.warnings, recording.name, "pose files damaged");
   return poses;
 }
 
@@ -116,8 +108,10 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
 bool IsFrameFolder(const std::string& folder) {
   const fs::path images_folder = FolderOfImages(folder);
   const auto images = DepthImagesOf(images_folder);
-  return !images.empty() &&
-         (PoseFileOf(images.front(), images_folder) || PoseListOf(images_folder));
+  return !images.empty() && (PoseListOf(images_folder) ||
+                             std::any_of(images.begin(), images.end(), [&](const auto& image) {
+                               return PoseFileOf(image, images_folder).has_value();
+                             }));
 }
 
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options) {
@@ -137,10 +131,13 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
                                              folder, images.end() - end));
     images.erase(end, images.end());
   }
+  for (const NumberedImage& image : images) {
+    const double stamp_s = static_cast<double>(image.number) / options.frame_rate_hz;
+    recording.images.push_back({stamp_s, image.path.string(), "", image.number});
+  }
   const auto poses = PosesOf(images, images_folder, recording);
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const double stamp_s = static_cast<double>(images[i].number) / options.frame_rate_hz;
-    recording.images.push_back({stamp_s, images[i].path.string(), ""});
+    const double stamp_s = recording.images[i].stamp_s;
     listed.poses.live.push_back({stamp_s, poses[i], 0});
     if (poses[i]) listed.poses.final.push_back({stamp_s, *poses[i]});
   }

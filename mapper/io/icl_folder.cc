@@ -34,17 +34,21 @@ std::string FileWith(const std::string& folder, const std::string& ending) {
   return found.empty() ? "" : found.front();
 }
 
-// .gt.sim has no stamps: one matrix an image, or one for each but the first.
-SlamOutput PairInOrder(const std::vector<std::optional<Pose3>>& poses, const Recording& recording,
-                       const std::string& path) {
+// .gt.sim has no stamps: one matrix an image, or one for each but the first. Images may have been
+// left out since, matrices may not.
+SlamOutput SlamOutputOf(std::vector<std::optional<Pose3>> poses, Recording& recording,
+                        const std::string& path) {
   const std::size_t images = recording.images.size();
-  const std::size_t skipped = poses.size() + 1 == images ? 1 : 0;
-  if (poses.size() + skipped < images) {
+  const auto last = static_cast<std::size_t>(recording.images.back().number);
+  const bool lacks_first = poses.size() + 1 == images || poses.size() == last;
+  if (poses.size() != images && lacks_first) poses.insert(poses.begin(), std::nullopt);
+  if (poses.size() < images) {
     throw InputError(path, fmt::format("holds {} poses for {} images", poses.size(), images));
   }
+  poses = PairInOrder(std::move(poses), NamesOf(recording, 0.0), path, recording.warnings);
   SlamOutput slam;
-  for (std::size_t i = skipped; i < images; ++i) {
-    const auto& pose = poses[i - skipped];
+  for (std::size_t i = 0; i < images; ++i) {
+    const auto& pose = poses[i];
     slam.live.push_back({recording.images[i].stamp_s, pose, 0});
     if (pose) slam.final.push_back({recording.images[i].stamp_s, *pose});
   }
@@ -68,7 +72,7 @@ Recording ListIclFolder(const std::string& folder) {
   for (const NumberedImage& image : images) {
     const auto stamp_s = static_cast<double>(image.number);
     if (!recording.images.empty() && recording.images.back().stamp_s == stamp_s) continue;
-    recording.images.push_back({stamp_s, image.path.string(), ""});
+    recording.images.push_back({stamp_s, image.path.string(), "", image.number});
   }
   if (recording.images.empty()) {
     throw InputError(folder, "holds neither depth/<n>.png nor *_<n>.depth");
@@ -81,7 +85,7 @@ SlamOutput ReadIclPoses(const std::string& folder, Recording& recording) {
     return SlamOutputOf(ReadTrajectory(path, recording.warnings));
   }
   if (const std::string path = FileWith(folder, ".gt.sim"); !path.empty()) {
-    return PairInOrder(ReadMatrixPoses(path), recording, path);
+    return SlamOutputOf(ReadMatrixPoses(path, recording.warnings), recording, path);
   }
   throw InputError(folder, "holds no poses (*.gt.freiburg or *.gt.sim)");
 }

@@ -5,31 +5,129 @@
 #include <algorithm>
 
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/event_rows.h"
 #include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
 
+using internal::CsvEvent;
 using internal::FrameFinder;
 
-std::vector<SlamEvent> CsvEvents(std::string_view rest, const std::string& place,
-                                 std::size_t frame_count) {
-  std::vector<SlamEvent> events;
+// Stamps of loops.csv are copies of the recording's.
+constexpr double kSameStampS = 1e-3;
+
+bool IsHeader(std::string_view row) {
+  return row.starts_with("kind,frame,epoch,") &&
+         (row.ends_with(",sigma_rotation_rad") || row.ends_with(",second_stamp_s"));
+}
+
+// The rows of loops.csv whose fields may be empty, which SplitRows does not keep.
+std::vector<CsvEvent> CsvRows(std::string_view rest, const std::string& place, RowDamage& damage) {
+  std::vector<CsvEvent> events;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     std::string_view row = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (row.ends_with('\r')) row.remove_suffix(1);
-    const bool header = line == 1 && row.starts_with("kind");
-    if (row.empty() || row.starts_with('#') || header) continue;
-    const std::string row_place = PlaceOfLine(place, line);
-    events.push_back(internal::ParseCsvEvent(row, row_place, frame_count));
-    if (events.size() == 1) continue;
-    const SlamEvent& before = events[events.size() - 2];
-    if (events.back().frame < before.frame || *events.back().epoch < *before.epoch) {
-      throw InputError(row_place, "frames and epochs must not go down");
+    if (row.empty() || row.starts_with('#')) continue;
+    damage.Try([&] {
+      if (events.empty() && IsHeader(row)) return;
+      const std::string row_place = PlaceOfLine(place, line);
+      const CsvEvent event = internal::ParseCsvEvent(row, row_place);
+      if (!events.empty() && (event.event.frame < events.back().event.frame ||
+                              *event.event.epoch < *events.back().event.epoch)) {
+        throw InputError(row_place, "frames and epochs must not go down");
+      }
+      events.push_back(event);
+    });
+  }
+  return events;
+}
+
+// Frames of loops.csv: by stamp where the recording has most of its stamps (rows may have been
+// taken out of it since), else by number.
+class CsvFrames {
+ public:
+  CsvFrames(const std::vector<CsvEvent>& events, const FrameNames& frames)
+      : frames_(frames), own_stamps_s_(frames.stamps_s), finder_(own_stamps_s_, kSameStampS) {
+    for (double& stamp_s : own_stamps_s_) stamp_s -= frames.time_offset_s;
+    std::size_t found = 0;
+    std::size_t stamped = 0;
+    for (const CsvEvent& event : events) {
+      if (!event.stamp_s) continue;
+      ++stamped;
+      if (finder_.At(*event.stamp_s)) ++found;
     }
+    by_stamp_ = stamped > 0 && 2 * found >= stamped;
+  }
+  std::optional<int> At(int number, const std::optional<double>& stamp_s) const {
+    if (by_stamp_ && stamp_s) return finder_.At(*stamp_s);
+    const auto frame = From(number, {});
+    return frame && frames_.NumberOf(static_cast<std::size_t>(*frame)) == number ? frame
+                                                                                 : std::nullopt;
+  }
+  // Or the first one after it.
+  std::optional<int> From(int number, const std::optional<double>& stamp_s) const {
+    std::size_t frame = 0;
+    const auto is_before = [&] {
+      return by_stamp_ && stamp_s ? own_stamps_s_[frame] < *stamp_s - kSameStampS
+                                  : frames_.NumberOf(frame) < number;
+    };
+    while (frame < own_stamps_s_.size() && is_before()) ++frame;
+    return frame < own_stamps_s_.size() ? std::optional(static_cast<int>(frame)) : std::nullopt;
+  }
+
+ private:
+  const FrameNames& frames_;
+  std::vector<double> own_stamps_s_;
+  FrameFinder finder_;
+  bool by_stamp_ = false;
+};
+
+std::optional<LoopClosure> FindLoop(const CsvEvent& row, int reported_at, const CsvFrames& frames) {
+  LoopClosure loop = *row.event.loop;
+  const auto first = frames.At(loop.first_frame, row.first_stamp_s);
+  const auto second = frames.At(loop.second_frame, row.second_stamp_s);
+  if (!first || !second) return {};
+  loop.reported_at_frame = reported_at;
+  loop.first_frame = *first;
+  loop.second_frame = *second;
+  return loop;
+}
+
+// The events with the frames they are of. A loop of a frame that is not there is left out and
+// counted; what SLAM did to its epoch holds from the next frame on.
+std::vector<SlamEvent> FindFrames(const std::vector<CsvEvent>& rows, const FrameNames& frames,
+                                  int& missing) {
+  const CsvFrames names(rows, frames);
+  std::vector<SlamEvent> events;
+  for (const CsvEvent& row : rows) {
+    const auto frame = names.From(row.event.frame, row.stamp_s);
+    if (!frame) {
+      ++missing;
+      continue;
+    }
+    events.push_back({*frame, row.event.epoch, row.event.new_epoch, std::nullopt});
+    if (!row.event.loop) continue;
+    events.back().loop = FindLoop(row, *frame, names);
+    if (!events.back().loop) ++missing;
+  }
+  return events;
+}
+
+std::vector<SlamEvent> StampedEvents(const std::vector<TextRow>& rows, bool orb,
+                                     const std::string& place, const FrameFinder& frames,
+                                     RowDamage& damage, int& missing) {
+  std::vector<SlamEvent> events;
+  for (const TextRow& row : rows) {
+    damage.Try([&] {
+      const internal::FoundEvent found = orb ? internal::ParseOrbEvent(row, place, frames)
+                                             : internal::ParseStampedLoop(row, place, frames);
+      if (found.event) events.push_back(*found.event);
+      if (found.missing) ++missing;
+    });
   }
   return events;
 }
@@ -37,32 +135,31 @@ std::vector<SlamEvent> CsvEvents(std::string_view rest, const std::string& place
 }  // namespace
 
 SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
-                           const std::vector<double>& frame_stamps_s, double max_difference_s) {
+                           const FrameNames& frames, double max_difference_s) {
   const std::vector<TextRow> rows = SplitRows(text);
-  const std::string_view first = rows.empty() ? "" : rows.front().fields.front();
+  if (rows.empty()) throw InputError(place, "is empty, must hold a header or events");
+  const std::string_view first = rows.front().fields.front();
   const bool stamped = ParseNumber(first).has_value();
   const bool orb = first == "LOOP" || first == "RELOC" || first == "GBA_DONE";
   SlamEvents result;
-  if (!stamped && !orb) {
-    result.kind = kOwnEvents;
-    result.events = CsvEvents(text, place, frame_stamps_s.size());
-    return result;
-  }
-  result.kind = orb ? "ORB-SLAM2 events" : "stamped loops";
-  const FrameFinder frames(frame_stamps_s, max_difference_s);
+  RowDamage damage;
   int missing = 0;
-  for (const TextRow& row : rows) {
-    const internal::FoundEvent found = orb ? internal::ParseOrbEvent(row, place, frames)
-                                           : internal::ParseStampedLoop(row, place, frames);
-    if (found.event) result.events.push_back(*found.event);
-    if (found.missing) ++missing;
+  if (stamped || orb) {
+    result.kind = orb ? "ORB-SLAM2 events" : "stamped loops";
+    const FrameFinder finder(frames.stamps_s, max_difference_s);
+    result.events = StampedEvents(rows, orb, place, finder, damage, missing);
+  } else {
+    result.kind = kOwnEvents;
+    result.events = FindFrames(CsvRows(text, place, damage), frames, missing);
   }
+  std::stable_sort(result.events.begin(), result.events.end(),
+                   [](const auto& a, const auto& b) { return a.frame < b.frame; });
+  damage.RequireMostGood(text);
+  damage.AppendTo(result.warnings, place);
   if (missing > 0) {
     result.warnings.push_back(
         fmt::format("{}: {} events of frames that the recording does not have", place, missing));
   }
-  std::stable_sort(result.events.begin(), result.events.end(),
-                   [](const auto& a, const auto& b) { return a.frame < b.frame; });
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/core/slam_output.h"
+#include "mapper/io/frame_names.h"
 
 namespace depthgrid {
 
@@ -27,12 +28,13 @@ struct SlamEvents {
 };
 
 // Three kinds, told apart by the first word (docs/formats.md, "Loop closures"):
-//   loops.csv            frames by number, as `depthgrid slam` writes it
+//   loops.csv            frames by number and stamp, as `depthgrid slam` writes it
 //   ORB-SLAM2 events     LOOP frame stamp matched_frame stamp ... Tcm 3x4 | RELOC frame n t stamp
 //   stamped loops        first_stamp second_stamp tx ty tz qx qy qz qw [sigma_m sigma_rad]
-// Stamps name the nearest of `frame_stamps_s`, at most `max_difference_s` away; events of frames
-// that are not there are counted in the warnings. Throws InputError.
+// Stamps name the nearest frame, at most `max_difference_s` away. The loops of frames that are not
+// there and damaged rows are left out and counted in the warnings. Throws InputError for an empty
+// file and one with mostly damaged rows.
 SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
-                           const std::vector<double>& frame_stamps_s, double max_difference_s);
+                           const FrameNames& frames, double max_difference_s);
 
 }  // namespace depthgrid

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -43,10 +44,46 @@ std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& 
   return Pose3{Eigen::Quaterniond(nearest).normalized(), translation};
 }
 
+// How a file's matrices are laid out: lines a matrix, numbers a line.
+struct Layout {
+  std::size_t lines = 1;
+  std::size_t columns = 12;
+};
+
+bool IsLastRow(const TextRow& row) {
+  constexpr double kLastRow[] = {0.0, 0.0, 0.0, 1.0};
+  return std::equal(
+      row.fields.begin(), row.fields.end(), std::begin(kLastRow), std::end(kLastRow),
+      [](std::string_view field, double value) { return ParseNumber(field) == value; });
+}
+
+Layout LayoutOf(const std::vector<TextRow>& rows, const std::string& place) {
+  const auto is_whole = [](const TextRow& row) {
+    const std::size_t columns = row.fields.size();
+    return columns == 4 || columns == 12 || columns == 16;
+  };
+  const auto first = std::find_if(rows.begin(), rows.end(), is_whole);
+  if (first == rows.end()) {
+    throw InputError(PlaceOfLine(place, rows.front().line),
+                     fmt::format("has {} columns, must be a row of a matrix (4) or a whole matrix "
+                                 "(12 or 16)",
+                                 rows.front().fields.size()));
+  }
+  if (first->fields.size() != 4) return {1, first->fields.size()};
+  // Four lines of four when the fourth (or, with that one damaged, the eighth) is 0 0 0 1, which
+  // is no row of a rotation; otherwise three.
+  const auto ends_matrix = [&](std::size_t row) {
+    return row < rows.size() && IsLastRow(rows[row]);
+  };
+  return {ends_matrix(3) || ends_matrix(7) || rows.size() == 4 ? 4U : 3U, 4};
+}
+
 }  // namespace
 
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place) {
-  const auto poses = ParseMatrixPoses(text, place);
+  RowDamage damage;
+  const auto poses = ParseMatrixPoses(text, place, damage);
+  damage.RequireAllGood();
   if (poses.size() != 1) {
     throw InputError(place, fmt::format("holds {} poses, must hold one 4x4 matrix", poses.size()));
   }
@@ -54,34 +91,26 @@ std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string&
 }
 
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
-                                                   const std::string& place) {
+                                                   const std::string& place, RowDamage& damage) {
   const std::vector<TextRow> rows = SplitRows(text);
   if (rows.empty()) return {};
-  const std::size_t columns = rows.front().fields.size();
-  if (columns != 4 && columns != 12 && columns != 16) {
-    throw InputError(PlaceOfLine(place, rows.front().line),
-                     fmt::format("has {} columns, must be a row of a matrix (4) or a whole matrix "
-                                 "(12 or 16)",
-                                 columns));
-  }
+  const Layout layout = LayoutOf(rows, place);
   std::vector<std::optional<Pose3>> poses;
-  std::vector<double> block;
-  // Four lines of four when each fourth is 0 0 0 1, otherwise three.
-  std::size_t block_size = columns == 4 ? 12 : columns;
-  if (columns == 4 && rows.size() % 4 == 0) {
-    const std::vector<double> fourth = NumbersIn(rows[3], 4, place);
-    if (fourth == std::vector<double>{0.0, 0.0, 0.0, 1.0} || rows.size() == 4) block_size = 16;
+  for (std::size_t begin = 0; begin < rows.size(); begin += layout.lines) {
+    poses.emplace_back();
+    damage.Try([&] {
+      std::vector<double> matrix;
+      const std::size_t end = std::min(begin + layout.lines, rows.size());
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::vector<double> numbers = NumbersIn(rows[i], layout.columns, place);
+        matrix.insert(matrix.end(), numbers.begin(), numbers.end());
+      }
+      const std::string last_place = PlaceOfLine(place, rows[end - 1].line);
+      if (end - begin < layout.lines) throw InputError(last_place, "the last matrix is incomplete");
+      poses.back() = PoseOf(matrix, last_place);
+    });
   }
-  for (const TextRow& row : rows) {
-    const std::vector<double> numbers = NumbersIn(row, columns, place);
-    block.insert(block.end(), numbers.begin(), numbers.end());
-    if (block.size() < block_size) continue;
-    poses.push_back(PoseOf(block, PlaceOfLine(place, row.line)));
-    block.clear();
-  }
-  if (!block.empty()) {
-    throw InputError(PlaceOfLine(place, rows.back().line), "the last matrix is incomplete");
-  }
+  damage.RequireMostGood(text);
   return poses;
 }
 
@@ -89,8 +118,12 @@ std::optional<Pose3> ReadMatrixPose(const std::string& path) {
   return ParseMatrixPose(ReadFile(path), path);
 }
 
-std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path) {
-  return ParseMatrixPoses(ReadFile(path), path);
+std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
+                                                  std::vector<std::string>& warnings) {
+  RowDamage damage;
+  auto poses = ParseMatrixPoses(ReadFile(path), path, damage);
+  damage.AppendTo(warnings, path);
+  return poses;
 }
 
 std::string MatrixPosesText(const Trajectory& trajectory) {

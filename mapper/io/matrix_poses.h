@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapper/core/trajectory.h"
+#include "mapper/io/damage.h"
 
 namespace depthgrid {
 
@@ -16,10 +17,12 @@ std::optional<Pose3> ReadMatrixPose(const std::string& path);
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
 
 // A file with many: one of 16 or 12 numbers a line, or three or four lines of four numbers each
-// (ICL-NUIM's .gt.sim).
-std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path);
+// (ICL-NUIM's .gt.sim). Damaged ones keep their place without a pose and are counted in `damage`.
+// Throws InputError when they are not fewer than the others.
+std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
+                                                  std::vector<std::string>& warnings);
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
-                                                   const std::string& place);
+                                                   const std::string& place, RowDamage& damage);
 
 // KITTI's form: the upper three rows of each pose's matrix on one line, no stamps.
 std::string MatrixPosesText(const Trajectory& trajectory);

@@ -15,39 +15,44 @@ namespace {
 
 constexpr std::size_t kTumColumns = 8;
 
+// Rows of 4, 12 or 16 columns, of which the first few may be damaged.
 bool HoldsMatrices(const std::string& text) {
+  constexpr std::size_t kLooksAt = 10;
+  int matrices = 0;
   const std::vector<TextRow> rows = SplitRows(text);
-  const std::size_t columns = rows.empty() ? kTumColumns : rows.front().fields.size();
-  return columns == 4 || columns == 12 || columns == 16;
+  for (std::size_t i = 0; i < std::min(kLooksAt, rows.size()); ++i) {
+    const std::size_t columns = rows[i].fields.size();
+    if (columns == 4 || columns == 12 || columns == 16) ++matrices;
+    if (columns == kTumColumns) --matrices;
+  }
+  return matrices > 0;
 }
 
-Trajectory InOrder(const std::vector<std::optional<Pose3>>& poses, const std::string& place,
-                   const std::vector<double>& stamps_s, std::vector<std::string>& warnings) {
-  if (poses.size() != stamps_s.size()) {
-    warnings.push_back(fmt::format("{}: {} poses for {} frames, paired from the first", place,
-                                   poses.size(), stamps_s.size()));
+Trajectory StampedMatrices(const std::string& text, const std::string& place,
+                           const FrameNames& frames, std::vector<std::string>& warnings) {
+  RowDamage damage;
+  auto poses = ParseMatrixPoses(text, place, damage);
+  const auto empty = std::count(poses.begin(), poses.end(), std::nullopt);
+  damage.AppendTo(warnings, place);
+  if (empty > damage.damaged()) {
+    warnings.push_back(
+        fmt::format("{}: {} poses with NaN ignored", place, empty - damage.damaged()));
   }
+  poses = PairInOrder(std::move(poses), frames, place, warnings);
   Trajectory trajectory;
-  int invalid = 0;
-  for (std::size_t i = 0; i < std::min(poses.size(), stamps_s.size()); ++i) {
-    if (poses[i]) {
-      trajectory.push_back({stamps_s[i], *poses[i]});
-    } else {
-      ++invalid;
-    }
+  for (std::size_t i = 0; i < std::min(poses.size(), frames.stamps_s.size()); ++i) {
+    if (poses[i]) trajectory.push_back({frames.stamps_s[i], *poses[i]});
   }
-  if (invalid > 0) warnings.push_back(fmt::format("{}: {} poses with NaN ignored", place, invalid));
   return trajectory;
 }
 
 }  // namespace
 
-Trajectory ParsePoses(const std::string& text, const std::string& place,
-                      const std::vector<double>& frame_stamps_s,
+Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings) {
   Trajectory poses;
   if (HoldsMatrices(text)) {
-    poses = InOrder(ParseMatrixPoses(text, place), place, frame_stamps_s, warnings);
+    poses = StampedMatrices(text, place, frames, warnings);
   } else {
     TrajectoryFile file = ParseTrajectory(text, place);
     const auto mended = file.Warnings(place);
@@ -58,9 +63,9 @@ Trajectory ParsePoses(const std::string& text, const std::string& place,
   return poses;
 }
 
-Trajectory ReadPoseFile(const std::string& path, const std::vector<double>& frame_stamps_s,
+Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings) {
-  return ParsePoses(ReadFile(path), path, frame_stamps_s, warnings);
+  return ParsePoses(ReadFile(path), path, frames, warnings);
 }
 
 }  // namespace depthgrid

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/undistort.h"
 
 namespace depthgrid {
@@ -14,21 +15,6 @@ namespace {
 
 // How many images may be unreadable at the start before the folder is refused.
 constexpr std::size_t kProbedImages = 10;
-
-// Names the first case of a kind of damage and counts the rest.
-struct Tally {
-  int count = 0;
-  std::string first;
-
-  void Add(const std::string& what) {
-    if (count++ == 0) first = what;
-  }
-  void AppendTo(std::vector<std::string>& warnings, const std::string& name,
-                const char* kind) const {
-    if (count > 0)
-      warnings.push_back(fmt::format("{}: {} {} (first: {})", name, count, kind, first));
-  }
-};
 
 // Loops name entries of the SLAM output; frames are counted by the source.
 std::vector<LoopClosure> LoopsByFrame(const std::vector<LoopClosure>& loops,
@@ -187,6 +173,16 @@ class RecordingSource final : public FrameSource {
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader) {
   return std::make_unique<RecordingSource>(std::move(recording), slam, options, std::move(reader));
+}
+
+FrameNames NamesOf(const Recording& recording, double time_offset_s) {
+  FrameNames names;
+  names.time_offset_s = time_offset_s;
+  for (const RecordedImage& image : recording.images) {
+    names.stamps_s.push_back(image.stamp_s + time_offset_s);
+    names.numbers.push_back(image.number);
+  }
+  return names;
 }
 
 DepthReader PngDepthReader(const DepthPngFormat& format) {

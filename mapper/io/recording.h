@@ -10,6 +10,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/frame_names.h"
 #include "mapper/io/png.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/recording_options.h"
@@ -20,6 +21,7 @@ struct RecordedImage {
   double stamp_s = 0.0;     // of the frame, and of its pose
   std::string depth_path;   // empty: the frame is known to have no image
   std::string colour_path;  // empty when there is none
+  std::int64_t number = 0;  // in the recording as it was recorded, see FrameNames
 };
 
 struct Recording {
@@ -28,6 +30,9 @@ struct Recording {
   CameraFile camera;
   std::vector<std::string> warnings;  // found while listing
 };
+
+// `time_offset_s` is added to the stamps.
+FrameNames NamesOf(const Recording& recording, double time_offset_s);
 
 // Reads one depth image; throws InputError.
 using DepthReader = std::function<DepthImage(const std::string& path)>;

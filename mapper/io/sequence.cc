@@ -195,23 +195,14 @@ std::string NameOf(SequenceFormat format) {
   return "unknown";
 }
 
-std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options) {
+FrameNames SequenceFrames(const std::string& path, const SequenceOptions& options) {
   const SequenceFormat format = FormatOf(path, options);
-  Recording recording;
-  if (format == SequenceFormat::kTum) recording = ListTumFolder(path, options.recording);
-  if (format == SequenceFormat::kIcl) recording = ListIclFolder(path);
-  if (format == SequenceFormat::kFrames) {
-    recording = ListFrameFolder(path, options.recording).recording;
-  }
-  std::vector<double> stamps_s;
-  if (format == SequenceFormat::kCarmen) {
-    const auto source = OpenCarmenLog(path, options.laser);
-    while (const auto frame = source->Next()) stamps_s.push_back(frame->stamp_s);
-  }
-  for (const RecordedImage& image : recording.images) {
-    stamps_s.push_back(image.stamp_s + options.recording.time_offset_s);
-  }
-  return stamps_s;
+  if (format == SequenceFormat::kCarmen) return CarmenFrames(path, options.laser);
+  const Recording recording =
+      format == SequenceFormat::kTum   ? ListTumFolder(path, options.recording)
+      : format == SequenceFormat::kIcl ? ListIclFolder(path)
+                                       : ListFrameFolder(path, options.recording).recording;
+  return NamesOf(recording, options.recording.time_offset_s);
 }
 
 Sequence OpenSequence(const std::string& path, const SequenceOptions& options,

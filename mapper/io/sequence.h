@@ -9,6 +9,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/io/carmen_log.h"
+#include "mapper/io/frame_names.h"
 #include "mapper/io/recording_options.h"
 #include "mapper/io/world_up.h"
 
@@ -44,9 +45,8 @@ SequenceFormat DetectFormat(const std::string& path);
 SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options);
 std::string NameOf(SequenceFormat format);
 
-// Stamps of the frames by the clock of the poses (time_offset_s added), for a laser log of its
-// scans.
-std::vector<double> SequenceStamps(const std::string& path, const SequenceOptions& options = {});
+// How poses and events name the frames, for a laser log its scans.
+FrameNames SequenceFrames(const std::string& path, const SequenceOptions& options = {});
 
 // `slam` replaces the folder's own poses; a TUM folder has none but groundtruth.txt, which is taken
 // with a note. For a laser log it may hold loops, between lasers (OpenCarmenLog). Throws

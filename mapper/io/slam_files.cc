@@ -19,14 +19,17 @@ namespace {
 
 constexpr const char* kHeader =
     "kind,frame,epoch,first,second,tx_m,ty_m,tz_m,qx,qy,qz,qw,sigma_translation_m,"
-    "sigma_rotation_rad\n";
+    "sigma_rotation_rad,stamp_s,first_stamp_s,second_stamp_s\n";
 
-std::string LoopRow(const LoopClosure& loop, int epoch) {
+std::string LoopRow(const LoopClosure& loop, int epoch, const std::vector<SlamPose>& live) {
+  const auto stamp_s = [&](int frame) { return live[static_cast<std::size_t>(frame)].stamp_s; };
   const Eigen::Vector3d& t = loop.first_from_second.translation;
   const Eigen::Quaterniond& q = loop.first_from_second.rotation;
-  return fmt::format("loop,{},{},{},{},{},{},{},{},{},{},{},{},{}\n", loop.reported_at_frame, epoch,
-                     loop.first_frame, loop.second_frame, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
-                     q.w(), loop.sigma_translation_m, loop.sigma_rotation_rad);
+  return fmt::format("loop,{},{},{},{},{},{},{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f}\n",
+                     loop.reported_at_frame, epoch, loop.first_frame, loop.second_frame, t.x(),
+                     t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), loop.sigma_translation_m,
+                     loop.sigma_rotation_rad, stamp_s(loop.reported_at_frame),
+                     stamp_s(loop.first_frame), stamp_s(loop.second_frame));
 }
 
 struct FramedPose {
@@ -111,29 +114,20 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   }
 }
 
-// All poses as entries of their own; epochs and loops, which are those of frames, move over.
-void KeepAll(const Trajectory& poses, SlamOutput& slam) {
-  const std::vector<SlamPose> framed = std::move(slam.live);
-  slam.live.clear();
+// Each frame's pose from the two nearest, which may be of no frame, by the epochs of the frames.
+void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vector<SlamPose>& live) {
+  std::vector<SlamPose> all;
   std::size_t next = 0;
   int epoch = 0;
   for (const auto& [stamp_s, pose] : poses) {
-    for (; next < framed.size() && framed[next].stamp_s <= stamp_s; ++next) {
-      epoch = framed[next].epoch;
-    }
-    slam.live.push_back({stamp_s, pose, epoch});
+    for (; next < live.size() && live[next].stamp_s <= stamp_s; ++next) epoch = live[next].epoch;
+    all.push_back({stamp_s, pose, epoch});
   }
-  const auto entry_of = [&](int& frame) {
-    const double stamp_s = framed[static_cast<std::size_t>(frame)].stamp_s;
-    const auto entry = std::lower_bound(poses.begin(), poses.end(), stamp_s,
-                                        [](const auto& p, double s) { return p.stamp_s < s; });
-    frame = static_cast<int>(std::min(entry, poses.end() - 1) - poses.begin());
-  };
-  for (LoopClosure& loop : slam.loops) {
-    entry_of(loop.first_frame);
-    entry_of(loop.second_frame);
-    entry_of(loop.reported_at_frame);
-  }
+  RecordingOptions options;
+  options.interpolate_poses = true;
+  options.max_interpolation_gap_s = reading.max_interpolation_gap_s;
+  const PoseTrack track(all, options);
+  for (SlamPose& frame : live) frame.slam_from_camera = track.At(frame.stamp_s).slam_from_camera;
 }
 
 void Append(std::vector<std::string>& to, const std::vector<std::string>& lines) {
@@ -151,10 +145,12 @@ std::string LoopsText(const SlamOutput& output) {
     epoch = output.live[i].epoch;
     for (; loop != output.loops.end() && static_cast<std::size_t>(loop->reported_at_frame) == i;
          ++loop) {
-      text += LoopRow(*loop, epoch);
+      text += LoopRow(*loop, epoch, output.live);
       explained = true;
     }
-    if (!explained) text += fmt::format("relocalisation,{},{},,,,,,,,,,,\n", i, epoch);
+    if (explained) continue;
+    text +=
+        fmt::format("relocalisation,{},{},,,,,,,,,,,,{:.6f},,\n", i, epoch, output.live[i].stamp_s);
   }
   Require(loop == output.loops.end(), "loops are ordered by the frame that reports them");
   return text;
@@ -170,10 +166,9 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output) {
   WriteFile(folder + "/loops.csv", LoopsText(output));
 }
 
-SlamInput ReadLoops(const std::string& path, const std::vector<double>& frame_stamps_s,
-                    double max_difference_s) {
+SlamInput ReadLoops(const std::string& path, const FrameNames& frames, double max_difference_s) {
   SlamInput input;
-  const SlamEvents events = ParseSlamEvents(ReadFile(path), path, frame_stamps_s, max_difference_s);
+  const SlamEvents events = ParseSlamEvents(ReadFile(path), path, frames, max_difference_s);
   input.warnings = events.warnings;
   for (const SlamEvent& event : events.events) {
     if (event.loop) input.slam.loops.push_back(*event.loop);
@@ -183,34 +178,35 @@ SlamInput ReadLoops(const std::string& path, const std::vector<double>& frame_st
   return input;
 }
 
-SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
+SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
                         const SlamReading& reading) {
   const double max_difference_s = reading.max_difference_s;
   SlamInput input;
   SlamOutput& slam = input.slam;
   SlamEvents events;
   if (!paths.loops.empty()) {
-    events = ParseSlamEvents(ReadFile(paths.loops), paths.loops, frame_stamps_s, max_difference_s);
+    events = ParseSlamEvents(ReadFile(paths.loops), paths.loops, frames, max_difference_s);
     Append(input.warnings, events.warnings);
   }
   for (const SlamEvent& event : events.events) {
     if (event.loop) slam.loops.push_back(*event.loop);
   }
-  const Trajectory live = ReadPoseFile(paths.live, frame_stamps_s, input.warnings);
-  const auto framed =
-      PosesByFrame(live, frame_stamps_s, max_difference_s, paths.live, input.warnings);
-  slam.live = LivePoses(framed, events.events, frame_stamps_s);
+  const Trajectory live = ReadPoseFile(paths.live, frames, input.warnings);
+  std::vector<std::string> unsaid;  // poses of no frame are what is interpolated between
+  const auto framed = PosesByFrame(live, frames.stamps_s, max_difference_s, paths.live,
+                                   reading.interpolate ? unsaid : input.warnings);
+  slam.live = LivePoses(framed, events.events, frames.stamps_s);
   slam.final = live;
   if (!paths.final.empty()) {
-    slam.final = ReadPoseFile(paths.final, frame_stamps_s, input.warnings);
-    PosesByFrame(slam.final, frame_stamps_s, max_difference_s, paths.final, input.warnings);
+    slam.final = ReadPoseFile(paths.final, frames, input.warnings);
+    PosesByFrame(slam.final, frames.stamps_s, max_difference_s, paths.final, input.warnings);
   }
   if (!paths.loops.empty()) {
     input.notes.push_back(fmt::format("{} loop closures from {}", slam.loops.size(), events.kind));
   }
   const bool epochs_known = events.kind == kOwnEvents;
   FindCorrections(paths, epochs_known, input);
-  if (reading.keep_all_poses) KeepAll(live, slam);
+  if (reading.interpolate) Interpolate(live, reading, slam.live);
   return input;
 }
 

@@ -8,12 +8,15 @@
 //   first, second         the frames a loop joins; empty for a relocalisation, as all that follows
 //   tx_m .. qw            first_from_second, the measured relative camera pose
 //   sigma_translation_m, sigma_rotation_rad   its standard deviations
+//   stamp_s, first_stamp_s, second_stamp_s    of `frame`, `first` and `second`; may be left out
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "mapper/core/slam_output.h"
+#include "mapper/io/frame_names.h"
+#include "mapper/io/recording_options.h"
 
 namespace depthgrid {
 
@@ -37,20 +40,18 @@ struct SlamReading {
   // A pose belongs to the frame with the nearest stamp, at most this far away: evo's, and less than
   // half a frame at 30 Hz.
   double max_difference_s = 0.01;
-  // Keeps every pose of the live file with its own stamp, to be interpolated between, instead of
-  // one an input frame.
-  bool keep_all_poses = false;
+  // Takes what lies between the two neighbouring poses instead of the nearest one.
+  bool interpolate = false;
+  double max_interpolation_gap_s = RecordingOptions{}.max_interpolation_gap_s;
 };
 
 // The output of a SLAM system as files: its poses (TUM, or a matrix a frame in order), its revised
-// poses and its events, given the stamps of all input frames; lost frames are in no file. Poses of
-// no frame are counted. Throws InputError for a file that is damaged or has nothing to do with the
-// frames.
-SlamInput ReadSlamFiles(const SlamFilePaths& paths, const std::vector<double>& frame_stamps_s,
+// poses and its events, given all input frames; lost frames are in no file. Poses of no frame are
+// counted. Throws InputError for a file that is damaged or has nothing to do with the frames.
+SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
                         const SlamReading& reading = {});
 
 // A file of loops by itself, for recordings that bring their poses.
-SlamInput ReadLoops(const std::string& path, const std::vector<double>& frame_stamps_s,
-                    double max_difference_s);
+SlamInput ReadLoops(const std::string& path, const FrameNames& frames, double max_difference_s);
 
 }  // namespace depthgrid

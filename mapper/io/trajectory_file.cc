@@ -32,10 +32,30 @@ std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& p
   return pose;
 }
 
+void AddRow(const TextRow& row, const std::string& place, TrajectoryFile& file) {
+  constexpr std::size_t kColumns = 8;
+  const std::vector<double> numbers = NumbersIn(row, kColumns, place);
+  const std::string row_place = PlaceOfLine(place, row.line);
+  if (!std::isfinite(numbers[0])) throw InputError(row_place, "the stamp must be finite");
+  const std::optional<Pose3> pose = PoseOf(numbers, row_place);
+  if (!pose) {
+    ++file.invalid_poses;
+    return;
+  }
+  if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
+  file.poses.push_back({numbers[0], *pose});
+}
+
+Trajectory PosesOf(TrajectoryFile file, const std::string& path) {
+  if (file.poses.empty()) throw InputError(path, "holds no pose");
+  return std::move(file.poses);
+}
+
 }  // namespace
 
 std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const {
   std::vector<std::string> warnings;
+  damage.AppendTo(warnings, name);
   const auto warn = [&](int count, const char* what) {
     if (count > 0) warnings.push_back(fmt::format("{}: {} {}", name, count, what));
   };
@@ -46,20 +66,9 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
 }
 
 TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place) {
-  constexpr std::size_t kColumns = 8;
   TrajectoryFile file;
-  for (const TextRow& row : SplitRows(text)) {
-    const std::vector<double> numbers = NumbersIn(row, kColumns, place);
-    const std::string row_place = PlaceOfLine(place, row.line);
-    if (!std::isfinite(numbers[0])) throw InputError(row_place, "the stamp must be finite");
-    const std::optional<Pose3> pose = PoseOf(numbers, row_place);
-    if (!pose) {
-      ++file.invalid_poses;
-      continue;
-    }
-    if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
-    file.poses.push_back({numbers[0], *pose});
-  }
+  for (const TextRow& row : SplitRows(text)) file.damage.Try([&] { AddRow(row, place, file); });
+  file.damage.RequireMostGood(text);
   const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
   const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
   std::stable_sort(file.poses.begin(), file.poses.end(), stamp_less);
@@ -74,16 +83,16 @@ TrajectoryFile ReadTrajectoryFile(const std::string& path) {
 }
 
 Trajectory ReadTrajectory(const std::string& path) {
-  std::vector<std::string> unsaid;
-  return ReadTrajectory(path, unsaid);
+  TrajectoryFile file = ReadTrajectoryFile(path);
+  file.damage.RequireAllGood();
+  return PosesOf(std::move(file), path);
 }
 
 Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings) {
   TrajectoryFile file = ReadTrajectoryFile(path);
-  if (file.poses.empty()) throw InputError(path, "holds no pose");
   const auto mended = file.Warnings(path);
   warnings.insert(warnings.end(), mended.begin(), mended.end());
-  return std::move(file.poses);
+  return PosesOf(std::move(file), path);
 }
 
 std::string TrajectoryText(const Trajectory& trajectory) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/core/trajectory.h"
+#include "mapper/io/damage.h"
 
 namespace depthgrid {
 
@@ -15,18 +16,19 @@ struct TrajectoryFile {
   int invalid_poses = 0;     // NaN, infinite or zero quaternion: dropped
   int unsorted_stamps = 0;   // rows earlier than their predecessor: sorted
   int duplicate_stamps = 0;  // all but the first row of one stamp: dropped
+  RowDamage damage;          // rows that are no pose: dropped
 
   std::vector<std::string> Warnings(const std::string& name) const;
 };
 
-// Throws InputError for an unreadable file, a row without eight numbers, a stamp that is not finite
-// or a quaternion whose norm is not near 1.
+// A row without eight numbers, with a stamp that is not finite or a quaternion whose norm is not
+// near 1 is damaged. Throws InputError for an unreadable file and one with mostly such rows.
 TrajectoryFile ReadTrajectoryFile(const std::string& path);
 // The same from text; `place` names it in errors.
 TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place);
-// Its poses alone; additionally throws InputError when there is none.
+// Its poses alone; additionally throws InputError when there is none or any row is damaged.
 Trajectory ReadTrajectory(const std::string& path);
-// And what was mended, added to `warnings`.
+// Damaged rows are survived; what was mended is added to `warnings`.
 Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings);
 
 // Stamps with six decimals, pose values in the shortest form that reads back as the same double.

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/png.h"
@@ -16,6 +18,9 @@ namespace depthgrid {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Before all stamps.
+constexpr double kFirstStampS = -std::numeric_limits<double>::infinity();
 
 std::string Joined(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
@@ -70,7 +75,7 @@ void PairWithColour(const std::string& folder, const RecordingOptions& options,
   }
 }
 
-// Two depth images may pair with one colour image; the frame nearer to it keeps the stamp.
+// Two depth images may pair with one colour image; the first keeps the stamp.
 void DropRepeatedStamps(const std::string& folder, Recording& recording) {
   auto& images = recording.images;
   const auto same = [](const auto& a, const auto& b) { return a.stamp_s >= b.stamp_s; };
@@ -84,25 +89,51 @@ void DropRepeatedStamps(const std::string& folder, Recording& recording) {
   }
 }
 
+// Drops damaged rows (those without a name) and all but the first of one stamp; returns how many of
+// these there were.
+int SortAndNumber(std::vector<StampedFile>& files) {
+  std::stable_sort(files.begin(), files.end(),
+                   [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; });
+  std::vector<StampedFile> kept;
+  std::int64_t number = 0;
+  int repeated = 0;
+  for (StampedFile& file : files) {
+    file.number = number;
+    if (file.path.empty()) {
+      ++number;
+    } else if (!kept.empty() && kept.back().stamp_s == file.stamp_s) {
+      ++repeated;
+    } else {
+      kept.push_back(std::move(file));
+      ++number;
+    }
+  }
+  files = std::move(kept);
+  return repeated;
+}
+
 }  // namespace
 
 StampedFileList ParseFileList(const std::string& text, const std::string& place) {
   StampedFileList list;
+  RowDamage damage;
   int unsorted = 0;
   for (const TextRow& row : SplitRows(text)) {
     const auto stamp_s = ParseNumber(row.fields.front());
-    if (row.fields.size() != 2 || !stamp_s || !std::isfinite(*stamp_s)) {
-      throw InputError(PlaceOfLine(place, row.line), "must be a stamp and a file name");
-    }
-    if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
-    list.files.push_back({*stamp_s, std::string(row.fields[1])});
+    const bool good = damage.Try([&] {
+      if (row.fields.size() != 2 || !stamp_s || !std::isfinite(*stamp_s)) {
+        throw InputError(PlaceOfLine(place, row.line), "must be a stamp and a file name");
+      }
+      if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
+      list.files.push_back({*stamp_s, std::string(row.fields[1])});
+    });
+    // It keeps its place behind the row before, for the numbers of those that follow.
+    if (!good)
+      list.files.push_back({list.files.empty() ? kFirstStampS : list.files.back().stamp_s, ""});
   }
-  const auto less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
-  const auto equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
-  std::stable_sort(list.files.begin(), list.files.end(), less);
-  const auto end = std::unique(list.files.begin(), list.files.end(), equal);
-  const auto repeated = static_cast<int>(list.files.end() - end);
-  list.files.erase(end, list.files.end());
+  damage.RequireMostGood(text);
+  damage.AppendTo(list.warnings, place);
+  const int repeated = SortAndNumber(list.files);
   const auto warn = [&](int count, const char* what) {
     if (count > 0) list.warnings.push_back(fmt::format("{}: {} {}", place, count, what));
   };
@@ -126,7 +157,7 @@ Recording ListTumFolder(const std::string& folder, const RecordingOptions& optio
   StampedFileList depth = ReadFileList(Joined(folder, "depth.txt"));
   recording.warnings = std::move(depth.warnings);
   for (const StampedFile& file : depth.files) {
-    recording.images.push_back({file.stamp_s, Joined(folder, file.path), ""});
+    recording.images.push_back({file.stamp_s, Joined(folder, file.path), "", file.number});
   }
   PairWithColour(folder, options, recording);
   DropRepeatedStamps(folder, recording);

@@ -19,6 +19,7 @@ namespace depthgrid {
 struct StampedFile {
   double stamp_s = 0.0;
   std::string path;
+  std::int64_t number = 0;  // in order of stamps; damaged rows count, doubled ones do not
 };
 
 struct StampedFileList {
@@ -26,7 +27,8 @@ struct StampedFileList {
   std::vector<std::string> warnings;
 };
 
-// Throws InputError for a row that is not a finite stamp and a file name.
+// A row that is not a finite stamp and a file name is damaged. Throws InputError when not most are
+// good.
 StampedFileList ParseFileList(const std::string& text, const std::string& place);
 
 // Throws InputError for a missing depth.txt. The camera is not filled in.

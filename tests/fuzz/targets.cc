@@ -88,7 +88,7 @@ bool TryColourPng(std::string_view bytes) {
 bool TryTrajectory(std::string_view bytes) {
   return Accepts([&] {
     std::vector<std::string> warnings;
-    SlamOutput slam = SlamOutputOf(ParsePoses(std::string(bytes), "x", Stamps(), warnings));
+    SlamOutput slam = SlamOutputOf(ParsePoses(std::string(bytes), "x", {Stamps()}, warnings));
     const std::vector<int> jumps = FindJumps(slam.live, slam.final);
     LoopsFromRevision(slam.live, slam.final, jumps);
     StartEpochs(jumps, slam.live);
@@ -96,7 +96,7 @@ bool TryTrajectory(std::string_view bytes) {
 }
 
 bool TryLoopEvents(std::string_view bytes) {
-  return Accepts([&] { ParseSlamEvents(std::string(bytes), "x", Stamps(), 0.02); });
+  return Accepts([&] { ParseSlamEvents(std::string(bytes), "x", {Stamps()}, 0.02); });
 }
 
 bool TryCamera(std::string_view bytes) {

@@ -102,8 +102,21 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
   EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1.0);
   EXPECT_FALSE(frames[2].slam_from_camera);
   EXPECT_THAT(WarningsOf(*source),
-              ElementsAre("~/poses.txt: 2 poses for 3 images, paired from the first",
+              ElementsAre("~/poses.txt: 2 poses for 3 frames, paired from the first",
                           "~: 1 of 3 frames have no pose"));
+}
+
+// An image that was taken away since leaves its pose behind.
+TEST_F(FrameFolderTest, PosesOfOneFilePairByNumberWhenImagesAreMissing) {
+  for (const int number : {0, 2}) {
+    WriteDepth(fmt::format("frame-{:06}.depth.png", number), 1000);
+  }
+  Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 2 0 1 0 0 0 0 1 0\n");
+  Write("intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  const auto source = OpenFrameFolder(folder_);
+  EXPECT_EQ(All(*source)[1].slam_from_camera->translation.x(), 2.0);
+  EXPECT_THAT(WarningsOf(*source),
+              ElementsAre("~/poses.txt: 3 poses for 2 frames, paired by the frames' numbers"));
 }
 
 TEST_F(FrameFolderTest, AnUpwardYAxisTurnsThePoses) {

@@ -24,7 +24,8 @@ TEST(MatrixPosesText, IsReadBackAndIsKittis) {
   const Trajectory written = {
       {0.0, {Eigen::Quaterniond(1, 0, 0, 1).normalized(), {0.25, -1.5, 3.0}}}, {1.0, Pose3{}}};
   const std::string text = MatrixPosesText(written);
-  const auto read = ParseMatrixPoses(text, "x");
+  RowDamage damage;
+  const auto read = ParseMatrixPoses(text, "x", damage);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_LT((read[0]->rotation.coeffs() - written[0].world_from_camera.rotation.coeffs()).norm(),
             1e-12);

@@ -11,7 +11,8 @@ constexpr const char* kQuarterTurn = "0 -1 0 1\n1 0 0 2\n0 0 1 3\n";
 
 std::string ErrorOf(const std::string& text) {
   try {
-    ParseMatrixPoses(text, "p");
+    RowDamage damage;
+    ParseMatrixPoses(text, "p", damage);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -37,16 +38,35 @@ TEST(MatrixPoses, ManyInAnyLayout) {
        {line + "\n" + line + "\n", line + " 0 0 0 1\n" + line + " 0 0 0 1\n",
         std::string(kQuarterTurn) + "\n" + kQuarterTurn,
         std::string(kQuarterTurn) + "0 0 0 1\n" + kQuarterTurn + "0 0 0 1\n"}) {
-    const auto poses = ParseMatrixPoses(text, "p");
+    RowDamage damage;
+    const auto poses = ParseMatrixPoses(text, "p", damage);
     ASSERT_EQ(poses.size(), 2U) << text;
     ExpectQuarterTurn(poses[0]);
     ExpectQuarterTurn(poses[1]);
   }
   // Four poses of three lines: twelve lines, whose fourth starts a matrix.
-  EXPECT_EQ(
-      ParseMatrixPoses(std::string(kQuarterTurn) + kQuarterTurn + kQuarterTurn + kQuarterTurn, "p")
-          .size(),
-      4U);
+  RowDamage damage;
+  const std::string four = std::string(kQuarterTurn) + kQuarterTurn + kQuarterTurn + kQuarterTurn;
+  EXPECT_EQ(ParseMatrixPoses(four, "p", damage).size(), 4U);
+}
+
+TEST(MatrixPoses, DamagedOnesKeepTheirPlace) {
+  const std::string line = "0 -1 0 1 1 0 0 2 0 0 1 3\n";
+  RowDamage damage;
+  const auto rows = ParseMatrixPoses(line + "0 -1 0\n" + line + line + "0 -1 0 1 1 0", "p", damage);
+  ASSERT_EQ(rows.size(), 5U);
+  EXPECT_FALSE(rows[1]);
+  EXPECT_TRUE(rows[2]);
+  EXPECT_FALSE(rows[4]);
+  EXPECT_EQ(damage.damaged(), 2);
+  // Blocks of four lines, cut in the third one.
+  const std::string block = std::string(kQuarterTurn) + "0 0 0 1\n";
+  RowDamage cut;
+  const auto blocks = ParseMatrixPoses(block + block + "0 -1 0 1\n1 0", "p", cut);
+  ASSERT_EQ(blocks.size(), 3U);
+  ExpectQuarterTurn(blocks[1]);
+  EXPECT_FALSE(blocks[2]);
+  EXPECT_EQ(cut.damaged(), 1);
 }
 
 TEST(MatrixPoses, OneClearLineForEachFault) {

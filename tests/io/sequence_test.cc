@@ -126,18 +126,18 @@ TEST_F(SequenceTest, AFixedAxisIsTakenAsSaid) {
 TEST_F(SequenceTest, KindsAreDetected) {
   WriteRoom();
   EXPECT_EQ(DetectFormat(folder_), SequenceFormat::kTum);
-  EXPECT_EQ(SequenceStamps(folder_).size(), 12U);
+  EXPECT_EQ(SequenceFrames(folder_).stamps_s.size(), 12U);
   std::filesystem::create_directories(Path("a/depth"));
   const std::string png = Path("depth/0.000000.png");
   std::filesystem::copy_file(png, Path("a/depth/1.png"));
   Write("a/room.gt.freiburg", "1 0 0 -2.25 0 0 0 1\n");
   EXPECT_EQ(DetectFormat(Path("a")), SequenceFormat::kIcl);
-  EXPECT_EQ(SequenceStamps(Path("a")), std::vector<double>{1.0});
+  EXPECT_EQ(SequenceFrames(Path("a")).stamps_s, std::vector<double>{1.0});
   std::filesystem::create_directories(Path("b"));
   std::filesystem::copy_file(png, Path("b/frame-000003.depth.png"));
   Write("b/frame-000003.pose.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   EXPECT_EQ(DetectFormat(Path("b")), SequenceFormat::kFrames);
-  EXPECT_EQ(SequenceStamps(Path("b")), std::vector<double>{0.1});
+  EXPECT_EQ(SequenceFrames(Path("b")).stamps_s, std::vector<double>{0.1});
   Write("log.txt", "FLASER 3 1.0 2.0 3.0 0 0 0 0 0 0 1.5 host 1.5\n");
   EXPECT_EQ(DetectFormat(Path("log.txt")), SequenceFormat::kCarmen);
   EXPECT_EQ(OpenSequence(Path("log.txt")).kind, "CARMEN laser log");

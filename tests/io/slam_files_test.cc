@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
@@ -13,6 +14,8 @@
 namespace depthgrid {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // Near the others, so that no step between two is a jump.
@@ -48,6 +51,13 @@ std::vector<double> Stamps(const SlamOutput& output) {
   return stamps_s;
 }
 
+std::vector<std::string> Lines(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 class SlamFiles : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -64,7 +74,7 @@ class SlamFiles : public ::testing::Test {
     WriteSlamFiles(folder_, example);
     WriteFile(folder_ + "/loops.csv", loops);
     try {
-      ReadSlamFiles(Paths(), Stamps(example));
+      ReadSlamFiles(Paths(), {Stamps(example)});
     } catch (const InputError& error) {
       return error.what();
     }
@@ -76,7 +86,7 @@ class SlamFiles : public ::testing::Test {
 TEST_F(SlamFiles, ReadBackTheVerySameOutput) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);
-  const SlamOutput read = ReadSlamFiles(Paths(), Stamps(written)).slam;
+  const SlamOutput read = ReadSlamFiles(Paths(), {Stamps(written)}).slam;
   EXPECT_EQ(read.live, written.live);
   EXPECT_EQ(read.final, written.final);
   EXPECT_EQ(read.loops, written.loops);
@@ -91,7 +101,7 @@ TEST_F(SlamFiles, ReadBackTheVerySameOutput) {
 TEST_F(SlamFiles, ALiveTrajectoryAloneIsEnough) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);
-  const SlamOutput read = ReadSlamFiles({Paths().live, "", ""}, Stamps(written)).slam;
+  const SlamOutput read = ReadSlamFiles({Paths().live, "", ""}, {Stamps(written)}).slam;
   EXPECT_EQ(read.final, ReadTrajectory(Paths().live));
   EXPECT_EQ(read.live[7].slam_from_camera, written.live[7].slam_from_camera);
   EXPECT_EQ(read.live[7].epoch, 0);
@@ -99,11 +109,11 @@ TEST_F(SlamFiles, ALiveTrajectoryAloneIsEnough) {
 }
 
 TEST_F(SlamFiles, RefuseWhatCannotBe) {
-  EXPECT_THAT(ErrorOf("kind\nloop,8,1\n"), HasSubstr("loops.csv:2: has 3 columns, must have 14"));
+  EXPECT_THAT(ErrorOf("loop,8,1\n"), HasSubstr("loops.csv:1: has 3 columns, must have 14 or 17"));
   EXPECT_THAT(ErrorOf("leap,8,1,,,,,,,,,,,"),
               HasSubstr("loops.csv:1: kind is 'leap', must be loop or relocalisation"));
-  EXPECT_THAT(ErrorOf("relocalisation,12,1,,,,,,,,,,,"),
-              HasSubstr("frame 12 is not among the 12 input frames"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("loops.csv: is empty"));
+  EXPECT_THAT(ErrorOf("kind,frame,ep"), HasSubstr("loops.csv:1: has 3 columns"));
   EXPECT_THAT(ErrorOf("relocalisation,4,1.5,,,,,,,,,,,"), HasSubstr("must be a whole number"));
   EXPECT_THAT(ErrorOf("loop,8,1,0,9,0,0,0,0,0,0,1,0.1,0.1"),
               HasSubstr("cannot be reported before the frames it joins"));
@@ -120,7 +130,7 @@ TEST_F(SlamFiles, RefusePosesOfOtherFrames) {
   WriteSlamFiles(folder_, written);
   std::vector<double> stamps_s = Stamps(written);
   for (double& stamp_s : stamps_s) stamp_s += 100.0;
-  EXPECT_THROW(ReadSlamFiles(Paths(), stamps_s), InputError);
+  EXPECT_THROW(ReadSlamFiles(Paths(), {stamps_s}), InputError);
 }
 
 TEST_F(SlamFiles, PosesBesideTheFramesAreCountedAndSurvived) {
@@ -128,7 +138,7 @@ TEST_F(SlamFiles, PosesBesideTheFramesAreCountedAndSurvived) {
   WriteSlamFiles(folder_, written);
   std::vector<double> stamps_s = Stamps(written);
   stamps_s.erase(stamps_s.begin() + 8);  // its image is missing
-  const SlamInput read = ReadSlamFiles({Paths().live, Paths().final, ""}, stamps_s);
+  const SlamInput read = ReadSlamFiles({Paths().live, Paths().final, ""}, {stamps_s});
   EXPECT_EQ(read.slam.live.size(), 11U);
   EXPECT_EQ(read.slam.live[8].slam_from_camera, written.live[9].slam_from_camera);
   ASSERT_EQ(read.warnings.size(), 2U);
@@ -138,29 +148,91 @@ TEST_F(SlamFiles, PosesBesideTheFramesAreCountedAndSurvived) {
 TEST_F(SlamFiles, MatricesTakeTheFramesStampsInOrder) {
   WriteFile(folder_ + "/kitti.txt",
             "1 0 0 0.1 0 1 0 0 0 0 1 0\nnan 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0.3 0 1 0 0 0 0 1 0\n");
-  const SlamInput read = ReadSlamFiles({folder_ + "/kitti.txt", "", ""}, {5.0, 6.0, 7.0, 8.0});
+  const SlamInput read = ReadSlamFiles({folder_ + "/kitti.txt", "", ""}, {{5.0, 6.0, 7.0, 8.0}});
   EXPECT_EQ(read.slam.live[0].slam_from_camera->translation.x(), 0.1);
   EXPECT_FALSE(read.slam.live[1].slam_from_camera);
   EXPECT_EQ(read.slam.live[2].slam_from_camera->translation.x(), 0.3);
   EXPECT_FALSE(read.slam.live[3].slam_from_camera);
   ASSERT_EQ(read.warnings.size(), 2U);
-  EXPECT_THAT(read.warnings[0], HasSubstr("3 poses for 4 frames"));
-  EXPECT_THAT(read.warnings[1], HasSubstr("1 poses with NaN"));
+  EXPECT_THAT(read.warnings[0], HasSubstr("1 poses with NaN"));
+  EXPECT_THAT(read.warnings[1], HasSubstr("3 poses for 4 frames"));
 }
 
-// For interpolation: poses keep their own stamps, and what was said of frames moves to them.
-TEST_F(SlamFiles, AllPosesMayBeKept) {
+// Poses of other stamps than the frames', none of them across a correction.
+TEST_F(SlamFiles, FramesTakeWhatLiesBetweenThePoses) {
   WriteFile(folder_ + "/dense.txt",
             "0.00 0 0 0 0 0 0 1\n0.01 1 0 0 0 0 0 1\n0.02 2 0 0 0 0 0 1\n0.03 3 0 0 0 0 0 1\n"
             "0.04 4 0 0 0 0 0 1\n");
-  WriteFile(folder_ + "/loops.csv", "loop,1,1,0,1,0,0,0,0,0,0,1,0.1,0.1\n");
+  WriteFile(folder_ + "/loops.csv", "loop,2,1,0,2,0,0,0,0,0,0,1,0.1,0.1\n");
   const SlamInput read = ReadSlamFiles({folder_ + "/dense.txt", "", folder_ + "/loops.csv"},
-                                       {0.0, 0.03}, {0.004, true});
-  ASSERT_EQ(read.slam.live.size(), 5U);
-  EXPECT_EQ(read.slam.live[2].slam_from_camera->translation.x(), 2.0);
-  EXPECT_EQ(read.slam.live[2].epoch, 0);
-  EXPECT_EQ(read.slam.live[3].epoch, 1);
-  EXPECT_EQ(read.slam.loops[0].second_frame, 3);
+                                       {{0.002, 0.027, 0.032}}, {0.004, true});
+  ASSERT_EQ(read.slam.live.size(), 3U);
+  EXPECT_NEAR(read.slam.live[0].slam_from_camera->translation.x(), 0.2, 1e-9);
+  EXPECT_NEAR(read.slam.live[1].slam_from_camera->translation.x(), 2.7, 1e-9);
+  EXPECT_FALSE(read.slam.live[2].slam_from_camera);  // the pose after it is of the next epoch
+  EXPECT_EQ(read.slam.live[2].epoch, 1);
+  EXPECT_EQ(read.slam.loops[0].second_frame, 2);
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+// Rows of loops.csv without their stamps, as before there were any.
+std::string WithoutStamps(const std::string& csv) {
+  std::string text;
+  for (const std::string& row : Lines(csv)) {
+    std::size_t end = row.size();
+    for (int i = 0; i < 3; ++i) end = row.rfind(',', end - 1);
+    text += row.substr(0, end) + "\n";
+  }
+  return text;
+}
+
+// Frames that were dropped since do not move the others, whether they are named by number or stamp.
+TEST_F(SlamFiles, LoopsKeepTheirFramesWhenOthersAreDropped) {
+  const SlamOutput written = Example();
+  WriteSlamFiles(folder_, written);
+  const std::string csv = ReadFile(Paths().loops);
+  FrameNames frames{Stamps(written), {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}};
+  for (const std::size_t dropped : {8U, 1U}) {
+    frames.stamps_s.erase(frames.stamps_s.begin() + static_cast<std::ptrdiff_t>(dropped));
+    frames.numbers.erase(frames.numbers.begin() + static_cast<std::ptrdiff_t>(dropped));
+  }
+  const std::vector<std::string> texts = {csv, WithoutStamps(csv), csv};
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    WriteFile(Paths().loops, texts[i]);
+    if (i == 2) frames.numbers.clear();  // the stamps alone say it as well
+    const SlamInput read = ReadSlamFiles(Paths(), frames);
+    ASSERT_EQ(read.slam.loops.size(), 2U);
+    EXPECT_EQ(read.slam.loops[0].second_frame, 6);       // 7
+    EXPECT_EQ(read.slam.loops[0].reported_at_frame, 7);  // 8 is not there, 9 is
+    EXPECT_EQ(read.slam.loops[1].first_frame, 2);        // 3
+    EXPECT_EQ(read.slam.loops[1].second_frame, 7);       // 9
+    EXPECT_EQ(read.slam.live[6].epoch, 1);
+    EXPECT_EQ(read.slam.live[7].epoch, 2);
+    EXPECT_THAT(read.warnings[0], HasSubstr("loops.csv: 1 events of frames that the recording"));
+  }
+}
+
+TEST_F(SlamFiles, StampsOfAnotherRecordingLeaveItToTheNumbers) {
+  const SlamOutput written = Example();
+  WriteSlamFiles(folder_, written);
+  FrameNames frames{Stamps(written)};
+  for (double& stamp_s : frames.stamps_s) stamp_s += 1.0;
+  const SlamInput read = ReadLoops(Paths().loops, frames, 0.01);
+  EXPECT_EQ(read.slam.loops, written.loops);
+}
+
+// A long file with a bad row, and one that was cut.
+TEST_F(SlamFiles, DamagedAndCutRowsOfLoopsAreCounted) {
+  const SlamOutput written = Example();
+  WriteSlamFiles(folder_, written);
+  std::string csv = ReadFile(Paths().loops);
+  WriteFile(Paths().loops, csv.substr(0, csv.size() - 60));
+  EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(written)}).warnings,
+              ElementsAre(AllOf(HasSubstr("loops.csv: 1 damaged rows left out (first: "),
+                                HasSubstr("loops.csv:5: has "))));
+  WriteFile(Paths().loops, csv.substr(0, csv.size() - 3));
+  EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(written)}).warnings,
+              ElementsAre(HasSubstr("loops.csv: the last line has no line end")));
 }
 
 }  // namespace

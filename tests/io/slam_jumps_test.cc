@@ -91,13 +91,14 @@ TEST(SlamJumps, RealOrbSlamOutput) {
     stamps_s.push_back(pose.stamp_s);
   }
   const SlamFilePaths paths{folder + "live.txt", folder + "CameraTrajectory.txt", ""};
-  const SlamInput revised = ReadSlamFiles(paths, stamps_s);
-  EXPECT_THAT(FindJumps(ReadSlamFiles({paths.live, "", ""}, stamps_s).slam.live, {}),
+  const SlamInput revised = ReadSlamFiles(paths, {stamps_s});
+  EXPECT_THAT(FindJumps(ReadSlamFiles({paths.live, "", ""}, {stamps_s}).slam.live, {}),
               Contains(790));
   ASSERT_FALSE(revised.slam.loops.empty());
   EXPECT_EQ(revised.slam.live[787].epoch, 0);
   EXPECT_GE(revised.slam.live[790].epoch, 1);
-  const SlamInput told = ReadSlamFiles({paths.live, paths.final, folder + "events.txt"}, stamps_s);
+  const SlamInput told =
+      ReadSlamFiles({paths.live, paths.final, folder + "events.txt"}, {stamps_s});
   ASSERT_EQ(told.slam.loops.size(), 1U);
   const LoopClosure& loop = told.slam.loops[0];
   EXPECT_EQ(loop.first_frame, 2);

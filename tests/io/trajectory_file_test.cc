@@ -22,7 +22,8 @@ std::string ErrorOf(const std::string& text) {
 
 TEST(TrajectoryFile, ReadsCommentsTabsCommasAndWindowsLines) {
   const TrajectoryFile file = ParseTrajectory(
-      "\xEF\xBB\xBF# stamp tx ...\n\n1.5 1 2 3 0 0 0 1\r\n2.5,\t-1e-3, 2, 3, 0, 0, 0.6, 0.8", "x");
+      "\xEF\xBB\xBF# stamp tx ...\n\n1.5 1 2 3 0 0 0 1\r\n2.5,\t-1e-3, 2, 3, 0, 0, 0.6, 0.8\n",
+      "x");
   ASSERT_EQ(file.poses.size(), 2U);
   EXPECT_EQ(file.poses[0].stamp_s, 1.5);
   EXPECT_EQ(file.poses[1].world_from_camera.translation, Eigen::Vector3d(-1e-3, 2, 3));
@@ -59,6 +60,17 @@ TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
   EXPECT_THAT(file.Warnings("t"), ElementsAre("t: 4 poses with NaN or a zero quaternion ignored",
                                               "t: 1 rows earlier than the row before, sorted",
                                               "t: 1 rows with a stamp already given, ignored"));
+}
+
+TEST(TrajectoryFile, SurvivesDamageInsideALongFile) {
+  const std::string good = "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n";
+  const TrajectoryFile file = ParseTrajectory("0.5 x\n" + good + "4 0 0 0 0 1", "t");
+  EXPECT_EQ(file.poses.size(), 3U);
+  EXPECT_THAT(file.Warnings("t"), ElementsAre("t: 2 damaged rows left out (first: t:1: has 2 "
+                                              "columns, must have 8)"));
+  EXPECT_THAT(ParseTrajectory(good + "4 0 0 0 0 0 0 1", "t").Warnings("t"),
+              ElementsAre("t: the last line has no line end; it is used, but may be cut"));
+  EXPECT_EQ(ErrorOf("0 1\n0 1\n0 1\n" + good), "t.txt:1: has 2 columns, must have 8");
 }
 
 TEST(TrajectoryFile, NamesTheBadLine) {

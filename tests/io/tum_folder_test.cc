@@ -166,6 +166,27 @@ TEST_F(TumFolderTest, UnsortedAndRepeatedRowsAreCounted) {
                                          "depth.txt: 1 rows with a stamp already given, ignored"));
 }
 
+// Damaged rows and images beside a nearer one keep their numbers, doubled rows have none.
+TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
+  const StampedFileList list = ParseFileList(
+      "1 depth/a.png\n1 depth/a.png\n2\n4 depth/d.png\n3 depth/c.png\n5 depth/e.pn", "depth.txt");
+  ASSERT_EQ(list.files.size(), 4U);
+  EXPECT_EQ(list.files[1].number, 2);
+  EXPECT_EQ(list.files[3].number, 4);
+  EXPECT_THAT(list.warnings,
+              ElementsAre("depth.txt: 1 damaged rows left out (first: depth.txt:3: must be a stamp "
+                          "and a file name)",
+                          "depth.txt: the last line has no line end; it is used, but may be cut",
+                          "depth.txt: 1 rows earlier than the row before, sorted",
+                          "depth.txt: 1 rows with a stamp already given, ignored"));
+  WriteSequence();
+  Write("rgb.txt", "0.005 rgb/a.png\n0.26 rgb/c.png\n0.38 rgb/d.png\n");
+  Write("depth.txt", "0 depth/a.png\n0.01 depth/b.png\n0.25 depth/c.png\n0.375 depth/d.png\n");
+  const Recording recording = ListTumFolder(folder_);
+  ASSERT_EQ(recording.images.size(), 3U);
+  EXPECT_EQ(recording.images[1].number, 2);
+}
+
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError({PoseAt(0, 0)}), "~/depth.txt: no such file");
   const Trajectory truth = WriteSequence();

@@ -93,7 +93,7 @@ TEST(SlamFiles, CarryTheVerySameOutput) {
     const SlamOutput written = DisturbTrajectory(truth, options, seed);
     WriteSlamFiles(folder, written);
     const SlamInput input = ReadSlamFiles(
-        {folder + "/slam.txt", folder + "/slam_final.txt", folder + "/loops.csv"}, stamps_s);
+        {folder + "/slam.txt", folder + "/slam_final.txt", folder + "/loops.csv"}, {stamps_s});
     const SlamOutput& read = input.slam;
     EXPECT_EQ(read.live, written.live);
     EXPECT_EQ(read.final, written.final);

@@ -1,0 +1,24 @@
+#include "mapper/io/frame_names.h"
+
+#include <fmt/format.h>
+
+namespace depthgrid {
+
+std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
+                                              const FrameNames& frames, const std::string& place,
+                                              std::vector<std::string>& warnings) {
+  const std::size_t count = frames.stamps_s.size();
+  if (poses.size() == count || count == 0) return poses;
+  const auto last = static_cast<std::size_t>(frames.NumberOf(count - 1));
+  const bool by_number = poses.size() == last + 1;
+  warnings.push_back(fmt::format("{}: {} poses for {} frames, paired {}", place, poses.size(),
+                                 count, by_number ? "by the frames' numbers" : "from the first"));
+  std::vector<std::optional<Pose3>> paired(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t pose = by_number ? static_cast<std::size_t>(frames.NumberOf(i)) : i;
+    if (pose < poses.size()) paired[i] = poses[pose];
+  }
+  return paired;
+}
+
+}  // namespace depthgrid

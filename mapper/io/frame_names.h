@@ -1,0 +1,33 @@
+// How other files name the frames of a recording: by stamp, or by a number.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/core/pose3.h"
+
+namespace depthgrid {
+
+struct FrameNames {
+  std::vector<double> stamps_s;  // by the clock of the poses
+  // Of each frame in the recording as it was recorded, ascending: frames that were left out since
+  // keep theirs. Empty: 0, 1, 2 ...
+  std::vector<std::int64_t> numbers = {};
+  // What was added to the recording's own stamps to get those of the poses.
+  double time_offset_s = 0.0;
+
+  std::int64_t NumberOf(std::size_t frame) const {
+    return numbers.empty() ? static_cast<std::int64_t>(frame) : numbers[frame];
+  }
+};
+
+// Poses without stamps, an entry a frame of `numbers`: one for each frame in order or, where some
+// frames have been left out, one for each number from 0. Another count is a warning, and they pair
+// from the first.
+std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
+                                              const FrameNames& frames, const std::string& place,
+                                              std::vector<std::string>& warnings);
+
+}  // namespace depthgrid
