@@ -77,6 +77,14 @@ std::string LengthText(double length_m) {
   return std::to_string(std::lround(length_m * 100.0)) + " cm";
 }
 
+GridGeometry Widened(GridGeometry geometry, int margin_cells) {
+  geometry.min_cell.x -= margin_cells;
+  geometry.min_cell.y -= margin_cells;
+  geometry.width_cells += 2 * margin_cells;
+  geometry.height_cells += 2 * margin_cells;
+  return geometry;
+}
+
 }  // namespace
 
 RgbImage PictureOf(const OccupancyMap& map, const GridGeometry& geometry) {
@@ -167,11 +175,21 @@ GridGeometry KnownPart(const StateMap& map, int margin_cells) {
     known = Union(known, one);
   }
   if (known.size() == 0) return map.geometry;
-  known.min_cell.x -= margin_cells;
-  known.min_cell.y -= margin_cells;
-  known.width_cells += 2 * margin_cells;
-  known.height_cells += 2 * margin_cells;
-  return known;
+  return Widened(known, margin_cells);
+}
+
+GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells) {
+  constexpr double kFarM = 10.0;
+  const int far_cells = CellIndex(kFarM, part.resolution_m);
+  const GridGeometry near = Widened(part, far_cells);
+  for (const StampedPose& pose : path) {
+    GridGeometry one = part;
+    one.min_cell = CellOf(pose.world_from_camera.translation.head<2>(), part.resolution_m);
+    one.width_cells = 1;
+    one.height_cells = 1;
+    if (near.Contains(one.min_cell)) part = Union(part, Widened(one, margin_cells));
+  }
+  return part;
 }
 
 }  // namespace depthgrid

@@ -35,6 +35,9 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
 // The part of `geometry` that holds anything but unknown cells, with a margin; all of it if nothing
 // does.
 GridGeometry KnownPart(const StateMap& map, int margin_cells);
+// `part` and the path with that margin: a camera may stand where it never saw the floor. Poses more
+// than a camera's range away from it are left out, so that no stray one makes a huge picture.
+GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells);
 
 namespace palette {
 // Distinguishable also with the common colour vision deficiencies (Okabe and Ito 2008).

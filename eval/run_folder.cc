@@ -54,6 +54,7 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   }
   paths.push_back({"slam", palette::kSlam, SlamTrajectory(*record.mapping)});
   paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});
+  part = WithPath(part, paths.back().poses, kMapMarginCells);
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mapper/core/angle.h"
 
@@ -34,8 +35,10 @@ constexpr double kFloorPeakShare = 0.25;
 // The images agree on the floor when this share of them has its lowest surface this near to it.
 constexpr double kAgreeM = 0.1;
 constexpr double kAgreeShare = 0.5;
-// Where they do not, this many of the first ones say where the floor is.
+// Where they do not, this many of the first ones say where the floor is, and which way is up.
 constexpr std::size_t kFirstViews = 3;
+// Normals of level surfaces in single images scatter by less than this; more is SLAM's drift.
+constexpr double kDriftRad = RadFromDeg(1.0);
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
@@ -145,6 +148,27 @@ struct Direction {
   double wander_rad = 0.0;
 };
 
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::min(1.0, a.dot(b)));
+}
+
+// Up as the first images have it: SLAM's world was defined there, and its tilt drifts with time.
+// The middle one of their normals, so that a slanted surface in one of them does no harm.
+Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
+  fits.resize(std::min(fits.size(), kFirstViews));
+  Eigen::Vector3d middle = up;
+  double least_rad = std::numeric_limits<double>::infinity();
+  for (const PlaneFit& fit : fits) {
+    const Eigen::Vector3d normal = NormalOf(fit.scatter, up);
+    double sum_rad = 0.0;
+    for (const PlaneFit& other : fits) sum_rad += AngleBetween(normal, NormalOf(other.scatter, up));
+    if (sum_rad >= least_rad) continue;
+    least_rad = sum_rad;
+    middle = normal;
+  }
+  return middle;
+}
+
 // Up as the common normal of the largest level surface of each image. Every image's surface has a
 // height of its own: a table's is as level as the floor, and SLAM's height drifts (0.6 m of drift
 // tilted one plane through all of it by 2.9 degrees).
@@ -167,11 +191,12 @@ std::optional<Direction> CommonUp(const Views& views, Eigen::Vector3d up) {
   }
   std::vector<double> angles_rad;
   for (const PlaneFit& fit : fits) {
-    angles_rad.push_back(std::acos(std::min(1.0, up.dot(NormalOf(fit.scatter, up)))));
+    angles_rad.push_back(AngleBetween(up, NormalOf(fit.scatter, up)));
   }
   std::sort(angles_rad.begin(), angles_rad.end());
   const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(fits.size()));
-  return Direction{up, angles_rad[std::min(rank, fits.size() - 1)]};
+  const double wander_rad = angles_rad[std::min(rank, fits.size() - 1)];
+  return Direction{wander_rad > kDriftRad ? FirstUp(fits, up) : up, wander_rad};
 }
 
 struct FloorOfViews {

@@ -94,5 +94,13 @@ TEST(MapPicture, KnownPartHasAMargin) {
   EXPECT_EQ(KnownPart(StateMap(map.geometry), 2), map.geometry);
 }
 
+TEST(MapPicture, TheCameraIsInThePicture) {
+  const GridGeometry part{0.05, {0, 0}, 10, 10};
+  Trajectory path = {
+      {0.0, {Eigen::Quaterniond::Identity(), {-0.225, 0.025, 1.0}}}};  // cell (-5, 0)
+  path.push_back({1.0, {Eigen::Quaterniond::Identity(), {1000.0, 0.0, 1.0}}});
+  EXPECT_EQ(WithPath(part, path, 2), (GridGeometry{0.05, {-7, -2}, 17, 12}));
+}
+
 }  // namespace
 }  // namespace depthgrid
