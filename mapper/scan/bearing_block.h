@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "mapper/scan/bearing_returns.h"
@@ -24,7 +23,7 @@ constexpr std::size_t kGroupRows = 16;
 
 struct BearingBlock {
   std::size_t bearings = 0;  // lanes after these repeat the last one
-  RowRange rows;             // in which any lane takes part
+  RowRange rows;             // in which any lane takes part, and those before in the first group
   RowRange shared_rows;      // in which all of them do
   bool all_ahead = true;     // no ray of these rows points backwards
   BlockLane u0, u1, h0, h1, g0, g1;
@@ -34,23 +33,31 @@ struct BearingBlock {
     return rows.last < rows.first ? 0 : static_cast<std::size_t>(rows.last - rows.first + 1);
   }
   std::size_t GroupCount() const { return (RowCount() + kGroupRows - 1) / kGroupRows; }
+  RowRange RowsOfGroup(std::size_t group) const {
+    const int from = rows.first + static_cast<int>(group * kGroupRows);
+    return {from, std::min(from + static_cast<int>(kGroupRows) - 1, rows.last)};
+  }
+  // Whether every lane takes part in every row.
+  bool AreShared(const RowRange& some) const {
+    return some.first >= shared_rows.first && some.last <= shared_rows.last;
+  }
 };
 
 BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
                               const ReturnLimits& limits);
 
 // A block's samples of one band: samples[row - rows.first][lane], and nearest[group][lane], the
-// smallest of each group of rows; least_depth[group][lane] likewise, null of a slice. Unlike
-// SampleAt's, ranges may exceed the limit: that is one comparison less for each, and whoever reads
-// them stops at it.
+// smallest of each group of rows. Of groups whose smallest is no range the samples may be missing.
+// Unlike SampleAt's, ranges may exceed the limit: that is one comparison less for each, and whoever
+// reads them stops at it. least_depth[group][lane], null of a slice: no usable depth is smaller;
+// where it is not usable itself, all samples of the group are there.
 struct BandSamples {
   float* samples = nullptr;
   float* nearest = nullptr;
   float* least_depth = nullptr;
 };
 
-// `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range; null
-// without a slice.
+// `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range.
 struct SampleRows {
   BandSamples band;
   BandSamples slice;
@@ -60,12 +67,11 @@ struct SampleRows {
 struct BlockSamples {
   BlockLane nearest;        // smallest sample
   BlockLane slice_nearest;  // smallest of the slice
-  BlockLane least_depth;    // in the lane's own rows
+  BlockLane least_depth;    // of its groups
 };
 
 BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
-                         const std::optional<SliceBand>& slice, const BearingBlock& block,
-                         const SampleRows& rows);
+                         const SliceBand& slice, const BearingBlock& block, const SampleRows& rows);
 
 // Mean of the samples in [low, high] of each lane, high below kPassing; `otherwise` where there is
 // none. `count`: their number.
@@ -74,6 +80,9 @@ struct BlockMean {
 };
 BlockMean MeanWithin(const BandSamples& band, std::size_t rows, const BlockLane& low,
                      const BlockLane& high, const BlockLane& otherwise);
+// The same of all samples up to `high`.
+BlockMean MeanUpTo(const BandSamples& band, std::size_t rows, const BlockLane& high,
+                   const BlockLane& otherwise);
 
 // Which rows are usable, and the longest gaps between them.
 struct BlockViews {

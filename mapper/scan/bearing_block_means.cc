@@ -17,25 +17,29 @@ using Floats = hn::CappedTag<float, kBlockBearings>;
 using Vec = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 
-// Sum and number of a lane's samples in [from, to].
+// Sum and number of a lane's samples in [from, to], or of all up to `to`.
+template <bool kFromLeast>
 struct Running {
   Vec from, to, sum, count;
 
   HWY_INLINE void Add(Floats d, Vec sample) {
-    const Mask inside = hn::And(hn::Ge(sample, from), hn::Le(sample, to));
+    Mask inside = hn::Le(sample, to);
+    if constexpr (!kFromLeast) inside = hn::And(inside, hn::Ge(sample, from));
     sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
     count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0F)));
   }
 };
 
-void MeanLanes(const BandSamples& band, std::size_t rows, const BlockLane& low,
-               const BlockLane& high, const BlockLane& otherwise, BlockMean& out) {
+template <bool kFromLeast>
+void MeanOf(const BandSamples& band, std::size_t rows, const BlockLane& low, const BlockLane& high,
+            const BlockLane& otherwise, BlockMean& out) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
   const auto start = [&](std::size_t i) HWY_ATTR {
-    return Running{hn::Load(d, &low[i]), hn::Load(d, &high[i]), hn::Zero(d), hn::Zero(d)};
+    return Running<kFromLeast>{hn::Load(d, &low[i]), hn::Load(d, &high[i]), hn::Zero(d),
+                               hn::Zero(d)};
   };
-  const auto finish = [&](const Running& running, std::size_t i) HWY_ATTR {
+  const auto finish = [&](const Running<kFromLeast>& running, std::size_t i) HWY_ATTR {
     const Mask any = hn::Gt(running.count, hn::Zero(d));
     const Vec mean = hn::Div(running.sum, hn::Max(running.count, hn::Set(d, 1.0F)));
     hn::Store(hn::IfThenElse(any, mean, hn::Load(d, &otherwise[i])), d, &out.mean[i]);
@@ -43,7 +47,7 @@ void MeanLanes(const BandSamples& band, std::size_t rows, const BlockLane& low,
   };
   static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
   for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
-    Running a = start(i), b = start(i + lanes);
+    Running<kFromLeast> a = start(i), b = start(i + lanes);
     for (std::size_t first = 0; first < rows; first += kGroupRows) {
       const float* HWY_RESTRICT nearest = band.nearest + first / kGroupRows * kBlockBearings + i;
       const bool near_a = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest), a.to));
@@ -66,6 +70,16 @@ void MeanLanes(const BandSamples& band, std::size_t rows, const BlockLane& low,
     finish(a, i);
     finish(b, i + lanes);
   }
+}
+
+void MeanLanes(const BandSamples& band, std::size_t rows, const BlockLane& low,
+               const BlockLane& high, const BlockLane& otherwise, BlockMean& out) {
+  MeanOf<false>(band, rows, low, high, otherwise, out);
+}
+
+void MeanLanesUpTo(const BandSamples& band, std::size_t rows, const BlockLane& high,
+                   const BlockLane& otherwise, BlockMean& out) {
+  MeanOf<true>(band, rows, high, high, otherwise, out);
 }
 
 // The longest run between two usable rows so far.
@@ -101,21 +115,8 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
     // A run needs a row between: the difference of its ends exceeds one.
     Gap below{zero, one}, above{zero, one};
     bool all_before = false;  // every lane was usable in the row before
-    for (int v = block.rows.first; v <= block.rows.last; ++v) {
-      const auto r = static_cast<std::size_t>(v - block.rows.first);
-      const bool in_shared = v > block.shared_rows.first && v <= block.shared_rows.last;
-      if (all_before && r % kGroupRows == 0 && in_shared) {
-        const Vec least = hn::Load(d, band.least_depth + r / kGroupRows * kBlockBearings + i);
-        const int group_last = std::min(v + static_cast<int>(kGroupRows) - 1, block.rows.last);
-        if (group_last <= block.shared_rows.last && hn::AllTrue(d, hn::Ge(least, min_depth))) {
-          v = group_last;
-          last = hn::Set(d, static_cast<float>(v));
-          continue;
-        }
-      }
+    const auto take = [&](int v, Mask usable) HWY_ATTR {
       const Vec row = hn::Set(d, static_cast<float>(v));
-      const Vec sample = hn::Load(d, band.samples + r * kBlockBearings + i);
-      const Mask usable = hn::Lt(sample, hn::Set(d, kUnusable));
       const bool all = hn::AllTrue(d, usable);
       if (HWY_UNLIKELY(!all || !all_before)) {
         const Mask started = hn::Ge(last, zero);
@@ -127,6 +128,19 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
       }
       last = hn::IfThenElse(usable, row, last);
       all_before = all;
+    };
+    for (std::size_t r = 0; r < block.RowCount(); r += kGroupRows) {
+      const RowRange rows = block.RowsOfGroup(r / kGroupRows);
+      const Vec least = hn::Load(d, band.least_depth + r / kGroupRows * kBlockBearings + i);
+      if (block.AreShared(rows) && hn::AllTrue(d, hn::Ge(least, min_depth))) {
+        take(rows.first, hn::Eq(zero, zero));
+        last = hn::Set(d, static_cast<float>(rows.last));
+        continue;
+      }
+      const float* HWY_RESTRICT samples = band.samples + r * kBlockBearings + i;
+      for (int v = rows.first; v <= rows.last; ++v, samples += kBlockBearings) {
+        take(v, hn::Lt(hn::Load(d, samples), hn::Set(d, kUnusable)));
+      }
     }
     hn::Store(first, d, &out.first[i]);
     hn::Store(last, d, &out.last[i]);
@@ -145,12 +159,20 @@ HWY_AFTER_NAMESPACE();
 namespace depthgrid::internal {
 
 HWY_EXPORT(MeanLanes);
+HWY_EXPORT(MeanLanesUpTo);
 HWY_EXPORT(ViewLanes);
 
 BlockMean MeanWithin(const BandSamples& band, std::size_t rows, const BlockLane& low,
                      const BlockLane& high, const BlockLane& otherwise) {
   BlockMean mean;
   HWY_DYNAMIC_DISPATCH(MeanLanes)(band, rows, low, high, otherwise, mean);
+  return mean;
+}
+
+BlockMean MeanUpTo(const BandSamples& band, std::size_t rows, const BlockLane& high,
+                   const BlockLane& otherwise) {
+  BlockMean mean;
+  HWY_DYNAMIC_DISPATCH(MeanLanesUpTo)(band, rows, high, otherwise, mean);
   return mean;
 }
 

@@ -1,8 +1,10 @@
 #include "mapper/scan/bearing_returns.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "mapper/scan/bearing_block.h"
 
@@ -32,18 +34,23 @@ BandSamples RoomFor(const BearingBlock& block, std::vector<Lanes>& lanes) {
   return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
 
-// Every sample of a lane, as SampleAt gives them.
-std::span<const float> SamplesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
-                                 const ReturnLimits& limits, std::vector<float>& column) {
+// The ranges of a lane.
+std::span<const float> RangesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
+                                const ReturnLimits& limits, std::vector<float>& column) {
   column.clear();
-  for (std::size_t r = 0; r < rows; ++r) {
-    const bool any_near =
-        band.nearest[r / kGroupRows * kBlockBearings + lane] <= limits.max_range_m;
-    const float sample = any_near ? band.samples[r * kBlockBearings + lane] : kPassing;
-    column.push_back(sample <= limits.max_range_m ? sample : kPassing);
+  for (std::size_t first = 0; first < rows; first += kGroupRows) {
+    if (band.nearest[first / kGroupRows * kBlockBearings + lane] > limits.max_range_m) continue;
+    for (std::size_t r = first; r < std::min(first + kGroupRows, rows); ++r) {
+      const float sample = band.samples[r * kBlockBearings + lane];
+      if (sample <= limits.max_range_m) column.push_back(sample);
+    }
   }
   return column;
 }
+
+// Contains no height.
+constexpr SliceBand kNoSlice{std::numeric_limits<float>::infinity(),
+                             -std::numeric_limits<float>::infinity()};
 
 RowRange RangeOf(float first, float last) {
   return {static_cast<int>(first), static_cast<int>(last)};
@@ -55,15 +62,14 @@ RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, t
 // are done one by one.
 void FindNearestOfBlock(const BearingBlock& block, const BandSamples& band,
                         const BlockLane& nearest, const ReturnLimits& limits,
-                        const NoiseWindow& window, std::vector<float>& column,
-                        BearingReturns* returns) {
+                        const NoiseWindow& window, ReturnsMemory& memory, BearingReturns* returns) {
   const std::size_t rows = block.RowCount();
   BlockLane width, high;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     width[i] = window.At(nearest[i]);
     high[i] = std::min(nearest[i] + width[i], limits.max_range_m);
   }
-  const BlockMean first = internal::MeanWithin(band, rows, nearest, high, nearest);
+  const BlockMean first = internal::MeanUpTo(band, rows, high, nearest);
   BlockLane low;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     const float half_m = 0.5F * width[i];
@@ -77,7 +83,8 @@ void FindNearestOfBlock(const BearingBlock& block, const BandSamples& band,
       returns[i].hit = true;
       returns[i].range_m = second.mean[i];
     } else {
-      FindNearest(SamplesOf(band, rows, i, limits, column), limits, window, returns[i]);
+      FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window, memory.heap,
+                  returns[i]);
     }
   }
 }
@@ -115,15 +122,15 @@ const ImageReturns& FindReturns(const DepthImage& image, const std::vector<Beari
   for (std::size_t begin = 0; begin < lines.size(); begin += kBlockBearings) {
     const BearingBlock block = internal::MakeBearingBlock(lines, begin, limits);
     if (block.RowCount() == 0) continue;
-    const SampleRows out{RoomFor(block, memory.samples),
-                         slice ? RoomFor(block, memory.slice_samples) : BandSamples{}};
-    const BlockSamples found = internal::SampleBlock(image, limits, slice, block, out);
+    const SampleRows out{RoomFor(block, memory.samples), RoomFor(block, memory.slice_samples)};
+    const BlockSamples found =
+        internal::SampleBlock(image, limits, slice.value_or(kNoSlice), block, out);
     BearingReturns* const obstacles = &all.obstacles[begin];
     FindViewsOfBlock(block, found, out.band, limits.min_depth_m, obstacles);
     if (slice) std::copy_n(obstacles, block.bearings, &all.slice[begin]);
-    FindNearestOfBlock(block, out.band, found.nearest, limits, window, memory.column, obstacles);
+    FindNearestOfBlock(block, out.band, found.nearest, limits, window, memory, obstacles);
     if (!slice) continue;
-    FindNearestOfBlock(block, out.slice, found.slice_nearest, limits, window, memory.column,
+    FindNearestOfBlock(block, out.slice, found.slice_nearest, limits, window, memory,
                        &all.slice[begin]);
   }
   return all;

@@ -75,9 +75,9 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 
 // The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself.
+// supported sample, once more centred on itself. `heap` is memory.
 void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                 const NoiseWindow& window, BearingReturns& returns);
+                 const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns);
 
 // What an image says of every line. The slice's lines are seen as the others are: only the nearest
 // surface differs.
@@ -93,7 +93,7 @@ struct ReturnsMemory {
   };
   std::vector<Lanes> samples;
   std::vector<Lanes> slice_samples;
-  std::vector<float> column;
+  std::vector<float> column, heap;
   ImageReturns returns;
 };
 

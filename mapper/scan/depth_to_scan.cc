@@ -76,14 +76,17 @@ std::optional<SlopeRange> SlopesOf(const BearingLine& line, const RowRange& rows
   return SlopeRange{std::min(a, b), std::max(a, b)};
 }
 
-Beam BeamOf(double bearing_rad, const BearingLine& line, const BearingReturns& returns,
+BearingView ViewOf(const BearingLine& line, const BearingReturns& returns) {
+  return {SlopesOf(line, returns.seen), SlopesOf(line, returns.gap_below),
+          SlopesOf(line, returns.gap_above)};
+}
+
+Beam BeamOf(double bearing_rad, const BearingView& view, const BearingReturns& returns,
             double camera_height_m, const ScanOptions& options) {
   Beam beam;
   beam.bearing_rad = static_cast<float>(bearing_rad);
   beam.hit = returns.hit;
   beam.range_m = returns.range_m;
-  const BearingView view{SlopesOf(line, returns.seen), SlopesOf(line, returns.gap_below),
-                         SlopesOf(line, returns.gap_above)};
   const double limit_m = beam.hit ? beam.range_m : options.max_range_m;
   const Distances clear = options.mode == ScanMode::kFull
                               ? ClearInterval(view, camera_height_m, limit_m, options)
@@ -93,13 +96,21 @@ Beam BeamOf(double bearing_rad, const BearingLine& line, const BearingReturns& r
   return beam;
 }
 
+// What the rays of each line say; the slice's lines are seen as the obstacles' are.
+void FindViews(const std::vector<BearingReturns>& returns, ScanMemory& memory) {
+  memory.views.clear();
+  for (std::size_t k = 0; k < returns.size(); ++k) {
+    memory.views.push_back(ViewOf(memory.lines[k], returns[k]));
+  }
+}
+
 Scan ScanOf(const ScanMemory& memory, const std::vector<BearingReturns>& returns,
-            double camera_height_m, const ScanOptions& options) {
-  Scan scan;
+            double camera_height_m, const ScanOptions& options, Scan scan = {}) {
   scan.max_range_m = options.max_range_m;
+  scan.beams.clear();
   scan.beams.reserve(returns.size());
   for (std::size_t k = 0; k < returns.size(); ++k) {
-    scan.beams.push_back(BeamOf(memory.bearings[k].angle_rad, memory.lines[k], returns[k],
+    scan.beams.push_back(BeamOf(memory.bearings[k].angle_rad, memory.views[k], returns[k],
                                 camera_height_m, options));
   }
   return scan;
@@ -135,11 +146,13 @@ Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) con
   const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
                                             NoiseWindow(depth, memory.noise), memory.returns);
+  FindViews(returns.obstacles, memory);
   return ScanOf(memory, returns.obstacles, stand.height_m, options_);
 }
 
 ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& stand,
-                                  double slice_half_height_m, ScanMemory& memory) const {
+                                  double slice_half_height_m, ScanMemory& memory,
+                                  ScanPair scans) const {
   const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
   const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
@@ -148,8 +161,10 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                             SliceBand{slice_limits.low_m, slice_limits.high_m},
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  return {ScanOf(memory, returns.obstacles, stand.height_m, options_),
-          ScanOf(memory, returns.slice, slice_half_height_m, slice_options)};
+  FindViews(returns.obstacles, memory);
+  return {
+      ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
+      ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice))};
 }
 
 std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,

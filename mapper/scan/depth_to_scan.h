@@ -10,6 +10,7 @@
 #include "mapper/core/scan.h"
 #include "mapper/scan/bearing_returns.h"
 #include "mapper/scan/camera_stand.h"
+#include "mapper/scan/clear_interval.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
@@ -27,6 +28,7 @@ struct ScanMemory {
   std::vector<BearingLine> lines;
   NoiseWindow::Memory noise;
   ReturnsMemory returns;
+  std::vector<BearingView> views;
 };
 
 class DepthToScan {
@@ -42,9 +44,9 @@ class DepthToScan {
     return Convert(depth, StandOf(slam_from_camera, options_.floor_z_m));
   }
   // Convert, and the same for a band of this half height around the camera; the image is read once
-  // for both.
+  // for both. `scans`: of an earlier result, to be used again.
   ScanPair ConvertBoth(const DepthImage& depth, const CameraStand& stand,
-                       double slice_half_height_m, ScanMemory& memory) const;
+                       double slice_half_height_m, ScanMemory& memory, ScanPair scans = {}) const;
 
   // For drawing the scan over the image it came from: the pixel (u, v) of each beam's hit, (-1, -1)
   // for beams without.

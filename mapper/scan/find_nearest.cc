@@ -43,22 +43,21 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 }
 
 void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                 const NoiseWindow& window, BearingReturns& returns) {
-  // Samples come out of the heap in increasing order, and few of them do before one is supported.
-  std::vector<float> heap;
+                 const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns) {
+  // Samples come out of the heap in increasing order, to its end, and few of them do before one is
+  // supported.
+  heap.clear();
   std::copy_if(samples.begin(), samples.end(), std::back_inserter(heap),
                [](float sample) { return sample < kPassing; });
   std::make_heap(heap.begin(), heap.end(), std::greater<>());
-  std::vector<float> increasing;
-  const auto needed = static_cast<std::size_t>(limits.min_returns);
-  while (!heap.empty()) {
-    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
-    increasing.push_back(heap.back());
-    heap.pop_back();
-    if (increasing.size() < needed) continue;
-    const float smallest = increasing[increasing.size() - needed];
+  const auto needed = static_cast<std::ptrdiff_t>(limits.min_returns);
+  for (auto end = heap.end(); end != heap.begin();) {
+    std::pop_heap(heap.begin(), end, std::greater<>());
+    const auto largest = --end;
+    if (heap.end() - largest < needed) continue;
+    const float smallest = *(largest + needed - 1);
     const float width_m = window.At(smallest);
-    if (increasing.back() > smallest + width_m) continue;
+    if (*largest > smallest + width_m) continue;
     const float half_m = 0.5F * width_m;
     const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
     returns.hit = true;

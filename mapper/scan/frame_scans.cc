@@ -27,6 +27,13 @@ std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
 
 }  // namespace
 
+std::shared_ptr<Scan> ScanPool::Take() {
+  const auto is_free = [](const std::shared_ptr<Scan>& scan) { return scan.use_count() == 1; };
+  const auto found = std::find_if(scans_.begin(), scans_.end(), is_free);
+  if (found != scans_.end()) return *found;
+  return scans_.emplace_back(std::make_shared<Scan>());
+}
+
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
     // The other modes read few rows at the camera's height already.
     : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0) {
@@ -47,9 +54,12 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
     const auto scan = std::make_shared<const Scan>(converter_->Convert(*frame.depth, stand));
     return {scan, scan, stand};
   }
-  ScanPair scans = converter_->ConvertBoth(*frame.depth, stand, slice_half_height_m_, memory_);
-  return {std::make_shared<const Scan>(std::move(scans.obstacles)),
-          std::make_shared<const Scan>(std::move(scans.slice)), stand};
+  const std::shared_ptr<Scan> obstacles = pool_.Take(), slice = pool_.Take();
+  ScanPair scans = converter_->ConvertBoth(*frame.depth, stand, slice_half_height_m_, memory_,
+                                           {std::move(*obstacles), std::move(*slice)});
+  *obstacles = std::move(scans.obstacles);
+  *slice = std::move(scans.slice);
+  return {obstacles, slice, stand};
 }
 
 }  // namespace depthgrid

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/scan/depth_to_scan.h"
@@ -18,6 +19,15 @@ struct FrameScans {
   std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
   std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
   std::optional<CameraStand> stand = {};  // of depth images
+};
+
+// Scans that are written again once nobody else holds them.
+class ScanPool {
+ public:
+  std::shared_ptr<Scan> Take();
+
+ private:
+  std::vector<std::shared_ptr<Scan>> scans_;
 };
 
 class FrameScanner {
@@ -35,6 +45,7 @@ class FrameScanner {
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
   ScanMemory memory_;
+  ScanPool pool_;
 };
 
 }  // namespace depthgrid

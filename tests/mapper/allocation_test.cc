@@ -9,6 +9,7 @@
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/match/scan_matcher.h"
+#include "tests/mapper/analytic_room.h"
 #include "tests/mapper/match_world.h"
 
 namespace {
@@ -57,22 +58,54 @@ TEST(Allocation, MatchingHasNoneInSteadyState) {
   EXPECT_EQ(counted, 0);
 }
 
-// Frames of a walk that goes round and round, after some rounds: what is allocated is room for what
-// is kept, in ever larger pieces, and new groups of surfels or submaps.
-double AllocationsAFrame(const MapperOptions& options) {
+constexpr int kRound = 300;
+
+// A walk that goes round and round, seen by a laser.
+std::vector<Frame> LaserRound() {
   const PlanarWorld room = FurnishedRoom();
-  constexpr int kRound = 300, kWarm = 600, kCounted = 600;
   std::vector<Frame> round(kRound);
   for (int k = 0; k < kRound; ++k) {
     const double turn_rad = 2.0 * kPi * k / kRound;
     const Pose2 pose{3.0 + 0.3 * std::cos(turn_rad), 1.8 + 0.3 * std::sin(turn_rad),
                      WrapAngle(turn_rad)};
     const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
-    round[static_cast<std::size_t>(k)].scan =
+    Frame& frame = round[static_cast<std::size_t>(k)];
+    frame.scan =
         std::make_shared<const Scan>(ScanOf(room, pose, laser, 8, static_cast<std::uint32_t>(k)));
-    round[static_cast<std::size_t>(k)].slam_from_camera = CameraOf(pose, 0.0);
+    frame.slam_from_camera = CameraOf(pose, 0.0);
   }
-  IncrementalMapper mapper(options, std::nullopt);
+  return round;
+}
+
+const PinholeCamera kCamera{80, 60, 60.1, 60.0, 39.5, 29.5, {}};
+
+// The same by a depth camera, some of whose pixels are missing.
+std::vector<Frame> DepthRound() {
+  AnalyticRoom room;
+  room.boxes.push_back({{0.9, -1.0, 0.0}, {1.5, -0.3, 0.5}});
+  room.cylinders.push_back({{1.4, 0.5}, 0.04, 0.0, 2.5});
+  RandomStream random(12, RandomStage::kTest);
+  std::vector<Frame> round(kRound);
+  for (int k = 0; k < kRound; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kRound;
+    const Pose2 base{-0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), WrapAngle(turn_rad)};
+    Frame& frame = round[static_cast<std::size_t>(k)];
+    frame.slam_from_camera = TiltedCamera(base, 1.15, 0.2, 0.05);
+    DepthImage image = room.Render(kCamera, *frame.slam_from_camera);
+    for (float& z_m : image.z_m) {
+      if (random.Uniform() < 0.02) z_m = kInvalidDepth;
+      z_m *= static_cast<float>(random.Uniform(0.995, 1.005));
+    }
+    frame.depth = std::make_shared<const DepthImage>(std::move(image));
+  }
+  return round;
+}
+
+// After some rounds: what is allocated is room for what is kept, in ever larger pieces, and new
+// groups of surfels or submaps.
+double AllocationsAFrame(const MapperOptions& options, std::vector<Frame> round) {
+  constexpr int kWarm = 600, kCounted = 600;
+  IncrementalMapper mapper(options, kCamera);
   long before = 0;
   for (int k = 0; k < kWarm + kCounted; ++k) {
     if (k == kWarm) before = allocations;
@@ -84,14 +117,28 @@ double AllocationsAFrame(const MapperOptions& options) {
   return static_cast<double>(allocations - before) / kCounted;
 }
 
-TEST(Allocation, AFrameHasHardlyAnyInSteadyState) {
+MapperOptions PaperOptions() {
   MapperOptions options;
   options.method = MapperMethod::kPaper;
-  EXPECT_LT(AllocationsAFrame(options), 0.5);
+  return options;
+}
+
+MapperOptions SurfelOptions() {
+  MapperOptions options;
   options.method = MapperMethod::kSurfel;
   options.fusion.mode = FusionMode::kLearned;
   options.rounds.first_frames = 0;  // adjusting everything takes memory
-  EXPECT_LT(AllocationsAFrame(options), 0.5);
+  return options;
+}
+
+TEST(Allocation, AScanHasHardlyAnyInSteadyState) {
+  EXPECT_LT(AllocationsAFrame(PaperOptions(), LaserRound()), 0.5);
+  EXPECT_LT(AllocationsAFrame(SurfelOptions(), LaserRound()), 0.5);
+}
+
+TEST(Allocation, ADepthImageHasHardlyAnyInSteadyState) {
+  EXPECT_LT(AllocationsAFrame(PaperOptions(), DepthRound()), 0.9);  // two scans of each are kept
+  EXPECT_LT(AllocationsAFrame(SurfelOptions(), DepthRound()), 0.9);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
                             const ReturnLimits& limits, const NoiseWindow& window) {
   const RowRange rows = RowsOf(line, limits);
   BearingReturns returns;
-  std::vector<float> samples;
+  std::vector<float> samples, heap;
   for (int v = rows.first; v <= rows.last; ++v) {
     samples.push_back(SampleAt(image, line, limits, v));
     if (samples.back() == kUnusable) continue;
@@ -32,7 +32,7 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
     }
     returns.seen.last = v;
   }
-  FindNearest(samples, limits, window, returns);
+  FindNearest(samples, limits, window, heap, returns);
   return returns;
 }
 
@@ -140,7 +140,8 @@ TEST(FindNearest, NeedsSupportAndAveragesTheWindow) {
   limits.min_returns = 3;
   const auto nearest = [&](std::vector<float> samples) {
     BearingReturns returns;
-    FindNearest(samples, limits, window, returns);
+    std::vector<float> heap;
+    FindNearest(samples, limits, window, heap, returns);
     return returns.hit ? returns.range_m : -1.0F;
   };
   // 1.5 stands alone; 2.00 to 2.02 belong together; 3 is behind.
