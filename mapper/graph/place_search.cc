@@ -19,6 +19,10 @@ void RaiseTo(std::uint8_t score, const Cell& cell, const GridGeometry& geometry,
   there = std::max(there, score);
 }
 
+void RaiseRow(const std::uint8_t* scores, std::size_t count, std::uint8_t* into) {
+  for (std::size_t i = 0; i < count; ++i) into[i] = std::max(into[i], scores[i]);
+}
+
 // The points' cells at one rotation.
 std::vector<Cell> CellsOf(const std::vector<Eigen::Vector2d>& points, const PointCells& at) {
   std::vector<Cell> cells;
@@ -154,22 +158,28 @@ WallPyramid::WallPyramid(const OccupancyMap& map) : resolution_m_(map.geometry.r
   while (static_cast<int>(levels_.size()) < kMaxLevels) AddLevel();
 }
 
-// The squares of a level are made of four of the level below.
+// The squares of a level are made of four of the level below: the larger of two side by side, then
+// of two such rows. A cell's lower-left square lies `half` cells to the left and below in the level
+// below, whose geometry begins that much later.
 void WallPyramid::AddLevel() {
-  const int below = levels() - 1;
-  const int half = 1 << below;
+  const int half = 1 << (levels() - 1);
+  const Level& below = levels_.back();
   Level level;
-  level.geometry = levels_.back().geometry;
+  level.geometry = below.geometry;
   level.geometry.min_cell.x -= half;
   level.geometry.min_cell.y -= half;
   level.geometry.width_cells += half;
   level.geometry.height_cells += half;
-  level.score.resize(level.geometry.size());
-  for (std::size_t i = 0; i < level.score.size(); ++i) {
-    const Cell c = level.geometry.CellAt(i);
-    level.score[i] = static_cast<std::uint8_t>(
-        std::max({Best(c, below), Best({c.x + half, c.y}, below), Best({c.x, c.y + half}, below),
-                  Best({c.x + half, c.y + half}, below)}));
+  level.score.assign(level.geometry.size(), 0);
+  const auto width = static_cast<std::size_t>(below.geometry.width_cells);
+  for (int row = 0; row < below.geometry.height_cells; ++row) {
+    const std::uint8_t* scores = below.score.data() + static_cast<std::size_t>(row) * width;
+    for (const int up : {0, half}) {
+      std::uint8_t* into = level.score.data() + static_cast<std::size_t>(row + up) *
+                                                    (width + static_cast<std::size_t>(half));
+      RaiseRow(scores, width, into);
+      RaiseRow(scores, width, into + half);
+    }
   }
   levels_.push_back(std::move(level));
 }

@@ -31,6 +31,9 @@ class SparsePoseMatrix : public PoseMatrix {
   // The block of two poses, zero at first.
   Eigen::Matrix3d& BlockAt(int row_pose, int column_pose);
 
+  bool FactorDense();
+  bool FactorSparse();
+
   struct Factored;
   std::vector<std::vector<Entry>> rows_;  // each by column
   std::vector<Eigen::Matrix3d> blocks_;

@@ -19,6 +19,7 @@ void SurfelGroupOptions::Visit(OptionsVisitor& v) {
   v.Number("length_m", length_m, {0.0, 10.0}, "a group ends this far from where it began");
   v.Number("turn_deg", turn_deg, {0.0, 180.0}, "or when it has turned so far");
   v.Number("spacing_m", spacing_m, {0.005, 1.0}, "between a group's surfels along a wall");
+  v.Number("most", most, {1, 1e9}, "with more groups neighbouring ones are adjusted as one");
 }
 
 bool SurfelGroups::Ends(const Pose2& group_from_base) const {
@@ -26,25 +27,33 @@ bool SurfelGroups::Ends(const Pose2& group_from_base) const {
          std::abs(group_from_base.yaw_rad) > RadFromDeg(options_.turn_deg);
 }
 
+void SurfelGroups::Begin(const Pose2& map_from_group) {
+  SurfelGroup group;
+  group.first_frame = static_cast<int>(places_.size());
+  group.map_from_group = map_from_group;
+  groups_.push_back(group);
+  newest_.Clear();
+}
+
+void SurfelGroups::Collect(const std::vector<Surfel>& surfels, const Pose2& group_from_surfels) {
+  const Motion2 motion(group_from_surfels);
+  const double min_cosine = std::cos(RadFromDeg(kMaxAngleDeg));
+  for (const Surfel& surfel : surfels) {
+    const double sigma_m = 1.0 / std::sqrt(surfel.information);
+    newest_.Merge(motion * surfel,
+                  {0.5 * options_.spacing_m, kGateM + kGateSigmas * sigma_m, min_cosine});
+  }
+}
+
 void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base) {
   if (groups_.empty() || Ends(Between(groups_.back().map_from_group, map_from_base))) {
-    SurfelGroup group;
-    group.first_frame = static_cast<int>(places_.size());
-    group.map_from_group = map_from_base;
-    groups_.push_back(group);
-    newest_.Clear();
+    Begin(map_from_base);
   }
   SurfelGroup& group = groups_.back();
   ++group.frames;
   const Pose2 group_from_base = Between(group.map_from_group, map_from_base);
   places_.push_back({static_cast<int>(groups_.size()) - 1, group_from_base});
-  const Motion2 motion(group_from_base);
-  const double min_cosine = std::cos(RadFromDeg(kMaxAngleDeg));
-  for (const Surfel& piece : pieces) {
-    const double sigma_m = 1.0 / std::sqrt(piece.information);
-    newest_.Merge(motion * piece,
-                  {0.5 * options_.spacing_m, kGateM + kGateSigmas * sigma_m, min_cosine});
-  }
+  Collect(pieces, group_from_base);
   // Room for the frames to come, as neighbouring groups are alike; not a little more each frame.
   if (group.surfels.capacity() < newest_.surfels().size()) {
     const std::size_t like_before =
@@ -52,6 +61,45 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
     group.surfels.reserve(std::max(like_before, newest_.surfels().size()) * 5 / 4);
   }
   group.surfels = newest_.surfels();
+}
+
+SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) const {
+  SurfelGroupOptions wider = options_;
+  wider.length_m *= factor;
+  wider.turn_deg *= factor;
+  SurfelGroups joined(wider);
+  std::size_t frame = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const SurfelGroup& group = groups_[g];
+    if (g == 0 || apart[g] ||
+        joined.Ends(Between(joined.groups_.back().map_from_group, group.map_from_group))) {
+      joined.Begin(group.map_from_group);
+    }
+    SurfelGroup& into = joined.groups_.back();
+    const Pose2 into_from_group = Between(into.map_from_group, group.map_from_group);
+    for (int i = 0; i < group.frames; ++i, ++frame) {
+      joined.places_.push_back({static_cast<int>(joined.groups_.size()) - 1,
+                                into_from_group * places_[frame].group_from_base});
+    }
+    into.frames += group.frames;
+    joined.Collect(group.surfels, into_from_group);
+    into.surfels = joined.newest_.surfels();
+  }
+  return joined;
+}
+
+SurfelGroups SurfelGroups::Joined(const std::vector<bool>& apart) const {
+  constexpr int kMostJoined = 8;  // 1.2 m: farther on another part of the room is in view
+  const int groups = static_cast<int>(groups_.size());
+  if (groups <= options_.most) return *this;
+  int factor = (groups + options_.most - 1) / options_.most;
+  while (true) {
+    SurfelGroups joined = JoinedBy(std::min(factor, kMostJoined), apart);
+    if (factor >= kMostJoined || static_cast<int>(joined.groups_.size()) <= options_.most) {
+      return joined;
+    }
+    ++factor;
+  }
 }
 
 void SurfelGroups::MoveTo(const std::vector<Pose2>& map_from_base) {

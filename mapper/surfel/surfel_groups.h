@@ -15,6 +15,9 @@ struct SurfelGroupOptions {
   double turn_deg = 6.0;
   // Between the surfels of a group, along a wall.
   double spacing_m = 0.04;
+  // Of longer runs, neighbouring groups are adjusted as one: the cost of solving for all of them
+  // grows like the cube where a wide view joins most to most (docs/results.md, "A whole building").
+  int most = 1000;
 
   void Visit(OptionsVisitor& v);
 };
@@ -42,9 +45,16 @@ class SurfelGroups {
   const std::vector<GroupPlace>& places() const { return places_; }  // one a frame
   // Corrected poses, one a frame. What the groups saw does not change.
   void MoveTo(const std::vector<Pose2>& map_from_base);
+  // The same frames in no more than options.most groups, as far as these may be joined: group g
+  // stays apart from the one before where `apart[g]`.
+  SurfelGroups Joined(const std::vector<bool>& apart) const;
 
  private:
   bool Ends(const Pose2& group_from_base) const;
+  void Begin(const Pose2& map_from_group);
+  // More surfels of the newest group.
+  void Collect(const std::vector<Surfel>& surfels, const Pose2& group_from_surfels);
+  SurfelGroups JoinedBy(int factor, const std::vector<bool>& apart) const;
 
   SurfelGroupOptions options_;
   std::vector<SurfelGroup> groups_;

@@ -27,6 +27,14 @@ std::vector<GroupMotion> MotionsOf(const std::vector<SurfelGroup>& groups,
   return motions;
 }
 
+// Whether SLAM jumped, or began anew, between each group and the one before.
+std::vector<bool> JumpsBefore(const std::vector<SurfelGroup>& groups,
+                              const std::vector<MappedFrame>& frames) {
+  std::vector<bool> jumps;
+  for (const GroupMotion& motion : MotionsOf(groups, frames)) jumps.push_back(!motion.known);
+  return jumps;
+}
+
 // The loop between two frames as one between their groups.
 GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) {
   const GroupPlace& first = places[static_cast<std::size_t>(loop.first)];
@@ -129,6 +137,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
   }
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
+  groups = groups.Joined(JumpsBefore(groups.groups(), frames));
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
   const JointResult result = AdjustJointly(groups.groups(), MotionsOf(groups.groups(), frames),

@@ -1,0 +1,63 @@
+#include "mapper/surfel/surfel_groups.h"
+
+#include <gtest/gtest.h>
+
+namespace depthgrid {
+namespace {
+
+// A wall 1 m to the left, seen anew from each frame.
+std::vector<Surfel> WallFrom(double x_m) {
+  std::vector<Surfel> pieces;
+  for (int i = 0; i < 5; ++i) {
+    Surfel piece;
+    piece.point_m = {0.5 * i - x_m, 1.0};
+    piece.normal = {0.0, -1.0};
+    piece.information = 1e4;
+    piece.normal_information = 1e4;
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+// Twelve frames 0.1 m apart, a group each.
+SurfelGroups Walk(int most) {
+  SurfelGroupOptions options;
+  options.length_m = 0.08;
+  options.most = most;
+  SurfelGroups groups(options);
+  for (int i = 0; i < 12; ++i) groups.Add(WallFrom(0.1 * i), {0.1 * i, 0.0, 0.0});
+  return groups;
+}
+
+const std::vector<bool> kTogether(12, false);
+
+TEST(SurfelGroups, FewAreLeftAsTheyAre) {
+  const SurfelGroups groups = Walk(12);
+  EXPECT_EQ(groups.groups().size(), 12U);
+  EXPECT_EQ(groups.Joined(kTogether).groups().size(), 12U);
+}
+
+// Groups may reach 0.24 m then: frames 0-2, 3-5 ...
+TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
+  const SurfelGroups walk = Walk(4);
+  const SurfelGroups joined = walk.Joined(kTogether);
+  ASSERT_EQ(joined.groups().size(), 4U);
+  EXPECT_EQ(joined.groups()[1].first_frame, 3);
+  EXPECT_EQ(joined.groups()[1].frames, 3);
+  EXPECT_EQ(joined.groups()[1].surfels.size(), 5U);  // the same pieces of wall
+  EXPECT_NEAR(joined.groups()[1].surfels[0].point_m.x(), -0.3, 1e-9);
+  ASSERT_EQ(joined.places().size(), 12U);
+  EXPECT_EQ(joined.places()[4].group, 1);
+  EXPECT_NEAR(joined.places()[4].group_from_base.x_m, 0.1, 1e-9);
+}
+
+TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
+  std::vector<bool> apart = kTogether;
+  apart[4] = true;
+  const SurfelGroups joined = Walk(5).Joined(apart);
+  EXPECT_EQ(joined.groups().size(), 5U);
+  EXPECT_EQ(joined.groups()[2].first_frame, 4);
+}
+
+}  // namespace
+}  // namespace depthgrid
