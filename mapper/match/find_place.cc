@@ -24,8 +24,14 @@ constexpr double kFarthestM = 0.6;
 constexpr std::size_t kRefined = 60;
 constexpr double kElsewhereM = 1.0;
 constexpr double kElsewhereRad = RadFromDeg(30.0);
-// The guess needs this share of the best score.
+// What lies this near to the guess (SLAM's drift since the map was made) needs this share of the
+// best score.
 constexpr double kGuessShare = 0.9;
+constexpr double kGuessReachM = 1.5;
+constexpr double kGuessReachRad = RadFromDeg(12.0);
+constexpr double kGuessStepM = 0.15;
+constexpr double kGuessStepRad = RadFromDeg(4.0);
+constexpr std::size_t kGuessesRefined = 10;
 // Where along its way a beam asks whether the map is free, and what the answer is worth beside its
 // end: walls alone fit in many places, also outside of the map, where no free space does.
 constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
@@ -145,6 +151,88 @@ struct Candidate {
   double score = 0.0;
 };
 
+// The map with a margin of unseen cells, so that every candidate's returns lie in it: what a return
+// is worth that ends in a cell, and one that passes through it.
+class CoarseMap {
+ public:
+  CoarseMap(const GridGeometry& geometry, const WallDistance& walls, int margin_cells)
+      : geometry_(geometry) {
+    geometry_.min_cell.x -= margin_cells;
+    geometry_.min_cell.y -= margin_cells;
+    geometry_.width_cells += 2 * margin_cells;
+    geometry_.height_cells += 2 * margin_cells;
+    cells_.reserve(geometry_.size());
+    for (std::size_t i = 0; i < geometry_.size(); ++i) {
+      const Eigen::Vector2d centre = CellCentre(geometry_.CellAt(i), geometry_.resolution_m);
+      const double d = walls.At(centre) / kCoarseSigmaM;
+      const double free = kFreeWorth / static_cast<double>(std::size(kOnTheWay));
+      cells_.push_back({static_cast<float>(std::exp(-0.5 * d * d)),
+                        static_cast<float>(free * walls.FreeAt(centre))});
+    }
+  }
+
+  // A return's four cells, relative to the candidate's.
+  struct Offsets {
+    std::ptrdiff_t end = 0;
+    std::ptrdiff_t on_the_way[std::size(kOnTheWay)] = {};
+  };
+  std::vector<Offsets> OffsetsAt(const Points& points, double heading_rad) const {
+    const Eigen::Rotation2Dd turn(heading_rad);
+    const auto offset_of = [&](const Eigen::Vector2d& point) {
+      // From the middle of a cell.
+      const Cell cell =
+          CellOf((turn * point).array() + 0.5 * geometry_.resolution_m, geometry_.resolution_m);
+      return static_cast<std::ptrdiff_t>(cell.y) * geometry_.width_cells + cell.x;
+    };
+    std::vector<Offsets> offsets;
+    for (const Return& point : points) {
+      Offsets& offset = offsets.emplace_back();
+      offset.end = offset_of(point.to);
+      for (std::size_t i = 0; i < std::size(kOnTheWay); ++i) {
+        offset.on_the_way[i] = offset_of(point.from + kOnTheWay[i] * (point.to - point.from));
+      }
+    }
+    return offsets;
+  }
+
+  // 0..1, or less than `least` as soon as it cannot be reached.
+  double ScoreAt(const Cell& cell, const std::vector<Offsets>& offsets, double least) const {
+    const CellWorth* here = cells_.data() + geometry_.Index(cell);
+    const auto most = static_cast<float>(1.0 + kFreeWorth);
+    const auto count = static_cast<float>(offsets.size());
+    // What may be lost; not to a last digit.
+    float spare = (1.0F - static_cast<float>(least)) * most * count + 1e-3F;
+    float sum = 0.0F;
+    for (const Offsets& offset : offsets) {
+      float worth = here[offset.end].as_end;
+      for (const std::ptrdiff_t way : offset.on_the_way) worth += here[way].on_the_way;
+      sum += worth;
+      spare -= most - worth;
+      if (spare < 0.0F) return 0.0;
+    }
+    return sum / (most * count);
+  }
+
+ private:
+  struct CellWorth {
+    float as_end = 0.0F;
+    float on_the_way = 0.0F;
+  };
+  GridGeometry geometry_;
+  std::vector<CellWorth> cells_;
+};
+
+// The farthest that a point or sensor lies from the first scan's base.
+double ReachOf(const Points& points) {
+  double reach_m = 0.0;
+  for (const Return& point : points) {
+    reach_m = std::max({reach_m, point.from.norm(), point.to.norm()});
+  }
+  return reach_m;
+}
+
+// The best places on a lattice of cells and headings, which is the same but for rounding to cells
+// as ScoreOf there.
 std::vector<Candidate> Coarse(const OccupancyMap& map, const WallDistance& walls,
                               const Points& points) {
   std::vector<Candidate> best;
@@ -152,22 +240,26 @@ std::vector<Candidate> Coarse(const OccupancyMap& map, const WallDistance& walls
   const GridGeometry& g = map.geometry;
   const int step = std::max(1, static_cast<int>(std::lround(kCoarseStepM / g.resolution_m)));
   const int margin = static_cast<int>(std::lround(kMarginM / g.resolution_m));
-  for (int y = -margin; y < g.height_cells + margin; y += step) {
-    for (int x = -margin; x < g.width_cells + margin; x += step) {
-      const Cell cell{g.min_cell.x + x, g.min_cell.y + y};
-      // The robot's own place may not have been seen, but it is no wall.
-      if (StateOf(map.At(cell), {}) == CellState::kOccupied) continue;
-      const Eigen::Vector2d centre = CellCentre(cell, g.resolution_m);
-      for (int heading = 0; heading < kHeadings; ++heading) {
-        const Pose2 pose{centre.x(), centre.y(), WrapAngle(2.0 * kPi * heading / kHeadings)};
-        const double score = ScoreOf(walls, points, pose, kCoarseSigmaM);
-        if (best.size() == kRefined && score <= best.front().score) continue;
+  const CoarseMap coarse(
+      g, walls, margin + static_cast<int>(std::ceil(ReachOf(points) / g.resolution_m)) + 2);
+  for (int heading = 0; heading < kHeadings; ++heading) {
+    const double heading_rad = WrapAngle(2.0 * kPi * heading / kHeadings);
+    const auto offsets = coarse.OffsetsAt(points, heading_rad);
+    for (int y = -margin; y < g.height_cells + margin; y += step) {
+      for (int x = -margin; x < g.width_cells + margin; x += step) {
+        const Cell cell{g.min_cell.x + x, g.min_cell.y + y};
+        // The robot's own place may not have been seen, but it is no wall.
+        if (walls.FreeAt(CellCentre(cell, g.resolution_m)) < 0) continue;
+        const double least = best.size() == kRefined ? best.front().score : 0.0;
+        const double score = coarse.ScoreAt(cell, offsets, least);
+        if (best.size() == kRefined && score <= least) continue;
         // A heap with the worst of the best in front.
         if (best.size() == kRefined) {
           std::pop_heap(best.begin(), best.end(), better);
           best.pop_back();
         }
-        best.push_back({pose, score});
+        const Eigen::Vector2d centre = CellCentre(cell, g.resolution_m);
+        best.push_back({{centre.x(), centre.y(), heading_rad}, score});
         std::push_heap(best.begin(), best.end(), better);
       }
     }
@@ -200,6 +292,31 @@ Candidate Refined(const WallDistance& walls, const Points& points, const Pose2& 
   return best;
 }
 
+// The best place within reach of `guess`.
+Candidate NearGuess(const WallDistance& walls, const Points& coarse_points, const Points& points,
+                    const Pose2& guess) {
+  std::vector<Candidate> around;
+  const int steps = static_cast<int>(kGuessReachM / kGuessStepM);
+  const int turns = static_cast<int>(kGuessReachRad / kGuessStepRad);
+  for (int turn = -turns; turn <= turns; ++turn) {
+    for (int y = -steps; y <= steps; ++y) {
+      for (int x = -steps; x <= steps; ++x) {
+        const Pose2 pose{guess.x_m + x * kGuessStepM, guess.y_m + y * kGuessStepM,
+                         WrapAngle(guess.yaw_rad + turn * kGuessStepRad)};
+        around.push_back({pose, ScoreOf(walls, coarse_points, pose, kCoarseSigmaM)});
+      }
+    }
+  }
+  std::stable_sort(around.begin(), around.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  Candidate best = Refined(walls, points, guess);
+  for (std::size_t i = 0; i < kGuessesRefined; ++i) {
+    const Candidate refined = Refined(walls, points, around[i].map_from_first);
+    if (refined.score > best.score) best = refined;
+  }
+  return best;
+}
+
 bool Elsewhere(const Pose2& a, const Pose2& b) {
   const Pose2 between = Between(a, b);
   return std::hypot(between.x_m, between.y_m) > kElsewhereM ||
@@ -215,11 +332,12 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
   const Points points = PointsOf(scans, kPoints);
   if (!walls.any() || points.empty()) return {};
   std::vector<Candidate> candidates;
-  for (const Candidate& coarse : Coarse(map, walls, PointsOf(scans, kCoarsePoints))) {
+  const Points coarse_points = PointsOf(scans, kCoarsePoints);
+  for (const Candidate& coarse : Coarse(map, walls, coarse_points)) {
     candidates.push_back(Refined(walls, points, coarse.map_from_first));
   }
   const Pose2& slam_from_first = scans.front().slam_from_base;
-  const Candidate guessed = Refined(walls, points, guess * slam_from_first);
+  const Candidate guessed = NearGuess(walls, coarse_points, points, guess * slam_from_first);
   Candidate best = guessed;
   for (const Candidate& candidate : candidates) {
     if (candidate.score > best.score) best = candidate;

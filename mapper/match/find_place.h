@@ -24,8 +24,9 @@ struct FoundPlace {
   double second_score = 0.0;
 };
 
-// Tries every free cell and heading, then refines the best. `guess`, SLAM's frame being the map's,
-// wins when it is as good. Nothing when the map has no wall, or the scans no return.
+// Tries every free cell and heading, then refines the best. What is near to `guess` (SLAM's
+// frame being the map's) wins when it is nearly as good. Nothing when the map has no wall, or the
+// scans no return.
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
                                     const Pose2& guess);
 

@@ -19,10 +19,10 @@ struct Wall {
 const std::vector<Wall> kWalls = {{{0, 0}, {6, 0}}, {{6, 0}, {6, 2}}, {{6, 2}, {3, 2}},
                                   {{3, 2}, {3, 5}}, {{3, 5}, {0, 5}}, {{0, 5}, {0, 0}}};
 
-OccupancyMap Drawn() {
+OccupancyMap Drawn(const std::vector<Wall>& walls = kWalls) {
   OccupancyMap map(GridGeometry{0.05, {-4, -4}, 130, 110});
   map.occupied_prob.assign(map.occupied_prob.size(), 0.1F);
-  for (const Wall& wall : kWalls) {
+  for (const Wall& wall : walls) {
     for (double share = 0.0; share <= 1.0; share += 0.002) {
       const Cell cell = CellOf(wall.from + share * (wall.to - wall.from), 0.05);
       map.occupied_prob[map.geometry.Index(cell)] = 0.9F;
@@ -31,9 +31,10 @@ OccupancyMap Drawn() {
   return map;
 }
 
-double RangeAlong(const Eigen::Vector2d& at, const Eigen::Vector2d& way) {
+double RangeAlong(const Eigen::Vector2d& at, const Eigen::Vector2d& way,
+                  const std::vector<Wall>& walls) {
   double nearest_m = 100.0;
-  for (const Wall& wall : kWalls) {
+  for (const Wall& wall : walls) {
     Eigen::Matrix2d a;
     a << way, wall.from - wall.to;
     if (std::abs(a.determinant()) < 1e-9) continue;
@@ -46,14 +47,15 @@ double RangeAlong(const Eigen::Vector2d& at, const Eigen::Vector2d& way) {
 }
 
 // 58 degrees wide, as a depth camera's.
-PlacedScan ScanAt(const Pose2& map_from_base, const Pose2& map_from_slam) {
+PlacedScan ScanAt(const Pose2& map_from_base, const Pose2& map_from_slam,
+                  const std::vector<Wall>& walls = kWalls) {
   Scan scan;
   for (int i = -30; i <= 30; ++i) {
     Beam beam;
     beam.bearing_rad = static_cast<float>(RadFromDeg(i));
     const double angle_rad = map_from_base.yaw_rad + beam.bearing_rad;
-    beam.range_m = static_cast<float>(RangeAlong({map_from_base.x_m, map_from_base.y_m},
-                                                 {std::cos(angle_rad), std::sin(angle_rad)}));
+    beam.range_m = static_cast<float>(RangeAlong(
+        {map_from_base.x_m, map_from_base.y_m}, {std::cos(angle_rad), std::sin(angle_rad)}, walls));
     beam.hit = true;
     scan.beams.push_back(beam);
   }
@@ -88,6 +90,26 @@ TEST(FindPlace, AGuessThatFitsIsKept) {
   const auto found = FindPlace(Drawn(), {ScanAt({1.0, 1.0, 0.3}, map_from_slam)}, Pose2{});
   ASSERT_TRUE(found);
   EXPECT_LT(std::hypot(found->map_from_slam.x_m, found->map_from_slam.y_m), 0.1);
+}
+
+// A rectangle turned by half a turn is the same: only the guess says which, also when SLAM has
+// drifted since.
+TEST(FindPlace, TheGuessDecidesBetweenTwins) {
+  const std::vector<Wall> rectangle = {
+      {{0, 0}, {6, 0}}, {{6, 0}, {6, 4}}, {{6, 4}, {0, 4}}, {{0, 4}, {0, 0}}};
+  const Pose2 map_from_slam{0.7, -0.5, 0.08};
+  for (const Pose2& at : {Pose2{1.5, 1.0, 0.3}, Pose2{4.5, 3.0, 0.3 - kPi}}) {
+    std::vector<PlacedScan> scans;
+    for (int i = 0; i < 5; ++i) {
+      scans.push_back(
+          ScanAt({at.x_m, at.y_m, WrapAngle(at.yaw_rad + 0.7 * i)}, map_from_slam, rectangle));
+    }
+    const auto found = FindPlace(Drawn(rectangle), scans, Pose2{});
+    ASSERT_TRUE(found);
+    const Pose2 error = Between(map_from_slam, found->map_from_slam);
+    EXPECT_LT(std::hypot(error.x_m, error.y_m), 0.15);
+    EXPECT_LT(std::abs(error.yaw_rad), RadFromDeg(3.0));
+  }
 }
 
 TEST(FindPlace, NothingToFind) {
