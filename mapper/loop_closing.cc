@@ -8,7 +8,14 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether SLAM's loops correct the map");
   v.Flag("verify", verify, "whether a loop must lay what its two places saw over each other");
   v.Group("overlap", overlap, "how that is tested");
+  v.Number("bend_frames", bend_frames, {0, 1e9},
+           "mapped frames beyond which loops only bend the poses until the end");
   v.Group("search", search, "loops that the mapper finds itself");
+}
+
+AdjustEffort LoopCloser::EffortFor(const std::vector<MappedFrame>& frames) const {
+  return static_cast<int>(frames.size()) > options_.bend_frames ? AdjustEffort::kBend
+                                                                : AdjustEffort::kCloseLoops;
 }
 
 LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
@@ -28,7 +35,7 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     loops_.push_back(*loop);
   }
   if (loops_.size() > known) {
-    Adjustment adjustment = reference.Adjust(frames, loops_, AdjustEffort::kCloseLoops);
+    Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
     outcome.adjusted = true;
     outcome.map_from_base = std::move(adjustment.map_from_base);
     for (std::size_t i = known; i < loops_.size(); ++i) {
@@ -44,7 +51,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
                                     ReferenceMap& reference) {
   const std::vector<PlanarLoop> known = loops_;
   loops_.insert(loops_.end(), found.begin(), found.end());
-  const Adjustment adjustment = reference.Adjust(frames, loops_, AdjustEffort::kCloseLoops);
+  const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];
   };

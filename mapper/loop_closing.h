@@ -15,6 +15,10 @@ struct LoopOptions {
   // Whether a loop must lay what its two places saw over each other.
   bool verify = true;
   OverlapOptions overlap;
+  // With more mapped frames than this a loop only bends the chain of poses while the run goes on,
+  // and what was seen is laid over each other at the end. Adjusting all of it grows with the run:
+  // 0.6 s at 4,300 frames, 2.7 s at 17,700 (docs/bench.md, "Growing floors").
+  int bend_frames = 4000;
   LoopSearchOptions search;
 
   void Visit(OptionsVisitor& v);
@@ -48,6 +52,8 @@ class LoopCloser {
   const std::vector<PlanarLoop>& loops() const { return loops_; }
 
  private:
+  AdjustEffort EffortFor(const std::vector<MappedFrame>& frames) const;
+
   LoopOptions options_;
   std::vector<PlanarLoop> loops_;
 };

@@ -43,6 +43,7 @@ struct Adjustment {
 // How much an adjustment may cost, and what for.
 enum class AdjustEffort {
   kRefine,      // during the run: poses are nearly right
+  kBend,        // during a long run: only what loops ask for, without looking at what was seen
   kCloseLoops,  // during the run: loops may bend them
   kFinish,      // once: each single frame as well as it can be known
 };

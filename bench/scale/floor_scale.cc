@@ -132,6 +132,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
                           .max_range_m = 6.0,
                           .sigma_of_range = 0.01};
   std::vector<double> times_us;
+  std::vector<Eigen::Vector2d> truths;
   Pose2 odometry, last;
   double sum_us = 0.0, error_m = 0.0;
   for (int k = 0; k < frames; ++k) {
@@ -142,6 +143,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
         k == 0 ? truth
                : odometry * Between(last, truth) * Pose2{4e-4 * swing, 2e-4 * swing, 7e-5 * swing};
     last = truth;
+    truths.push_back(truth.translation());
     Frame frame;
     frame.index = k;
     frame.stamp_s = k / 30.0;
@@ -168,7 +170,12 @@ void Walk(double floor_m, int frames, const Settings& settings) {
   if (settings.finish) {
     const double start_us = CpuUs();
     const MapperResult result = mapper.Finish();
-    std::printf(" %7.0f |", (CpuUs() - start_us) / frames);
+    const double finish_us = CpuUs() - start_us;
+    double final_error_m = 0.0;
+    for (std::size_t k = 0; k < truths.size(); ++k) {
+      final_error_m += (BaseOf(*result.map_from_camera[k]).translation() - truths[k]).norm();
+    }
+    std::printf(" %7.0f | %7.3f |", finish_us / frames, final_error_m / frames);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -193,8 +200,8 @@ int main(int argc, char** argv) {
   std::printf(
       "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
       "error m |%s\n",
-      settings.finish ? " finish us/frame |" : "");
-  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|" : "");
+      settings.finish ? " finish us/frame | final error m |" : "");
+  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|--:|" : "");
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
     depthgrid::Walk(floors[i], frames[i], settings);
   }

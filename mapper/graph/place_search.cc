@@ -90,12 +90,9 @@ class Search {
 
  private:
   Candidate CandidateAt(const LatticeStep& step, int level) const {
-    int sum = 0;
-    for (const Cell& cell :
-         cells_[static_cast<std::size_t>(step.yaw_steps + lattice_.half_yaw_steps)]) {
-      sum += walls_.Best({cell.x + step.x_cells, cell.y + step.y_cells}, level);
-    }
-    return {step, sum};
+    const std::vector<Cell>& cells =
+        cells_[static_cast<std::size_t>(step.yaw_steps + lattice_.half_yaw_steps)];
+    return {step, walls_.Sum(cells, {step.x_cells, step.y_cells}, level, best_score_)};
   }
 
   bool IsExcepted(const LatticeStep& step) const {
@@ -187,6 +184,21 @@ void WallPyramid::AddLevel() {
 int WallPyramid::Best(const Cell& cell, int level) const {
   const Level& l = levels_[static_cast<std::size_t>(level)];
   return l.geometry.Contains(cell) ? l.score[l.geometry.Index(cell)] : 0;
+}
+
+int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int level,
+                     int of_interest) const {
+  constexpr std::size_t kTogether = 64;
+  int sum = 0;
+  for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
+    const std::size_t end = std::min(begin + kTogether, cells.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      sum += Best({cells[i].x + shift.x, cells[i].y + shift.y}, level);
+    }
+    const int most = sum + kBestWallScore * static_cast<int>(cells.size() - end);
+    if (most <= of_interest) return most;
+  }
+  return sum;
 }
 
 PlaceMatch SearchPlace(const WallPyramid& walls, const std::vector<Eigen::Vector2d>& points,

@@ -21,6 +21,9 @@ class WallPyramid {
   double resolution_m() const { return resolution_m_; }
   // The largest score of cells x..x+2^level-1, y..y+2^level-1; 0 outside.
   int Best(const Cell& cell, int level) const;
+  // The sum over these cells, shifted; where it is no more than what is of interest, any number
+  // between the two.
+  int Sum(const std::vector<Cell>& cells, const Cell& shift, int level, int of_interest) const;
 
  private:
   struct Level {

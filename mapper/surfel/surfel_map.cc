@@ -163,6 +163,7 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
     joint.rounds = joint.refine_rounds;
     joint.first_gate_m = joint.refine_gate_m;
   }
+  if (effort == AdjustEffort::kBend) joint.rounds = 0;
   return joint;
 }
 

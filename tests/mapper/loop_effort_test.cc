@@ -1,0 +1,96 @@
+// What a loop costs while a run goes on: a short one is adjusted as a whole, a long one bent.
+#include <gtest/gtest.h>
+
+#include "mapper/loop_closing.h"
+#include "mapper/surfel/surfel_map.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kRound = 200;
+
+// Once round a furnished room and on to where it began, at drifting poses.
+struct DriftingRound {
+  std::vector<MappedFrame> frames;
+  std::vector<Pose2> truth;
+  SurfelMap map{SurfelOptions{}};
+
+  DriftingRound() {
+    const PlanarWorld room = FurnishedRoom();
+    ScanArchive archive;
+    Pose2 drifted;
+    for (int i = 0; i <= kRound; ++i) {
+      const double turn_rad = 2.0 * kPi * i / kRound;
+      truth.push_back({3.0 + 0.8 * std::cos(turn_rad), 1.5 + 0.8 * std::sin(turn_rad),
+                       WrapAngle(turn_rad + 0.5 * kPi)});
+      const PlanarLaser laser{.beams = 160, .sigma_of_range = 0.005};
+      const auto scan = std::make_shared<const Scan>(
+          ScanOf(room, truth.back(), laser, 3, static_cast<std::uint32_t>(i)));
+      MappedFrame frame;
+      frame.frame = i;
+      frame.stamp_s = i / 30.0;
+      frame.scan = archive.Keep(*scan);
+      if (i > 0) {
+        frame.slam_motion =
+            Between(truth[static_cast<std::size_t>(i) - 1], truth.back()) * Pose2{3e-4, 5e-4, 4e-4};
+      }
+      drifted = i == 0 ? truth[0] : drifted * *frame.slam_motion;
+      frame.map_from_base = drifted;
+      frames.push_back(frame);
+      map.Insert(scan, drifted, Eigen::Matrix3d::Zero());
+    }
+  }
+  PlanarLoop TrueLoop() const {
+    PlanarLoop loop;
+    loop.first = 0;
+    loop.second = kRound;
+    loop.first_from_second = Between(truth.front(), truth.back());
+    return loop;
+  }
+};
+
+double ErrorM(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth, std::size_t i) {
+  return Between(truth[i], poses[i]).translation().norm();
+}
+
+TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
+  DriftingRound round;
+  const auto bent = round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kBend);
+  ASSERT_EQ(bent.map_from_base.size(), round.frames.size());
+  EXPECT_EQ(bent.loop_accepted, std::vector<bool>{true});
+  const double before_m =
+      Between(round.truth.back(), round.frames.back().map_from_base).translation().norm();
+  EXPECT_GT(before_m, 0.05);
+  EXPECT_LT(ErrorM(bent.map_from_base, round.truth, kRound), 0.02);
+  for (std::size_t i = 1; i < round.frames.size(); ++i) {
+    const Pose2 was = Between(round.frames[i - 1].map_from_base, round.frames[i].map_from_base);
+    const Pose2 is = Between(bent.map_from_base[i - 1], bent.map_from_base[i]);
+    EXPECT_LT(Between(was, is).translation().norm(), 0.02) << i;
+  }
+  // Looking at what was seen as well is better in the middle of the way.
+  const auto adjusted =
+      round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kCloseLoops);
+  EXPECT_LT(ErrorM(adjusted.map_from_base, round.truth, kRound / 2),
+            ErrorM(bent.map_from_base, round.truth, kRound / 2));
+}
+
+TEST(LoopEffort, ALongRunIsBent) {
+  DriftingRound round;
+  const auto poses_with = [&](int bend_frames) {
+    LoopOptions options;
+    options.bend_frames = bend_frames;
+    LoopCloser closer(options);
+    const LoopCloser::Outcome outcome = closer.Add({round.TrueLoop()}, round.frames, round.map);
+    EXPECT_TRUE(outcome.adjusted);
+    return outcome.map_from_base;
+  };
+  const auto loop = round.TrueLoop();
+  EXPECT_EQ(poses_with(kRound),
+            round.map.Adjust(round.frames, {loop}, AdjustEffort::kBend).map_from_base);
+  EXPECT_EQ(poses_with(kRound + 1),
+            round.map.Adjust(round.frames, {loop}, AdjustEffort::kCloseLoops).map_from_base);
+}
+
+}  // namespace
+}  // namespace depthgrid
