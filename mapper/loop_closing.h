@@ -16,8 +16,8 @@ struct LoopOptions {
   bool verify = true;
   OverlapOptions overlap;
   // With more mapped frames than this a loop only bends the chain of poses while the run goes on,
-  // and what was seen is laid over each other at the end. Adjusting all of it grows with the run:
-  // 0.6 s at 4,300 frames, 2.7 s at 17,700 (docs/bench.md, "Growing floors").
+  // and what was seen is laid over each other at the end. Adjusting all of it holds up a frame: for
+  // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/bench.md, "Growing floors").
   int bend_frames = 4000;
   LoopSearchOptions search;
 
