@@ -1,5 +1,6 @@
 // Recorded data through the program: each kind of input detected, named and mapped; damage counted
 // and survived; each form of output.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -136,6 +137,32 @@ TEST_F(ProgramFormats, ALaserLog) {
   EXPECT_EQ(Program("map robot.log --poses seq/groundtruth.txt -o out2").exit_code, 2);
 }
 
+// There and back along a room of 6 x 4 m whose odometry is right, then told loops.
+TEST_F(ProgramFormats, ALaserLogWithLoops) {
+  const auto range_m = [](double x_m, double y_m, double angle_rad) {
+    const double c = std::cos(angle_rad);
+    const double s = std::sin(angle_rad);
+    const double along_x_m = (c > 0.0 ? 6.0 - x_m : x_m) / std::max(std::abs(c), 1e-9);
+    return std::min(along_x_m, (s > 0.0 ? 4.0 - y_m : y_m) / std::max(std::abs(s), 1e-9));
+  };
+  std::string log;
+  for (int i = 0; i <= 40; ++i) {
+    const double x_m = 1.0 + 0.1 * (i <= 20 ? i : 40 - i);
+    log += "FLASER 181";
+    for (int k = 0; k <= 180; ++k)
+      log += fmt::format(" {:.3f}", range_m(x_m, 1.0, (k - 90) * kPi / 180.0));
+    log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", x_m, i);
+  }
+  Write("robot.log", log);
+  Write("loops.txt", "0 40 0 0 0 0 0 0 1\n2 38 0.8 0 0 0 0 0 1\n3 99 0 0 0 0 0 0 1\n");
+  const Outcome outcome = Program("map robot.log --loops loops.txt -o out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("2 loop closures from stamped loops\n"),
+                    HasSubstr("mapped 41 of 41 frames; 1 of 2 loop closures taken\n")));
+  EXPECT_THAT(outcome.err, HasSubstr("loops.txt: 1 events of frames that the recording does not"));
+}
+
 TEST_F(ProgramFormats, AForcedKindThatDoesNotFitIsRefused) {
   for (const char* kind : {"icl", "frames", "carmen", "kinect"}) {
     const Outcome outcome = Program(std::string("map seq --format ") + kind + " -o out");
@@ -170,6 +197,29 @@ TEST_F(ProgramFormats, DamageIsCountedAtTheEnd) {
                     HasSubstr("1 of 12 frames have no pose")));
 }
 
+// Rows of lists and poses; what is cut, empty or mostly damaged.
+TEST_F(ProgramFormats, DamagedRowsAreCountedAtTheEnd) {
+  const std::string depth = ReadFile(Path("seq/depth.txt"));
+  const std::string poses = ReadFile(Path("seq/groundtruth.txt"));
+  WriteFile(Path("seq/depth.txt"), "garbage\n" + depth.substr(0, depth.size() - 20));
+  Write("slam.txt", poses.substr(0, poses.size() - 1));
+  const Outcome outcome = Program("map seq --poses slam.txt -o out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("mapped 11 of 11 frames"));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("seq/depth.txt: 2 damaged rows left out (first: seq/depth.txt:1: "),
+                    HasSubstr("slam.txt: the last line has no line end"),
+                    HasSubstr("slam.txt: 1 poses have the stamp of no input frame")));
+  Write("empty.csv", "");
+  Write("rows.txt", "1 2 3\n4 5 6\n" + poses.substr(0, 100));
+  for (const char* bad : {"slam.txt --loops empty.csv", "rows.txt", "empty.csv"}) {
+    const Outcome refused = Program(std::string("map seq -o out2 --poses ") + bad);
+    EXPECT_EQ(refused.exit_code, 2) << bad;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    EXPECT_FALSE(fs::exists(Path("out2")));
+  }
+}
+
 TEST_F(ProgramFormats, LoopsOfEveryKind) {
   const Trajectory truth = Truth();
   const auto stamp = [&](std::size_t i) { return std::to_string(truth[i].stamp_s); };
@@ -180,10 +230,12 @@ TEST_F(ProgramFormats, LoopsOfEveryKind) {
   for (int row = 0; row < 3; ++row) tcm += " " + Row(r, last_from_first.translation, row);
   Write("events.txt", "LOOP 11 " + stamp(11) + " 0 " + stamp(0) + " Tcm" + tcm + "\n");
   EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops events.txt"),
-              HasSubstr("1 loop closures from ORB-SLAM2 events\n"));
+              AllOf(HasSubstr("1 loop closures from ORB-SLAM2 events\n"),
+                    HasSubstr("; 1 of 1 loop closures taken\n")));
   Write("stamped.txt", stamp(0) + " " + stamp(11) + " 0 0 0 0 0 0 1\n");
   EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops stamped.txt"),
-              HasSubstr("1 loop closures from stamped loops\n"));
+              AllOf(HasSubstr("1 loop closures from stamped loops\n"),
+                    HasSubstr("; 0 of 1 loop closures taken\n")));  // wrong: the camera turned
   EXPECT_EQ(Program("map seq --loops events.txt -o out2").exit_code, 2);
 }
 

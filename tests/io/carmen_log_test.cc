@@ -152,6 +152,18 @@ TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
   EXPECT_THAT(warnings, Contains(HasSubstr(":9: a line longer than")));
 }
 
+// Events name scans by their lines: damaged ones count, doubled ones do not.
+TEST(CarmenLog, ScansKeepTheirNumbers) {
+  const auto at = [](int stamp_s) {
+    return "FLASER 2 1 1 0 0 0 0 0 0 " + std::to_string(stamp_s) + " h 1\n";
+  };
+  const TextFile file("# log\n" + at(1) + at(1) + "FLASER 2 1 x\nODOM 1\n\x01\n" + at(5) + at(4) +
+                      at(6));
+  const FrameNames names = CarmenFrames(file.path());
+  EXPECT_EQ(names.stamps_s, (std::vector<double>{1, 5, 6}));
+  EXPECT_EQ(names.numbers, (std::vector<std::int64_t>{0, 2, 4}));
+}
+
 TEST(CarmenLog, EveryTruncationOfALineIsSurvived) {
   const std::string good = kRobotLaser;
   int cases = 0;

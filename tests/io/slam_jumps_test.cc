@@ -49,6 +49,13 @@ TEST(SlamJumps, AreSeenWithAndWithoutARevisedTrajectory) {
   EXPECT_THAT(FindJumps(Drifting(), {}), ElementsAre(kJumpAt));
 }
 
+// ICL-NUIM's stamps are the images' numbers, 30 a second.
+TEST(SlamJumps, AreSeenBetweenNumberedStamps) {
+  std::vector<SlamPose> live = Drifting();
+  for (std::size_t i = 0; i < live.size(); ++i) live[i].stamp_s = static_cast<double>(i + 1);
+  EXPECT_THAT(FindJumps(live, {}), ElementsAre(kJumpAt));
+}
+
 TEST(SlamJumps, SmoothMotionAndGapsAreNone) {
   std::vector<SlamPose> live = Drifting();
   live.resize(kJumpAt);
