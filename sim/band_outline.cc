@@ -54,7 +54,7 @@ BandOutline OutlineOf(const TriangleMesh& mesh, const HeightBand& band, const St
     ForEachCell(polygon, [&](const Cell& cell, const BandPolygon& strip) {
       const BandPolygon part = strip.Cut(0, cell.x, -1.0).Cut(0, cell.x + 1, 1.0);
       if (part.empty() || !geometry.Contains(cell)) return;
-      Span& height_m = outline.height_m[geometry.Index(cell)];
+      ValueSpan& height_m = outline.height_m[geometry.Index(cell)];
       height_m = {std::min(height_m.low, part.Min(2)), std::max(height_m.high, part.Max(2))};
     });
   }

@@ -12,8 +12,8 @@ namespace depthgrid {
 
 // The band's surfaces for rays that do not care about height.
 struct BandOutline {
-  TriangleMesh fences;         // what they look like from above, drawn out from z = 0 to 1
-  std::vector<Span> height_m;  // of the surfaces in each cell of the truth map
+  TriangleMesh fences;              // what they look like from above, drawn out from z = 0 to 1
+  std::vector<ValueSpan> height_m;  // of the surfaces in each cell of the truth map
 };
 
 // `truth` says which cells heights are wanted of; lines are the same whatever it covers.

@@ -52,7 +52,7 @@ void Walk(const Vector2d& from_cells, const Vector2d& to_cells, const Visit& vis
 // Looks around from poses and remembers what it saw.
 class Observer {
  public:
-  Observer(const RayScene& fences, const std::vector<Span>& height_m, const HeightBand& band,
+  Observer(const RayScene& fences, const std::vector<ValueSpan>& height_m, const HeightBand& band,
            const StateMap& truth, const PinholeCamera& camera, const ObservableOptions& options)
       : fences_(fences),
         height_m_(height_m),
@@ -65,7 +65,7 @@ class Observer {
   void LookFrom(const Pose3& world_from_camera) {
     const ViewPyramid view(camera_, world_from_camera,
                            {options_.min_depth_m, options_.max_depth_m});
-    const Span bearings = view.Bearings(BaseOf(world_from_camera).yaw_rad);
+    const ValueSpan bearings = view.Bearings(BaseOf(world_from_camera).yaw_rad);
     const double half_cell_rad = 0.5 * truth_.geometry.resolution_m / options_.max_range_m;
     const double width_rad = bearings.high - bearings.low;
     const auto count = static_cast<std::size_t>(std::ceil(width_rad / half_cell_rad)) + 1;
@@ -92,7 +92,7 @@ class Observer {
  private:
   void MarkBearing(const ViewPyramid& view, const Vector2d& at, const Vector2d& direction,
                    double blocked_m) {
-    const Span reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
+    const ValueSpan reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
     if (reach_m.low > reach_m.high) return;
     const auto clear =
         view.Part({at.x(), at.y(), band_.low_z_m}, {direction.x(), direction.y(), 0.0}, reach_m);
@@ -125,7 +125,7 @@ class Observer {
   }
 
   const RayScene& fences_;
-  const std::vector<Span>& height_m_;
+  const std::vector<ValueSpan>& height_m_;
   const HeightBand band_;
   const StateMap& truth_;
   const PinholeCamera& camera_;

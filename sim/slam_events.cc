@@ -18,8 +18,8 @@ double Median(std::vector<double> values) {
 
 }  // namespace
 
-std::vector<SlamEvent> FindEvents(const SlamRun& run) {
-  std::vector<SlamEvent> events;
+std::vector<RunEvent> FindEvents(const SlamRun& run) {
+  std::vector<RunEvent> events;
   if (run.truth.size() < 2) return events;
   std::vector<double> steps_s;
   std::vector<double> errors_m;
@@ -38,7 +38,7 @@ std::vector<SlamEvent> FindEvents(const SlamRun& run) {
     events.back().to = to;
     if (gap) events.back().lost_s += steps_s[to - 1];
   }
-  for (SlamEvent& event : events) {
+  for (RunEvent& event : events) {
     event.error = MotionError(run, event.from, event.to);
     const double before_m = MotionError(run, 0, event.from).translation.norm();
     const double after_m = MotionError(run, 0, event.to).translation.norm();

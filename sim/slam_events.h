@@ -8,7 +8,7 @@
 namespace depthgrid {
 
 // The motion from pose `from` to pose `to` is a jump, or a gap.
-struct SlamEvent {
+struct RunEvent {
   std::size_t from = 0;
   std::size_t to = 0;
   double lost_s = 0.0;      // above 0: tracking was lost in between
@@ -18,6 +18,6 @@ struct SlamEvent {
 
 // A jump is a motion error more than five medians long (eight sigma of normal errors); jumps less
 // than 0.2 s apart are one, as the estimate swings before it settles.
-std::vector<SlamEvent> FindEvents(const SlamRun& run);
+std::vector<RunEvent> FindEvents(const SlamRun& run);
 
 }  // namespace depthgrid

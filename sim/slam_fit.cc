@@ -20,13 +20,13 @@ constexpr double kDriftTimesS[] = {2.0, 5.0, 10.0, 20.0};
 
 struct RunEvents {
   const SlamRun* run = nullptr;
-  std::vector<SlamEvent> events;
+  std::vector<RunEvent> events;
   std::vector<bool> in_event;  // of the motion that ends at each pose
 };
 
 RunEvents EventsOf(const SlamRun& run) {
   RunEvents found{&run, FindEvents(run), std::vector<bool>(run.truth.size(), false)};
-  for (const SlamEvent& event : found.events) {
+  for (const RunEvent& event : found.events) {
     for (std::size_t to = event.from + 1; to <= event.to; ++to) found.in_event[to] = true;
   }
   return found;
@@ -88,12 +88,12 @@ struct Tracks {
 Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   Tracks tracks;
   for (const RunEvents& run : runs) {
-    std::vector<const SlamEvent*> event_at(run.in_event.size(), nullptr);
-    for (const SlamEvent& event : run.events) event_at[event.to] = &event;
+    std::vector<const RunEvent*> event_at(run.in_event.size(), nullptr);
+    for (const RunEvent& event : run.events) event_at[event.to] = &event;
     tracks.Begin();
     for (std::size_t to = 1; to < run.in_event.size(); ++to) {
       const Pose3& pose = run.run->truth[to].world_from_camera;
-      const SlamEvent* event = event_at[to];
+      const RunEvent* event = event_at[to];
       if (event && (event->correction || event->lost_s > 0.0)) {
         tracks.Begin();
       } else if (event) {
@@ -162,7 +162,7 @@ struct EventSize {
   int count = 0;
   double square_m2 = 0.0;
   double square_rad2 = 0.0;
-  void Add(const SlamEvent& event, double pivot_m) {
+  void Add(const RunEvent& event, double pivot_m) {
     ++count;
     square_m2 += WithoutPivot(event.error, pivot_m).squaredNorm();
     square_rad2 += LogRotation(event.error.rotation).squaredNorm();
@@ -189,7 +189,7 @@ void FitEvents(const std::vector<RunEvents>& runs, const ErrorGrowth& growth, Sl
   EventSize relocalisations;
   double lost_s = 0.0;
   for (const RunEvents& run : runs) {
-    for (const SlamEvent& event : run.events) {
+    for (const RunEvent& event : run.events) {
       const bool lost = event.lost_s > 0.0;
       fit.corrections += event.correction ? 1 : 0;
       fit.lost_bursts += lost ? 1 : 0;
@@ -224,7 +224,7 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs) {
     poses += run.truth.size();
     found.push_back(EventsOf(run));
     fit.tracked_s += run.truth.back().stamp_s - run.truth.front().stamp_s;
-    for (const SlamEvent& event : found.back().events) fit.tracked_s -= event.lost_s;
+    for (const RunEvent& event : found.back().events) fit.tracked_s -= event.lost_s;
     for (std::size_t to = 1; to < run.truth.size(); ++to) {
       least_step_s = std::min(least_step_s, run.StepS(to));
     }

@@ -33,7 +33,7 @@ Scan TrueScanner::ScanOf(const Pose3& world_from_camera, const RayScene& rays, f
                          BeamOf beam_of) const {
   const ViewPyramid view(camera_, world_from_camera, {options_.min_depth_m, options_.max_depth_m});
   const double yaw_rad = BaseOf(world_from_camera).yaw_rad;
-  const Span bearings = view.Bearings(yaw_rad);
+  const ValueSpan bearings = view.Bearings(yaw_rad);
   const Eigen::Vector3d& at = world_from_camera.translation;
   const Eigen::Vector3f origin(static_cast<float>(at.x()), static_cast<float>(at.y()), height_m);
   std::vector<Ray> towards;
@@ -61,7 +61,7 @@ Scan TrueScanner::Obstacles(const Pose3& world_from_camera) const {
   const auto beam_of = [&](const ViewPyramid& view, const Eigen::Vector3d& direction,
                            double blocked_m) {
     Beam beam;
-    const Span reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
+    const ValueSpan reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
     if (reach_m.low > reach_m.high) return beam;
     const auto clear = view.Part({at.x(), at.y(), band_low_z_m_}, direction, reach_m);
     if (clear) {
@@ -83,7 +83,7 @@ Scan TrueScanner::Slice(const Pose3& world_from_camera) const {
   const auto beam_of = [&](const ViewPyramid& view, const Eigen::Vector3d& direction,
                            double blocked_m) {
     Beam beam;
-    const Span reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
+    const ValueSpan reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
     if (reach_m.low > reach_m.high) return beam;
     const auto seen = view.Part(at, direction, reach_m);
     if (!seen) return beam;

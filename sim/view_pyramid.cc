@@ -8,7 +8,7 @@ namespace depthgrid {
 using Eigen::Vector3d;
 
 ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera,
-                         const Span& depth_m)
+                         const ValueSpan& depth_m)
     : centre_(world_from_camera.translation),
       axis_(world_from_camera.rotation * Vector3d::UnitZ()),
       depth_m_(depth_m) {
@@ -28,8 +28,8 @@ ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_ca
   }
 }
 
-std::optional<Span> ViewPyramid::Part(const Vector3d& origin, const Vector3d& direction,
-                                      Span span) const {
+std::optional<ValueSpan> ViewPyramid::Part(const Vector3d& origin, const Vector3d& direction,
+                                           ValueSpan span) const {
   // Keeps what has offset + t * slope >= 0; false when that is nothing.
   const auto keep = [&span](double offset, double slope) {
     if (slope > 0.0) span.low = std::max(span.low, -offset / slope);
@@ -47,7 +47,7 @@ std::optional<Span> ViewPyramid::Part(const Vector3d& origin, const Vector3d& di
   return span;
 }
 
-Span ViewPyramid::Bearings(double heading_rad) const {
+ValueSpan ViewPyramid::Bearings(double heading_rad) const {
   const auto sees = [&](const Vector3d& direction) {
     return axis_.dot(direction) > 0.0 &&
            std::all_of(inward_.begin(), inward_.end(),
@@ -56,7 +56,7 @@ Span ViewPyramid::Bearings(double heading_rad) const {
   if (sees(Vector3d::UnitZ()) || sees(-Vector3d::UnitZ())) {
     return {heading_rad - kPi, heading_rad + kPi};
   }
-  Span relative;
+  ValueSpan relative;
   for (const Vector3d& corner : corners_) {
     const double angle_rad = WrapAngle(std::atan2(corner.y(), corner.x()) - heading_rad);
     relative = {std::min(relative.low, angle_rad), std::max(relative.high, angle_rad)};

@@ -11,27 +11,28 @@
 namespace depthgrid {
 
 // Two numbers of one line, low <= high.
-struct Span {
+struct ValueSpan {
   double low = 0.0;
   double high = 0.0;
 };
 
 class ViewPyramid {
  public:
-  ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera, const Span& depth_m);
+  ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera,
+              const ValueSpan& depth_m);
 
   // The part of the line origin + t * direction, t within `span`, that lies in the pyramid, which
   // is convex; nothing when there is none.
-  std::optional<Span> Part(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                           Span span) const;
+  std::optional<ValueSpan> Part(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                ValueSpan span) const;
   // Bearings in the world that the image reaches, around `heading_rad`; all of them when the camera
   // sees straight up or down.
-  Span Bearings(double heading_rad) const;
+  ValueSpan Bearings(double heading_rad) const;
 
  private:
   Eigen::Vector3d centre_;
   Eigen::Vector3d axis_;                    // of length 1
-  Span depth_m_;                            // along it
+  ValueSpan depth_m_;                       // along it
   std::array<Eigen::Vector3d, 4> inward_;   // normals of the four sides
   std::array<Eigen::Vector3d, 4> corners_;  // directions
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
@@ -46,21 +47,30 @@ std::vector<CsvEvent> CsvRows(std::string_view rest, const std::string& place, R
   return events;
 }
 
-// Frames of loops.csv: by stamp where the recording has most of its stamps (rows may have been
-// taken out of it since), else by number.
+// Frames of loops.csv: by stamp where the recording has these (rows may have been taken out of it
+// since), by number where it has none of them (its clock is another) or the numbers explain more.
 class CsvFrames {
  public:
-  CsvFrames(const std::vector<CsvEvent>& events, const FrameNames& frames)
+  CsvFrames(const std::vector<CsvEvent>& events, const FrameNames& frames, double max_difference_s)
       : frames_(frames), own_stamps_s_(frames.stamps_s), finder_(own_stamps_s_, kSameStampS) {
     for (double& stamp_s : own_stamps_s_) stamp_s -= frames.time_offset_s;
-    std::size_t found = 0;
-    std::size_t stamped = 0;
+    int found = 0;
+    int agreeing = 0;
+    const auto judge = [&](int number, const std::optional<double>& stamp_s) {
+      if (!stamp_s) return;
+      found += finder_.At(*stamp_s) ? 1 : 0;
+      const auto named = At(number, {});
+      const bool agrees = named && std::abs(own_stamps_s_[static_cast<std::size_t>(*named)] -
+                                            *stamp_s) <= max_difference_s;
+      agreeing += agrees ? 1 : 0;
+    };
     for (const CsvEvent& event : events) {
-      if (!event.stamp_s) continue;
-      ++stamped;
-      if (finder_.At(*event.stamp_s)) ++found;
+      judge(event.event.frame, event.stamp_s);
+      if (!event.event.loop) continue;
+      judge(event.event.loop->first_frame, event.first_stamp_s);
+      judge(event.event.loop->second_frame, event.second_stamp_s);
     }
-    by_stamp_ = stamped > 0 && 2 * found >= stamped;
+    by_stamp_ = found > 0 && found >= agreeing;
   }
   std::optional<int> At(int number, const std::optional<double>& stamp_s) const {
     if (by_stamp_ && stamp_s) return finder_.At(*stamp_s);
@@ -100,8 +110,8 @@ std::optional<LoopClosure> FindLoop(const CsvEvent& row, int reported_at, const 
 // The events with the frames they are of. A loop of a frame that is not there is left out and
 // counted; what SLAM did to its epoch holds from the next frame on.
 std::vector<SlamEvent> FindFrames(const std::vector<CsvEvent>& rows, const FrameNames& frames,
-                                  int& missing) {
-  const CsvFrames names(rows, frames);
+                                  double max_difference_s, int& missing) {
+  const CsvFrames names(rows, frames, max_difference_s);
   std::vector<SlamEvent> events;
   for (const CsvEvent& row : rows) {
     const auto frame = names.From(row.event.frame, row.stamp_s);
@@ -150,7 +160,7 @@ SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
     result.events = StampedEvents(rows, orb, place, finder, damage, missing);
   } else {
     result.kind = kOwnEvents;
-    result.events = FindFrames(CsvRows(text, place, damage), frames, missing);
+    result.events = FindFrames(CsvRows(text, place, damage), frames, max_difference_s, missing);
   }
   std::stable_sort(result.events.begin(), result.events.end(),
                    [](const auto& a, const auto& b) { return a.frame < b.frame; });

@@ -212,6 +212,22 @@ TEST_F(SlamFiles, LoopsKeepTheirFramesWhenOthersAreDropped) {
   }
 }
 
+// Every other row taken out of the recording: the loop's newer frame with them, its jump stays.
+TEST_F(SlamFiles, AJumpIsKeptWhereTheLoopsFrameIsGone) {
+  SlamOutput written = Example();
+  written.loops = {written.loops[0]};
+  WriteSlamFiles(folder_, written);
+  FrameNames frames;
+  for (std::size_t i = 0; i < 12; i += 2) frames.stamps_s.push_back(Stamps(written)[i]);
+  WriteFile(Paths().loops, Lines(ReadFile(Paths().loops))[0] +
+                               "\nloop,9,1,0,9,0,0,0,0,0,0,1,0.1,0.1," +
+                               "0.300000,0.000000,0.300000\n");
+  const SlamInput read = ReadSlamFiles(Paths(), frames);
+  EXPECT_TRUE(read.slam.loops.empty());
+  EXPECT_EQ(read.slam.live[4].epoch, 0);
+  EXPECT_EQ(read.slam.live[5].epoch, 1);
+}
+
 TEST_F(SlamFiles, StampsOfAnotherRecordingLeaveItToTheNumbers) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);

@@ -142,7 +142,7 @@ TEST(FitSlamErrors, LeavesCorrectionsOut) {
   const SlamRun run = Disturbed(RoundADesk(54.0), given, 3);
   const auto events = FindEvents(run);
   int corrections = 0;
-  for (const SlamEvent& event : events) corrections += event.correction ? 1 : 0;
+  for (const RunEvent& event : events) corrections += event.correction ? 1 : 0;
   EXPECT_EQ(corrections, 1);
   EXPECT_EQ(FitSlamErrors({run}).corrections, 1);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -136,6 +137,28 @@ TEST(Arrows, NoFileIsLongerThan400Lines) {
       EXPECT_LE(lines, 400) << entry.path() << " is to be divided by concept";
     }
   }
+}
+
+// Two types of one name in one namespace share the instances of every template made with them
+// (std::vector's, say): whichever the linker keeps is wrong for the other.
+TEST(Names, NoTypeOfAHeaderSharesItsNameWithAnother) {
+  const fs::path root = kSourceFolder;
+  const std::regex definition("^(struct|class) ([A-Za-z0-9]+)( final)?( : .*)? \\{.*$");
+  std::map<std::string, std::string> file_of_type;
+  for (const std::string top : {"mapper", "sim", "eval"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (entry.path().extension() != ".h") continue;
+      const std::string file = fs::relative(entry.path(), root).string();
+      std::ifstream stream(entry.path());
+      std::smatch found;
+      for (std::string line; std::getline(stream, line);) {
+        if (!std::regex_match(line, found, definition)) continue;
+        const auto [known, is_new] = file_of_type.emplace(found[2], file);
+        EXPECT_TRUE(is_new) << found[2] << " in " << known->second << " and " << file;
+      }
+    }
+  }
+  EXPECT_GT(file_of_type.size(), 100U);
 }
 
 }  // namespace
