@@ -171,11 +171,16 @@ void Walk(double floor_m, int frames, const Settings& settings) {
     const double start_us = CpuUs();
     const MapperResult result = mapper.Finish();
     const double finish_us = CpuUs() - start_us;
-    double final_error_m = 0.0;
+    double final_error_m = 0.0, scan_bytes = 0.0;
     for (std::size_t k = 0; k < truths.size(); ++k) {
       final_error_m += (BaseOf(*result.map_from_camera[k]).translation() - truths[k]).norm();
     }
-    std::printf(" %7.0f | %7.3f |", finish_us / frames, final_error_m / frames);
+    for (const MappedFrame& frame : result.mapped) {
+      const PackedScan packed = frame.scan.packed();
+      scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
+    }
+    std::printf(" %7.0f | %7.3f | %6.0f |", finish_us / frames, final_error_m / frames,
+                scan_bytes / frames);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -200,8 +205,8 @@ int main(int argc, char** argv) {
   std::printf(
       "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
       "error m |%s\n",
-      settings.finish ? " finish us/frame | final error m |" : "");
-  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|--:|" : "");
+      settings.finish ? " finish us/frame | final error m | bytes/scan |" : "");
+  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|--:|--:|" : "");
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
     depthgrid::Walk(floors[i], frames[i], settings);
   }

@@ -99,17 +99,17 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
   const int rows = image.height_px / step;
   const Eigen::Matrix3f rotation = level_from_camera.toRotationMatrix().cast<float>();
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  memory.grid.clear();
+  memory.grid.resize(static_cast<std::size_t>(rows * columns));
+  Eigen::Vector3f* point_at = memory.grid.data();
   const Eigen::Vector3f ray_step = rotation.col(0) * static_cast<float>(step / camera.fx_px);
   for (int row = 0; row < rows; ++row) {
     const Eigen::Vector3f first_ray =
         rotation * Unproject(camera, 0.0, row * step, 1.0).cast<float>();
+    const float* const pixels = image.Row(row * step);
     for (int column = 0; column < columns; ++column) {
-      const int u = column * step;
-      const int v = row * step;
-      const float z_m = image.At(u, v);
+      const float z_m = pixels[column * step];
       const Eigen::Vector3f ray = first_ray + static_cast<float>(column) * ray_step;
-      memory.grid.emplace_back((z_m > 0.0F ? z_m : kNone) * ray);
+      *point_at++ = (z_m > 0.0F ? z_m : kNone) * ray;
     }
   }
   memory.points.clear();
