@@ -189,11 +189,18 @@ int WallPyramid::Best(const Cell& cell, int level) const {
 int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int level,
                      int of_interest) const {
   constexpr std::size_t kTogether = 64;
+  const Level& l = levels_[static_cast<std::size_t>(level)];
+  const Cell first{l.geometry.min_cell.x - shift.x, l.geometry.min_cell.y - shift.y};
+  const auto width = static_cast<unsigned>(l.geometry.width_cells);
+  const auto height = static_cast<unsigned>(l.geometry.height_cells);
   int sum = 0;
   for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, cells.size());
     for (std::size_t i = begin; i < end; ++i) {
-      sum += Best({cells[i].x + shift.x, cells[i].y + shift.y}, level);
+      // Cells before the first are large without a sign.
+      const auto x = static_cast<unsigned>(cells[i].x - first.x);
+      const auto y = static_cast<unsigned>(cells[i].y - first.y);
+      if (x < width && y < height) sum += l.score[std::size_t{y} * width + x];
     }
     const int most = sum + kBestWallScore * static_cast<int>(cells.size() - end);
     if (most <= of_interest) return most;
