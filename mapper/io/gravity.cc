@@ -37,8 +37,9 @@ constexpr double kAgreeM = 0.1;
 constexpr double kAgreeShare = 0.5;
 // Where they do not, this many of the first ones say where the floor is, and which way is up.
 constexpr std::size_t kFirstViews = 3;
-// Normals of level surfaces in single images scatter by less than this; more is SLAM's drift.
-constexpr double kDriftRad = RadFromDeg(1.0);
+// Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
+// all that some see); more is SLAM's drift.
+constexpr double kDriftRad = RadFromDeg(0.8);
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
@@ -153,8 +154,13 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 // Up as the first images have it: SLAM's world was defined there, and its tilt drifts with time.
-// The middle one of their normals, so that a slanted surface in one of them does no harm.
+// The middle one of their normals, so that a slanted surface in one of them does no harm, and of
+// the larger surfaces only.
 Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
+  std::vector<double> sizes;
+  for (const PlaneFit& fit : fits) sizes.push_back(static_cast<double>(fit.points));
+  const double usual = Median(sizes);
+  std::erase_if(fits, [&](const PlaneFit& f) { return static_cast<double>(f.points) < usual; });
   fits.resize(std::min(fits.size(), kFirstViews));
   Eigen::Vector3d middle = up;
   double least_rad = std::numeric_limits<double>::infinity();
@@ -196,7 +202,8 @@ std::optional<Direction> CommonUp(const Views& views, Eigen::Vector3d up) {
   std::sort(angles_rad.begin(), angles_rad.end());
   const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(fits.size()));
   const double wander_rad = angles_rad[std::min(rank, fits.size() - 1)];
-  return Direction{wander_rad > kDriftRad ? FirstUp(fits, up) : up, wander_rad};
+  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad;
+  return Direction{drifts ? FirstUp(fits, up) : up, wander_rad};
 }
 
 struct FloorOfViews {
