@@ -60,10 +60,13 @@ Eigen::Matrix4f CameraFromWorld(const Pose3& world_from_camera) {
   return matrix.cast<float>();
 }
 
-// A framebuffer with one colour target and a depth buffer of 32 bits.
-class Target {
+}  // namespace
+
+// A framebuffer with one colour target and a depth buffer of 32 bits. Named for all, as a member of
+// a type that others know of must be.
+class RenderTarget {
  public:
-  Target(const PinholeCamera& camera, GLenum format, int samples) {
+  RenderTarget(const PinholeCamera& camera, GLenum format, int samples) {
     glGenFramebuffers(1, &framebuffer_);
     glGenRenderbuffers(2, buffers_.data());
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -94,8 +97,6 @@ class Target {
   GLuint framebuffer_ = 0;
   std::array<GLuint, 2> buffers_{};
 };
-
-}  // namespace
 
 // GL's objects die with the context, which is the first member and goes last.
 struct ColourCamera::Renderer {
@@ -222,9 +223,9 @@ struct ColourCamera::Renderer {
 
   GlContext context;
   PinholeCamera camera;
-  Target depth_target;
-  Target sampled_target;
-  Target colour_target;
+  RenderTarget depth_target;
+  RenderTarget sampled_target;
+  RenderTarget colour_target;
   Eigen::Vector3f sky;
   std::vector<TextureBatch> batches;
   GLsizei corner_count = 0;
