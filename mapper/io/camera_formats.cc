@@ -8,6 +8,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 
@@ -222,7 +223,15 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
 }
 
 CameraDescription ReadCameraDescription(const std::string& path) {
-  return ParseCameraDescription(ReadFile(path), path);
+  std::vector<std::string> unsaid;
+  return ReadCameraDescription(path, unsaid);
+}
+
+CameraDescription ReadCameraDescription(const std::string& path,
+                                        std::vector<std::string>& warnings) {
+  const std::string text = ReadFile(path);
+  WarnOfCut(path, text, warnings);
+  return ParseCameraDescription(text, path);
 }
 
 Pose3 FlipY(const Pose3& world_from_camera) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mapper/core/slam_output.h"
 #include "mapper/io/camera_file.h"
@@ -21,6 +22,9 @@ struct CameraDescription {
 // Our camera.yaml, a ROS CameraInfo (YAML of camera_calibration or of a printed message),
 // ORB-SLAM2/3 settings, or a text with a 3x3, 3x4 or 4x4 matrix. Throws InputError.
 CameraDescription ReadCameraDescription(const std::string& path);
+// What may be wrong with the file is added to `warnings`.
+CameraDescription ReadCameraDescription(const std::string& path,
+                                        std::vector<std::string>& warnings);
 CameraDescription ParseCameraDescription(const std::string& text, const std::string& place);
 
 // The same motion as seen by a camera whose y axis points down, in a world whose y axis is turned

@@ -3,6 +3,13 @@
 #include <fmt/format.h>
 
 namespace depthgrid {
+namespace {
+
+std::string MayBeCut(const std::string& place) {
+  return place + ": the last line has no line end; it is used, but may be cut";
+}
+
+}  // namespace
 
 void Tally::Add(const std::string& what) {
   if (count++ == 0) first = what;
@@ -15,7 +22,6 @@ void Tally::AppendTo(std::vector<std::string>& warnings, const std::string& name
 
 void RowDamage::RequireMostGood(std::string_view text) {
   if (damaged_.count >= good_) RequireAllGood();
-  // A number that lost its last digits is still a number.
   may_be_cut_ = last_is_good_ && !text.ends_with('\n');
 }
 
@@ -25,9 +31,13 @@ void RowDamage::RequireAllGood() const {
 
 void RowDamage::AppendTo(std::vector<std::string>& warnings, const std::string& place) const {
   damaged_.AppendTo(warnings, place, "damaged rows left out");
-  if (may_be_cut_) {
-    warnings.push_back(place + ": the last line has no line end; it is used, but may be cut");
-  }
+  if (may_be_cut_) warnings.push_back(MayBeCut(place));
+}
+
+void WarnOfCut(const std::string& place, std::string_view text,
+               std::vector<std::string>& warnings) {
+  if (text.empty() || text.ends_with('\n')) return;
+  warnings.push_back(MayBeCut(place));
 }
 
 }  // namespace depthgrid

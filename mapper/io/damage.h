@@ -54,4 +54,7 @@ class RowDamage {
   bool may_be_cut_ = false;
 };
 
+// A last line without line end is used, but said: a number that lost its last digits is a number.
+void WarnOfCut(const std::string& place, std::string_view text, std::vector<std::string>& warnings);
+
 }  // namespace depthgrid

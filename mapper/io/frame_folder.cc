@@ -145,13 +145,14 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
   return listed;
 }
 
-CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path) {
+CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path,
+                                    std::vector<std::string>& warnings) {
   const std::string path = camera_path.empty() ? folder.camera_path : camera_path;
   if (path.empty()) {
     throw InputError(folder.recording.name,
                      "has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
   }
-  CameraDescription camera = ReadCameraDescription(path);
+  CameraDescription camera = ReadCameraDescription(path, warnings);
   if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;
   CompleteSize(folder.recording, camera);
   return camera;
@@ -170,7 +171,8 @@ std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
                                              const RecordingOptions& options,
                                              const std::string& camera_path) {
   FrameFolder listed = ListFrameFolder(folder, options);
-  const CameraDescription camera = FrameFolderCamera(listed, camera_path);
+  const CameraDescription camera =
+      FrameFolderCamera(listed, camera_path, listed.recording.warnings);
   SlamOutput poses = slam ? *slam : std::move(listed.poses);
   if (camera.y_up) poses = FlipY(std::move(poses));
   return OpenFrameImages(std::move(listed.recording), poses, camera.file, options);

@@ -27,7 +27,8 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
 
 // The folder's camera, or that of `camera_path` when not empty, with what its file leaves open
 // (image size, depth scale) filled in. Throws InputError when there is none.
-CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path);
+CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path,
+                                    std::vector<std::string>& warnings);
 
 // The frames with poses of a camera whose y axis points down.
 std::unique_ptr<FrameSource> OpenFrameImages(Recording recording, const SlamOutput& slam,

@@ -90,9 +90,9 @@ SlamOutput ReadIclPoses(const std::string& folder, Recording& recording) {
   throw InputError(folder, "holds no poses (*.gt.freiburg or *.gt.sim)");
 }
 
-CameraDescription IclCamera(const std::string& folder) {
+CameraDescription IclCamera(const std::string& folder, std::vector<std::string>& warnings) {
   const std::string path = (fs::path(folder) / "camera.yaml").string();
-  if (fs::exists(path)) return ReadCameraDescription(path);
+  if (fs::exists(path)) return ReadCameraDescription(path, warnings);
   CameraDescription camera;
   camera.kind = "ICL-NUIM";
   camera.file.camera = PinholeCamera{640, 480, 481.20, 480.00, 319.5, 239.5, {}};
@@ -148,8 +148,9 @@ std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
                                            const std::string& camera_path) {
   Recording recording = ListIclFolder(folder);
   SlamOutput poses = slam ? *slam : ReadIclPoses(folder, recording);
-  const CameraDescription camera =
-      camera_path.empty() ? IclCamera(folder) : ReadCameraDescription(camera_path);
+  const CameraDescription camera = camera_path.empty()
+                                       ? IclCamera(folder, recording.warnings)
+                                       : ReadCameraDescription(camera_path, recording.warnings);
   if (camera.y_up) poses = FlipY(std::move(poses));
   recording.camera = camera.file;
   return OpenRecording(std::move(recording), poses, options, IclDepthReader(camera.file, options));

@@ -24,7 +24,7 @@ Recording ListIclFolder(const std::string& folder);
 SlamOutput ReadIclPoses(const std::string& folder, Recording& recording);
 
 // ICL-NUIM's camera, unless the folder has a camera.yaml.
-CameraDescription IclCamera(const std::string& folder);
+CameraDescription IclCamera(const std::string& folder, std::vector<std::string>& warnings);
 
 // Ray lengths as text, in metres or (as the office's) centimetres, to z-depth. Throws InputError.
 DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,

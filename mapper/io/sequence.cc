@@ -51,7 +51,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
   if (options.camera.empty()) {
     sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
   } else {
-    CameraDescription camera = ReadCameraDescription(options.camera);
+    CameraDescription camera = ReadCameraDescription(options.camera, sequence.recording.warnings);
     CompleteSize(sequence.recording, camera);
     sequence.recording.camera = camera.file;
     if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
@@ -66,7 +66,8 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
   sequence.recording = ListIclFolder(path);
   sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
   const CameraDescription camera =
-      options.camera.empty() ? IclCamera(path) : ReadCameraDescription(options.camera);
+      options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
+                             : ReadCameraDescription(options.camera, sequence.recording.warnings);
   if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
   sequence.recording.camera = camera.file;
@@ -77,7 +78,8 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
 DepthSequence FrameSequence(const std::string& path, const SequenceOptions& options,
                             const std::optional<SlamOutput>& slam) {
   FrameFolder listed = ListFrameFolder(path, options.recording);
-  const CameraDescription camera = FrameFolderCamera(listed, options.camera);
+  const CameraDescription camera =
+      FrameFolderCamera(listed, options.camera, listed.recording.warnings);
   DepthSequence sequence;
   sequence.recording = std::move(listed.recording);
   sequence.recording.camera = camera.file;

@@ -144,7 +144,10 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
 
 CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings) {
   const std::string path = Joined(folder, "camera.yaml");
-  if (fs::exists(path)) return ReadCameraFile(path);
+  if (fs::exists(path)) {
+    WarnOfCut(path, ReadFile(path), warnings);
+    return ReadCameraFile(path);
+  }
   const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
   if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");
   warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");

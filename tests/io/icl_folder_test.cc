@@ -148,7 +148,8 @@ TEST_F(IclFolderTest, SimPosesMayLackTheFirstFrame) {
 }
 
 TEST_F(IclFolderTest, WithoutACameraFileItIsIclNuims) {
-  const CameraDescription camera = IclCamera(folder_);
+  std::vector<std::string> warnings;
+  const CameraDescription camera = IclCamera(folder_, warnings);
   EXPECT_TRUE(camera.y_up);
   EXPECT_EQ(camera.file.camera, PinholeCamera{});
 }

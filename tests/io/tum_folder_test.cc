@@ -187,6 +187,15 @@ TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
   EXPECT_EQ(recording.images[1].number, 2);
 }
 
+// "depth_scale: 5000" that lost its last digits is another camera.
+TEST_F(TumFolderTest, ACutCameraFileIsSaid) {
+  WriteSequence();
+  Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: 50");
+  std::vector<std::string> warnings;
+  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 50.0);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("camera.yaml: the last line has no line end")));
+}
+
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError({PoseAt(0, 0)}), "~/depth.txt: no such file");
   const Trajectory truth = WriteSequence();
