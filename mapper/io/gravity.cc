@@ -158,6 +158,7 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 // the larger surfaces only.
 Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
   std::vector<double> sizes;
+  sizes.reserve(fits.size());
   for (const PlaneFit& fit : fits) sizes.push_back(static_cast<double>(fit.points));
   const double usual = Median(sizes);
   std::erase_if(fits, [&](const PlaneFit& f) { return static_cast<double>(f.points) < usual; });

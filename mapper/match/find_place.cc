@@ -1,5 +1,6 @@
 #include "mapper/match/find_place.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
