@@ -15,15 +15,15 @@ Submap::Submap(const SubmapOptions& submap, const GridOptions& grid) : grid_(gri
   }
 }
 
-void Submap::Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base) {
+void Submap::Insert(const ScanCells& cells, const std::vector<WallDistance>& walls) {
   grid_.Insert(cells);
-  if (walls_) walls_->Insert(scan, map_from_base);
+  if (walls_) walls_->Insert(walls);
   is_drawn_ = false;
 }
 
 const OccupancyMap& Submap::map() {
   if (!walls_) return grid_.map();
-  if (!is_drawn_) drawn_ = walls_->DrawnOver(grid_.map());
+  if (!is_drawn_) walls_->DrawOver(grid_.map(), drawn_);
   is_drawn_ = true;
   return drawn_;
 }
@@ -33,7 +33,10 @@ void ActiveSubmaps::Insert(const ScanCells& cells, const Scan& scan, const Pose2
     if (submaps_.size() == 2) submaps_.pop_front();
     submaps_.emplace_back(submap_options_, grid_options_);
   }
-  for (Submap& submap : submaps_) submap.Insert(cells, scan, map_from_base);
+  if (submap_options_.walls == SubmapWalls::kAveraged) {
+    FindWallDistances(scan, map_from_base, grid_options_.resolution_m, walls_);
+  }
+  for (Submap& submap : submaps_) submap.Insert(cells, walls_.distances);
   ++scan_count_;
 }
 

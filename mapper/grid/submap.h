@@ -30,8 +30,8 @@ class Submap {
  public:
   Submap(const SubmapOptions& submap, const GridOptions& grid);
 
-  // `cells` are those of the scan at that pose.
-  void Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base);
+  // `cells` and `walls` are those of a scan at its pose; no walls where they are counted.
+  void Insert(const ScanCells& cells, const std::vector<WallDistance>& walls);
   // NaN where nothing was seen. The reference stays good until the next insertion.
   const OccupancyMap& map();
 
@@ -61,6 +61,7 @@ class ActiveSubmaps {
   GridOptions grid_options_;
   int scan_count_ = 0;
   std::deque<Submap> submaps_;  // at most two, the older one first
+  WallMemory walls_;
 };
 
 }  // namespace depthgrid

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapper/grid/wall_normals.h"
-
 namespace depthgrid {
 namespace {
 
@@ -15,86 +13,107 @@ constexpr int kReachCells = 2;
 constexpr int kStepsPerCell = 2;
 // A wall's direction is that of the hits this far to either side.
 constexpr double kNormalReachCells = 2.0;
-// Of the bell that distances become probabilities by, in cells: wide enough that bicubic
-// interpolation finds its top within a fifth of a cell.
-constexpr double kBellCells = 1.0;
+// Where the parabola that distances become probabilities by meets free space. Catmull-Rom
+// interpolation is exact for parabolas, so that a wall's ridge lies where the wall does; the four
+// cells around a wall lie within two of it. 1.5 and 2.25 cells are worse (docs/results.md).
+constexpr double kFreeFromCells = 1.75;
 // The rectangle grows by at least this much at a time.
 constexpr int kGrowthCells = 32;
 
+Cell FloorOf(const Eigen::Vector2d& in_cells) {
+  return {static_cast<int>(std::floor(in_cells.x())), static_cast<int>(std::floor(in_cells.y()))};
+}
+
+// Of the cells of `row` in a rectangle, as a position in its values.
+std::size_t StartOf(const GridGeometry& geometry, const GridGeometry& row) {
+  return geometry.Index(row.min_cell);
+}
+
 }  // namespace
+
+const std::vector<WallDistance>& FindWallDistances(const Scan& scan, const Pose2& map_from_base,
+                                                   double resolution_m, WallMemory& memory) {
+  FindWallHits(scan, kNormalReachCells * resolution_m, memory.hits);
+  memory.distances.clear();
+  const Eigen::Rotation2Dd turn(map_from_base.yaw_rad);
+  for (const WallHit& hit : memory.hits) {
+    const Eigen::Vector2d in_cells = map_from_base * hit.point / resolution_m;
+    const Eigen::Vector2d normal = turn * hit.normal;
+    const Eigen::Vector2d step = turn * hit.point.normalized() / kStepsPerCell;
+    Eigen::Vector2d position = in_cells - kReachCells * kStepsPerCell * step;
+    Cell last = FloorOf(position - kStepsPerCell * step);
+    for (int i = 0; i <= 2 * kReachCells * kStepsPerCell; ++i, position += step) {
+      const Cell cell = FloorOf(position);
+      if (cell == last) continue;
+      last = cell;
+      const Eigen::Vector2d from_hit = Eigen::Vector2d(cell.x + 0.5, cell.y + 0.5) - in_cells;
+      memory.distances.push_back({cell, static_cast<float>(resolution_m * from_hit.dot(normal))});
+    }
+  }
+  return memory.distances;
+}
 
 WallDistances::WallDistances(double resolution_m, double free_prob, double wall_prob)
     : free_prob_(free_prob), wall_prob_(wall_prob) {
   geometry_.resolution_m = resolution_m;
 }
 
-void WallDistances::GrowToContain(const std::vector<Eigen::Vector2d>& points_in_map) {
-  GridGeometry needed = geometry_;
-  needed.width_cells = needed.height_cells = 0;
-  for (const Eigen::Vector2d& point : points_in_map) {
-    GridGeometry around = geometry_;
-    around.min_cell = CellOf(point, geometry_.resolution_m);
-    around.min_cell.x -= kReachCells + 1;
-    around.min_cell.y -= kReachCells + 1;
-    around.width_cells = around.height_cells = 2 * (kReachCells + 1) + 1;
-    needed = Union(needed, around);
+void WallDistances::GrowToContain(const std::vector<WallDistance>& distances) {
+  Cell low = distances.front().cell;
+  Cell high = low;
+  for (const WallDistance& distance : distances) {
+    low = {std::min(low.x, distance.cell.x), std::min(low.y, distance.cell.y)};
+    high = {std::max(high.x, distance.cell.x), std::max(high.y, distance.cell.y)};
   }
-  if (Union(geometry_, needed) == geometry_) return;
-  needed.min_cell.x -= kGrowthCells;
-  needed.min_cell.y -= kGrowthCells;
-  needed.width_cells += 2 * kGrowthCells;
-  needed.height_cells += 2 * kGrowthCells;
+  if (geometry_.Contains(low) && geometry_.Contains(high)) return;
+  GridGeometry needed = geometry_;
+  needed.min_cell = {low.x - kGrowthCells, low.y - kGrowthCells};
+  needed.width_cells = high.x - low.x + 1 + 2 * kGrowthCells;
+  needed.height_cells = high.y - low.y + 1 + 2 * kGrowthCells;
   const GridGeometry grown = Union(geometry_, needed);
-  std::vector<Mean> moved(grown.size());
-  for (std::size_t i = 0; i < means_.size(); ++i)
-    moved[grown.Index(geometry_.CellAt(i))] = means_[i];
-  means_ = std::move(moved);
+  std::vector<float> sum_m(grown.size()), count(grown.size());
+  for (std::size_t i = 0; i < count_.size(); ++i) {
+    const std::size_t to = grown.Index(geometry_.CellAt(i));
+    sum_m[to] = sum_m_[i];
+    count[to] = count_[i];
+  }
+  sum_m_ = std::move(sum_m);
+  count_ = std::move(count);
   geometry_ = grown;
 }
 
-void WallDistances::Insert(const Scan& scan, const Pose2& map_from_base) {
-  const double resolution_m = geometry_.resolution_m;
-  const std::vector<WallHit> hits = WallHits(scan, kNormalReachCells * resolution_m);
-  if (hits.empty()) return;
-  hits_in_map_.clear();
-  for (const WallHit& hit : hits) hits_in_map_.push_back(map_from_base * hit.point);
-  GrowToContain(hits_in_map_);
-  const Eigen::Rotation2Dd turn(map_from_base.yaw_rad);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    const Eigen::Vector2d& hit = hits_in_map_[i];
-    const Eigen::Vector2d normal = turn * hits[i].normal;
-    const Eigen::Vector2d along = (hit - map_from_base.translation()).normalized();
-    Cell last = CellOf(hit - (kReachCells + 1) * resolution_m * along, resolution_m);
-    for (int step = -kReachCells * kStepsPerCell; step <= kReachCells * kStepsPerCell; ++step) {
-      const double from_hit_m = step * resolution_m / kStepsPerCell;
-      const Cell cell = CellOf(hit + from_hit_m * along, resolution_m);
-      if (cell == last) continue;
-      last = cell;
-      Mean& mean = means_[geometry_.Index(cell)];
-      mean.sum_m += static_cast<float>((CellCentre(cell, resolution_m) - hit).dot(normal));
-      mean.count += 1.0F;
-    }
+void WallDistances::Insert(const std::vector<WallDistance>& distances) {
+  if (distances.empty()) return;
+  GrowToContain(distances);
+  for (const WallDistance& distance : distances) {
+    const std::size_t index = geometry_.Index(distance.cell);
+    sum_m_[index] += distance.behind_m;
+    count_[index] += 1.0F;
   }
 }
 
-OccupancyMap WallDistances::DrawnOver(const OccupancyMap& map) const {
-  OccupancyMap drawn(Union(map.geometry, geometry_));
-  for (int row = 0; row < map.geometry.height_cells; ++row) {
-    const Cell first{map.geometry.min_cell.x, map.geometry.min_cell.y + row};
-    const auto source =
-        map.occupied_prob.begin() + static_cast<std::ptrdiff_t>(map.geometry.Index(first));
-    std::copy(
-        source, source + map.geometry.width_cells,
-        drawn.occupied_prob.begin() + static_cast<std::ptrdiff_t>(drawn.geometry.Index(first)));
+void WallDistances::DrawOver(const OccupancyMap& map, OccupancyMap& drawn) const {
+  drawn.geometry = Union(map.geometry, geometry_);
+  drawn.occupied_prob.assign(drawn.geometry.size(), kUnknownProb);
+  GridGeometry row = map.geometry;
+  for (int y = 0; y < map.geometry.height_cells; ++y, ++row.min_cell.y) {
+    std::copy_n(&map.occupied_prob[StartOf(map.geometry, row)], row.width_cells,
+                &drawn.occupied_prob[StartOf(drawn.geometry, row)]);
   }
-  const double bell_m = kBellCells * geometry_.resolution_m;
-  for (std::size_t i = 0; i < means_.size(); ++i) {
-    if (means_[i].count == 0.0F) continue;
-    const double in_bells = means_[i].sum_m / means_[i].count / bell_m;
-    drawn.occupied_prob[drawn.geometry.Index(geometry_.CellAt(i))] = static_cast<float>(
-        free_prob_ + (wall_prob_ - free_prob_) * std::exp(-0.5 * in_bells * in_bells));
+  const auto free_prob = static_cast<float>(free_prob_);
+  const auto height = static_cast<float>(wall_prob_ - free_prob_);
+  const auto per_m = static_cast<float>(1.0 / (kFreeFromCells * geometry_.resolution_m));
+  row = geometry_;
+  for (int y = 0; y < geometry_.height_cells; ++y, ++row.min_cell.y) {
+    const float* const sum_m = &sum_m_[StartOf(geometry_, row)];
+    const float* const count = &count_[StartOf(geometry_, row)];
+    float* const prob = &drawn.occupied_prob[StartOf(drawn.geometry, row)];
+    for (int x = 0; x < geometry_.width_cells; ++x) {  // without branches, to be vectorised
+      const float distance = per_m * sum_m[x] / std::max(count[x], 1.0F);
+      const float near_wall = free_prob + height * std::max(0.0F, 1.0F - distance * distance);
+      prob[x] = count[x] > 0.0F ? near_wall : prob[x];
+    }
   }
-  return drawn;
 }
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
 // Where walls lie within their cells: of each cell near a hit, the mean distance of its centre
-// behind the hits, along their beams (docs/math.md, "Where a wall lies within its cells").
+// behind the walls that were hit (docs/math.md, "Where a wall lies within its cells").
 #pragma once
 
 #include <vector>
@@ -7,8 +7,26 @@
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/pose2.h"
 #include "mapper/core/scan.h"
+#include "mapper/grid/wall_normals.h"
 
 namespace depthgrid {
+
+// How far the centre of a cell lies behind the wall of a hit, negative before it.
+struct WallDistance {
+  Cell cell;
+  float behind_m = 0.0F;
+};
+
+// Memory for FindWallDistances, kept from scan to scan.
+struct WallMemory {
+  std::vector<WallHit> hits;
+  std::vector<WallDistance> distances;
+};
+
+// What a scan says of the cells that its beams cross around their hits. Good until the memory is
+// used again.
+const std::vector<WallDistance>& FindWallDistances(const Scan& scan, const Pose2& map_from_base,
+                                                   double resolution_m, WallMemory& memory);
 
 class WallDistances {
  public:
@@ -16,22 +34,18 @@ class WallDistances {
   // far from it.
   WallDistances(double resolution_m, double free_prob, double wall_prob);
 
-  void Insert(const Scan& scan, const Pose2& map_from_base);
-  // The map with the cells near walls replaced.
-  OccupancyMap DrawnOver(const OccupancyMap& map) const;
+  void Insert(const std::vector<WallDistance>& distances);
+  // The map with the cells near walls replaced; `drawn` keeps its memory.
+  void DrawOver(const OccupancyMap& map, OccupancyMap& drawn) const;
 
  private:
-  struct Mean {
-    float sum_m = 0.0F;
-    float count = 0.0F;
-  };
-  void GrowToContain(const std::vector<Eigen::Vector2d>& points_in_map);
+  void GrowToContain(const std::vector<WallDistance>& distances);
 
   double free_prob_;
   double wall_prob_;
   GridGeometry geometry_;
-  std::vector<Mean> means_;  // geometry_.size()
-  std::vector<Eigen::Vector2d> hits_in_map_;
+  std::vector<float> sum_m_;  // of a cell's distances; geometry_.size()
+  std::vector<float> count_;  // of them
 };
 
 }  // namespace depthgrid

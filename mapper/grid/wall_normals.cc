@@ -5,17 +5,17 @@
 namespace depthgrid {
 namespace {
 
-// Sums over points, relative to one of them.
+// Sums over a run of hits.
 struct LineSums {
   double count = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 
-  void Add(const Eigen::Vector2d& offset) {
-    count += 1.0;
-    x += offset.x();
-    y += offset.y();
-    xx += offset.x() * offset.x();
-    xy += offset.x() * offset.y();
-    yy += offset.y() * offset.y();
+  void Add(const Eigen::Vector2d& point, double times) {
+    count += times;
+    x += times * point.x();
+    y += times * point.y();
+    xx += times * point.x() * point.x();
+    xy += times * point.x() * point.y();
+    yy += times * point.y() * point.y();
   }
 };
 
@@ -24,7 +24,7 @@ Eigen::Vector2d NormalOf(const LineSums& sums, const Eigen::Vector2d& along, dou
   const double xx = sums.xx - sums.x * sums.x / sums.count;
   const double xy = sums.xy - sums.x * sums.y / sums.count;
   const double yy = sums.yy - sums.y * sums.y / sums.count;
-  const double root = std::hypot(xx - yy, 2.0 * xy);
+  const double root = std::sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy);
   const double across = 0.5 * (xx + yy - root);
   const double lengthways = 0.5 * (xx + yy + root);
   constexpr double kLeastElongation = 4.0;  // of variances: twice as long as thick
@@ -32,39 +32,40 @@ Eigen::Vector2d NormalOf(const LineSums& sums, const Eigen::Vector2d& along, dou
       lengthways < kLeastElongation * across) {
     return along;
   }
-  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the line
-  const Eigen::Vector2d normal(-std::sin(angle), std::cos(angle));
+  // Eigenvector of the smaller eigenvalue; of the two ways to write it the one that cannot vanish.
+  const Eigen::Vector2d normal = (xx > yy ? Eigen::Vector2d(-2.0 * xy, xx - yy + root)
+                                          : Eigen::Vector2d(yy - xx + root, -2.0 * xy))
+                                     .normalized();
   return normal.dot(along) < 0.0 ? Eigen::Vector2d(-normal) : normal;
 }
 
 }  // namespace
 
-std::vector<WallHit> WallHits(const Scan& scan, double reach_m) {
-  std::vector<Eigen::Vector2d> points;
+void FindWallHits(const Scan& scan, double reach_m, std::vector<WallHit>& hits) {
+  hits.clear();
   for (const Beam& beam : scan.beams) {
-    if (beam.hit) points.push_back(EndPoint(beam));
+    if (beam.hit) hits.push_back({.point = EndPoint(beam)});
   }
-  std::vector<WallHit> hits;
-  hits.reserve(points.size());
   const double reach2 = reach_m * reach_m;
-  const auto count = static_cast<std::ptrdiff_t>(points.size());
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const Eigen::Vector2d& point = points[static_cast<std::size_t>(i)];
-    LineSums sums;
-    sums.Add(Eigen::Vector2d::Zero());
-    for (const std::ptrdiff_t step : {-1, 1}) {
-      Eigen::Vector2d last = point;
-      for (std::ptrdiff_t j = i + step; j >= 0 && j < count; j += step) {
-        const Eigen::Vector2d& next = points[static_cast<std::size_t>(j)];
-        if ((next - last).squaredNorm() > reach2 || (next - point).squaredNorm() > reach2) break;
-        sums.Add(next - point);
-        last = next;
-      }
+  const auto within_reach = [&](std::size_t i, std::size_t j) {
+    return (hits[i].point - hits[j].point).squaredNorm() <= reach2;
+  };
+  LineSums sums;  // over the run [first, end) around hit i
+  std::size_t first = 0, end = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (end <= i) {
+      sums = {};
+      sums.Add(hits[i].point, 1.0);
+      first = i;
+      end = i + 1;
     }
+    for (; end < hits.size() && within_reach(end, end - 1) && within_reach(end, i); ++end) {
+      sums.Add(hits[end].point, 1.0);
+    }
+    for (; !within_reach(first, i); ++first) sums.Add(hits[first].point, -1.0);
     // Evenly spread over +-reach the standard deviation is 0.58 of it; at an end, half of that.
-    hits.push_back({point, NormalOf(sums, point.normalized(), 0.2 * reach_m)});
+    hits[i].normal = NormalOf(sums, hits[i].point.normalized(), 0.2 * reach_m);
   }
-  return hits;
 }
 
 }  // namespace depthgrid

@@ -134,6 +134,10 @@ MapperOptions SurfelOptions() {
 TEST(Allocation, AScanHasHardlyAnyInSteadyState) {
   EXPECT_LT(AllocationsAFrame(PaperOptions(), LaserRound()), 0.5);
   EXPECT_LT(AllocationsAFrame(SurfelOptions(), LaserRound()), 0.5);
+  MapperOptions averaged = PaperOptions();
+  averaged.submap.walls = SubmapWalls::kAveraged;
+  // Two rectangles more that grow with each submap.
+  EXPECT_LT(AllocationsAFrame(averaged, LaserRound()), 1.0);
 }
 
 TEST(Allocation, ADepthImageHasHardlyAnyInSteadyState) {

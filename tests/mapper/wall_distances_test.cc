@@ -9,43 +9,54 @@
 namespace depthgrid {
 namespace {
 
+// A parabola that is free 1.75 cells of 5 cm from the wall.
+double ProbAt(double distance_m) {
+  return 0.1 + 0.8 * std::max(0.0, 1.0 - distance_m * distance_m / (0.0875 * 0.0875));
+}
+
 TEST(WallDistances, AreThoseOfTheCellCentresBehindTheHits) {
   // A wall at x = 1.01 m, seen from the origin: cell 20 covers [1.00, 1.05).
   const PlanarWorld wall = {{{1.01, -2.0}, {1.01, 2.0}}};
   WallDistances distances(0.05, 0.1, 0.9);
-  distances.Insert(ScanOf(wall, {}, {.beams = 101, .field_of_view_rad = 0.02}), {});
+  WallMemory memory;
+  distances.Insert(FindWallDistances(ScanOf(wall, {}, {.beams = 101, .field_of_view_rad = 0.02}),
+                                     {}, 0.05, memory));
   GridGeometry seen;
   seen.min_cell = {15, -2};
   seen.width_cells = seen.height_cells = 4;
   OccupancyMap map(seen);
   map.occupied_prob[0] = 0.3F;
-  const OccupancyMap drawn = distances.DrawnOver(map);
+  OccupancyMap drawn;
+  distances.DrawOver(map, drawn);
   EXPECT_EQ(drawn.At({15, -2}), 0.3F);  // what no hit is near to stays
   EXPECT_TRUE(std::isnan(drawn.At({16, -2})));
-  const auto bell = [](double distance_m) {
-    return 0.1 + 0.8 * std::exp(-0.5 * distance_m * distance_m / (0.05 * 0.05));
-  };
-  EXPECT_NEAR(drawn.At({20, 0}), bell(0.015), 1e-3);
-  EXPECT_NEAR(drawn.At({19, 0}), bell(-0.035), 1e-3);
-  EXPECT_NEAR(drawn.At({21, 0}), bell(0.065), 1e-3);
-  EXPECT_NEAR(drawn.At({18, 0}), bell(-0.085), 1e-3);
+  constexpr double kTenthMm = 2e-3;  // where the parabola is steepest
+  EXPECT_NEAR(drawn.At({20, 0}), ProbAt(0.015), kTenthMm);
+  EXPECT_NEAR(drawn.At({19, 0}), ProbAt(-0.035), kTenthMm);
+  EXPECT_NEAR(drawn.At({21, 0}), ProbAt(0.065), kTenthMm);
+  EXPECT_NEAR(drawn.At({18, 0}), ProbAt(-0.085), kTenthMm);
+  EXPECT_NEAR(drawn.At({22, 0}), 0.1, 1e-6);  // 0.115 m behind the wall
 }
 
 TEST(WallDistances, AreAcrossTheWallHoweverItIsSeen) {
   // A wall at 45 degrees through (1, 0): the distance of (x, y) behind it is (x + y - 1) / sqrt 2.
   const PlanarWorld wall = {{{3.0, -2.0}, {-1.0, 2.0}}};
   const Scan scan = ScanOf(wall, {}, {.beams = 200, .field_of_view_rad = RadFromDeg(40.0)});
-  for (const WallHit& hit : WallHits(scan, 0.1)) {
+  std::vector<WallHit> hits;
+  FindWallHits(scan, 0.1, hits);
+  for (const WallHit& hit : hits) {
     EXPECT_NEAR(hit.normal.x(), std::sqrt(0.5), 1e-5);
     EXPECT_NEAR(hit.normal.y(), std::sqrt(0.5), 1e-5);
   }
   WallDistances distances(0.05, 0.1, 0.9);
-  distances.Insert(scan, {});
-  const OccupancyMap drawn = distances.DrawnOver({});
+  WallMemory memory;
+  distances.Insert(FindWallDistances(scan, {}, 0.05, memory));
+  OccupancyMap drawn;
+  distances.DrawOver({}, drawn);
   for (const Cell cell : {Cell{19, 0}, Cell{20, -1}, Cell{17, 2}, Cell{22, -2}}) {
     const Eigen::Vector2d centre = CellCentre(cell, 0.05);
     const double behind_m = (centre.x() + centre.y() - 1.0) * std::sqrt(0.5);
-    EXPECT_NEAR(drawn.At(cell), 0.1 + 0.8 * std::exp(-0.5 * behind_m * behind_m / 0.0025), 1e-3);
+    EXPECT_NEAR(drawn.At(cell), ProbAt(behind_m), 1e-3);
   }
 }
 
@@ -54,11 +65,13 @@ TEST(WallHits, WithoutNeighboursFaceTheSensor) {
   scan.beams = {{.bearing_rad = -0.3F, .range_m = 2.0F, .hit = true},
                 {.bearing_rad = 0.3F, .range_m = 4.0F, .hit = true},
                 {.bearing_rad = 0.4F, .range_m = 4.0F}};
-  const std::vector<WallHit> hits = WallHits(scan, 0.1);
+  std::vector<WallHit> hits;
+  FindWallHits(scan, 0.1, hits);
   ASSERT_EQ(hits.size(), 2U);
   EXPECT_NEAR((hits[0].normal - Eigen::Vector2d(std::cos(-0.3), std::sin(-0.3))).norm(), 0.0, 1e-6);
   EXPECT_NEAR((hits[1].point - 4.0 * hits[1].normal).norm(), 0.0, 1e-6);
-  EXPECT_TRUE(WallHits({}, 0.1).empty());
+  FindWallHits({}, 0.1, hits);
+  EXPECT_TRUE(hits.empty());
 }
 
 // Each scan ends on a stretch of wall that the map does not have yet; its cells at the end are hit
@@ -105,8 +118,8 @@ TEST(WallDistances, KeepMatchesFromTheCellsRaster) {
     }
   }
   EXPECT_EQ(matched, 20);
-  EXPECT_LT(worst_m[1], 0.01);  // a fifth of a cell
-  EXPECT_LT(worst_m[1], 0.5 * worst_m[0]);
+  EXPECT_LT(worst_m[1], 0.0025);  // a twentieth of a cell
+  EXPECT_LT(worst_m[1], 0.1 * worst_m[0]);
 }
 
 }  // namespace
