@@ -141,6 +141,19 @@ Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_f
   return 0.5 * (information + information.transpose());
 }
 
+Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double max_sigma_m,
+                                      double arm_m) {
+  const Eigen::Vector3d scale{1.0, 1.0, arm_m};
+  const Eigen::Vector3d unscale = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(unscale.asDiagonal() * information *
+                                                            unscale.asDiagonal());
+  const double least = 1.0 / (max_sigma_m * max_sigma_m);
+  if (axes.eigenvalues()(0) >= least) return information;
+  const Eigen::Vector3d kept = (axes.eigenvalues().array() < least).select(0.0, axes.eigenvalues());
+  return scale.asDiagonal() * axes.eigenvectors() * kept.asDiagonal() *
+         axes.eigenvectors().transpose() * scale.asDiagonal();
+}
+
 Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
                            const Eigen::Matrix3d& information, double arm_m) {
   const Eigen::Vector3d scale{1.0, 1.0, arm_m};

@@ -68,8 +68,13 @@ void AddPatch(const Eigen::Vector3d& gradient, const Eigen::Matrix<double, 3, 2>
 Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_from_base,
                                  const MatchInformationOptions& options);
 
+// Without the directions whose standard deviation is above `max_sigma_m`; `arm_m` makes rotations
+// comparable with translations.
+Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double max_sigma_m,
+                                      double arm_m);
+
 // A matched pose says nothing along directions without information, where the search stopped by
-// chance: there the prediction's is taken. `arm_m` makes rotations comparable with translations.
+// chance: there the prediction's is taken. `arm_m` as above.
 Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
                            const Eigen::Matrix3d& information, double arm_m);
 

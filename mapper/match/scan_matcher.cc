@@ -23,6 +23,8 @@ void ScanMatcherOptions::Visit(OptionsVisitor& v) {
   v.Number("unknown_prob", unknown_prob, {0.0, 1.0}, "what never-seen cells count");
   v.Number("min_points", min_points, {3, 100000}, "fewest hits that are matched");
   v.Number("min_score", min_score, {0.0, 1.0}, "least share of explained hits of a match");
+  v.Number("max_sigma_m", max_sigma_m, {1e-4, 1e3},
+           "a direction known worse than this is not determined");
   v.Group("search", search, "correlative search");
   v.Group("least_squares", least_squares, "bicubic least squares, Eq. 4");
   v.Group("information", information, "covariance of a match");
@@ -54,7 +56,8 @@ MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
   }
   const InformationSums sums = cost_.SumUp(pose, options_.information);
   result.score = static_cast<double>(sums.explained) / points_.size();
-  result.information = InformationAt(pose, map, sums);
+  result.information =
+      WithoutWeakDirections(InformationAt(pose, map, sums), options_.max_sigma_m, cost_.arm_m());
   result.found = result.score >= options_.min_score && !result.information.isZero(0.0);
   if (!result.found) {
     result.information.setZero();

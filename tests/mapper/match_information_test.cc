@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "mapper/grid/probability_grid.h"
@@ -111,6 +112,19 @@ TEST(MatchInformation, AnExactCorridorHasNoneAlongIt) {
   EXPECT_NEAR(match.map_from_base.x_m, predicted.x_m, 3e-3);
   EXPECT_NEAR(match.map_from_base.y_m, truth.y_m, 3e-3);
   EXPECT_NEAR(match.map_from_base.yaw_rad, truth.yaw_rad, 2e-3);
+}
+
+TEST(MatchInformation, WeakDirectionsAreLeftOut) {
+  // Known to 1 cm across and 1 mrad, to 5 cm along an axis at 30 degrees.
+  const Eigen::AngleAxisd turn(kPi / 6.0, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d known{1.0 / (0.05 * 0.05), 1.0 / (0.01 * 0.01), 1e6};
+  const Eigen::Matrix3d information = turn * known.asDiagonal() * turn.inverse();
+  EXPECT_EQ(WithoutWeakDirections(information, 0.06, 2.0), information);
+  const Eigen::Matrix3d left = WithoutWeakDirections(information, 0.04, 2.0);
+  const Eigen::Vector3d along = turn * Eigen::Vector3d::UnitX();
+  EXPECT_LT((left * along).norm(), 1e-6);
+  EXPECT_LT((left - information + known.x() * along * along.transpose()).norm(), 1e-6);
+  EXPECT_TRUE(WithoutWeakDirections(Eigen::Matrix3d::Zero(), 0.04, 2.0).isZero(0.0));
 }
 
 TEST(MatchInformation, NothingSeenIsNoInformation) {
