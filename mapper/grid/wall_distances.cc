@@ -14,20 +14,12 @@ constexpr int kStepsPerCell = 2;
 // A wall's direction is that of the hits this far to either side.
 constexpr double kNormalReachCells = 2.0;
 // Where the parabola that distances become probabilities by meets free space. Catmull-Rom
-// interpolation is exact for parabolas, so that a wall's ridge lies where the wall does; the four
-// cells around a wall lie within two of it. 1.5 and 2.25 cells are worse (docs/results.md).
+// interpolation is exact for parabolas, so that a wall's ridge lies where the wall does. The four
+// cells around a wall lie within two of it, but 1.75 did better than 1.5, 2 and 2.25
+// (docs/results.md, "The paper's experiment").
 constexpr double kFreeFromCells = 1.75;
 // The rectangle grows by at least this much at a time.
 constexpr int kGrowthCells = 32;
-
-Cell FloorOf(const Eigen::Vector2d& in_cells) {
-  return {static_cast<int>(std::floor(in_cells.x())), static_cast<int>(std::floor(in_cells.y()))};
-}
-
-// Of the cells of `row` in a rectangle, as a position in its values.
-std::size_t StartOf(const GridGeometry& geometry, const GridGeometry& row) {
-  return geometry.Index(row.min_cell);
-}
 
 }  // namespace
 
@@ -35,19 +27,20 @@ const std::vector<WallDistance>& FindWallDistances(const Scan& scan, const Pose2
                                                    double resolution_m, WallMemory& memory) {
   FindWallHits(scan, kNormalReachCells * resolution_m, memory.hits);
   memory.distances.clear();
+  constexpr double kOneCell = 1.0;  // the unit of length below
   const Eigen::Rotation2Dd turn(map_from_base.yaw_rad);
   for (const WallHit& hit : memory.hits) {
     const Eigen::Vector2d in_cells = map_from_base * hit.point / resolution_m;
     const Eigen::Vector2d normal = turn * hit.normal;
     const Eigen::Vector2d step = turn * hit.point.normalized() / kStepsPerCell;
     Eigen::Vector2d position = in_cells - kReachCells * kStepsPerCell * step;
-    Cell last = FloorOf(position - kStepsPerCell * step);
+    Cell last = CellOf(position - kStepsPerCell * step, kOneCell);
     for (int i = 0; i <= 2 * kReachCells * kStepsPerCell; ++i, position += step) {
-      const Cell cell = FloorOf(position);
+      const Cell cell = CellOf(position, kOneCell);
       if (cell == last) continue;
       last = cell;
-      const Eigen::Vector2d from_hit = Eigen::Vector2d(cell.x + 0.5, cell.y + 0.5) - in_cells;
-      memory.distances.push_back({cell, static_cast<float>(resolution_m * from_hit.dot(normal))});
+      const double behind_cells = (CellCentre(cell, kOneCell) - in_cells).dot(normal);
+      memory.distances.push_back({cell, static_cast<float>(resolution_m * behind_cells)});
     }
   }
   return memory.distances;
@@ -95,19 +88,19 @@ void WallDistances::Insert(const std::vector<WallDistance>& distances) {
 void WallDistances::DrawOver(const OccupancyMap& map, OccupancyMap& drawn) const {
   drawn.geometry = Union(map.geometry, geometry_);
   drawn.occupied_prob.assign(drawn.geometry.size(), kUnknownProb);
-  GridGeometry row = map.geometry;
-  for (int y = 0; y < map.geometry.height_cells; ++y, ++row.min_cell.y) {
-    std::copy_n(&map.occupied_prob[StartOf(map.geometry, row)], row.width_cells,
-                &drawn.occupied_prob[StartOf(drawn.geometry, row)]);
+  Cell row = map.geometry.min_cell;  // its first cell
+  for (int y = 0; y < map.geometry.height_cells; ++y, ++row.y) {
+    std::copy_n(&map.occupied_prob[map.geometry.Index(row)], map.geometry.width_cells,
+                &drawn.occupied_prob[drawn.geometry.Index(row)]);
   }
   const auto free_prob = static_cast<float>(free_prob_);
   const auto height = static_cast<float>(wall_prob_ - free_prob_);
   const auto per_m = static_cast<float>(1.0 / (kFreeFromCells * geometry_.resolution_m));
-  row = geometry_;
-  for (int y = 0; y < geometry_.height_cells; ++y, ++row.min_cell.y) {
-    const float* const sum_m = &sum_m_[StartOf(geometry_, row)];
-    const float* const count = &count_[StartOf(geometry_, row)];
-    float* const prob = &drawn.occupied_prob[StartOf(drawn.geometry, row)];
+  row = geometry_.min_cell;
+  for (int y = 0; y < geometry_.height_cells; ++y, ++row.y) {
+    const float* const sum_m = &sum_m_[geometry_.Index(row)];
+    const float* const count = &count_[geometry_.Index(row)];
+    float* const prob = &drawn.occupied_prob[drawn.geometry.Index(row)];
     for (int x = 0; x < geometry_.width_cells; ++x) {  // without branches, to be vectorised
       const float distance = per_m * sum_m[x] / std::max(count[x], 1.0F);
       const float near_wall = free_prob + height * std::max(0.0F, 1.0F - distance * distance);

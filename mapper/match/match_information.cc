@@ -51,6 +51,15 @@ Eigen::Matrix3d MapFromBaseAxes(double yaw_rad) {
   return axes;
 }
 
+// Eigenvectors and eigenvalues per square metre of an information, a radian of yaw being
+// `scale_m.z()` metres.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> AxesOf(const Eigen::Matrix3d& information,
+                                                      const Eigen::Vector3d& scale_m) {
+  const Eigen::Vector3d unscale = scale_m.cwiseInverse();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(unscale.asDiagonal() * information *
+                                                        unscale.asDiagonal());
+}
+
 }  // namespace
 
 void MatchInformationOptions::Visit(OptionsVisitor& v) {
@@ -144,9 +153,7 @@ Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_f
 Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double max_sigma_m,
                                       double arm_m) {
   const Eigen::Vector3d scale{1.0, 1.0, arm_m};
-  const Eigen::Vector3d unscale = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(unscale.asDiagonal() * information *
-                                                            unscale.asDiagonal());
+  const auto axes = AxesOf(information, scale);
   const double least = 1.0 / (max_sigma_m * max_sigma_m);
   if (axes.eigenvalues()(0) >= least) return information;
   const Eigen::Vector3d kept = (axes.eigenvalues().array() < least).select(0.0, axes.eigenvalues());
@@ -157,9 +164,7 @@ Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double
 Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
                            const Eigen::Matrix3d& information, double arm_m) {
   const Eigen::Vector3d scale{1.0, 1.0, arm_m};
-  const Eigen::Vector3d unscale = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(unscale.asDiagonal() * information *
-                                                            unscale.asDiagonal());
+  const auto axes = AxesOf(information, scale);
   const Eigen::Vector3d to_predicted =
       scale.cwiseProduct(Between(matched_map_from_base, predicted_map_from_base).vector());
   Eigen::Vector3d undetermined = Eigen::Vector3d::Zero();
@@ -169,7 +174,7 @@ Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& ma
     undetermined += axis * axis.dot(to_predicted);
   }
   if (undetermined.isZero(0.0)) return matched_map_from_base;
-  return matched_map_from_base * Pose2::FromVector(unscale.cwiseProduct(undetermined));
+  return matched_map_from_base * Pose2::FromVector(scale.cwiseInverse().cwiseProduct(undetermined));
 }
 
 }  // namespace depthgrid
