@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapper/surfel/misfit.h"
-
 namespace depthgrid {
 namespace {
 
@@ -17,8 +15,6 @@ constexpr double kConvergedM = 2e-5;
 constexpr double kConvergedRad = 4e-6;
 // The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
 constexpr double kLeastVariance = 1e-10;
-// A residual within this many standard deviations is explained.
-constexpr double kExplainedSigmas = 3.0;
 // The linearised equations are not followed farther than this from where they were evaluated; what
 // the match says beyond it, it says in directions it hardly sees.
 constexpr double kFarthestM = 0.1;
@@ -60,59 +56,32 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("max_iterations", max_iterations, {1, 1000}, "of the least squares");
 }
 
-SurfelMatcher::Evaluation SurfelMatcher::Evaluate(const std::vector<Surfel>& pieces,
-                                                  const SurfelStore& map,
-                                                  const Pose2& map_from_base) const {
-  Evaluation evaluation;
-  NormalEquations& equations = evaluation.equations;
-  Misfit misfit;
-  const Motion2 motion(map_from_base);
-  const double min_cosine = std::cos(RadFromDeg(options_.max_angle_deg));
-  const double floor_rad2 = options_.normal_floor_rad * options_.normal_floor_rad;
-  for (const Surfel& piece : pieces) {
-    const Surfel moved = motion * piece;
-    const double piece_variance = 1.0 / piece.information;
-    const AssociationGate gate{options_.along_m, options_.gate_m + 2.0 * std::sqrt(piece_variance),
-                               min_cosine};
-    const int index = map.Nearest(moved, gate);
-    if (index < 0) continue;
-    const Surfel& surfel = map[index];
-    const double error_m = OffsetFrom(surfel, moved.point_m);
-    const double variance = piece_variance + 1.0 / surfel.information;
-    const double sigmas = std::abs(error_m) / std::sqrt(variance);
-    const double weight = std::min(1.0, options_.huber_sigmas / sigmas) / variance;
-    const Eigen::Vector2d normal = motion.TurnBack(surfel.normal);
-    const Eigen::Vector2d tangent(-normal.y(), normal.x());
-    const Eigen::Vector3d row = OffsetJacobian(normal, piece.point_m);
-    const Eigen::Vector3d tangent_row = OffsetJacobian(tangent, piece.point_m);
-    const double normal_variance = std::max(1.0 / surfel.normal_information, floor_rad2);
-    equations.h += weight * row * row.transpose();
-    equations.g -= weight * error_m * row;
-    equations.false_h += weight * normal_variance * tangent_row * tangent_row.transpose();
-    misfit.Add(sigmas);
-    ++evaluation.used;
-    evaluation.explained += sigmas < kExplainedSigmas ? 1 : 0;
-  }
+PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base) {
+  const PairGates gates{options_.along_m, options_.gate_m,
+                        std::cos(RadFromDeg(options_.max_angle_deg)), options_.huber_sigmas,
+                        options_.normal_floor_rad};
+  pairs_.Associate(map, gates, map_from_base);
+  PairEvaluation evaluation = pairs_.Evaluate(gates, map_from_base);
   if (options_.judge_misfit) {
-    const double factor = misfit.VarianceFactor();
-    equations.h /= factor;
-    equations.g /= factor;
-    equations.false_h /= factor;
+    evaluation.equations.h /= evaluation.variance_factor;
+    evaluation.equations.g /= evaluation.variance_factor;
+    evaluation.equations.false_h /= evaluation.variance_factor;
   }
   return evaluation;
 }
 
 MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                                 const Prediction& prediction) const {
+                                 const Prediction& prediction) {
   MatchResult match;
   match.map_from_base = prediction.map_from_base;
   const Eigen::Matrix3d prior_h =
       (prediction.covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse();
   Pose2 pose = prediction.map_from_base;
-  Evaluation evaluation;
+  PairEvaluation evaluation;
   NormalEquations seen;
+  pairs_.Assign(pieces);
   while (match.iterations < options_.max_iterations) {
-    evaluation = Evaluate(pieces, map, pose);
+    evaluation = Evaluate(map, pose);
     ++match.iterations;
     if (evaluation.used < kMinPieces) return match;
     seen = Debiased(evaluation.equations, options_.debias);

@@ -5,8 +5,7 @@
 
 #include "mapper/core/options.h"
 #include "mapper/frame_report.h"
-#include "mapper/surfel/debias.h"
-#include "mapper/surfel/surfel_store.h"
+#include "mapper/surfel/surfel_pairs.h"
 
 namespace depthgrid {
 
@@ -31,18 +30,13 @@ class SurfelMatcher {
   // where the prediction puts them. What is returned is the match alone: the pose at which the
   // debiased equations have their minimum, and their information.
   MatchResult Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                    const Prediction& prediction) const;
+                    const Prediction& prediction);
 
  private:
-  struct Evaluation {
-    NormalEquations equations;
-    int used = 0;
-    int explained = 0;
-  };
-  Evaluation Evaluate(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                      const Pose2& map_from_base) const;
+  PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base);
 
   SurfelMatchOptions options_;
+  SurfelPairs pairs_;  // memory only, from one match to the next
 };
 
 }  // namespace depthgrid

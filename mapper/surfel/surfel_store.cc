@@ -20,9 +20,20 @@ void Fuse(const Surfel& piece, Surfel& surfel) {
   surfel.normal = Motion2({0.0, 0.0, step_rad}).Turn(surfel.normal).normalized();
 }
 
+// The least distance, counted in gates, of a surfel outside of the box that is searched: the gate's
+// ellipse, turned as far as normals may differ, sticks out of the box above this size.
+double LeastOutside(const AssociationGate& gate) {
+  const double cosine = std::clamp(gate.min_cosine - SurfelStore::kFirmRad, 0.0, 1.0);
+  const double sine2 = 1.0 - cosine * cosine;
+  const double small = std::min(gate.along_m, gate.off_m);
+  const double large = std::max(gate.along_m, gate.off_m);
+  const double extent2 = small * small + sine2 * (large * large - small * small);
+  return small / std::sqrt(extent2);
+}
+
 }  // namespace
 
-int SurfelStore::Nearest(const Surfel& piece, const AssociationGate& gate) const {
+SurfelStore::Found SurfelStore::Search(const Surfel& piece, const AssociationGate& gate) const {
   // The gate's rectangle, turned along the piece and put in a box.
   const Eigen::Vector2d across = piece.normal.cwiseAbs();
   const Eigen::Vector2d along(across.y(), across.x());
@@ -32,20 +43,25 @@ int SurfelStore::Nearest(const Surfel& piece, const AssociationGate& gate) const
   const Cell high = CellOf(piece.point_m + half_m, kCellM);
   const double per_along = 1.0 / gate.along_m;
   const double per_off = 1.0 / gate.off_m;
-  int nearest = -1;
-  double nearest_distance2 = 2.0;
+  const double narrowly = gate.min_cosine - kFirmRad;
+  Found found;
   const auto consider = [&](int i) {
     const Surfel& surfel = surfels_[static_cast<std::size_t>(i)];
-    if (surfel.normal.dot(piece.normal) < gate.min_cosine) return;
+    const double cosine = surfel.normal.dot(piece.normal);
+    if (cosine < narrowly) return;
     const Eigen::Vector2d d_m = piece.point_m - surfel.point_m;
     const double a = (d_m.x() * surfel.normal.y() - d_m.y() * surfel.normal.x()) * per_along;
     const double o = d_m.dot(surfel.normal) * per_off;
-    if (std::abs(a) > 1.0 || std::abs(o) > 1.0) return;
     const double distance2 = a * a + o * o;
     // Ties go to the surfel added first, wherever it is in its cell.
-    if (distance2 < nearest_distance2 || (distance2 == nearest_distance2 && i < nearest)) {
-      nearest_distance2 = distance2;
-      nearest = i;
+    const bool is_nearest =
+        distance2 < found.distance2 || (distance2 == found.distance2 && i < found.index);
+    if (is_nearest && std::abs(a) <= 1.0 && std::abs(o) <= 1.0 && cosine >= gate.min_cosine) {
+      found.next_distance2 = found.distance2;
+      found.distance2 = distance2;
+      found.index = i;
+    } else {
+      found.next_distance2 = std::min(found.next_distance2, distance2);
     }
   };
   // Tile by tile, and in each row by row.
@@ -65,7 +81,22 @@ int SurfelStore::Nearest(const Surfel& piece, const AssociationGate& gate) const
       }
     }
   }
-  return nearest;
+  return found;
+}
+
+Association SurfelStore::NearestFirmly(const Surfel& piece, const AssociationGate& gate) const {
+  const Found found = Search(piece, gate);
+  if (found.index < 0) return {};
+  const Surfel& surfel = surfels_[static_cast<std::size_t>(found.index)];
+  if (surfel.normal.dot(piece.normal) < gate.min_cosine + kFirmRad) return {found.index, 0.0};
+  const double distance = std::sqrt(found.distance2);
+  const double next = std::min(std::sqrt(found.next_distance2), LeastOutside(gate));
+  const double off = std::abs(OffsetFrom(surfel, piece.point_m)) / gate.off_m;
+  const double along = std::sqrt(std::max(0.0, found.distance2 - off * off));
+  // A shift changes each distance by at most this much per metre; the two may change in opposite
+  // ways.
+  const double slack = std::min(0.5 * (next - distance), 1.0 - std::max(off, along));
+  return {found.index, std::max(0.0, slack) * std::min(gate.along_m, gate.off_m)};
 }
 
 int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate) {

@@ -18,14 +18,27 @@ struct AssociationGate {
   double min_cosine = 0.0;  // between the normals
 };
 
+// The surfel a piece belongs to, and for how long.
+struct Association {
+  int index = -1;
+  // Shifted by less than this, and turned by less than SurfelStore::kFirmRad, the piece belongs to
+  // the same one.
+  double firm_m = 0.0;
+};
+
 class SurfelStore {
  public:
+  static constexpr double kFirmRad = 0.01;
+
   int size() const { return static_cast<int>(surfels_.size()); }
   const Surfel& operator[](int index) const { return surfels_[static_cast<std::size_t>(index)]; }
   const std::vector<Surfel>& surfels() const { return surfels_; }
 
   // The surfel the piece belongs to, -1 if none: the nearest one, distances counted in gates.
-  int Nearest(const Surfel& piece, const AssociationGate& gate) const;
+  int Nearest(const Surfel& piece, const AssociationGate& gate) const {
+    return Search(piece, gate).index;
+  }
+  Association NearestFirmly(const Surfel& piece, const AssociationGate& gate) const;
   // Moves that surfel along its normal and turns it by what the piece says, or adds the piece as a
   // surfel of its own. Returns its index.
   int Merge(const Surfel& piece, const AssociationGate& gate);
@@ -33,6 +46,14 @@ class SurfelStore {
   void Clear();
 
  private:
+  // Distances are counted in gates.
+  struct Found {
+    int index = -1;
+    double distance2 = 2.0;
+    double next_distance2 = 2.0;  // of all others, those that miss a gate narrowly included
+  };
+  Found Search(const Surfel& piece, const AssociationGate& gate) const;
+
   static constexpr double kCellM = 0.1;
   static constexpr int kTileBits = 5;  // tiles of 32 x 32 cells
   static constexpr int kTileMask = (1 << kTileBits) - 1;

@@ -82,16 +82,18 @@ TEST(ScanSurfels, ErrHasTheDeclaredSigma) {
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.1);
 }
 
+Surfel DrawSurfel(RandomStream& random) {
+  Surfel surfel;
+  surfel.point_m = {random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)};
+  const double angle_rad = random.Uniform(-kPi, kPi);
+  surfel.normal = {std::cos(angle_rad), std::sin(angle_rad)};
+  surfel.information = surfel.normal_information = 1.0;
+  return surfel;
+}
+
 TEST(SurfelStore, NearestAgreesWithLookingAtAll) {
   RandomStream random(11, RandomStage::kTest);
-  const auto draw = [&] {
-    Surfel surfel;
-    surfel.point_m = {random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)};
-    const double angle_rad = random.Uniform(-kPi, kPi);
-    surfel.normal = {std::cos(angle_rad), std::sin(angle_rad)};
-    surfel.information = surfel.normal_information = 1.0;
-    return surfel;
-  };
+  const auto draw = [&] { return DrawSurfel(random); };
   SurfelStore store;
   for (int i = 0; i < 3000; ++i) store.Add(draw());
   const AssociationGate gate{0.08, 0.2, 0.7};
@@ -122,6 +124,36 @@ TEST(SurfelStore, NearestAgreesWithLookingAtAll) {
   EXPECT_GT(found, 1000);
 }
 
+TEST(SurfelStore, FirmPiecesKeepTheirSurfel) {
+  RandomStream random(12, RandomStage::kTest);
+  SurfelStore store;
+  for (int i = 0; i < 1000; ++i) store.Add(DrawSurfel(random));
+  const AssociationGate gate{0.08, 0.2, 0.7};
+  int firm = 0;
+  int lost = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Surfel piece = DrawSurfel(random);
+    const Association found = store.NearestFirmly(piece, gate);
+    EXPECT_EQ(found.index, store.Nearest(piece, gate));
+    if (found.firm_m <= 0.0) continue;
+    ++firm;
+    for (int k = 0; k < 8; ++k) {
+      const double to_rad = random.Uniform(-kPi, kPi);
+      const double turn_rad = SurfelStore::kFirmRad * random.Uniform(-1.0, 1.0);
+      const auto shifted = [&](double shift_m) {
+        Surfel moved = piece;
+        moved.point_m += shift_m * Eigen::Vector2d(std::cos(to_rad), std::sin(to_rad));
+        moved.normal = Motion2({0.0, 0.0, turn_rad}).Turn(piece.normal);
+        return store.Nearest(moved, gate);
+      };
+      EXPECT_EQ(shifted(0.999 * found.firm_m), found.index);
+      lost += shifted(3.0 * found.firm_m) != found.index ? 1 : 0;
+    }
+  }
+  EXPECT_GT(firm, 400);
+  EXPECT_GT(lost, 100);  // three times as far some do not
+}
+
 TEST(SurfelStore, MergingMovesAlongTheNormalByInformation) {
   SurfelStore store;
   store.Add({{1.0, 0.0}, {-1.0, 0.0}, 3.0, 1.0});
@@ -143,7 +175,7 @@ TEST(SurfelMatcher, FindsTheWayBackAndIsAsSureAsItSays) {
   for (int i = 0; i < 100; ++i) {
     for (const Surfel& s : maker.Make(clean, noise)) map.Merge(s, {0.03, 0.05, 0.7});
   }
-  const SurfelMatcher matcher({});
+  SurfelMatcher matcher({});
   Prediction prediction;
   prediction.map_from_base = {0.04, -0.03, 0.02};
   prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();

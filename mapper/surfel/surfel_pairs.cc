@@ -1,0 +1,169 @@
+#include "mapper/surfel/surfel_pairs.h"
+
+// Highway asks for AES with AVX2, which x86-64-v3 does not promise and nothing here uses.
+#define HWY_DISABLE_PCLMUL_AES
+#include <hwy/highway.h>
+
+#include <cmath>
+
+#include "mapper/surfel/misfit.h"
+
+namespace depthgrid {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+// At most four lanes, so that the order of the sums is the same on wider machines.
+using DoubleLanes = hn::CappedTag<double, 4>;
+using Doubles = hn::Vec<DoubleLanes>;
+constexpr DoubleLanes kDoubles;
+
+// A residual within this many standard deviations is explained.
+constexpr double kExplainedSigmas = 3.0;
+// Belongs to a surfel for no distance at all: it is looked for again.
+constexpr double kNever = -1.0;
+
+double SumOf(Doubles lanes) { return hn::GetLane(hn::SumOfLanes(kDoubles, lanes)); }
+
+// Sum of weight * row * row^T.
+struct SquareSums {
+  Doubles xx = hn::Zero(kDoubles), xy = hn::Zero(kDoubles), yy = hn::Zero(kDoubles);
+  Doubles x_yaw = hn::Zero(kDoubles), y_yaw = hn::Zero(kDoubles), yaw_yaw = hn::Zero(kDoubles);
+
+  HWY_INLINE void Add(Doubles weight, Doubles x, Doubles y, Doubles yaw) {
+    const Doubles weighted_x = hn::Mul(weight, x);
+    const Doubles weighted_y = hn::Mul(weight, y);
+    xx = hn::MulAdd(weighted_x, x, xx);
+    xy = hn::MulAdd(weighted_x, y, xy);
+    yy = hn::MulAdd(weighted_y, y, yy);
+    x_yaw = hn::MulAdd(weighted_x, yaw, x_yaw);
+    y_yaw = hn::MulAdd(weighted_y, yaw, y_yaw);
+    yaw_yaw = hn::MulAdd(hn::Mul(weight, yaw), yaw, yaw_yaw);
+  }
+  Eigen::Matrix3d Sum() const {
+    Eigen::Matrix3d sum;
+    sum << SumOf(xx), SumOf(xy), SumOf(x_yaw), 0.0, SumOf(yy), SumOf(y_yaw), 0.0, 0.0,
+        SumOf(yaw_yaw);
+    return sum.selfadjointView<Eigen::Upper>();
+  }
+};
+
+}  // namespace
+
+void SurfelPairs::Assign(const std::vector<Surfel>& pieces) {
+  pieces_ = &pieces;
+  associated_ = false;
+  blocks_.assign((pieces.size() + kLanes - 1) / kLanes, {});
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Block& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
+    block.x_m[lane] = pieces[i].point_m.x();
+    block.y_m[lane] = pieces[i].point_m.y();
+  }
+}
+
+void SurfelPairs::Associate(const SurfelStore& map, const PairGates& gates,
+                            const Pose2& map_from_base) {
+  const Motion2 motion(map_from_base);
+  // Half, since each piece was associated within that of the yaw kept here.
+  const double turn_rad = WrapAngle(map_from_base.yaw_rad - associated_yaw_rad_);
+  const bool turned = !associated_ || std::abs(turn_rad) >= 0.5 * SurfelStore::kFirmRad;
+  associated_ = true;
+  if (turned) associated_yaw_rad_ = map_from_base.yaw_rad;
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+    const Block& block = blocks_[i / kLanes];
+    const std::size_t lane = i % kLanes;
+    const Eigen::Vector2d moved = motion * Eigen::Vector2d(block.x_m[lane], block.y_m[lane]);
+    const double dx = moved.x() - block.at_x_m[lane];
+    const double dy = moved.y() - block.at_y_m[lane];
+    if (turned || dx * dx + dy * dy > block.firm_m2[lane]) AssociateOne(map, gates, motion, i);
+  }
+}
+
+void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
+                               const Motion2& motion, std::size_t index) {
+  const Surfel& piece = (*pieces_)[index];
+  const Surfel moved = motion * piece;
+  const double piece_variance = 1.0 / piece.information;
+  const Association found = map.NearestFirmly(
+      moved, {gates.along_m, gates.off_m + 2.0 * std::sqrt(piece_variance), gates.min_cosine});
+  Block& block = blocks_[index / kLanes];
+  const std::size_t lane = index % kLanes;
+  block.at_x_m[lane] = moved.point_m.x();
+  block.at_y_m[lane] = moved.point_m.y();
+  if (found.index < 0) {
+    block.firm_m2[lane] = kNever;
+    block.information[lane] = 0.0;
+    block.per_sigma[lane] = 0.0;
+    return;
+  }
+  const Surfel& surfel = map[found.index];
+  const double variance = piece_variance + 1.0 / surfel.information;
+  block.firm_m2[lane] = found.firm_m * found.firm_m;
+  block.surfel_x_m[lane] = surfel.point_m.x();
+  block.surfel_y_m[lane] = surfel.point_m.y();
+  block.normal_x[lane] = surfel.normal.x();
+  block.normal_y[lane] = surfel.normal.y();
+  block.information[lane] = 1.0 / variance;
+  block.per_sigma[lane] = 1.0 / std::sqrt(variance);
+  block.normal_variance[lane] =
+      std::max(1.0 / surfel.normal_information, gates.normal_floor_rad * gates.normal_floor_rad);
+}
+
+PairEvaluation SurfelPairs::Evaluate(const PairGates& gates, const Pose2& map_from_base) {
+  const Motion2 motion(map_from_base);
+  const Doubles cosine = hn::Set(kDoubles, motion.cosine);
+  const Doubles sine = hn::Set(kDoubles, motion.sine);
+  const Doubles shift_x = hn::Set(kDoubles, motion.shift_m.x());
+  const Doubles shift_y = hn::Set(kDoubles, motion.shift_m.y());
+  const Doubles huber = hn::Set(kDoubles, gates.huber_sigmas);
+  const Doubles one = hn::Set(kDoubles, 1.0);
+  SquareSums seen;
+  SquareSums feigned;
+  Doubles g_x = hn::Zero(kDoubles), g_y = hn::Zero(kDoubles), g_yaw = hn::Zero(kDoubles);
+  PairEvaluation evaluation;
+  Misfit misfit;
+  for (const Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(kDoubles)) {
+      const auto load = [lane](const Lanes& lanes) { return hn::LoadU(kDoubles, &lanes[lane]); };
+      const Doubles x = load(block.x_m);
+      const Doubles y = load(block.y_m);
+      const Doubles normal_x = load(block.normal_x);
+      const Doubles normal_y = load(block.normal_y);
+      const Doubles information = load(block.information);
+      // The piece in the map, from its surfel.
+      const Doubles from_x = hn::Add(hn::NegMulAdd(sine, y, hn::Mul(cosine, x)),
+                                     hn::Sub(shift_x, load(block.surfel_x_m)));
+      const Doubles from_y = hn::Add(hn::MulAdd(sine, x, hn::Mul(cosine, y)),
+                                     hn::Sub(shift_y, load(block.surfel_y_m)));
+      const Doubles error = hn::MulAdd(normal_x, from_x, hn::Mul(normal_y, from_y));
+      const Doubles sigmas = hn::Mul(hn::Abs(error), load(block.per_sigma));
+      const Doubles weight = hn::Mul(information, hn::Min(one, hn::Div(huber, sigmas)));
+      // The normal in base axes; OffsetJacobian() for it, and for the tangent (-y, x).
+      const Doubles row_x = hn::MulAdd(cosine, normal_x, hn::Mul(sine, normal_y));
+      const Doubles row_y = hn::NegMulAdd(sine, normal_x, hn::Mul(cosine, normal_y));
+      const Doubles row_yaw = hn::NegMulAdd(row_x, y, hn::Mul(row_y, x));
+      const Doubles tangent_yaw = hn::MulAdd(row_x, x, hn::Mul(row_y, y));
+      seen.Add(weight, row_x, row_y, row_yaw);
+      feigned.Add(hn::Mul(weight, load(block.normal_variance)), hn::Neg(row_y), row_x, tangent_yaw);
+      const Doubles pull = hn::Mul(weight, error);
+      g_x = hn::NegMulAdd(pull, row_x, g_x);
+      g_y = hn::NegMulAdd(pull, row_y, g_y);
+      g_yaw = hn::NegMulAdd(pull, row_yaw, g_yaw);
+      Lanes sigmas_of;
+      hn::StoreU(sigmas, kDoubles, &sigmas_of[lane]);
+      for (std::size_t i = lane; i < lane + hn::Lanes(kDoubles); ++i) {
+        if (block.information[i] <= 0.0) continue;
+        misfit.Add(sigmas_of[i]);
+        ++evaluation.used;
+        evaluation.explained += sigmas_of[i] < kExplainedSigmas ? 1 : 0;
+      }
+    }
+  }
+  evaluation.equations.h = seen.Sum();
+  evaluation.equations.false_h = feigned.Sum();
+  evaluation.equations.g = {SumOf(g_x), SumOf(g_y), SumOf(g_yaw)};
+  evaluation.variance_factor = misfit.VarianceFactor();
+  return evaluation;
+}
+
+}  // namespace depthgrid

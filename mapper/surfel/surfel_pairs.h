@@ -1,0 +1,63 @@
+// A scan's pieces and the surfels of the map they belong to, from one iteration of a match to the
+// next.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "mapper/surfel/debias.h"
+#include "mapper/surfel/surfel_store.h"
+
+namespace depthgrid {
+
+struct PairGates {
+  double along_m = 0.0;  // as AssociationGate
+  double off_m = 0.0;    // and two sigmas of the piece
+  double min_cosine = 0.0;
+  double huber_sigmas = 0.0;      // larger residuals count linearly
+  double normal_floor_rad = 0.0;  // no normal is known better
+};
+
+struct PairEvaluation {
+  NormalEquations equations;
+  int used = 0;
+  int explained = 0;             // within three standard deviations
+  double variance_factor = 1.0;  // of their Misfit
+};
+
+class SurfelPairs {
+ public:
+  // Begins with other pieces, none of which belongs to a surfel yet. They are to outlive the
+  // evaluations.
+  void Assign(const std::vector<Surfel>& pieces);
+  // Finds the surfel of each piece that could belong to another one than it did at the pose of the
+  // call before. The map must not change between Assign() and the last of these calls.
+  void Associate(const SurfelStore& map, const PairGates& gates, const Pose2& map_from_base);
+  PairEvaluation Evaluate(const PairGates& gates, const Pose2& map_from_base);
+
+ private:
+  static constexpr std::size_t kLanes = 4;
+  using Lanes = std::array<double, kLanes>;
+  // Pieces side by side, so that they are evaluated together. One that belongs to no surfel has no
+  // information.
+  struct Block {
+    Lanes x_m{}, y_m{};                // the pieces, base axes
+    Lanes at_x_m{}, at_y_m{};          // where they were in the map when associated
+    Lanes firm_m2{};                   // they may move so far from there, squared
+    Lanes surfel_x_m{}, surfel_y_m{};  // their surfels, map axes
+    Lanes normal_x{}, normal_y{};
+    Lanes information{};  // of the offset between both
+    Lanes per_sigma{};    // its square root
+    Lanes normal_variance{};
+  };
+  void AssociateOne(const SurfelStore& map, const PairGates& gates, const Motion2& motion,
+                    std::size_t piece);
+
+  const std::vector<Surfel>* pieces_ = nullptr;
+  std::vector<Block> blocks_;
+  bool associated_ = false;
+  double associated_yaw_rad_ = 0.0;
+};
+
+}  // namespace depthgrid
