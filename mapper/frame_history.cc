@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mapper/core/error.h"
+#include "mapper/core/growth.h"
 
 namespace depthgrid {
 namespace {
@@ -22,7 +23,9 @@ void FrameHistory::Start(const Frame& frame) {
   if (place != position_of_index_.end() && place->first == frame.index) {
     throw InputError("frame " + std::to_string(frame.index), "was given before");
   }
-  position_of_index_.insert(place, {frame.index, records_.size()});
+  GrowGently(records_);
+  GrowGently(position_of_index_);
+  position_of_index_.insert(PlaceOf(frame.index), {frame.index, records_.size()});
   FrameRecord record;
   record.index = frame.index;
   record.stamp_s = frame.stamp_s;

@@ -3,16 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "mapper/adjustment_rounds.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
-#include "mapper/frame_history.h"
-#include "mapper/fuse/correction_filter.h"
-#include "mapper/graph/loop_search.h"
-#include "mapper/grid/map_drawing.h"
-#include "mapper/loop_closing.h"
-#include "mapper/reference_factory.h"
-#include "mapper/scan/frame_scans.h"
+#include "mapper/mapper_state.h"
 
 namespace depthgrid {
 namespace {
@@ -29,64 +22,6 @@ constexpr double kLongestExtrapolationS = 0.5;
 const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 
 }  // namespace
-
-struct IncrementalMapper::State {
-  MapperOptions options;
-  CpuClock clock;
-  GainOracle oracle;
-  MatchOracle match_oracle;
-  FrameScanner scanner;
-  std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
-  FrameHistory history;
-  CorrectionFilter filter;
-  std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
-  LoopCloser loop_closer;
-  std::optional<LoopSearch> loop_search;
-  AdjustmentRounds rounds;
-  ScanArchive matched_scans;
-  ScanArchive obstacle_scans;
-  std::vector<MappedFrame> mapped;
-  bool has_prior = false;
-  bool fixed_map = false;            // of a prior map that is only localised in
-  std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
-
-  State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
-        GainOracle orc)
-      : options(opts),
-        clock(std::move(clk)),
-        oracle(std::move(orc)),
-        scanner(camera, opts.scan),
-        filter(opts.fusion),
-        loop_closer(opts.loops),
-        rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
-                                                    : RoundOptions{.first_frames = 0}) {
-    if (options.fusion.TrustsSlamAlone()) return;
-    reference = MakeReference(options);
-    if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
-  }
-
-  FrameReport Begin(const Frame& frame);
-  FrameScans ScansOf(const Frame& frame, FrameReport& report);
-  void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
-  void AdjustBetweenFrames();
-  void FindLoops(const FrameScans& scans, FrameReport& report);
-  void MoveTo(const std::vector<Pose2>& map_from_base);
-  Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
-  void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
-             FrameReport& report);
-  FusedPose Fuse(const Prediction& prediction, FrameReport& report);
-  void Insert(const FrameScans& scans, const FusedPose& fused, FrameReport& report);
-
-  bool SameEpoch() const;
-  Pose2 CarriedOn() const;
-  Pose2 Extrapolated() const;
-  void Anchor(const Pose2& map_from_base);
-  MappedFrame AsMapped(const FrameScans& scans, const Pose2& map_from_base);
-  void FinishByAdjusting(MapperResult& result) const;
-  void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
-                      MapperResult& result) const;
-  OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
-};
 
 IncrementalMapper::IncrementalMapper(const MapperOptions& options,
                                      const std::optional<PinholeCamera>& camera, CpuClock clock,
@@ -105,19 +40,19 @@ void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
 
 void IncrementalMapper::StartFrom(PriorMap prior) {
   Require(state_->history.records().empty(), "a prior map comes before the first frame");
-  state_->mapped = std::move(prior.frames);
-  for (std::size_t i = 0; i < state_->mapped.size(); ++i) {
-    MappedFrame& frame = state_->mapped[i];
+  for (std::size_t i = 0; i < prior.frames.size(); ++i) {
+    MappedFrame& frame = prior.frames[i];
     Require(frame.frame < 0, "frames of a prior map have numbers below 0");
     // Its poses are all that is known of how it moved.
     if (i > 0) {
-      frame.slam_motion = Between(state_->mapped[i - 1].map_from_base, frame.map_from_base);
+      frame.slam_motion = Between(prior.frames[i - 1].map_from_base, frame.map_from_base);
     }
     if (state_->reference) {
       state_->reference->Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
                                 Eigen::Matrix3d::Zero());
     }
   }
+  state_->mapped.StartFrom(std::move(prior.frames));
   state_->has_prior = true;
   state_->fixed_map = prior.fixed;
   state_->prior_start = prior.map_from_slam;
@@ -165,26 +100,29 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const StageTimer timer(clock, report.times.loops_us);
   if (!reference || mapped.empty() || mapped.back().frame < 0) return;
   if (frame.loops.empty()) {
-    if (rounds.IsDue(static_cast<int>(mapped.size()))) AdjustBetweenFrames();
+    if (rounds.IsDue(mapped.size())) AdjustBetweenFrames();
     return;
   }
-  std::vector<MappedFrame> frames = mapped;
+  std::vector<MappedFrame> frames = mapped.all();
   const bool provisional = scans.matched && frame.slam_from_camera;
   if (provisional) {
-    frames.push_back(AsMapped(scans, SameEpoch() ? CarriedOn() : Extrapolated()));
+    frames.push_back(mapped.WithScans(AsMapped(SameEpoch() ? CarriedOn() : Extrapolated()), scans));
   }
-  const LoopCloser::Outcome outcome =
+  LoopCloser::Outcome outcome =
       loop_closer.Close(frame.loops, history, frames, provisional, *reference);
   report.loops_accepted = outcome.accepted;
   report.loops_rejected = outcome.rejected;
   if (!outcome.adjusted) return;
+  const Pose2 newest = outcome.map_from_base.back();
+  outcome.map_from_base.resize(mapped.all().size());
   MoveTo(outcome.map_from_base);
-  if (provisional) Anchor(outcome.map_from_base.back());
+  if (provisional) Anchor(newest);
 }
 
 // Poses and map corrected together while the run goes on.
 void IncrementalMapper::State::AdjustBetweenFrames() {
-  const Adjustment adjustment = loop_closer.AdjustAll(mapped, *reference, AdjustEffort::kRefine);
+  const Adjustment adjustment =
+      loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kRefine);
   MoveTo(adjustment.map_from_base);
   if (adjustment.motion_spread) filter.BoundMotion(*adjustment.motion_spread);
 }
@@ -192,10 +130,10 @@ void IncrementalMapper::State::AdjustBetweenFrames() {
 // Those that the mapper finds itself. The frame's online estimate stays as it was given.
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
-  if (!loop_search || !report.inserted) return;
-  const std::vector<PlanarLoop> found = loop_search->Find(mapped, scans.matched, *reference);
+  if (!loop_search || !(report.inserted || report.well_seen)) return;
+  const std::vector<PlanarLoop> found = loop_search->Find(mapped.all(), scans.matched, *reference);
   if (found.empty()) return;
-  const LoopCloser::Outcome outcome = loop_closer.Add(found, mapped, *reference);
+  const LoopCloser::Outcome outcome = loop_closer.Add(found, mapped.all(), *reference);
   report.loops_accepted += outcome.accepted;
   report.loops_rejected += outcome.rejected;
   loop_search->Forget();
@@ -204,8 +142,8 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
 
 // The newest pose is the newest mapped frame's.
 void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base) {
-  for (std::size_t i = 0; i < mapped.size(); ++i) mapped[i].map_from_base = map_from_base[i];
-  reference->Rebuild(mapped);
+  mapped.MoveTo(map_from_base);
+  reference->Rebuild(mapped.all());
   const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
 }
@@ -279,12 +217,20 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& 
                                       FrameReport& report) {
   const StageTimer timer(clock, report.times.insert_us);
   if (!scans.matched || fixed_map) return;
-  MappedFrame frame = AsMapped(scans, fused.map_from_base);
+  MappedFrame frame = AsMapped(fused.map_from_base);
   frame.match = report.match;
-  history.newest().mapped = static_cast<int>(mapped.size());
-  mapped.push_back(std::move(frame));
-  if (reference) reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
-  report.inserted = true;
+  history.newest().mapped = mapped.size();
+  // Where nothing is matched nothing can speak against a place.
+  const double explained = reference ? (report.match.found ? report.match.score : 0.0) : 1.0;
+  const MappedFrame& added = mapped.Add(std::move(frame), scans, explained);
+  report.inserted = added.kept();
+  report.well_seen = !added.kept();
+  if (!reference) return;
+  if (added.kept()) {
+    reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
+  } else {
+    reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);
+  }
 }
 
 bool IncrementalMapper::State::SameEpoch() const {
@@ -321,15 +267,11 @@ void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
   filter_epoch = record.epoch;
 }
 
-MappedFrame IncrementalMapper::State::AsMapped(const FrameScans& scans,
-                                               const Pose2& map_from_base) {
+MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const {
   const FrameRecord& record = history.newest();
   MappedFrame frame;
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
-  frame.scan = matched_scans.Keep(*scans.matched);
-  frame.obstacles =
-      scans.obstacles == scans.matched ? frame.scan : obstacle_scans.Keep(*scans.obstacles);
   frame.map_from_base = map_from_base;
   if (!mapped.empty() && mapped.back().frame >= 0) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
@@ -340,57 +282,5 @@ MappedFrame IncrementalMapper::State::AsMapped(const FrameScans& scans,
   }
   return frame;
 }
-
-OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
-  MapDrawing drawing(options.grid);
-  for (const MappedFrame& frame : frames) drawing.Add(*frame.obstacles, frame.map_from_base);
-  return drawing.Map();
-}
-
-MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
-  const std::vector<FrameRecord>& records = state_->history.records();
-  Require(slam_final.empty() || slam_final.size() == records.size(),
-          "SLAM's final trajectory has one entry a frame");
-  MapperResult result;
-  result.mapped = state_->mapped;
-  if (state_->fixed_map || (state_->has_prior && !state_->reference)) {
-    std::vector<Pose2> map_from_base;
-    for (const MappedFrame& frame : result.mapped) map_from_base.push_back(frame.map_from_base);
-    result.map_from_camera = FinalPoses(state_->history, map_from_base);
-  } else if (state_->reference) {
-    state_->FinishByAdjusting(result);
-  } else {
-    state_->FinishWithSlam(slam_final, result);
-  }
-  result.map = state_->Draw(result.mapped);
-  return result;
-}
-
-void IncrementalMapper::State::FinishByAdjusting(MapperResult& result) const {
-  const Adjustment adjustment =
-      loop_closer.AdjustAll(result.mapped, *reference, AdjustEffort::kFinish);
-  for (std::size_t i = 0; i < result.mapped.size(); ++i) {
-    result.mapped[i].map_from_base = adjustment.map_from_base[i];
-  }
-  for (std::size_t i = 0; i < loop_closer.loops().size(); ++i) {
-    if (adjustment.loop_accepted[i]) result.loops.push_back(loop_closer.loops()[i]);
-  }
-  result.map_from_camera = FinalPoses(history, adjustment.map_from_base);
-}
-
-void IncrementalMapper::State::FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final,
-                                              MapperResult& result) const {
-  for (std::size_t i = 0; i < history.records().size(); ++i) {
-    const FrameRecord& record = history.records()[i];
-    const bool corrected = i < slam_final.size() && slam_final[i].has_value();
-    result.map_from_camera.push_back(corrected ? slam_final[i] : record.slam_from_camera);
-    if (record.mapped >= 0) {
-      result.mapped[static_cast<std::size_t>(record.mapped)].map_from_base =
-          BaseOf(*result.map_from_camera.back());
-    }
-  }
-}
-
-OccupancyMap IncrementalMapper::CurrentMap() const { return state_->Draw(state_->mapped); }
 
 }  // namespace depthgrid

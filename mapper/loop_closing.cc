@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mapper/mapped_frames.h"
+
 namespace depthgrid {
 
 void LoopOptions::Visit(OptionsVisitor& v) {
@@ -27,8 +29,10 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
   const int newest_mapped = newest_is_last ? static_cast<int>(frames.size()) - 1 : -1;
   const std::size_t known = loops_.size();
   for (const LoopClosure& event : events) {
-    const std::optional<PlanarLoop> loop = ProjectLoop(event, history, newest_mapped);
+    std::optional<PlanarLoop> loop = ProjectLoop(event, history, newest_mapped);
     if (!loop) continue;
+    loop = BetweenKept(*loop, frames);
+    if (loop->first == loop->second) continue;
     if (options_.verify && !Agrees(OverlapOf(frames, *loop, options_.overlap), options_.overlap)) {
       continue;
     }
@@ -50,7 +54,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
                                     const std::vector<MappedFrame>& frames,
                                     ReferenceMap& reference) {
   const std::vector<PlanarLoop> known = loops_;
-  loops_.insert(loops_.end(), found.begin(), found.end());
+  for (const PlanarLoop& loop : found) loops_.push_back(BetweenKept(loop, frames));
   const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];

@@ -14,6 +14,7 @@ void MapperOptions::Visit(OptionsVisitor& v) {
   v.Group("graph", graph, "paper: how loops are closed (Eq. 5-6)");
   v.Group("surfel", surfel, "surfel: the map of surfels and its joint adjustment");
   v.Group("rounds", rounds, "surfel: when poses and map are adjusted during the run");
+  v.Group("keep", keep, "whose scans are kept for the final map");
 }
 
 }  // namespace depthgrid

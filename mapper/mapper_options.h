@@ -10,6 +10,7 @@
 #include "mapper/loop_closing.h"
 #include "mapper/match/scan_matcher.h"
 #include "mapper/scan/scan_options.h"
+#include "mapper/scan_keeping.h"
 #include "mapper/surfel/surfel_map.h"
 
 namespace depthgrid {
@@ -29,6 +30,7 @@ struct MapperOptions {
   GraphOptions graph;
   SurfelOptions surfel;
   RoundOptions rounds;
+  KeepOptions keep;
 
   // Method surfel takes what it finds well; the paper's chain is as the paper has it.
   bool SearchesLoops() const {

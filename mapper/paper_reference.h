@@ -18,6 +18,11 @@ class PaperReference : public ReferenceMap {
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
+  // Submaps hold the newest scans, wherever these are.
+  void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                  int) override {
+    Insert(scan, map_from_base, Eigen::Matrix3d::Zero());
+  }
   double ShareSeenBefore(const std::shared_ptr<const Scan>&, const Pose2&, int) override {
     return 0.0;
   }

@@ -16,12 +16,17 @@ namespace depthgrid {
 struct MappedFrame {
   int frame = 0;  // Frame::index
   double stamp_s = 0.0;
+  // Where a place is well seen already, the position of the kept frame this one moves with; -1: its
+  // own scans are kept. A tied frame soon loses them.
+  int tied_to = -1;
   KeptScan scan;       // what is matched
   KeptScan obstacles;  // what the map is drawn from; often the same
   Pose2 map_from_base;
   // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
   std::optional<Pose2> slam_motion;
   MatchResult match;
+
+  bool kept() const { return tied_to < 0; }
 };
 
 // A loop between two mapped frames, already projected to the plane.
@@ -60,6 +65,9 @@ class ReferenceMap {
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                       const Eigen::Matrix3d& covariance) = 0;
+  // A frame that only moves with the kept one at this position: its place is well seen.
+  virtual void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                          int tied_to) = 0;
   // The share of a scan at a pose that lies on what was inserted before the frame at this position;
   // 0 where that is not known.
   virtual double ShareSeenBefore(const std::shared_ptr<const Scan>& scan,

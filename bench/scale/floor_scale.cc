@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <string>
 
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
@@ -117,11 +118,23 @@ double Median(std::vector<double> values) {
 struct Settings {
   bool surfel = true;
   bool finish = true;
+  KeepOptions keep;
 };
+
+// The most that was ever resident.
+double PeakMib() {
+  std::ifstream file("/proc/self/status");
+  for (std::string word; file >> word;) {
+    double kib = 0.0;
+    if (word == "VmHWM:" && file >> kib) return kib / 1024.0;
+  }
+  return 0.0;
+}
 
 void Walk(double floor_m, int frames, const Settings& settings) {
   MapperOptions options;
   options.method = settings.surfel ? MapperMethod::kSurfel : MapperMethod::kPaper;
+  options.keep = settings.keep;
   if (settings.surfel) options.fusion.mode = FusionMode::kLearned;
   const int rooms = static_cast<int>(std::lround(floor_m / kRoomM));
   const double before_mib = ResidentMib();
@@ -179,8 +192,9 @@ void Walk(double floor_m, int frames, const Settings& settings) {
       const PackedScan packed = frame.scan.packed();
       scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
     }
-    std::printf(" %7.0f | %7.3f | %6.0f |", finish_us / frames, final_error_m / frames,
-                scan_bytes / frames);
+    const auto kept = static_cast<double>(result.mapped.size());
+    std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f |", finish_us / frames,
+                final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib);
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -199,14 +213,18 @@ int main(int argc, char** argv) {
   app.add_option("--frames", frames, "of each");
   app.add_flag("--paper", paper, "the paper's chain");
   app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
+  app.add_option("--keep-first", settings.keep.first_frames, "mapper.keep.first_frames");
+  app.add_option("--per-place", settings.keep.scans_per_place, "mapper.keep.scans_per_place");
   CLI11_PARSE(app, argc, argv);
   settings.surfel = !paper;
   settings.finish = !no_finish;
   std::printf(
       "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
       "error m |%s\n",
-      settings.finish ? " finish us/frame | final error m | bytes/scan |" : "");
-  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n", settings.finish ? "--:|--:|--:|" : "");
+      settings.finish ? " finish us/frame | final error m | scans kept | bytes/scan | peak MiB |"
+                      : "");
+  std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n",
+              settings.finish ? "--:|--:|--:|--:|--:|" : "");
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
     depthgrid::Walk(floors[i], frames[i], settings);
   }

@@ -147,9 +147,10 @@ void KeepMap(const std::string& from, const OutputFolder& folder) {
 }
 
 void SayResult(const MappingRun& run, bool localised) {
-  int posed = 0;
+  int posed = 0, well_seen = 0;
   for (const FrameReport& report : run.reports) {
     posed += report.slam_from_camera ? 1 : 0;
+    well_seen += report.well_seen ? 1 : 0;
   }
   const auto& mapped = run.result.mapped;
   const auto added =
@@ -157,7 +158,8 @@ void SayResult(const MappingRun& run, bool localised) {
   if (localised) {
     fmt::print("placed {} of {} frames", posed, run.reports.size());
   } else {
-    fmt::print("mapped {} of {} frames", added, run.reports.size());
+    fmt::print("mapped {} of {} frames", added + well_seen, run.reports.size());
+    if (well_seen > 0) fmt::print(", the scans of {} kept", added);
   }
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
     fmt::print(", {} without a pose", lost);

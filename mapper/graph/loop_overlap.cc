@@ -33,6 +33,7 @@ Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
     const int index = middle + step * options.stride;
     if (index < 0 || index >= static_cast<int>(frames.size())) continue;
     const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
+    if (!frame.scan) continue;
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
     const Scan scan = *frame.scan;
     grid.Insert(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/growth.h"
+
 namespace depthgrid {
 namespace {
 
@@ -69,7 +71,9 @@ void LoopSearch::Walk(const std::vector<MappedFrame>& frames) {
         i == 0 ? 0.0
                : way_m_.back() +
                      Between(PoseAt(frames, i - 1), PoseAt(frames, i)).translation().norm();
+    GrowGently(way_m_);
     way_m_.push_back(way_m);
+    if (!frames[static_cast<std::size_t>(i)].kept()) continue;
     if (keyframes_.empty() ||
         way_m - way_m_[static_cast<std::size_t>(keyframes_.back())] >= options_.every_m) {
       keyframes_.push_back(i);

@@ -33,7 +33,7 @@ class LoopSearch {
   LoopSearchOptions options_;
   PlaceMatcher matcher_;
   std::vector<double> way_m_;   // to each mapped frame
-  std::vector<int> keyframes_;  // mapped frames `every_m` apart
+  std::vector<int> keyframes_;  // kept frames `every_m` apart
   double next_search_m_ = 0.0;
   std::optional<PlanarLoop> waiting_;  // for another that consents
 };

@@ -42,10 +42,18 @@ std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle
                               const PlaceOptions& options) {
   const int first = FarthestFrame(frames, middle, -1, options);
   const int last = FarthestFrame(frames, middle, 1, options);
-  const int count = std::min(options.max_scans, last - first + 1);
+  std::vector<int> with_scan;
+  for (int i = first; i <= last; ++i) {
+    if (frames[static_cast<std::size_t>(i)].scan) with_scan.push_back(i);
+  }
+  const int most = static_cast<int>(with_scan.size());
+  const int count = std::min(options.max_scans, most);
+  if (count == 1) {
+    return {frames[static_cast<std::size_t>(middle)].scan ? middle : with_scan[0]};
+  }
   std::vector<int> members;
   for (int k = 0; k < count; ++k) {
-    members.push_back(count == 1 ? middle : first + (last - first) * k / (count - 1));
+    members.push_back(with_scan[static_cast<std::size_t>((most - 1) * k / (count - 1))]);
   }
   return members;
 }

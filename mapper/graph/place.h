@@ -20,7 +20,7 @@ struct PlaceOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// Positions among the mapped frames, in order of time.
+// Positions among the mapped frames, in order of time. Frames whose scan was not kept do not count.
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options);
 

@@ -68,6 +68,7 @@ std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFram
   const PlaceOptions& place = options_.place;
   const std::vector<int> first_members = FramesAround(frames, first, place);
   const std::vector<int> second_members = FramesAround(frames, second, place);
+  if (first_members.empty() || second_members.empty()) return std::nullopt;
   const WallPyramid walls(DrawPlace(frames, first_members, first, place.resolution_m));
   const std::vector<Eigen::Vector2d> points =
       PointsOfPlace(frames, second_members, second, place.resolution_m);

@@ -73,14 +73,26 @@ bool Step(PoseMatrix& h, const Eigen::VectorXd& g, std::vector<Pose2>& map_from_
   return true;
 }
 
+// What ties groups to earlier ones than the one before.
+std::vector<GroupLink> TiesOf(const Problem& problem) {
+  std::vector<GroupLink> ties;
+  for (const GroupMotion& motion : problem.motions) {
+    if (motion.tie) ties.push_back(*motion.tie);
+  }
+  return ties;
+}
+
 // Bends the chain of groups as the loops want it, without looking at surfels.
 void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
                 std::vector<Pose2>& map_from_group) {
   std::vector<GroupLink> links = loops;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
     const int second = static_cast<int>(g);
-    links.push_back(
-        {second - 1, second, Between(map_from_group[g - 1], map_from_group[g]), kOnlineSigma, 0.0});
+    const std::optional<GroupLink>& tie = problem.motions[g].tie;
+    const int first = tie ? tie->first : second - 1;
+    links.push_back({first, second,
+                     Between(map_from_group[static_cast<std::size_t>(first)], map_from_group[g]),
+                     kOnlineSigma, 0.0});
   }
   for (int i = 0; i < kLoopIterations; ++i) {
     const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), links));
@@ -134,7 +146,9 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const AssociationGate gate{0.6 * options.landmark_m, gate_m,
                              std::cos(RadFromDeg(options.max_angle_deg))};
   const Landmarks landmarks(problem.groups, map_from_group, gate);
-  std::vector<int> first = ChainEnvelope(problem.groups.size(), loops);
+  std::vector<GroupLink> links = TiesOf(problem);
+  links.insert(links.end(), loops.begin(), loops.end());
+  std::vector<int> first = ChainEnvelope(problem.groups.size(), links);
   landmarks.ExtendEnvelope(first);
   const auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
@@ -143,7 +157,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   for (const GroupLink& link : MotionLinks(problem, motion_sigma)) {
     AddLink(link, map_from_group, *h, g);
   }
-  for (const GroupLink& loop : loops) AddLink(loop, map_from_group, *h, g);
+  for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
   return Step(*h, g, map_from_group);
 }
 

@@ -1,6 +1,7 @@
 // Poses and surfels corrected together (docs/math.md, "Joint adjustment").
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mapper/core/options.h"
@@ -40,6 +41,9 @@ struct GroupMotion {
   bool known = false;
   Pose2 before_from_group;
   int frames = 0;
+  // The frame before the group's first was tied to an earlier group: where it was matched there,
+  // and the motion from it.
+  std::optional<GroupLink> tie = {};
 };
 
 struct JointResult {

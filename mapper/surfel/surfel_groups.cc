@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mapper/core/error.h"
+#include "mapper/core/growth.h"
 
 namespace depthgrid {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 constexpr double kGateM = 0.02;
 constexpr double kGateSigmas = 3.0;
 constexpr double kMaxAngleDeg = 40.0;
+// Over more tied frames than this, a second, the online estimate does not join two to millimetres.
+constexpr std::size_t kLongestGapFrames = 30;
 
 }  // namespace
 
@@ -27,9 +30,9 @@ bool SurfelGroups::Ends(const Pose2& group_from_base) const {
          std::abs(group_from_base.yaw_rad) > RadFromDeg(options_.turn_deg);
 }
 
-void SurfelGroups::Begin(const Pose2& map_from_group) {
+void SurfelGroups::Begin(int first_frame, const Pose2& map_from_group) {
   SurfelGroup group;
-  group.first_frame = static_cast<int>(places_.size());
+  group.first_frame = first_frame;
   group.map_from_group = map_from_group;
   groups_.push_back(group);
   newest_.Clear();
@@ -46,12 +49,15 @@ void SurfelGroups::Collect(const std::vector<Surfel>& surfels, const Pose2& grou
 }
 
 void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base) {
-  if (groups_.empty() || Ends(Between(groups_.back().map_from_group, map_from_base))) {
-    Begin(map_from_base);
+  if (groups_.empty() || places_.size() - last_added_ > kLongestGapFrames ||
+      Ends(Between(groups_.back().map_from_group, map_from_base))) {
+    Begin(static_cast<int>(places_.size()), map_from_base);
   }
+  last_added_ = places_.size();
   SurfelGroup& group = groups_.back();
   ++group.frames;
   const Pose2 group_from_base = Between(group.map_from_group, map_from_base);
+  GrowGently(places_);
   places_.push_back({static_cast<int>(groups_.size()) - 1, group_from_base});
   Collect(pieces, group_from_base);
   // Room for the frames to come, as neighbouring groups are alike; not a little more each frame.
@@ -63,27 +69,36 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
   group.surfels = newest_.surfels();
 }
 
+void SurfelGroups::AddTied(int tied_to, const Pose2& map_from_base) {
+  const int group = places_[static_cast<std::size_t>(tied_to)].group;
+  const Pose2& map_from_group = groups_[static_cast<std::size_t>(group)].map_from_group;
+  GrowGently(places_);
+  places_.push_back({group, Between(map_from_group, map_from_base)});
+}
+
 SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) const {
   SurfelGroupOptions wider = options_;
   wider.length_m *= factor;
   wider.turn_deg *= factor;
   SurfelGroups joined(wider);
-  std::size_t frame = 0;
+  std::vector<GroupPlace> place_of_group;  // in the joined groups
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const SurfelGroup& group = groups_[g];
     if (g == 0 || apart[g] ||
         joined.Ends(Between(joined.groups_.back().map_from_group, group.map_from_group))) {
-      joined.Begin(group.map_from_group);
+      joined.Begin(group.first_frame, group.map_from_group);
     }
     SurfelGroup& into = joined.groups_.back();
     const Pose2 into_from_group = Between(into.map_from_group, group.map_from_group);
-    for (int i = 0; i < group.frames; ++i, ++frame) {
-      joined.places_.push_back({static_cast<int>(joined.groups_.size()) - 1,
-                                into_from_group * places_[frame].group_from_base});
-    }
+    place_of_group.push_back({static_cast<int>(joined.groups_.size()) - 1, into_from_group});
     into.frames += group.frames;
     joined.Collect(group.surfels, into_from_group);
     into.surfels = joined.newest_.surfels();
+  }
+  joined.places_.reserve(places_.size());
+  for (const GroupPlace& place : places_) {
+    const GroupPlace& group = place_of_group[static_cast<std::size_t>(place.group)];
+    joined.places_.push_back({group.group, group.group_from_base * place.group_from_base});
   }
   return joined;
 }

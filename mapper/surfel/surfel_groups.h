@@ -23,8 +23,8 @@ struct SurfelGroupOptions {
 };
 
 struct SurfelGroup {
-  int first_frame = 0;  // index into the mapped frames
-  int frames = 0;
+  int first_frame = 0;          // index into the mapped frames
+  int frames = 0;               // that are kept
   Pose2 map_from_group;         // the group's axes are those of its first frame
   std::vector<Surfel> surfels;  // in them
 };
@@ -39,8 +39,10 @@ class SurfelGroups {
  public:
   explicit SurfelGroups(const SurfelGroupOptions& options) : options_(options) {}
 
-  // The next frame.
+  // The next frame; it belongs to the newest group.
   void Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base);
+  // The next frame, which moves with an earlier one and adds nothing to what its group saw.
+  void AddTied(int tied_to, const Pose2& map_from_base);
   const std::vector<SurfelGroup>& groups() const { return groups_; }
   const std::vector<GroupPlace>& places() const { return places_; }  // one a frame
   // Corrected poses, one a frame. What the groups saw does not change.
@@ -51,7 +53,7 @@ class SurfelGroups {
 
  private:
   bool Ends(const Pose2& group_from_base) const;
-  void Begin(const Pose2& map_from_group);
+  void Begin(int first_frame, const Pose2& map_from_group);
   // More surfels of the newest group.
   void Collect(const std::vector<Surfel>& surfels, const Pose2& group_from_surfels);
   SurfelGroups JoinedBy(int factor, const std::vector<bool>& apart) const;
@@ -59,7 +61,8 @@ class SurfelGroups {
   SurfelGroupOptions options_;
   std::vector<SurfelGroup> groups_;
   std::vector<GroupPlace> places_;
-  SurfelStore newest_;  // the surfels of the last group, found by place
+  std::size_t last_added_ = 0;  // the newest frame that is not tied
+  SurfelStore newest_;          // the surfels of the last group, found by place
 };
 
 }  // namespace depthgrid

@@ -5,14 +5,33 @@
 #include <utility>
 
 #include "mapper/core/error.h"
+#include "mapper/core/growth.h"
 #include "mapper/surfel/frame_smoother.h"
 
 namespace depthgrid {
 namespace {
 
+// A tied frame's pose is as good as its match, but neither better than this nor worse: m, m, rad.
+const Eigen::Vector3d kLeastTieSigma(0.005, 0.005, 0.003);
+const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
+// Matches against the same noisy map are worth less than they say (docs/math.md, "Fusion").
+constexpr double kTieOverconfidence = 4.0;
+constexpr double kTieHuberSigmas = 2.0;
+
+// From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
+GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
+  const Eigen::Matrix3d ridge =
+      kMostTieSigma.cwiseProduct(kMostTieSigma).cwiseInverse().asDiagonal();
+  Eigen::Matrix3d information = ridge;
+  if (match.found) information += match.information / kTieOverconfidence;
+  const Eigen::Vector3d sigma = information.inverse().diagonal().cwiseSqrt();
+  return {tied.group, group, tied.group_from_base * motion, sigma.cwiseMax(kLeastTieSigma),
+          kTieHuberSigmas};
+}
+
 // SLAM's motion from each group to the next, from those of the frames between.
-std::vector<GroupMotion> MotionsOf(const std::vector<SurfelGroup>& groups,
-                                   const std::vector<MappedFrame>& frames) {
+std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
+  const std::vector<SurfelGroup>& groups = of.groups();
   std::vector<GroupMotion> motions(groups.size());
   for (std::size_t g = 1; g < groups.size(); ++g) {
     GroupMotion& motion = motions[g];
@@ -23,16 +42,24 @@ std::vector<GroupMotion> MotionsOf(const std::vector<SurfelGroup>& groups,
       motion.known = motion.known && step;
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
+    const auto first = static_cast<std::size_t>(groups[g].first_frame);
+    const MappedFrame& before = frames[first - 1];
+    if (!before.kept() && frames[first].slam_motion) {
+      motion.tie = TieOf(of.places()[first - 1], before.match, *frames[first].slam_motion,
+                         static_cast<int>(g));
+    }
   }
   return motions;
 }
 
-// Whether SLAM jumped, or began anew, between each group and the one before.
-std::vector<bool> JumpsBefore(const std::vector<SurfelGroup>& groups,
-                              const std::vector<MappedFrame>& frames) {
-  std::vector<bool> jumps;
-  for (const GroupMotion& motion : MotionsOf(groups, frames)) jumps.push_back(!motion.known);
-  return jumps;
+// Whether SLAM jumped, or began anew, between each group and the one before, or frames between were
+// not kept.
+std::vector<bool> GapsBefore(const SurfelGroups& groups, const std::vector<MappedFrame>& frames) {
+  std::vector<bool> gaps;
+  for (const GroupMotion& motion : MotionsOf(groups, frames)) {
+    gaps.push_back(!motion.known || motion.tie);
+  }
+  return gaps;
 }
 
 // The loop between two frames as one between their groups.
@@ -109,9 +136,18 @@ void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                        const Eigen::Matrix3d&) {
   const std::vector<Surfel>& pieces = PiecesOf(scan);
+  GrowGently(surfels_before_);
   surfels_before_.push_back(map_.size());
   InsertInto(map_, pieces, map_from_base);
   groups_.Add(pieces, map_from_base);
+}
+
+// The map stays as it is: over hours even a perfect match would carry it along.
+void SurfelMap::InsertTied(const std::shared_ptr<const Scan>&, const Pose2& map_from_base,
+                           int tied_to) {
+  GrowGently(surfels_before_);
+  surfels_before_.push_back(map_.size());
+  groups_.AddTied(tied_to, map_from_base);
 }
 
 double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
@@ -137,11 +173,11 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
   }
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
-  groups = groups.Joined(JumpsBefore(groups.groups(), frames));
+  groups = groups.Joined(GapsBefore(groups, frames));
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
-  const JointResult result = AdjustJointly(groups.groups(), MotionsOf(groups.groups(), frames),
-                                           links, JointOptionsFor(effort));
+  const JointResult result =
+      AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, JointOptionsFor(effort));
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
   const auto group_count = static_cast<int>(groups.groups().size());
@@ -167,7 +203,8 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
   return joint;
 }
 
-// Each frame against the adjusted map, then all of them with SLAM's motion.
+// Each frame against the adjusted map, then all of them with SLAM's motion. Tied ones have their
+// match of the time, moved with the frame they are tied to.
 std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
                                            const SurfelGroups& groups,
                                            const std::vector<Pose2>& map_from_group) {
@@ -179,9 +216,14 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
   const std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
   std::vector<SmootherFrame> smoother;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
-    smoother.push_back(
-        {poses[i], matcher_.Match(pieces, map, {poses[i], covariance}), frames[i].slam_motion});
+    MatchResult match = frames[i].match;
+    if (frames[i].kept()) {
+      const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
+      match = matcher_.Match(pieces, map, {poses[i], covariance});
+    } else {
+      match.map_from_base = poses[i] * Between(frames[i].map_from_base, match.map_from_base);
+    }
+    smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
   return Smoothed(smoother, NoiseOf(smoother));
 }
@@ -191,12 +233,17 @@ void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {
   for (const MappedFrame& frame : frames) map_from_base.push_back(frame.map_from_base);
   groups_.MoveTo(map_from_base);
   map_.Clear();
-  surfels_before_.clear();
+  std::size_t frame = 0;
+  int before = 0;
+  const auto inserted_until = [&](int end) {
+    for (; frame < static_cast<std::size_t>(end); ++frame) surfels_before_[frame] = before;
+  };
   for (const SurfelGroup& group : groups_.groups()) {
-    surfels_before_.insert(surfels_before_.end(), static_cast<std::size_t>(group.frames),
-                           map_.size());
+    inserted_until(group.first_frame);
+    before = map_.size();
     InsertInto(map_, group.surfels, group.map_from_group);
   }
+  inserted_until(static_cast<int>(surfels_before_.size()));
 }
 
 }  // namespace depthgrid

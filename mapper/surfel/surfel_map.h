@@ -35,6 +35,8 @@ class SurfelMap : public ReferenceMap {
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
+  void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
+                  int tied_to) override;
   double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                          int frame) override;
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,

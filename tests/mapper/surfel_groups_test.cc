@@ -59,5 +59,33 @@ TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
   EXPECT_EQ(joined.groups()[2].first_frame, 4);
 }
 
+// Frames 3 to 5 see what frame 0 saw and move with its group.
+TEST(SurfelGroups, TiedFramesMoveWithTheirGroup) {
+  SurfelGroupOptions options;
+  options.length_m = 0.08;
+  options.most = 2;
+  SurfelGroups groups(options);
+  for (int i = 0; i < 3; ++i) groups.Add(WallFrom(0.1 * i), {0.1 * i, 0.0, 0.0});
+  for (int i = 3; i < 6; ++i) groups.AddTied(0, {0.01 * i, 0.0, 0.0});
+  groups.Add(WallFrom(0.6), {0.6, 0.0, 0.0});
+  ASSERT_EQ(groups.groups().size(), 4U);
+  EXPECT_EQ(groups.groups()[3].first_frame, 6);
+  EXPECT_EQ(groups.places()[4].group, 0);
+  std::vector<Pose2> moved;
+  for (const GroupPlace& place : groups.places()) {
+    moved.push_back(Pose2{0.0, 0.1, 0.0} *
+                    groups.groups()[static_cast<std::size_t>(place.group)].map_from_group *
+                    place.group_from_base);
+  }
+  groups.MoveTo(moved);
+  EXPECT_NEAR(groups.groups()[0].map_from_group.y_m, 0.1, 1e-12);
+  EXPECT_NEAR(groups.places()[4].group_from_base.x_m, 0.04, 1e-12);
+  const SurfelGroups joined = groups.Joined({false, false, false, true});
+  ASSERT_EQ(joined.groups().size(), 2U);
+  EXPECT_EQ(joined.places()[5].group, 0);
+  EXPECT_EQ(joined.places()[6].group, 1);
+  EXPECT_EQ(joined.groups()[1].first_frame, 6);
+}
+
 }  // namespace
 }  // namespace depthgrid

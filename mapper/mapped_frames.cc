@@ -1,0 +1,115 @@
+#include "mapper/mapped_frames.h"
+
+#include <utility>
+
+#include "mapper/core/error.h"
+#include "mapper/core/growth.h"
+
+namespace depthgrid {
+
+MappedFrames::MappedFrames(const KeepOptions& options, int recent_frames)
+    : options_(options),
+      recent_frames_(static_cast<std::size_t>(recent_frames)),
+      keeping_(options) {}
+
+void MappedFrames::Archive::Keep(const FrameScans& scans, MappedFrame& frame) {
+  frame.scan = matched.Keep(*scans.matched);
+  frame.obstacles =
+      scans.obstacles == scans.matched ? frame.scan : obstacles.Keep(*scans.obstacles);
+}
+
+void MappedFrames::StartFrom(std::vector<MappedFrame> prior) {
+  Require(frames_.empty(), "a prior map comes before the first frame");
+  frames_ = std::move(prior);
+  keeping_.Rebuild(frames_);
+}
+
+MappedFrame MappedFrames::WithScans(MappedFrame frame, const FrameScans& scans) {
+  recent_.Keep(scans, frame);
+  return frame;
+}
+
+const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans, double explained) {
+  const std::optional<int> tie =
+      keeping_.TieOf(frames_, frame.map_from_base, explained >= options_.min_explained);
+  frame.tied_to = tie.value_or(-1);
+  if (frame.kept()) {
+    kept_.Keep(scans, frame);
+    keeping_.Add(size(), frame.map_from_base);
+  } else {
+    recent_.Keep(scans, frame);
+  }
+  GrowGently(frames_);
+  frames_.push_back(std::move(frame));
+  if (frames_.size() > recent_frames_) {
+    MappedFrame& old = frames_[frames_.size() - 1 - recent_frames_];
+    if (!old.kept()) old.scan = old.obstacles = {};
+  }
+  return frames_.back();
+}
+
+void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
+  Require(map_from_base.size() == frames_.size(), "one corrected pose a frame");
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    MappedFrame& frame = frames_[i];
+    if (!frame.kept()) {
+      frame.match.map_from_base =
+          map_from_base[i] * Between(frame.map_from_base, frame.match.map_from_base);
+    }
+    frame.map_from_base = map_from_base[i];
+  }
+  keeping_.Rebuild(frames_);
+}
+
+std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
+                                    const std::vector<Pose2>& map_from_base) {
+  std::vector<MappedFrame> kept;
+  std::optional<Pose2> skipped = Pose2{};  // SLAM's motion since the last kept one
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::optional<Pose2>& step = frames[i].slam_motion;
+    if (!frames[i].kept()) {
+      skipped = skipped && step ? std::optional(*skipped * *step) : std::nullopt;
+      continue;
+    }
+    MappedFrame frame = frames[i];
+    frame.map_from_base = map_from_base[i];
+    if (i > 0 && !frames[i - 1].kept()) {
+      frame.slam_motion = skipped && step ? std::optional(*skipped * *step) : std::nullopt;
+    }
+    skipped = Pose2{};
+    kept.push_back(std::move(frame));
+  }
+  return kept;
+}
+
+PlanarLoop BetweenKept(const PlanarLoop& loop, const std::vector<MappedFrame>& frames) {
+  const auto at = [&](int i) -> const MappedFrame& { return frames[static_cast<std::size_t>(i)]; };
+  PlanarLoop moved = loop;
+  if (const MappedFrame& first = at(loop.first); !first.kept()) {
+    moved.first = first.tied_to;
+    moved.first_from_second =
+        Between(at(first.tied_to).map_from_base, first.map_from_base) * moved.first_from_second;
+  }
+  if (const MappedFrame& second = at(loop.second); !second.kept()) {
+    moved.second = second.tied_to;
+    moved.first_from_second =
+        moved.first_from_second * Between(second.map_from_base, at(second.tied_to).map_from_base);
+  }
+  return moved;
+}
+
+std::vector<PlanarLoop> AmongKept(std::vector<PlanarLoop> loops,
+                                  const std::vector<MappedFrame>& frames) {
+  std::vector<int> position(frames.size(), -1);
+  int kept = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].kept()) position[i] = kept++;
+  }
+  for (PlanarLoop& loop : loops) {
+    loop.first = position[static_cast<std::size_t>(loop.first)];
+    loop.second = position[static_cast<std::size_t>(loop.second)];
+  }
+  return loops;
+}
+
+}  // namespace depthgrid

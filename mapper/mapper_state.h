@@ -1,0 +1,81 @@
+// What the mapper is made of, and its steps. Only for its own files.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "mapper/adjustment_rounds.h"
+#include "mapper/frame_history.h"
+#include "mapper/fuse/correction_filter.h"
+#include "mapper/graph/loop_search.h"
+#include "mapper/incremental_mapper.h"
+#include "mapper/loop_closing.h"
+#include "mapper/mapped_frames.h"
+#include "mapper/reference_factory.h"
+#include "mapper/scan/frame_scans.h"
+
+namespace depthgrid {
+
+// Their scans are there whether kept or not: where the newest ones lie is searched for (3 m of
+// way), and loops are tested by them.
+constexpr int kRecentFrames = 400;
+
+struct IncrementalMapper::State {
+  MapperOptions options;
+  CpuClock clock;
+  GainOracle oracle;
+  MatchOracle match_oracle;
+  FrameScanner scanner;
+  std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
+  FrameHistory history;
+  CorrectionFilter filter;
+  std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
+  LoopCloser loop_closer;
+  std::optional<LoopSearch> loop_search;
+  AdjustmentRounds rounds;
+  MappedFrames mapped;
+  bool has_prior = false;
+  bool fixed_map = false;            // of a prior map that is only localised in
+  std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
+
+  State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
+        GainOracle orc)
+      : options(opts),
+        clock(std::move(clk)),
+        oracle(std::move(orc)),
+        scanner(camera, opts.scan),
+        filter(opts.fusion),
+        loop_closer(opts.loops),
+        rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
+                                                    : RoundOptions{.first_frames = 0}),
+        mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)) {
+    if (options.fusion.TrustsSlamAlone()) return;
+    reference = MakeReference(options);
+    if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
+  }
+
+  FrameReport Begin(const Frame& frame);
+  FrameScans ScansOf(const Frame& frame, FrameReport& report);
+  void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
+  void AdjustBetweenFrames();
+  void FindLoops(const FrameScans& scans, FrameReport& report);
+  void MoveTo(const std::vector<Pose2>& map_from_base);
+  Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
+  void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
+             FrameReport& report);
+  FusedPose Fuse(const Prediction& prediction, FrameReport& report);
+  void Insert(const FrameScans& scans, const FusedPose& fused, FrameReport& report);
+
+  bool SameEpoch() const;
+  Pose2 CarriedOn() const;
+  Pose2 Extrapolated() const;
+  void Anchor(const Pose2& map_from_base);
+  MappedFrame AsMapped(const Pose2& map_from_base) const;
+  std::vector<Pose2> FinishByAdjusting(MapperResult& result) const;
+  // Poses of the mapped frames are overwritten by SLAM's own.
+  void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final, MapperResult& result,
+                      std::vector<Pose2>& map_from_base) const;
+  OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
+};
+
+}  // namespace depthgrid
