@@ -14,45 +14,31 @@
 // After the above.
 #include <hwy/cache_control.h>
 
+#include "mapper/scan/bearing_tile-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::internal {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::CappedTag<float, kBlockBearings>;
-using Ints = hn::RebindToSigned<Floats>;
-using Vec = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-// Linear in the row.
-struct SlopeBound {
-  float at_0 = 0.0F, per_row = 0.0F;
-  float At(int row) const { return at_0 + per_row * static_cast<float>(row); }
-  float LeastOf(const RowRange& rows) const { return std::min(At(rows.first), At(rows.last)); }
-  float MostOf(const RowRange& rows) const { return std::max(At(rows.first), At(rows.last)); }
-};
-
-// No ray of a vector's lanes rises less or more a depth, rounding included.
-struct SlopeBounds {
-  SlopeBound lowest, highest;
-};
-
 // Between two rows the smallest of linear functions is nowhere below its chord, the largest nowhere
 // above.
-SlopeBounds BoundSlopes(const BearingBlock& block, std::size_t lane) {
+struct ChordBounds {
+  LinearBound least, most;
+};
+ChordBounds BoundLinear(const BearingBlock& block, const float* at_0, const float* per_row) {
   const Floats d;
-  const Vec g0 = hn::Load(d, &block.g0[lane]), g1 = hn::Load(d, &block.g1[lane]);
+  const Vec f0 = hn::Load(d, at_0), f1 = hn::Load(d, per_row);
   const auto first = static_cast<float>(block.rows.first);
   const auto last = static_cast<float>(block.rows.last);
-  const Vec at_first = hn::Add(g0, hn::Mul(g1, hn::Set(d, first)));
-  const Vec at_last = hn::Add(g0, hn::Mul(g1, hn::Set(d, last)));
+  const Vec at_first = hn::Add(f0, hn::Mul(f1, hn::Set(d, first)));
+  const Vec at_last = hn::Add(f0, hn::Mul(f1, hn::Set(d, last)));
   // Of sums and products in single precision, here and of each sample: 2^-24 each.
   constexpr float kRounding = 2e-6F;
-  const Vec size = hn::Add(hn::Abs(g0), hn::Mul(hn::Abs(g1), hn::Set(d, last)));
+  const Vec size = hn::Add(hn::Abs(f0), hn::Mul(hn::Abs(f1), hn::Set(d, last)));
   const float spare = kRounding * hn::GetLane(hn::MaxOfLanes(d, size));
   const auto chord = [&](float from, float to) {
-    const float per_row = (to - from) / std::max(last - first, 1.0F);
-    return SlopeBound{from - per_row * first, per_row};
+    const float slope = (to - from) / std::max(last - first, 1.0F);
+    return LinearBound{from - slope * first, slope};
   };
   return {chord(hn::GetLane(hn::MinOfLanes(d, at_first)) - spare,
                 hn::GetLane(hn::MinOfLanes(d, at_last)) - spare),
@@ -60,47 +46,10 @@ SlopeBounds BoundSlopes(const BearingBlock& block, std::size_t lane) {
                 hn::GetLane(hn::MaxOfLanes(d, at_last)) + spare)};
 }
 
-// The lanes of one vector and a group of rows.
-struct Tile {
-  const DepthImage& image;
-  const ReturnLimits& limits;
-  const SliceBand& slice;
-  const BearingBlock& block;
-  std::size_t lane;  // the first, in the block
-  RowRange rows;
-  // First of the pixels that any sample is made of, and how many side by side; 0 when not known.
-  int start = 0;
-  int columns = 0;
-
-  std::size_t RowCount() const { return static_cast<std::size_t>(rows.last - rows.first + 1); }
-  // Where samples and groups of the tile lie in the block.
-  std::size_t AtRow() const {
-    return static_cast<std::size_t>(rows.first - block.rows.first) * kBlockBearings + lane;
-  }
-  std::size_t AtGroup() const {
-    const auto row = static_cast<std::size_t>(rows.first - block.rows.first);
-    return row / kGroupRows * kBlockBearings + lane;
-  }
-};
-
-// Columns are monotonic in the row, and in the bearing while all rays look ahead: the corners bound
-// them. Two vectors from `start` on are in the image.
-void FindColumns(Tile& tile) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  const BearingBlock& block = tile.block;
-  const int max_start = tile.image.width_px - static_cast<int>(2 * lanes);
-  if (!block.all_ahead || max_start < 0) return;
-  float least = LastColumn(tile.image.width_px), most = 0.0F;
-  for (const std::size_t lane : {tile.lane, tile.lane + lanes - 1}) {
-    for (const int v : {tile.rows.first, tile.rows.last}) {
-      const float u = block.u0[lane] + block.u1[lane] * static_cast<float>(v);
-      least = std::min(least, u);
-      most = std::max(most, u);
-    }
-  }
-  const int last = static_cast<int>(std::min(most, LastColumn(tile.image.width_px))) + 1;
-  tile.start = std::min(static_cast<int>(std::max(least, 0.0F)), max_start);
-  tile.columns = std::max(last - tile.start + 1, static_cast<int>(lanes));
+VectorBounds BoundsOf(const BearingBlock& block, std::size_t lane) {
+  const ChordBounds height = BoundLinear(block, &block.g0[lane], &block.g1[lane]);
+  const ChordBounds range = BoundLinear(block, &block.h0[lane], &block.h1[lane]);
+  return {height.least, height.most, range.least};
 }
 
 // Of all pixels that any sample of a tile is made of, and so of the samples.
@@ -109,45 +58,30 @@ struct DepthRange {
   float most = std::numeric_limits<float>::infinity();
 };
 
-DepthRange SurveyDepth(const Tile& tile) {
+DepthRange DepthOf(const Tile& tile, const std::vector<float>& survey) {
   if (tile.columns == 0) return {};
   const Floats d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const std::ptrdiff_t width = tile.image.width_px;
-  // The next group; the processor does not foresee steps of a whole image row.
-  const bool has_next = tile.rows.last + static_cast<int>(kGroupRows) < tile.image.height_px;
-  const std::ptrdiff_t ahead = has_next ? static_cast<std::ptrdiff_t>(kGroupRows) * width : 0;
-  Vec least = hn::Set(d, kUnusable), most = hn::Zero(d);
-  for (int at = 0; at < tile.columns; at += lanes) {
-    const float* HWY_RESTRICT pixels =
-        tile.image.Row(tile.rows.first) + tile.start + std::min(at, tile.columns - lanes);
-    for (std::size_t r = 0; r < tile.RowCount(); ++r, pixels += width) {
-      if (at == 0) hwy::Prefetch(pixels + ahead);
-      const Vec z = hn::LoadU(d, pixels);
-      least = hn::Min(least, z);
-      most = hn::Max(most, z);
-    }
+  const float* HWY_RESTRICT columns = survey.data() + tile.start;
+  const float* HWY_RESTRICT greatest = columns + tile.bands->image.width_px;
+  Vec least = hn::LoadU(d, columns), most = hn::LoadU(d, greatest);
+  for (int at = lanes; at < tile.columns; at += lanes) {
+    const int from = std::min(at, tile.columns - lanes);
+    least = hn::Min(least, hn::LoadU(d, columns + from));
+    most = hn::Max(most, hn::LoadU(d, greatest + from));
   }
   return {hn::GetLane(hn::MinOfLanes(d, least)), hn::GetLane(hn::MaxOfLanes(d, most))};
 }
 
-// What a tile holds.
-enum class Content : std::uint8_t {
-  kAnything,
-  kNoSlice,  // nothing in the slice
-  kInBand,   // ... and all usable and in the band
-  kSurface,  // ... and of one surface
-  kPassing,  // ... and all usable and outside the band
-};
-
-Content ContentOf(const Tile& tile, const SlopeBounds& slopes, const DepthRange& depth) {
-  const ReturnLimits& limits = tile.limits;
+Content ContentOf(const Tile& tile, const VectorBounds& bounds, const DepthRange& depth) {
+  const ReturnLimits& limits = tile.bands->limits;
   const float near = std::max(depth.least, limits.min_depth_m);  // of what is usable
-  const float low = slopes.lowest.LeastOf(tile.rows), high = slopes.highest.MostOf(tile.rows);
+  const float low = bounds.lowest.LeastOf(tile.rows), high = bounds.highest.MostOf(tile.rows);
   const float bottom = std::min(near * low, depth.most * low);
   const float top = std::max(near * high, depth.most * high);
   const auto outside = [&](float from_m, float to_m) { return top < from_m || bottom > to_m; };
-  if (!tile.block.AreShared(tile.rows) || !outside(tile.slice.low_m, tile.slice.high_m))
+  if (!tile.block->AreShared(tile.rows) ||
+      !outside(tile.bands->slice.low_m, tile.bands->slice.high_m))
     return Content::kAnything;
   if (depth.least < limits.min_depth_m) return Content::kNoSlice;
   if (outside(limits.low_m, limits.high_m)) return Content::kPassing;
@@ -158,149 +92,46 @@ Content ContentOf(const Tile& tile, const SlopeBounds& slopes, const DepthRange&
   return surface ? Content::kSurface : Content::kInBand;
 }
 
-// How the two pixels around each lane's column are fetched.
-enum class Fetch {
-  kTwoVectors,  // from two vectors of neighbouring pixels
-  kGather,      // from anywhere
-};
-
-struct Pixels {
-  Vec z0, z1;
-};
-
-// Of two vectors laid side by side, the lanes `index`.
-HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
-#if HWY_TARGET <= HWY_AVX3
-  if constexpr (hn::MaxLanes(Floats()) == 16) {
-    return Vec{_mm512_permutex2var_ps(left.raw, index.raw, right.raw)};
-  }
-#endif
-  const Ints di;
-  const auto lanes = hn::Set(di, static_cast<int>(hn::Lanes(d)));
-  const auto within = hn::IndicesFromVec(d, hn::And(index, hn::Sub(lanes, hn::Set(di, 1))));
-  return hn::IfThenElse(hn::RebindMask(d, hn::Lt(index, lanes)), hn::TableLookupLanes(left, within),
-                        hn::TableLookupLanes(right, within));
-}
-
-// A whole number below 2^23 as an integer: its bits after adding 2^23, less those of 2^23.
-HWY_INLINE hn::Vec<Ints> ToInt(Floats d, Vec whole) {
-  constexpr float kTwoTo23 = 8388608.0F;
-  constexpr int kBits = 0x4B000000;
-  const Ints di;
-  return hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits));
-}
-
-// `column` are whole numbers from `start` on.
-template <Fetch kFetch>
-HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start, Vec column) {
-  const Ints di;
-  if constexpr (kFetch == Fetch::kGather) {
-    const auto index = hn::ConvertTo(di, column);
-    return {hn::GatherIndex(d, row, index), hn::GatherIndex(d, row + 1, index)};
-  } else {
-    const auto index = hn::Sub(ToInt(d, column), hn::Set(di, start));
-    const Vec left = hn::LoadU(d, row + start), right = hn::LoadU(d, row + start + hn::Lanes(d));
-    return {LookUp(d, left, right, index), LookUp(d, left, right, hn::Add(index, hn::Set(di, 1)))};
-  }
-}
-
-// DepthBetween of bearing_returns.h.
-template <bool kOneSurface>
-HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
-  const auto [z0, z1] = pixels;
-  const Vec difference = hn::Sub(z1, z0);
-  const Vec between = hn::Add(z0, hn::Mul(share, difference));
-  if constexpr (kOneSurface) return between;
-  const Vec tolerance = hn::Mul(hn::Set(d, kSameSurfaceShare), hn::Min(z0, z1));
-  const Mask same_surface = hn::Le(hn::Abs(difference), tolerance);
-  if (HWY_LIKELY(hn::AllTrue(d, same_surface))) return between;
-  const Vec nearer = hn::IfThenElse(hn::Lt(share, hn::Set(d, 0.5F)), z0, z1);
-  const Vec apart = hn::IfThenElse(hn::Gt(nearer, hn::Zero(d)), nearer, hn::Max(z0, z1));
-  return hn::IfThenElse(same_surface, between, apart);
-}
-
-// The samples of a tile that holds `kContent`.
-template <Fetch kFetch, Content kContent>
-HWY_NOINLINE void SampleTile(const Tile& tile, const SampleRows& out) {
-  constexpr bool kSlice = kContent == Content::kAnything;
-  constexpr bool kMixed = kContent == Content::kAnything || kContent == Content::kNoSlice;
-  const Floats d;
-  const BearingBlock& block = tile.block;
-  const std::size_t i = tile.lane;
-  const Vec u0 = hn::Load(d, &block.u0[i]), u1 = hn::Load(d, &block.u1[i]);
-  const Vec h0 = hn::Load(d, &block.h0[i]), h1 = hn::Load(d, &block.h1[i]);
-  const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
-  const Vec first = hn::Load(d, &block.first[i]), last = hn::Load(d, &block.last[i]);
-  const Vec min_depth = hn::Set(d, tile.limits.min_depth_m);
-  const Vec low = hn::Set(d, tile.limits.low_m), high = hn::Set(d, tile.limits.high_m);
-  const Vec slice_low = hn::Set(d, tile.slice.low_m), slice_high = hn::Set(d, tile.slice.high_m);
-  const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
-  const Vec max_column = hn::Set(d, LastColumn(tile.image.width_px));
-  Vec nearest = unusable, slice_nearest = passing;
-  Vec row = hn::Set(d, static_cast<float>(tile.rows.first));
-  const float* HWY_RESTRICT pixels = tile.image.Row(tile.rows.first);
-  float* HWY_RESTRICT samples = out.band.samples + tile.AtRow();
-  float* HWY_RESTRICT slice = kSlice ? out.slice.samples + tile.AtRow() : nullptr;
-  for (std::size_t r = 0; r < tile.RowCount(); ++r) {
-    const Vec u = hn::Min(hn::Max(hn::Add(u0, hn::Mul(u1, row)), hn::Zero(d)), max_column);
-    const Vec column = hn::Floor(u);
-    const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column);
-    const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, hn::Sub(u, column));
-    const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
-    Vec sample = range;
-    if constexpr (kMixed) {
-      const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
-      const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
-      Mask usable = hn::Ge(z, min_depth);
-      if constexpr (kSlice) {
-        usable = hn::And(usable, hn::And(hn::Ge(row, first), hn::Le(row, last)));
-        const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
-        const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
-        hn::Store(level_sample, d, slice);
-        slice_nearest = hn::Min(slice_nearest, level_sample);
-        slice += kBlockBearings;
-      }
-      sample = hn::IfThenElse(usable, hn::IfThenElse(marks, range, passing), unusable);
+// Widths of the noise window by range. Whether what is skipped was far enough is seen afterwards.
+class SkipRule {
+ public:
+  SkipRule(const NoiseWindow& window, float max_range_m) : max_range_m_(max_range_m) {
+    for (std::size_t k = 0; k < kSteps; ++k) {
+      width_m_[k] = window.At(kStepM * static_cast<float>(k + 1));
     }
-    hn::Store(sample, d, samples);
-    nearest = hn::Min(nearest, sample);
-    row = hn::Add(row, hn::Set(d, 1.0F));
-    pixels += tile.image.width_px;
-    samples += kBlockBearings;
   }
-  hn::Store(nearest, d, out.band.nearest + tile.AtGroup());
-  hn::Store(slice_nearest, d, out.slice.nearest + tile.AtGroup());
-}
+  // From where on samples do not matter once each lane has one as near as this: the second mean
+  // looks half a window beyond the first.
+  float From(float nearest_m) const {
+    if (!(nearest_m < max_range_m_)) return max_range_m_;
+    const auto step = static_cast<std::size_t>(nearest_m / kStepM);
+    return std::min(nearest_m + 1.5F * width_m_[std::min(step, kSteps - 1)], max_range_m_);
+  }
 
-template <Fetch kFetch>
-void SampleTileAs(Content content, const Tile& tile, const SampleRows& out) {
-  const Floats d;
-  switch (content) {
-    case Content::kAnything:
-      return SampleTile<kFetch, Content::kAnything>(tile, out);
-    case Content::kNoSlice:
-      return SampleTile<kFetch, Content::kNoSlice>(tile, out);
-    case Content::kInBand:
-      return SampleTile<kFetch, Content::kInBand>(tile, out);
-    case Content::kSurface:
-      return SampleTile<kFetch, Content::kSurface>(tile, out);
-    case Content::kPassing:  // nobody reads its samples
-      hn::Store(hn::Set(d, kPassing), d, out.band.nearest + tile.AtGroup());
-      hn::Store(hn::Set(d, kPassing), d, out.slice.nearest + tile.AtGroup());
-  }
-}
+ private:
+  static constexpr std::size_t kSteps = 32;
+  static constexpr float kStepM = 0.25F;
+  std::array<float, kSteps> width_m_{};
+  float max_range_m_;
+};
 
-void SampleOneTile(Tile& tile, const SlopeBounds& slopes, const SampleRows& out) {
+void SampleOneTile(const Tile& tile, const std::vector<float>& survey, const SkipRule& rule,
+                   const VectorBounds& bounds, BlockSamples& out) {
   const Floats d;
-  FindColumns(tile);
-  const DepthRange depth = SurveyDepth(tile);
-  hn::Store(hn::Set(d, depth.least), d, out.band.least_depth + tile.AtGroup());
-  const Content content = ContentOf(tile, slopes, depth);
-  if (tile.columns > 0 && tile.columns <= static_cast<int>(2 * hn::Lanes(d))) {
-    SampleTileAs<Fetch::kTwoVectors>(content, tile, out);
-  } else {
-    SampleTileAs<Fetch::kGather>(content, tile, out);
+  const DepthRange depth = DepthOf(tile, survey);
+  hn::Store(hn::Set(d, depth.least), d, out.band.samples.least_depth + tile.AtGroup());
+  const Content content = ContentOf(tile, bounds, depth);
+  if (content == Content::kPassing) return SampleAs(content, tile, out);
+  if (content != Content::kAnything && depth.least >= tile.bands->limits.min_depth_m) {
+    const float from_m = depth.least * bounds.shortest.LeastOf(tile.rows);
+    const Vec nearest = hn::Load(d, &out.band.nearest[tile.lane]);
+    if (from_m > rule.From(hn::GetLane(hn::MaxOfLanes(d, nearest)))) {
+      float* const skipped_from = &out.band.skipped_from[tile.lane];
+      hn::Store(hn::Min(hn::Load(d, skipped_from), hn::Set(d, from_m)), d, skipped_from);
+      return StoreNearest(tile, hn::Set(d, kSkipped), hn::Set(d, kPassing), out);
+    }
   }
+  SampleAs(content, tile, out);
 }
 
 void SmallestOfGroups(const float* HWY_RESTRICT groups, std::size_t count, BlockLane& smallest) {
@@ -314,22 +145,87 @@ void SmallestOfGroups(const float* HWY_RESTRICT groups, std::size_t count, Block
   }
 }
 
-void SampleAll(const DepthImage& image, const ReturnLimits& limits, const SliceBand& slice,
-               const BearingBlock& block, const SampleRows& out, BlockSamples& found) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  std::array<SlopeBounds, kBlockBearings> slopes;
-  for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
-    slopes[lane / lanes] = BoundSlopes(block, lane);
+RowRange RowsOfGroup(const ReturnLimits& limits, std::size_t group) {
+  const int from = limits.first_row + static_cast<int>(group * kGroupRows);
+  return {from, std::min(from + static_cast<int>(kGroupRows) - 1, limits.last_row)};
+}
+
+// Some columns of the next group, a few with each tile: the processor does not foresee steps of a
+// whole row, and takes no more than a dozen at once.
+void FetchAhead(const float* pixels, int columns, int width) {
+  constexpr int kLineFloats = 16;
+  for (int at = 0; at < columns; at += kLineFloats) {
+    const float* to = pixels + at;
+    for (std::size_t r = 0; r < kGroupRows; ++r, to += width) hwy::Prefetch(to);
   }
-  for (std::size_t group = 0; group < block.GroupCount(); ++group) {
+}
+
+void SampleGroup(const ImageBands& bands, const SkipRule& rule, std::size_t group,
+                 std::span<const BearingBlock> blocks, std::vector<float>& survey,
+                 std::span<BlockSamples> found) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  std::array<Tile, kStripeBlocks * kBlockBearings / hn::MaxLanes(Floats())> tiles;
+  std::size_t count = 0;
+  int first = bands.image.width_px, end = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const BearingBlock& block = blocks[b];
+    if (group < block.first_group || group - block.first_group >= block.GroupCount()) continue;
+    const RowRange rows = block.RowsOfGroup(group - block.first_group);
     for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
-      Tile tile{image, limits, slice, block, lane, block.RowsOfGroup(group)};
-      SampleOneTile(tile, slopes[lane / lanes], out);
+      Tile& tile = tiles[count++];
+      tile = {&bands, &block, b, lane, rows};
+      FindColumns(tile);
+      if (tile.columns == 0) continue;
+      first = std::min(first, tile.start);
+      end = std::max(end, tile.start + tile.columns);
     }
   }
-  SmallestOfGroups(out.band.least_depth, block.GroupCount(), found.least_depth);
-  SmallestOfGroups(out.band.nearest, block.GroupCount(), found.nearest);
-  SmallestOfGroups(out.slice.nearest, block.GroupCount(), found.slice_nearest);
+  SurveyColumns(bands.image, RowsOfGroup(bands.limits, group), first, end, survey);
+  const float* above =
+      group > 0 ? bands.image.Row(RowsOfGroup(bands.limits, group - 1).first) : nullptr;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (above != nullptr) {
+      const auto part = [&](std::size_t k) {
+        return first + static_cast<int>(k) * (end - first) / static_cast<int>(count);
+      };
+      FetchAhead(above + part(i), part(i + 1) - part(i), bands.image.width_px);
+    }
+    BlockSamples& out = found[tiles[i].of];
+    SampleOneTile(tiles[i], survey, rule, out.bounds[tiles[i].lane / lanes], out);
+  }
+}
+
+void SampleAll(const ImageBands& bands, const NoiseWindow& window,
+               std::span<const BearingBlock> blocks, std::vector<float>& survey,
+               std::span<BlockSamples> found) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  const std::size_t vectors = kBlockBearings / lanes;
+  const SkipRule rule(window, bands.limits.max_range_m);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (std::size_t k = 0; k < vectors; ++k) {
+      found[b].bounds[k] = BoundsOf(blocks[b], k * lanes);
+    }
+  }
+  const auto rows = static_cast<std::size_t>(bands.limits.last_row - bands.limits.first_row + 1);
+  for (std::size_t group = (rows + kGroupRows - 1) / kGroupRows; group-- > 0;) {
+    SampleGroup(bands, rule, group, blocks, survey, found);
+  }
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    SmallestOfGroups(found[b].band.samples.least_depth, blocks[b].GroupCount(),
+                     found[b].least_depth);
+  }
+}
+
+void SampleRest(const ImageBands& bands, const BearingBlock& block, BlockSamples& found) {
+  const Floats d;
+  for (std::size_t group = 0; group < block.GroupCount(); ++group) {
+    for (std::size_t lane = 0; lane < kBlockBearings; lane += hn::Lanes(d)) {
+      Tile tile{&bands, &block, 0, lane, block.RowsOfGroup(group)};
+      if (found.band.samples.nearest[tile.AtGroup()] != kSkipped) continue;
+      FindColumns(tile);
+      SampleAs(Content::kNoSlice, tile, found);
+    }
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -340,13 +236,23 @@ HWY_AFTER_NAMESPACE();
 namespace depthgrid::internal {
 
 HWY_EXPORT(SampleAll);
+HWY_EXPORT(SampleRest);
 
-BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
-                         const SliceBand& slice, const BearingBlock& block,
-                         const SampleRows& rows) {
-  BlockSamples found;
-  HWY_DYNAMIC_DISPATCH(SampleAll)(image, limits, slice, block, rows, found);
-  return found;
+void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
+                  std::span<const BearingBlock> blocks, std::vector<float>& survey,
+                  std::span<BlockSamples> found) {
+  for (BlockSamples& block : found) {
+    block.band.nearest.fill(kUnusable);
+    block.slice.nearest.fill(kPassing);
+    block.band.skipped_from.fill(std::numeric_limits<float>::infinity());
+    block.slice.skipped_from.fill(std::numeric_limits<float>::infinity());
+  }
+  HWY_DYNAMIC_DISPATCH(SampleAll)(bands, window, blocks, survey, found);
+}
+
+void SampleSkipped(const ImageBands& bands, const BearingBlock& block, BlockSamples& found) {
+  HWY_DYNAMIC_DISPATCH(SampleRest)(bands, block, found);
+  found.band.skipped_from.fill(std::numeric_limits<float>::infinity());
 }
 
 }  // namespace depthgrid::internal

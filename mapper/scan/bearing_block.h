@@ -6,26 +6,31 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "mapper/scan/bearing_returns.h"
 
 namespace depthgrid::internal {
 
-// Bearings a block: their pixels are a few cache lines of each image row, so that the image is read
-// once, and their samples (120 kB for 480 rows) stay in the second-level cache.
+// Bearings that are laid out together.
 constexpr std::size_t kBlockBearings = 64;
+// Blocks that are sampled together: 128 columns of the image are lines of memory enough for the
+// processor to foresee the next ones, and their samples stay in the second-level cache.
+constexpr std::size_t kStripeBlocks = 2;
 
 struct alignas(64) BlockLane : std::array<float, kBlockBearings> {};
 
-// The smallest sample is kept of so many rows: whoever looks for near ones passes over the others.
+// Rows are sampled in groups of so many, the same for all blocks. The smallest sample of each is
+// kept: whoever looks for near ones passes over the others.
 constexpr std::size_t kGroupRows = 16;
 
 struct BearingBlock {
-  std::size_t bearings = 0;  // lanes after these repeat the last one
-  RowRange rows;             // in which any lane takes part, and those before in the first group
-  RowRange shared_rows;      // in which all of them do
-  bool all_ahead = true;     // no ray of these rows points backwards
+  std::size_t bearings = 0;     // lanes after these repeat the last one
+  RowRange rows;                // in which any lane takes part, and those before in the first group
+  std::size_t first_group = 0;  // of the image's, the one that begins at rows.first
+  RowRange shared_rows;         // in which all of them do
+  bool all_ahead = true;        // no ray of these rows points backwards
   BlockLane u0, u1, h0, h1, g0, g1;
   BlockLane first, last;  // rows of each lane
 
@@ -57,21 +62,57 @@ struct BandSamples {
   float* least_depth = nullptr;
 };
 
-// `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range.
-struct SampleRows {
-  BandSamples band;
-  BandSamples slice;
+// Stands for the smallest of a group that was too far away to be sampled.
+constexpr float kSkipped = 1.5e9F;
+static_assert(kSkipped > kPassing && kSkipped < kUnusable);
+
+// Linear in the row.
+struct LinearBound {
+  float at_0 = 0.0F, per_row = 0.0F;
+  float At(int row) const { return at_0 + per_row * static_cast<float>(row); }
+  float LeastOf(const RowRange& rows) const { return std::min(At(rows.first), At(rows.last)); }
+  float MostOf(const RowRange& rows) const { return std::max(At(rows.first), At(rows.last)); }
+};
+
+// Of the lanes of one vector. No ray of theirs rises less or more a depth, or comes less far,
+// rounding included.
+struct VectorBounds {
+  LinearBound lowest, highest, shortest;
 };
 
 // Of each lane.
-struct BlockSamples {
-  BlockLane nearest;        // smallest sample
-  BlockLane slice_nearest;  // smallest of the slice
-  BlockLane least_depth;    // of its groups
+struct BandFound {
+  BandSamples samples;
+  BlockLane nearest;       // smallest sample
+  BlockLane skipped_from;  // groups that were skipped hold no smaller range
 };
 
-BlockSamples SampleBlock(const DepthImage& image, const ReturnLimits& limits,
-                         const SliceBand& slice, const BearingBlock& block, const SampleRows& rows);
+// `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range.
+struct BlockSamples {
+  BandFound band, slice;
+  BlockLane least_depth;                            // of its groups
+  std::array<VectorBounds, kBlockBearings> bounds;  // of its vectors, however wide
+};
+
+struct ImageBands {
+  const DepthImage& image;
+  const ReturnLimits& limits;
+  SliceBand slice;
+};
+
+// Samples blocks group by group from the lowest rows up, where the nearest things are seen, and
+// skips what lies so far behind them that it hardly matters. `found` has room for each block;
+// `survey` is memory.
+void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
+                  std::span<const BearingBlock> blocks, std::vector<float>& survey,
+                  std::span<BlockSamples> found);
+// Samples what was skipped of a block after all.
+void SampleSkipped(const ImageBands& bands, const BearingBlock& block, BlockSamples& found);
+
+// Least and, after those of all columns, greatest depth in some rows of the columns from `first` up
+// to `end`.
+void SurveyColumns(const DepthImage& image, const RowRange& rows, int first, int end,
+                   std::vector<float>& survey);
 
 // Mean of the samples in [low, high] of each lane, high below kPassing; `otherwise` where there is
 // none. `count`: their number.

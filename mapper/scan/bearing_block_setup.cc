@@ -28,6 +28,10 @@ BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t
     block.rows.first = std::min(block.rows.first, rows.first);
     block.rows.last = std::max(block.rows.last, rows.last);
   }
+  if (block.RowCount() > 0) {
+    block.first_group = static_cast<std::size_t>(block.rows.first - limits.first_row) / kGroupRows;
+    block.rows.first = limits.first_row + static_cast<int>(block.first_group * kGroupRows);
+  }
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     for (const int v : {block.rows.first, block.rows.last}) {
       block.all_ahead = block.all_ahead && block.h0[i] + block.h1[i] * static_cast<float>(v) > 0.0F;

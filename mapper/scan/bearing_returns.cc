@@ -1,6 +1,7 @@
 #include "mapper/scan/bearing_returns.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <new>
@@ -11,26 +12,29 @@
 namespace depthgrid {
 namespace {
 
+using internal::BandFound;
 using internal::BandSamples;
 using internal::BearingBlock;
 using internal::BlockLane;
 using internal::BlockMean;
 using internal::BlockSamples;
 using internal::BlockViews;
+using internal::ImageBands;
 using internal::kBlockBearings;
 using internal::kGroupRows;
-using internal::SampleRows;
+using internal::kSkipped;
 
 using Lanes = ReturnsMemory::Lanes;
 constexpr std::size_t kLanesPerRow = sizeof(BlockLane) / sizeof(Lanes);
 
+std::size_t LanesOf(const BearingBlock& block) {
+  return (block.RowCount() + 2 * block.GroupCount()) * kLanesPerRow;
+}
+
 // Room for the samples and the smallest ones of a block.
-BandSamples RoomFor(const BearingBlock& block, std::vector<Lanes>& lanes) {
-  const std::size_t rows = block.RowCount();
-  const std::size_t needed = (rows + 2 * block.GroupCount()) * kLanesPerRow;
-  if (needed > lanes.size()) lanes.resize(needed);
-  float* const samples = lanes.data()->lane;
-  float* const nearest = samples + rows * kBlockBearings;
+BandSamples RoomAt(const BearingBlock& block, Lanes* lanes) {
+  float* const samples = lanes->lane;
+  float* const nearest = samples + block.RowCount() * kBlockBearings;
   return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
 
@@ -59,34 +63,41 @@ RowRange RangeOf(float first, float last) {
 RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, to) : RowRange{}; }
 
 // FindNearest for a block. Lanes whose smallest sample is not supported by others (a stray pixel)
-// are done one by one.
-void FindNearestOfBlock(const BearingBlock& block, const BandSamples& band,
-                        const BlockLane& nearest, const ReturnLimits& limits,
-                        const NoiseWindow& window, ReturnsMemory& memory, BearingReturns* returns) {
+// are done one by one. False when what was skipped could matter.
+bool FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
+                        const ReturnLimits& limits, const NoiseWindow& window,
+                        ReturnsMemory& memory, BearingReturns* returns) {
   const std::size_t rows = block.RowCount();
+  const BandSamples& band = found.samples;
+  const BlockLane& nearest = found.nearest;
   BlockLane width, high;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     width[i] = window.At(nearest[i]);
     high[i] = std::min(nearest[i] + width[i], limits.max_range_m);
   }
   const BlockMean first = internal::MeanUpTo(band, rows, high, nearest);
-  BlockLane low;
+  BlockLane low, farthest = high;
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
     const float half_m = 0.5F * width[i];
     low[i] = first.mean[i] - half_m;
     high[i] = std::min(first.mean[i] + half_m, limits.max_range_m);
+    farthest[i] = std::max(farthest[i], high[i]);
   }
   const BlockMean second = internal::MeanWithin(band, rows, low, high, first.mean);
   for (std::size_t i = 0; i < block.bearings; ++i) {
     if (nearest[i] > limits.max_range_m) continue;
+    float mattered_m = farthest[i];
     if (first.count[i] >= static_cast<float>(limits.min_returns)) {
       returns[i].hit = true;
       returns[i].range_m = second.mean[i];
     } else {
-      FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window, memory.heap,
-                  returns[i]);
+      returns[i].hit = false;
+      mattered_m = FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window,
+                               memory.heap, returns[i]);
     }
+    if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return false;
   }
+  return true;
 }
 
 void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const BandSamples& band,
@@ -111,6 +122,31 @@ void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, cons
   }
 }
 
+// Some neighbouring blocks.
+struct Stripe {
+  std::array<BearingBlock, internal::kStripeBlocks> blocks;
+  std::array<BlockSamples, internal::kStripeBlocks> found;
+  std::size_t size = 0;
+};
+
+void LayOut(const std::vector<BearingLine>& lines, std::size_t begin, const ReturnLimits& limits,
+            std::vector<Lanes>& memory, Stripe& stripe) {
+  std::size_t lanes = 0;
+  stripe.size = 0;
+  for (; stripe.size < stripe.blocks.size() && begin < lines.size(); begin += kBlockBearings) {
+    stripe.blocks[stripe.size] = internal::MakeBearingBlock(lines, begin, limits);
+    lanes += 2 * LanesOf(stripe.blocks[stripe.size++]);
+  }
+  if (memory.size() < lanes) memory.resize(lanes);
+  Lanes* room = memory.data();
+  for (std::size_t b = 0; b < stripe.size; ++b) {
+    for (BandFound* band : {&stripe.found[b].band, &stripe.found[b].slice}) {
+      band->samples = RoomAt(stripe.blocks[b], room);
+      room += LanesOf(stripe.blocks[b]);
+    }
+  }
+}
+
 }  // namespace
 
 const ImageReturns& FindReturns(const DepthImage& image, const std::vector<BearingLine>& lines,
@@ -119,19 +155,26 @@ const ImageReturns& FindReturns(const DepthImage& image, const std::vector<Beari
   ImageReturns& all = memory.returns;
   all.obstacles.assign(lines.size(), {});
   all.slice.assign(slice ? lines.size() : 0, {});
-  for (std::size_t begin = 0; begin < lines.size(); begin += kBlockBearings) {
-    const BearingBlock block = internal::MakeBearingBlock(lines, begin, limits);
-    if (block.RowCount() == 0) continue;
-    const SampleRows out{RoomFor(block, memory.samples), RoomFor(block, memory.slice_samples)};
-    const BlockSamples found =
-        internal::SampleBlock(image, limits, slice.value_or(kNoSlice), block, out);
-    BearingReturns* const obstacles = &all.obstacles[begin];
-    FindViewsOfBlock(block, found, out.band, limits.min_depth_m, obstacles);
-    if (slice) std::copy_n(obstacles, block.bearings, &all.slice[begin]);
-    FindNearestOfBlock(block, out.band, found.nearest, limits, window, memory, obstacles);
-    if (!slice) continue;
-    FindNearestOfBlock(block, out.slice, found.slice_nearest, limits, window, memory,
-                       &all.slice[begin]);
+  const ImageBands bands{image, limits, slice.value_or(kNoSlice)};
+  Stripe stripe;
+  for (std::size_t begin = 0; begin < lines.size(); begin += stripe.size * kBlockBearings) {
+    LayOut(lines, begin, limits, memory.samples, stripe);
+    internal::SampleBlocks(bands, window, std::span(stripe.blocks).first(stripe.size),
+                           memory.survey, std::span(stripe.found).first(stripe.size));
+    for (std::size_t b = 0; b < stripe.size; ++b) {
+      const BearingBlock& block = stripe.blocks[b];
+      BlockSamples& found = stripe.found[b];
+      if (block.RowCount() == 0) continue;
+      const std::size_t at = begin + b * kBlockBearings;
+      BearingReturns* const obstacles = &all.obstacles[at];
+      FindViewsOfBlock(block, found, found.band.samples, limits.min_depth_m, obstacles);
+      if (slice) std::copy_n(obstacles, block.bearings, &all.slice[at]);
+      if (!FindNearestOfBlock(block, found.band, limits, window, memory, obstacles)) {
+        internal::SampleSkipped(bands, block, found);
+        FindNearestOfBlock(block, found.band, limits, window, memory, obstacles);
+      }
+      if (slice) FindNearestOfBlock(block, found.slice, limits, window, memory, &all.slice[at]);
+    }
   }
   return all;
 }

@@ -75,9 +75,10 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 
 // The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself. `heap` is memory.
-void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                 const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns);
+// supported sample, once more centred on itself. `heap` is memory. Returns up to where samples
+// mattered: more of them beyond would change nothing.
+float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
+                  const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns);
 
 // What an image says of every line. The slice's lines are seen as the others are: only the nearest
 // surface differs.
@@ -92,7 +93,7 @@ struct ReturnsMemory {
     float lane[16];
   };
   std::vector<Lanes> samples;
-  std::vector<Lanes> slice_samples;
+  std::vector<float> survey;
   std::vector<float> column, heap;
   ImageReturns returns;
 };

@@ -42,8 +42,8 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
   return marks ? range_m : kPassing;
 }
 
-void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                 const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns) {
+float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
+                  const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns) {
   // Samples come out of the heap in increasing order, to its end, and few of them do before one is
   // supported.
   heap.clear();
@@ -62,8 +62,9 @@ void FindNearest(std::span<const float> samples, const ReturnLimits& limits,
     const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
     returns.hit = true;
     returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
-    return;
+    return std::max(smallest + width_m, centre_m + half_m);
   }
+  return kPassing;
 }
 
 }  // namespace depthgrid

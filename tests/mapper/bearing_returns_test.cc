@@ -36,6 +36,13 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
   return returns;
 }
 
+// Single pixels that are too near: nearest, but not supported.
+void AddStrays(DepthImage& image, double share, RandomStream& random) {
+  for (float& z_m : image.z_m) {
+    if (random.Uniform() < share) z_m *= 0.7F;
+  }
+}
+
 // Holes, single wrong pixels, a region that is too near and one too far.
 void Damage(DepthImage& image, RandomStream& random) {
   const auto whole = [&](int bound) {
@@ -50,10 +57,9 @@ void Damage(DepthImage& image, RandomStream& random) {
     }
   }
   for (float& z_m : image.z_m) {
-    const double draw = random.Uniform();
-    if (draw < 0.02) z_m = kInvalidDepth;
-    if (draw > 0.999) z_m *= 0.7F;
+    if (random.Uniform() < 0.02) z_m = kInvalidDepth;
   }
+  AddStrays(image, 0.001, random);
 }
 
 class InstructionSets : public testing::Test {
@@ -88,7 +94,8 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       const Pose3 pose =
           TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15, pitch_rad, roll_rad);
       DepthImage image = room.Render(camera, pose);
-      if (i % 4 != 0) Damage(image, random);
+      if (i % 4 == 1) AddStrays(image, 0.001, random);
+      if (i % 4 > 1) Damage(image, random);
       const Eigen::Quaterniond level = LevelFromCamera(pose);
       const auto lines =
           BearingLines(camera, level, ScanBearings(camera, level, 8 + 37 * (i % 7)), false);
@@ -130,6 +137,35 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   EXPECT_GE(hits, 2000);
   EXPECT_GE(slice_hits, 2000);
   EXPECT_GE(gaps, 600);
+}
+
+// A wall behind a wide near thing need not be looked at, unless it is what a gap in the thing shows
+// where only a stray sample is nearer.
+TEST_F(InstructionSets, AWallFarBehindCountsWhereNearSamplesAreAlone) {
+  const PinholeCamera camera{160, 120, 120.0, 120.0, 79.5, 59.5, {}};
+  DepthImage image;
+  image.width_px = camera.width_px;
+  image.height_px = camera.height_px;
+  image.z_m.assign(160 * 120, 3.0F);
+  for (int v = 48; v < 120; ++v) {
+    for (int u = 0; u < 160; ++u) {
+      const bool is_gap = u >= 70 && u < 74;  // shows the floor far away
+      image.Row(v)[u] = !is_gap ? 1.0F : v == 100 ? 0.9F : 30.0F;
+    }
+  }
+  const Eigen::Quaterniond level = LevelFromCamera(TiltedCamera({}, 1.15, 0.0, 0.0));
+  const auto lines = BearingLines(camera, level, ScanBearings(camera, level, 160), false);
+  const ReturnLimits limits{0.4F, 6.0F, -1.05F, 2.0F, 3, 0, 119};
+  const NoiseWindow window(image);
+  ReturnsMemory memory;
+  const auto& returns = FindReturns(image, lines, limits, {}, window, memory).obstacles;
+  int near = 0, far = 0;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    ASSERT_EQ(returns[k], PlainReturns(image, lines[k], limits, window)) << k;
+    (returns[k].range_m < 2.0F ? near : far) += returns[k].hit ? 1 : 0;
+  }
+  EXPECT_GE(near, 150);
+  EXPECT_GE(far, 3);
 }
 
 TEST(FindNearest, NeedsSupportAndAveragesTheWindow) {

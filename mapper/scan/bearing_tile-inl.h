@@ -1,0 +1,235 @@
+// How the pixels of some bearings and rows become samples (bearing_block.h). Compiled once for each
+// instruction set by bearing_block.cc, so without an ordinary guard.
+#if defined(DEPTHGRID_BEARING_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_BEARING_TILE_INL_H
+#undef DEPTHGRID_BEARING_TILE_INL_H
+#else
+#define DEPTHGRID_BEARING_TILE_INL_H
+#endif
+
+// x86-64-v3 has AVX2 without AES, which nothing here needs.
+#ifndef HWY_DISABLE_PCLMUL_AES
+#define HWY_DISABLE_PCLMUL_AES
+#endif
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "mapper/scan/bearing_block.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::internal {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::CappedTag<float, kBlockBearings>;
+using Ints = hn::RebindToSigned<Floats>;
+using Vec = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+
+// The lanes of one vector and a group of rows.
+struct Tile {
+  const ImageBands* bands;
+  const BearingBlock* block;
+  std::size_t of;    // which block
+  std::size_t lane;  // the first, in the block
+  RowRange rows;
+  // First of the pixels that any sample is made of, and how many side by side; 0 when not known.
+  int start = 0;
+  int columns = 0;
+
+  std::size_t RowCount() const { return static_cast<std::size_t>(rows.last - rows.first + 1); }
+  // Where samples and groups of the tile lie in the block.
+  std::size_t AtRow() const {
+    return static_cast<std::size_t>(rows.first - block->rows.first) * kBlockBearings + lane;
+  }
+  std::size_t AtGroup() const {
+    const auto row = static_cast<std::size_t>(rows.first - block->rows.first);
+    return row / kGroupRows * kBlockBearings + lane;
+  }
+};
+
+// Columns are monotonic in the row, and in the bearing while all rays look ahead: the corners bound
+// them. Two vectors from `start` on are in the image.
+void FindColumns(Tile& tile) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  const BearingBlock& block = *tile.block;
+  const int max_start = tile.bands->image.width_px - static_cast<int>(2 * lanes);
+  if (!block.all_ahead || max_start < 0) return;
+  float least = LastColumn(tile.bands->image.width_px), most = 0.0F;
+  for (const std::size_t lane : {tile.lane, tile.lane + lanes - 1}) {
+    for (const int v : {tile.rows.first, tile.rows.last}) {
+      const float u = block.u0[lane] + block.u1[lane] * static_cast<float>(v);
+      least = std::min(least, u);
+      most = std::max(most, u);
+    }
+  }
+  const int last = static_cast<int>(std::min(most, LastColumn(tile.bands->image.width_px))) + 1;
+  tile.start = std::min(static_cast<int>(std::max(least, 0.0F)), max_start);
+  tile.columns = std::max(last - tile.start + 1, static_cast<int>(lanes));
+}
+
+// What a tile holds.
+enum class Content : std::uint8_t {
+  kAnything,
+  kNoSlice,  // nothing in the slice
+  kInBand,   // ... and all usable and in the band
+  kSurface,  // ... and of one surface
+  kPassing,  // ... and all usable and outside the band
+};
+
+// How the two pixels around each lane's column are fetched.
+enum class Fetch {
+  kTwoVectors,  // from two vectors of neighbouring pixels
+  kGather,      // from anywhere
+};
+
+struct Pixels {
+  Vec z0, z1;
+};
+
+// Of two vectors laid side by side, the lanes `index`.
+HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(Floats()) == 16) {
+    return Vec{_mm512_permutex2var_ps(left.raw, index.raw, right.raw)};
+  }
+#endif
+  const Ints di;
+  const auto lanes = hn::Set(di, static_cast<int>(hn::Lanes(d)));
+  const auto within = hn::IndicesFromVec(d, hn::And(index, hn::Sub(lanes, hn::Set(di, 1))));
+  return hn::IfThenElse(hn::RebindMask(d, hn::Lt(index, lanes)), hn::TableLookupLanes(left, within),
+                        hn::TableLookupLanes(right, within));
+}
+
+// A whole number below 2^23 as an integer: its bits after adding 2^23, less those of 2^23.
+HWY_INLINE hn::Vec<Ints> ToInt(Floats d, Vec whole) {
+  constexpr float kTwoTo23 = 8388608.0F;
+  constexpr int kBits = 0x4B000000;
+  const Ints di;
+  return hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits));
+}
+
+// `column` are whole numbers from `start` on.
+template <Fetch kFetch>
+HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start, Vec column) {
+  const Ints di;
+  if constexpr (kFetch == Fetch::kGather) {
+    const auto index = hn::ConvertTo(di, column);
+    return {hn::GatherIndex(d, row, index), hn::GatherIndex(d, row + 1, index)};
+  } else {
+    const auto index = hn::Sub(ToInt(d, column), hn::Set(di, start));
+    const Vec left = hn::LoadU(d, row + start), right = hn::LoadU(d, row + start + hn::Lanes(d));
+    return {LookUp(d, left, right, index), LookUp(d, left, right, hn::Add(index, hn::Set(di, 1)))};
+  }
+}
+
+// DepthBetween of bearing_returns.h.
+template <bool kOneSurface>
+HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
+  const auto [z0, z1] = pixels;
+  const Vec difference = hn::Sub(z1, z0);
+  const Vec between = hn::Add(z0, hn::Mul(share, difference));
+  if constexpr (kOneSurface) return between;
+  const Vec tolerance = hn::Mul(hn::Set(d, kSameSurfaceShare), hn::Min(z0, z1));
+  const Mask same_surface = hn::Le(hn::Abs(difference), tolerance);
+  if (HWY_LIKELY(hn::AllTrue(d, same_surface))) return between;
+  const Vec nearer = hn::IfThenElse(hn::Lt(share, hn::Set(d, 0.5F)), z0, z1);
+  const Vec apart = hn::IfThenElse(hn::Gt(nearer, hn::Zero(d)), nearer, hn::Max(z0, z1));
+  return hn::IfThenElse(same_surface, between, apart);
+}
+
+void StoreNearest(const Tile& tile, Vec nearest, Vec slice_nearest, BlockSamples& out) {
+  const Floats d;
+  hn::Store(nearest, d, out.band.samples.nearest + tile.AtGroup());
+  hn::Store(slice_nearest, d, out.slice.samples.nearest + tile.AtGroup());
+  float* const so_far = &out.band.nearest[tile.lane];
+  hn::Store(hn::Min(hn::Load(d, so_far), nearest), d, so_far);
+  float* const slice_so_far = &out.slice.nearest[tile.lane];
+  hn::Store(hn::Min(hn::Load(d, slice_so_far), slice_nearest), d, slice_so_far);
+}
+
+// The samples of a tile that holds `kContent`.
+template <Fetch kFetch, Content kContent>
+HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
+  constexpr bool kSlice = kContent == Content::kAnything;
+  constexpr bool kMixed = kContent == Content::kAnything || kContent == Content::kNoSlice;
+  const Floats d;
+  const BearingBlock& block = *tile.block;
+  const std::size_t i = tile.lane;
+  const Vec u0 = hn::Load(d, &block.u0[i]), u1 = hn::Load(d, &block.u1[i]);
+  const Vec h0 = hn::Load(d, &block.h0[i]), h1 = hn::Load(d, &block.h1[i]);
+  const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
+  const Vec first = hn::Load(d, &block.first[i]), last = hn::Load(d, &block.last[i]);
+  const Vec min_depth = hn::Set(d, tile.bands->limits.min_depth_m);
+  const Vec low = hn::Set(d, tile.bands->limits.low_m),
+            high = hn::Set(d, tile.bands->limits.high_m);
+  const Vec slice_low = hn::Set(d, tile.bands->slice.low_m),
+            slice_high = hn::Set(d, tile.bands->slice.high_m);
+  const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
+  const Vec max_column = hn::Set(d, LastColumn(tile.bands->image.width_px));
+  Vec nearest = unusable, slice_nearest = passing;
+  Vec row = hn::Set(d, static_cast<float>(tile.rows.first));
+  const float* HWY_RESTRICT pixels = tile.bands->image.Row(tile.rows.first);
+  float* HWY_RESTRICT samples = out.band.samples.samples + tile.AtRow();
+  float* HWY_RESTRICT slice = kSlice ? out.slice.samples.samples + tile.AtRow() : nullptr;
+  for (std::size_t r = 0; r < tile.RowCount(); ++r) {
+    const Vec u = hn::Min(hn::Max(hn::Add(u0, hn::Mul(u1, row)), hn::Zero(d)), max_column);
+    const Vec column = hn::Floor(u);
+    const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column);
+    const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, hn::Sub(u, column));
+    const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
+    Vec sample = range;
+    if constexpr (kMixed) {
+      const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
+      const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
+      Mask usable = hn::Ge(z, min_depth);
+      if constexpr (kSlice) {
+        usable = hn::And(usable, hn::And(hn::Ge(row, first), hn::Le(row, last)));
+        const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
+        const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
+        hn::Store(level_sample, d, slice);
+        slice_nearest = hn::Min(slice_nearest, level_sample);
+        slice += kBlockBearings;
+      }
+      sample = hn::IfThenElse(usable, hn::IfThenElse(marks, range, passing), unusable);
+    }
+    hn::Store(sample, d, samples);
+    nearest = hn::Min(nearest, sample);
+    row = hn::Add(row, hn::Set(d, 1.0F));
+    pixels += tile.bands->image.width_px;
+    samples += kBlockBearings;
+  }
+  StoreNearest(tile, nearest, slice_nearest, out);
+}
+
+template <Fetch kFetch>
+void SampleTileAs(Content content, const Tile& tile, BlockSamples& out) {
+  const Floats d;
+  switch (content) {
+    case Content::kAnything:
+      return SampleTile<kFetch, Content::kAnything>(tile, out);
+    case Content::kNoSlice:
+      return SampleTile<kFetch, Content::kNoSlice>(tile, out);
+    case Content::kInBand:
+      return SampleTile<kFetch, Content::kInBand>(tile, out);
+    case Content::kSurface:
+      return SampleTile<kFetch, Content::kSurface>(tile, out);
+    case Content::kPassing:  // nobody reads its samples
+      return StoreNearest(tile, hn::Set(d, kPassing), hn::Set(d, kPassing), out);
+  }
+}
+
+void SampleAs(Content content, const Tile& tile, BlockSamples& out) {
+  if (tile.columns > 0 && tile.columns <= static_cast<int>(2 * hn::Lanes(Floats()))) {
+    SampleTileAs<Fetch::kTwoVectors>(content, tile, out);
+  } else {
+    SampleTileAs<Fetch::kGather>(content, tile, out);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace depthgrid::internal
+HWY_AFTER_NAMESPACE();
+#endif  // guard
