@@ -1,7 +1,7 @@
 #include "eval/ablation.h"
 
 #include "eval/metric_columns.h"
-#include "eval/metrics_json.h"
+#include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
 #include "mapper/core/level.h"
 #include "mapper/fuse/fusion.h"
@@ -105,9 +105,7 @@ RunScores RunOne(const Stage& stage, const ExperimentOptions& given, const TrueS
 }
 
 std::vector<std::pair<std::string, double>> ColumnsOf(const RunScores& scores) {
-  const std::string json = MetricsJson(
-      {{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}}, &scores.map);
-  return MetricColumns(json, "metrics.json");
+  return MetricColumns(MetricsOf(scores), "metrics.json");
 }
 
 // Counts the frames of all runs as one.

@@ -16,6 +16,7 @@ RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOp
   scores.est = ScoreTrajectory(truth.trajectory, FinalTrajectory(run));
   scores.map = ScoreMap(truth.map, StatesOf(run.result.map), truth.observable);
   scores.map.quality = ScoreMapQuality(truth.map, run.result.map, truth.observable, options);
+  scores.consistency = ScoreConsistency(run.reports, truth.trajectory);
   return scores;
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "eval/consistency.h"
 #include "eval/experiment_options.h"
 #include "eval/mapping_run.h"
 #include "eval/metrics/map_metrics.h"
@@ -17,6 +18,7 @@ struct RunScores {
   std::optional<TrajectoryScore> online;  // the estimate as known at the time
   std::optional<TrajectoryScore> est;     // the estimate at the end
   MapScore map;
+  ConsistencyScores consistency;
 };
 
 RunScores Score(const MappingRun& run, const TruthRecord& truth,

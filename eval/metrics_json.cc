@@ -207,15 +207,31 @@ Json ToJson(const MapScore& score) {
   return json;
 }
 
+// A degree of freedom; `low` to `high` is where the mean lies with 95 %.
+Json ToJson(const std::optional<Consistency>& consistency) {
+  const auto value = [&](double Consistency::*member) {
+    return consistency ? Json((*consistency).*member) : Json(nullptr);
+  };
+  return {{"mean", value(&Consistency::mean)},
+          {"low", value(&Consistency::low)},
+          {"high", value(&Consistency::high)},
+          {"within_95", value(&Consistency::share_within_95)},
+          {"samples", consistency ? consistency->count : 0}};
+}
+
 }  // namespace
 
-std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories,
-                        const MapScore* map) {
+std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories, const MapScore* map,
+                        const ConsistencyScores* consistency) {
   Json json;
   for (const auto& [name, score] : trajectories) {
     json["trajectory"][name] = score ? ToJson(*score) : Json(nullptr);
   }
   if (map != nullptr) json["map"] = ToJson(*map);
+  if (consistency != nullptr) {
+    json["consistency"]["nis"] = ToJson(consistency->nis);
+    json["consistency"]["nees"] = ToJson(consistency->nees);
+  }
   return json.dump(2) + "\n";
 }
 

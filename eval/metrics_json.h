@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/consistency.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics/trajectory_metrics.h"
 
@@ -15,8 +16,9 @@ struct NamedTrajectoryScore {
   std::optional<TrajectoryScore> score;  // null in the file when no stamps are shared
 };
 
-// `map` may be null. Numbers are in the shortest form that reads back the same; what is undefined
-// is null.
-std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories, const MapScore* map);
+// `map` and `consistency` may be null. Numbers are in the shortest form that reads back the same;
+// what is undefined is null.
+std::string MetricsJson(const std::vector<NamedTrajectoryScore>& trajectories, const MapScore* map,
+                        const ConsistencyScores* consistency = nullptr);
 
 }  // namespace depthgrid

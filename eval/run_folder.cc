@@ -81,7 +81,7 @@ void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
 
 std::string MetricsOf(const RunScores& scores) {
   return MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
-                     &scores.map);
+                     &scores.map, &scores.consistency);
 }
 
 RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,

@@ -39,12 +39,19 @@ std::string CovarianceCells(const Eigen::Matrix3d& c) {
   return fmt::format("{},{},{},{},{},{}", c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2));
 }
 
+std::string MotionCells(const FrameReport& report) {
+  if (report.motion_from < 0) return ",,,,,,";
+  return fmt::format("{},{}", report.motion_from, CovarianceCells(report.motion_covariance));
+}
+
 constexpr const char* kFrameColumns =
     "frame,stamp_s,slam_epoch,slam_x_m,slam_y_m,slam_yaw_rad,map_x_m,map_y_m,map_yaw_rad,"
     "gain_forward,gain_left,gain_yaw,innovation_forward_m,innovation_left_m,innovation_yaw_rad,"
     "innovation_chi2,innovation_directions,match_score,match_iterations,innovation_rejected,cov_xx,"
     "cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
-    "cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,slam_error_m,map_error_m\n";
+    "cov_yawyaw,motion_from,motion_cov_xx,motion_cov_xy,motion_cov_xyaw,motion_cov_yy,"
+    "motion_cov_yyaw,motion_cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,slam_error_m,"
+    "map_error_m\n";
 
 }  // namespace
 
@@ -57,10 +64,10 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
   for (const FrameReport& r : run.reports) {
     const auto true_pose = truth_at.find(r.stamp_s);
     const Pose3* true_camera = true_pose == truth_at.end() ? nullptr : true_pose->second;
-    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{}\n", r.index,
-                   r.stamp_s, r.slam_epoch, BaseCells(r.slam_from_camera),
+    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   r.index, r.stamp_s, r.slam_epoch, BaseCells(r.slam_from_camera),
                    BaseCells(r.map_from_camera), MatchCells(r), CovarianceCells(r.covariance),
-                   r.beams, r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0,
+                   MotionCells(r), r.beams, r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0,
                    ErrorCell(r.slam_from_camera, true_camera),
                    ErrorCell(r.map_from_camera, true_camera));
   }

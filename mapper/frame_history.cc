@@ -10,6 +10,9 @@
 namespace depthgrid {
 namespace {
 
+// The last motion goes on for this long at most; after a longer gap it says nothing.
+constexpr double kLongestExtrapolationS = 0.5;
+
 // A second at 30 Hz: SLAM's own motion over it is good to millimetres.
 constexpr int kLoopReachFrames = 30;
 
@@ -89,6 +92,21 @@ std::optional<Anchor> AnchorOf(const FrameRecord& record, const FrameHistory& hi
 }
 
 }  // namespace
+
+Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam) {
+  const FrameRecord* last = history.PosedBefore(history.newest());
+  if (last == nullptr) return BaseOf(*history.newest().slam_from_camera);
+  const Pose2 slam_from_last = BaseOf(*last->slam_from_camera);
+  const Pose2 map_from_last = map_from_slam * slam_from_last;
+  const FrameRecord* before = history.PosedBefore(*last);
+  const double gap_s = history.newest().stamp_s - last->stamp_s;
+  if (before == nullptr || before->epoch != last->epoch || gap_s > kLongestExtrapolationS) {
+    return map_from_last;
+  }
+  const double share = gap_s / (last->stamp_s - before->stamp_s);
+  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), slam_from_last);
+  return map_from_last * Pose2::FromVector(share * motion.vector());
+}
 
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
                                       int newest_mapped) {

@@ -48,6 +48,10 @@ class FrameHistory {
   Positions position_of_index_;
 };
 
+// Where the newest frame is if the last motion goes on; `map_from_slam` is the correction of the
+// frame before it.
+Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
+
 // A loop between two frames as one between two mapped frames, by SLAM's own motion within an epoch.
 // Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped` is the
 // position the newest frame will have, or -1.

@@ -49,7 +49,12 @@ struct FrameReport {
   double innovation_chi2 = 0.0;           // against the covariance of prediction and match together
   std::array<double, 3> gain = {};        // the share of the innovation taken, per base axis
   Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Zero();       // of the estimate, base axes; zero if not tracked
+      Eigen::Matrix3d::Zero();  // of the estimate in the map taken for exact, base axes
+  // The motion of the estimate from an earlier frame (FrameReport::index; at most a submap's frames
+  // back, and none before a correction of the map) and its covariance, the errors of the map that
+  // it was matched against included: base axes of this frame; -1 and zero if not tracked.
+  int motion_from = -1;
+  Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   bool innovation_rejected = false;  // the gate refused the match
   int beams = 0;                     // beams with a hit
   int loops_accepted = 0;            // loop events of this frame that entered the graph

@@ -15,9 +15,6 @@ int HitCount(const Scan& scan) {
                                         [](const Beam& beam) { return beam.hit; }));
 }
 
-// The last motion goes on for this long at most; after a longer gap it says nothing.
-constexpr double kLongestExtrapolationS = 0.5;
-
 // How well a run's start in a prior map is known; SLAM's own frame may be off by more.
 const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 
@@ -106,7 +103,9 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   std::vector<MappedFrame> frames = mapped.all();
   const bool provisional = scans.matched && frame.slam_from_camera;
   if (provisional) {
-    frames.push_back(mapped.WithScans(AsMapped(SameEpoch() ? CarriedOn() : Extrapolated()), scans));
+    frames.push_back(mapped.WithScans(
+        AsMapped(SameEpoch() ? CarriedOn() : Extrapolated(history, filter.map_from_slam())),
+        scans));
   }
   LoopCloser::Outcome outcome =
       loop_closer.Close(frame.loops, history, frames, provisional, *reference);
@@ -145,6 +144,7 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base) {
   mapped.MoveTo(map_from_base);
   reference->Rebuild(mapped.all());
   const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
+  errors.Break();
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
 }
 
@@ -157,7 +157,7 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
   const FrameRecord& record = history.newest();
   const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
   if (reference && !SameEpoch()) {
-    const Pose2 extrapolated = Extrapolated();
+    const Pose2 extrapolated = Extrapolated(history, filter.map_from_slam());
     const Pose2 carried_on = CarriedOn();
     Pose2 better = extrapolated;
     if (scan && !mapped.empty()) {
@@ -210,7 +210,17 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
   report.covariance = fused.covariance;
   report.innovation_chi2 = fused.innovation_chi2;
   report.innovation_rejected = fused.rejected;
+  if (reference) TellMotion(fused, report);
   return fused;
+}
+
+void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& report) {
+  const bool taken = report.match.found && !fused.rejected;
+  errors.Add(filter.step(), report.index, static_cast<int>(mapped.size()),
+             report.match.information / options.fusion.match_overconfidence,
+             taken ? reference->MatchedParts() : std::span<const MapPart>());
+  report.motion_from = errors.motion_from();
+  report.motion_covariance = errors.MotionCovariance(fused.map_from_base);
 }
 
 void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& fused,
@@ -243,27 +253,12 @@ Pose2 IncrementalMapper::State::CarriedOn() const {
       .map_from_base;
 }
 
-// Where the last motion leads if it goes on.
-Pose2 IncrementalMapper::State::Extrapolated() const {
-  const FrameRecord* last = history.PosedBefore(history.newest());
-  if (last == nullptr) return BaseOf(*history.newest().slam_from_camera);
-  const Pose2 slam_from_last = BaseOf(*last->slam_from_camera);
-  const Pose2 map_from_last = filter.map_from_slam() * slam_from_last;
-  const FrameRecord* before = history.PosedBefore(*last);
-  const double gap_s = history.newest().stamp_s - last->stamp_s;
-  if (before == nullptr || before->epoch != last->epoch || gap_s > kLongestExtrapolationS) {
-    return map_from_last;
-  }
-  const double share = gap_s / (last->stamp_s - before->stamp_s);
-  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), slam_from_last);
-  return map_from_last * Pose2::FromVector(share * motion.vector());
-}
-
 // The correction is chosen so that SLAM's newest pose lies there.
 void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
   const FrameRecord& record = history.newest();
   filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, map_from_base,
                 filter.covariance());
+  errors.Break();
   filter_epoch = record.epoch;
 }
 

@@ -7,6 +7,7 @@
 #include "mapper/adjustment_rounds.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/correction_filter.h"
+#include "mapper/fuse/pose_errors.h"
 #include "mapper/graph/loop_search.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/loop_closing.h"
@@ -29,6 +30,7 @@ struct IncrementalMapper::State {
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
   FrameHistory history;
   CorrectionFilter filter;
+  PoseErrors errors;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
@@ -45,6 +47,7 @@ struct IncrementalMapper::State {
         oracle(std::move(orc)),
         scanner(camera, opts.scan),
         filter(opts.fusion),
+        errors(opts.submap.scans),
         loop_closer(opts.loops),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
@@ -64,11 +67,11 @@ struct IncrementalMapper::State {
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);
+  void TellMotion(const FusedPose& fused, FrameReport& report);
   void Insert(const FrameScans& scans, const FusedPose& fused, FrameReport& report);
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
-  Pose2 Extrapolated() const;
   void Anchor(const Pose2& map_from_base);
   MappedFrame AsMapped(const Pose2& map_from_base) const;
   std::vector<Pose2> FinishByAdjusting(MapperResult& result) const;

@@ -16,6 +16,7 @@ class PaperReference : public ReferenceMap {
                  const ScanMatcherOptions& match, const GraphOptions& graph);
 
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
+  std::span<const MapPart> MatchedParts() const override { return {&part_, 1}; }
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
   // Submaps hold the newest scans, wherever these are.
@@ -39,6 +40,7 @@ class PaperReference : public ReferenceMap {
   ScanMatcher matcher_;
   ScanRasterizer rasterizer_;
   ActiveSubmaps submaps_;
+  MapPart part_;                      // all of the submap
   std::vector<Pose2> map_from_base_;  // of all scans inserted, as the map has them now
   std::vector<ScanMeasurement> measurements_;
 };

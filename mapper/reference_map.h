@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mapper/core/kept_scan.h"
@@ -53,6 +54,13 @@ enum class AdjustEffort {
   kFinish,      // once: each single frame as well as it can be known
 };
 
+// A part of the map that a scan was matched against.
+struct MapPart {
+  double mapped = 0.0;  // the mean position, among the mapped frames, of those that drew it
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // what the match has from it, base axes
+  double noise_share = 0.0;  // of this information's variance, how much is the part's own noise
+};
+
 class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
@@ -61,6 +69,8 @@ class ReferenceMap {
   // may bound or steady the search; the result must not contain it.
   virtual MatchResult Match(const std::shared_ptr<const Scan>& scan,
                             const Prediction& prediction) = 0;
+  // What the last match was made against; good until the next call of anything.
+  virtual std::span<const MapPart> MatchedParts() const = 0;
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -79,7 +79,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
   Run run;
   std::vector<Pose2> online, final;
   std::vector<FrameReport> reports;
-  std::vector<JudgedPose> judged;
+  Trajectory stamped_truth;
   CarmenLogOptions log;
   for (std::size_t k = 0; k < truth.size(); ++k) {
     CarmenScan line;
@@ -93,9 +93,9 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     frame.stamp_s = static_cast<double>(k) / 30.0;
     frame.scan = std::make_shared<Scan>(ScanOf(line, log));
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
+    stamped_truth.push_back({frame.stamp_s, CameraOf(truth[k], 0.0)});
     const FrameReport report = mapper.AddFrame(frame);
     online.push_back(BaseOf(*report.map_from_camera));
-    judged.push_back({truth[k], online[k], report.covariance});
     reports.push_back(report);
     run.frame_us += report.times.total_us;
     run.match_us += report.times.match_us;
@@ -119,7 +119,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
   run.insert_us /= n;
   for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
   run.nis = InnovationSamples(reports);
-  run.nees = RelativeMotionSamples(judged, kConsistencyFrames);
+  run.nees = MotionSamples(reports, stamped_truth);
   run.prior = Score(truth, odometry);
   run.online = Score(truth, online);
   run.final = Score(truth, final);

@@ -80,6 +80,13 @@ function initNumbers() {
     row("relative error a frame, rmse", (s) => s.rpe_frame_rmse_m),
     row("relative error a metre, rmse", (s) => s.rpe_metre_rmse_m),
   ])));
+  const sure = [["each match against the prediction (NIS)", "nis"], ["each motion over a submap's frames (NEES)", "nees"]]
+    .map(([label, name]) => [label, m.consistency?.[name]]).filter(([, c]) => c && c.mean !== null);
+  if (sure.length) {
+    byId("numbers").append(make("h3", {}, "Errors over what the mapper expected, squared: 1 is right, more is too sure"),
+      make("div", { class: "scroll" }, tableOf(["", "mean", "95 % band of the mean", "below their 95 % limit", "values"],
+        sure.map(([label, c]) => [label, fixed(c.mean, 2), `${fixed(c.low, 2)} to ${fixed(c.high, 2)}`, percent(c.within_95), `${c.samples}`]))));
+  }
   const cells = [["observable cells", m.map.observable], ["all cells", m.map.all]].filter(([, s]) => s);
   const rows = [];
   for (const [label, s] of cells) {

@@ -36,6 +36,7 @@ FusedPose CorrectionFilter::Fuse(const Pose2& slam_from_base, const Prediction& 
   unmatched.map_from_base = prediction.map_from_base;
   unmatched.covariance = prediction.covariance;
   last_match_ = MatchResult{};
+  last_gain_.setZero();
   if (!match.found) return unmatched;
   MatchResult humble = match;
   humble.information /= options_.match_overconfidence;
@@ -49,6 +50,7 @@ FusedPose CorrectionFilter::Fuse(const Pose2& slam_from_base, const Prediction& 
   }
   FusedPose fused = FuseByMode(slam_from_base, prediction, humble, outside_gain);
   fused.innovation_chi2 = chi2;
+  last_gain_ = fused.gain * SeenInverse(humble.information) * humble.information;
   return fused;
 }
 
@@ -91,8 +93,24 @@ Eigen::Vector3d CorrectionFilter::AdaptedGain(const Eigen::Vector3d& innovation)
   return AsVector(gain_);
 }
 
+// The state is the reported pose itself.
+FilterStep CorrectionFilter::StepTo(const Pose2& slam_from_base, double stamp_s) const {
+  FilterStep step;
+  step.predicted = map_from_slam_ * slam_from_base;
+  if (!last_) return step;
+  const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
+  step.walk = SlamStepCovariance(options_.slam_noise, motion, stamp_s - last_->stamp_s)
+                  .diagonal()
+                  .cwiseSqrt();
+  step.gain = last_gain_;
+  step.state_gain.topRows<3>() = last_gain_;
+  return step;
+}
+
 void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
                               const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
+  step_ = StepTo(slam_from_base, stamp_s);
+  last_gain_.setZero();
   if (!(map_from_slam_ * slam_from_base == map_from_base)) {
     map_from_slam_ = map_from_base * Inverse(slam_from_base);
   }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mapper/fuse/drift_tracker.h"
+#include "mapper/fuse/filter_step.h"
 #include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
@@ -35,6 +36,9 @@ class CorrectionFilter {
   // `learned`: how SLAM's motion errs, as an adjustment of all poses tells.
   void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }
 
+  // What the last Commit() did to the errors of pose and bias.
+  const FilterStep& step() const { return Learns() ? tracker_.step() : step_; }
+
   const Pose2& map_from_slam() const { return map_from_slam_; }
   const Eigen::Matrix3d& covariance() const { return covariance_; }
 
@@ -48,6 +52,7 @@ class CorrectionFilter {
   // `humble`: the match, its information divided by `match_overconfidence`.
   FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
                        const MatchResult& humble, const Eigen::Vector3d& outside_gain);
+  FilterStep StepTo(const Pose2& slam_from_base, double stamp_s) const;
   Eigen::Vector3d AdaptedGain(const Eigen::Vector3d& innovation);
 
   FusionOptions options_;
@@ -57,6 +62,8 @@ class CorrectionFilter {
   // `learned`
   DriftTracker tracker_;
   MatchResult last_match_;  // that Fuse() took
+  Eigen::Matrix3d last_gain_ = Eigen::Matrix3d::Zero();
+  FilterStep step_;
   // `adaptive`
   std::array<double, 3> gain_;
   std::optional<Eigen::Vector3d> last_innovation_;

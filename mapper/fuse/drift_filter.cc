@@ -14,6 +14,10 @@ Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
 
 }  // namespace
 
+Eigen::Vector3d RenewedBias(const MotionNoise& noise) {
+  return (1.0 - noise.bias_kept.array().square()).sqrt().matrix().cwiseProduct(noise.bias);
+}
+
 DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionNoise& noise) {
   DriftState next;
   const Pose2 corrected = motion * Pose2::FromVector(state.bias);
@@ -23,11 +27,9 @@ DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionN
   f.topLeftCorner<3, 3>() = AdjointOf(Inverse(corrected));
   f.topRightCorner<3, 3>().setIdentity();
   f.bottomRightCorner<3, 3>() = noise.bias_kept.asDiagonal();
-  const Eigen::Vector3d renewed =
-      (1.0 - noise.bias_kept.array().square()).sqrt().matrix().cwiseProduct(noise.bias);
   next.covariance = f * state.covariance * f.transpose();
   next.covariance.topLeftCorner<3, 3>() += Squared(noise.walk);
-  next.covariance.bottomRightCorner<3, 3>() += Squared(renewed);
+  next.covariance.bottomRightCorner<3, 3>() += Squared(RenewedBias(noise));
   return next;
 }
 
@@ -46,7 +48,8 @@ DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
       (identity + match.information * Squared(noise.jitter)).inverse() * match.information;
   const Eigen::Matrix3d pose_covariance = predicted.covariance.topLeftCorner<3, 3>();
   const Eigen::Matrix3d weight = (identity + seen * pose_covariance).inverse() * seen;
-  const Eigen::Matrix<double, 6, 3> gain = predicted.covariance.leftCols<3>() * weight;
+  const Eigen::Matrix<double, 6, 3>& gain = update.gain =
+      predicted.covariance.leftCols<3>() * weight;
   const Eigen::Matrix<double, 6, 1> step = gain * update.fused.innovation;
   update.state.map_from_base = predicted.map_from_base * Pose2::FromVector(step.head<3>());
   update.state.bias = predicted.bias + step.tail<3>();

@@ -17,6 +17,9 @@ struct DriftState {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
+// The standard deviation of what is new in the bias of each frame.
+Eigen::Vector3d RenewedBias(const MotionNoise& noise);
+
 // SLAM moved by `motion`.
 DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionNoise& noise);
 
@@ -26,6 +29,7 @@ Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise);
 struct DriftUpdate {
   DriftState state;
   FusedPose fused;
+  Eigen::Matrix<double, 6, 3> gain;  // of the state
 };
 DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
                     const MotionNoise& noise);

@@ -19,6 +19,14 @@ constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
 // Times what the adjusted poses say, which is too small: they are drawn towards the prior.
 constexpr double kBoundSigmas = 3.5;
+// And not below these many times: while the prior is believed the map follows it, and the matches,
+// made against that map, agree with it (docs/results.md, "Consistency").
+constexpr double kLeastSigmas = 1.5;
+// A lower bound that came with no bias of its own keeps this much of it a frame: 2 s at 30 Hz.
+constexpr double kUsualBiasKept = 0.98;
+// An axis is not believed to be known so much better than another; radians a metre for the yaw.
+constexpr double kLeastOfOthers = 0.5;
+constexpr double kLeastYawOfOthers = 0.25;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/results.md).
 constexpr double kMostChi2 = 200.0;
@@ -50,6 +58,17 @@ FusedPose DriftTracker::Fuse(const Pose2& slam_from_base, const MatchResult& mat
   return Updated(StateAt(slam_from_base), match, noise_).fused;
 }
 
+FilterStep DriftTracker::StepTo(const Pose2& predicted) const {
+  FilterStep step;
+  step.predicted = predicted;
+  if (!last_) return step;
+  step.walk = noise_.walk;
+  step.jitter = noise_.jitter;
+  step.bias_kept = noise_.bias_kept;
+  step.bias_renewed = RenewedBias(noise_);
+  return step;
+}
+
 void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
                           const Eigen::Matrix3d& covariance, const MatchResult& match) {
   DriftState next;
@@ -57,17 +76,24 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
   next.covariance.topLeftCorner<3, 3>() = covariance;
   next.covariance.bottomRightCorner<3, 3>() = noise_.bias.cwiseProduct(noise_.bias).asDiagonal();
   std::optional<MatchResult> matched;
+  step_ = StepTo(map_from_base);
+  step_.new_bias = noise_.bias;
   if (last_) {
     const DriftState predicted = StateAt(slam_from_base);
+    step_.predicted = predicted.map_from_base;
     if (match.found) {
       const DriftUpdate update = Updated(predicted, match, noise_);
       if (update.fused.map_from_base == map_from_base) {
         next = update.state;
+        step_.gain = update.fused.gain;
+        step_.state_gain = update.gain;
+        step_.new_bias.reset();
         matched = match;
         if (spread_) TestBound(PredictionOf(predicted, noise_), match);
       }
     } else if (PredictionOf(predicted, noise_).map_from_base == map_from_base) {
       next = predicted;
+      step_.new_bias.reset();
     }
   }
   if (matched && last_->match) {
@@ -91,6 +117,9 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
+  Eigen::Vector3d& sigma = spread_->sigma;
+  const double most = sigma.head<2>().maxCoeff();
+  sigma = sigma.cwiseMax(most * Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   evidence_ = DriftEvidence();
   Bound();
 }
@@ -98,9 +127,18 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound() {
   if (!spread_) return;
-  const Eigen::Vector3d sigma = kBoundSigmas * spread_->sigma;
-  noise_.bias = noise_.bias.cwiseMin(sigma);
-  noise_.walk = noise_.walk.cwiseMin(std::sqrt(spread_->frames) * sigma);
+  const double root = std::sqrt(spread_->frames);
+  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
+  noise_.bias = noise_.bias.cwiseMin(most);
+  noise_.walk = noise_.walk.cwiseMin(root * most);
+  const Eigen::Vector3d least = kLeastSigmas * spread_->sigma;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double walked = noise_.walk[axis] / root;
+    const double bias = std::sqrt(std::max(least[axis] * least[axis] - walked * walked, 0.0));
+    if (noise_.bias[axis] >= bias) continue;
+    if (noise_.bias[axis] == 0.0) noise_.bias_kept[axis] = kUsualBiasKept;
+    noise_.bias[axis] = bias;
+  }
 }
 
 // When SLAM begins to drift all that was learnt of it is wrong.

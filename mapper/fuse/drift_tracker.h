@@ -6,6 +6,7 @@
 
 #include "mapper/fuse/drift_evidence.h"
 #include "mapper/fuse/drift_filter.h"
+#include "mapper/fuse/filter_step.h"
 #include "mapper/fuse/motion_noise.h"
 
 namespace depthgrid {
@@ -26,6 +27,9 @@ class DriftTracker {
   // wandering looks like SLAM's. Innovations that speak against the bound lift it.
   void BoundMotion(const MotionSpread& spread);
 
+  // What the last Commit() did to the errors of pose and bias.
+  const FilterStep& step() const { return step_; }
+
   const MotionNoise& noise() const { return noise_; }
 
  private:
@@ -34,6 +38,7 @@ class DriftTracker {
     std::optional<MatchResult> match;
   };
   DriftState StateAt(const Pose2& slam_from_base) const;
+  FilterStep StepTo(const Pose2& predicted) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
   void Bound();
   void TestBound(const Prediction& prediction, const MatchResult& match);
@@ -44,6 +49,7 @@ class DriftTracker {
   std::optional<MotionSpread> spread_;
   DriftEvidence evidence_;  // against it
   int next_fit_ = 0;
+  FilterStep step_;
   DriftState state_;
   std::optional<Last> last_;
 };

@@ -6,21 +6,21 @@
 #include <cmath>
 
 namespace depthgrid {
-namespace {
 
-// Of a symmetric positive semidefinite matrix: directions with (nearly) nothing stay at zero.
-Eigen::Matrix3d PseudoInverse(const Eigen::Matrix3d& matrix) {
-  constexpr double kNegligible = 1e-9;  // of the largest eigenvalue
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
+Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
+  constexpr double kUnseen = 1e-9;  // of the largest eigenvalue
+  // In units where a metre and a radian of a view 3 m deep weigh alike.
+  const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
+  const Eigen::Matrix3d scaled = unit.asDiagonal() * information * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scaled);
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double value = solver.eigenvalues()[i];
-    if (value > kNegligible * solver.eigenvalues()[2]) inverse[i] = 1.0 / value;
+    if (value > kUnseen * solver.eigenvalues()[2]) inverse[i] = 1.0 / value;
   }
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  const Eigen::Matrix3d vectors = unit.asDiagonal() * solver.eigenvectors();
+  return vectors * inverse.asDiagonal() * vectors.transpose();
 }
-
-}  // namespace
 
 Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {
   return Between(predicted_map_from_base, map_from_base).vector();
@@ -40,10 +40,12 @@ FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
   fused.innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
   fused.gain = gain.asDiagonal();
   fused.map_from_base = Moved(prediction.map_from_base, match.map_from_base, fused.gain);
-  // Joseph's form, right for any gain. R is taken as zero where the match sees nothing.
-  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - fused.gain;
-  fused.covariance = kept * prediction.covariance * kept.transpose() +
-                     fused.gain * PseudoInverse(match.information) * fused.gain.transpose();
+  // Joseph's form, right for any gain. Where the match sees nothing it keeps the prediction, and
+  // the gain takes nothing.
+  const Eigen::Matrix3d noise = SeenInverse(match.information);
+  const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - fused.gain * noise * match.information;
+  fused.covariance =
+      kept * prediction.covariance * kept.transpose() + fused.gain * noise * fused.gain.transpose();
   return fused;
 }
 

@@ -119,17 +119,17 @@ const std::vector<Surfel>& SurfelMap::PiecesOf(const std::shared_ptr<const Scan>
 
 MatchResult SurfelMap::Match(const std::shared_ptr<const Scan>& scan,
                              const Prediction& prediction) {
-  return matcher_.Match(PiecesOf(scan), map_, prediction);
+  return matcher_.Match(PiecesOf(scan), map_, prediction, &parts_);
 }
 
 void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
-                           const Pose2& map_from_surfels) const {
+                           const Pose2& map_from_surfels, double frame) const {
   const Motion2 motion(map_from_surfels);
   const double min_cosine = std::cos(RadFromDeg(options_.match.max_angle_deg));
   for (const Surfel& surfel : surfels) {
     const double off_m =
         options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
-    map.Merge(motion * surfel, {0.6 * options_.spacing_m, off_m, min_cosine});
+    map.Merge(motion * surfel, {0.6 * options_.spacing_m, off_m, min_cosine}, frame);
   }
 }
 
@@ -138,7 +138,7 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
   const std::vector<Surfel>& pieces = PiecesOf(scan);
   GrowGently(surfels_before_);
   surfels_before_.push_back(map_.size());
-  InsertInto(map_, pieces, map_from_base);
+  InsertInto(map_, pieces, map_from_base, static_cast<double>(groups_.places().size()));
   groups_.Add(pieces, map_from_base);
 }
 
@@ -210,7 +210,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
                                            const std::vector<Pose2>& map_from_group) {
   SurfelStore map;
   for (std::size_t g = 0; g < groups.groups().size(); ++g) {
-    InsertInto(map, groups.groups()[g].surfels, map_from_group[g]);
+    InsertInto(map, groups.groups()[g].surfels, map_from_group[g], 0.0);
   }
   const Eigen::Matrix3d covariance = kAdjustedSigma.cwiseProduct(kAdjustedSigma).asDiagonal();
   const std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
@@ -241,7 +241,8 @@ void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {
   for (const SurfelGroup& group : groups_.groups()) {
     inserted_until(group.first_frame);
     before = map_.size();
-    InsertInto(map_, group.surfels, group.map_from_group);
+    InsertInto(map_, group.surfels, group.map_from_group,
+               group.first_frame + 0.5 * (group.frames - 1));
   }
   inserted_until(static_cast<int>(surfels_before_.size()));
 }

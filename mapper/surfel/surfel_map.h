@@ -33,6 +33,7 @@ class SurfelMap : public ReferenceMap {
   explicit SurfelMap(const SurfelOptions& options);
 
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
+  std::span<const MapPart> MatchedParts() const override { return parts_; }
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
   void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
@@ -47,7 +48,7 @@ class SurfelMap : public ReferenceMap {
 
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
-                  const Pose2& map_from_surfels) const;
+                  const Pose2& map_from_surfels, double frame) const;
   JointOptions JointOptionsFor(AdjustEffort effort) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,
@@ -64,6 +65,7 @@ class SurfelMap : public ReferenceMap {
   // The last scan asked for, and its pieces: matching and inserting want the same.
   std::shared_ptr<const Scan> scan_;
   std::vector<Surfel> pieces_;
+  std::vector<MapPart> parts_;
 };
 
 }  // namespace depthgrid

@@ -56,10 +56,13 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("max_iterations", max_iterations, {1, 1000}, "of the least squares");
 }
 
+PairGates SurfelMatcher::Gates() const {
+  return {options_.along_m, options_.gate_m, std::cos(RadFromDeg(options_.max_angle_deg)),
+          options_.huber_sigmas, options_.normal_floor_rad};
+}
+
 PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base) {
-  const PairGates gates{options_.along_m, options_.gate_m,
-                        std::cos(RadFromDeg(options_.max_angle_deg)), options_.huber_sigmas,
-                        options_.normal_floor_rad};
+  const PairGates gates = Gates();
   pairs_.Associate(map, gates, map_from_base);
   PairEvaluation evaluation = pairs_.Evaluate(gates, map_from_base);
   if (options_.judge_misfit) {
@@ -71,7 +74,7 @@ PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_
 }
 
 MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                                 const Prediction& prediction) {
+                                 const Prediction& prediction, std::vector<MapPart>* parts) {
   MatchResult match;
   match.map_from_base = prediction.map_from_base;
   const Eigen::Matrix3d prior_h =
@@ -91,6 +94,7 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
     seen.g -= seen.h * step;  // as it is after the step
     if (step.head<2>().norm() < kConvergedM && std::abs(step.z()) < kConvergedRad) break;
   }
+  if (parts != nullptr) pairs_.PartsOf(Gates(), pose, *parts);
   match.found = true;
   match.map_from_base = pose * Pose2::FromVector(SeenStep(seen));
   match.information = seen.h;

@@ -28,11 +28,13 @@ class SurfelMatcher {
 
   // Iterates towards the maximum a posteriori, which keeps directions that the scan does not see
   // where the prediction puts them. What is returned is the match alone: the pose at which the
-  // debiased equations have their minimum, and their information.
+  // debiased equations have their minimum, and their information. `parts`, if given, becomes what
+  // the match was made against.
   MatchResult Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                    const Prediction& prediction);
+                    const Prediction& prediction, std::vector<MapPart>* parts = nullptr);
 
  private:
+  PairGates Gates() const;
   PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base);
 
   SurfelMatchOptions options_;

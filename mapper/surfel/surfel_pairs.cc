@@ -4,6 +4,7 @@
 #define HWY_DISABLE_PCLMUL_AES
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "mapper/surfel/misfit.h"
@@ -105,8 +106,30 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   block.normal_y[lane] = surfel.normal.y();
   block.information[lane] = 1.0 / variance;
   block.per_sigma[lane] = 1.0 / std::sqrt(variance);
+  block.mapped[lane] = map.FrameOf(found.index);
+  block.noise_share[lane] = 1.0 / (surfel.information * variance);
   block.normal_variance[lane] =
       std::max(1.0 / surfel.normal_information, gates.normal_floor_rad * gates.normal_floor_rad);
+}
+
+void SurfelPairs::PartsOf(const PairGates& gates, const Pose2& map_from_base,
+                          std::vector<MapPart>& parts) const {
+  parts.clear();
+  const Motion2 motion(map_from_base);
+  for (const Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (block.information[lane] <= 0.0) continue;
+      const Eigen::Vector2d point_m(block.x_m[lane], block.y_m[lane]);
+      const Eigen::Vector2d surfel_m(block.surfel_x_m[lane], block.surfel_y_m[lane]);
+      const Eigen::Vector2d normal(block.normal_x[lane], block.normal_y[lane]);
+      const double sigmas =
+          std::abs(normal.dot(motion * point_m - surfel_m)) * block.per_sigma[lane];
+      const double weight = block.information[lane] * std::min(1.0, gates.huber_sigmas / sigmas);
+      const Eigen::Vector3d row = OffsetJacobian(motion.TurnBack(normal), point_m);
+      parts.push_back(
+          {block.mapped[lane], weight * row * row.transpose(), block.noise_share[lane]});
+    }
+  }
 }
 
 PairEvaluation SurfelPairs::Evaluate(const PairGates& gates, const Pose2& map_from_base) {

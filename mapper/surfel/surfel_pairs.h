@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "mapper/reference_map.h"
 #include "mapper/surfel/debias.h"
 #include "mapper/surfel/surfel_store.h"
 
@@ -35,6 +36,9 @@ class SurfelPairs {
   // call before. The map must not change between Assign() and the last of these calls.
   void Associate(const SurfelStore& map, const PairGates& gates, const Pose2& map_from_base);
   PairEvaluation Evaluate(const PairGates& gates, const Pose2& map_from_base);
+  // What the map's surfels each contribute there.
+  void PartsOf(const PairGates& gates, const Pose2& map_from_base,
+               std::vector<MapPart>& parts) const;
 
  private:
   static constexpr std::size_t kLanes = 4;
@@ -50,6 +54,7 @@ class SurfelPairs {
     Lanes information{};  // of the offset between both
     Lanes per_sigma{};    // its square root
     Lanes normal_variance{};
+    Lanes mapped{}, noise_share{};  // as MapPart
   };
   void AssociateOne(const SurfelStore& map, const PairGates& gates, const Motion2& motion,
                     std::size_t piece);

@@ -99,14 +99,18 @@ Association SurfelStore::NearestFirmly(const Surfel& piece, const AssociationGat
   return {found.index, std::max(0.0, slack) * std::min(gate.along_m, gate.off_m)};
 }
 
-int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate) {
+int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate, double frame) {
   const int index = Nearest(piece, gate);
-  if (index < 0) return Add(piece);
-  Fuse(piece, surfels_[static_cast<std::size_t>(index)]);
+  if (index < 0) return Add(piece, frame);
+  Surfel& surfel = surfels_[static_cast<std::size_t>(index)];
+  Fuse(piece, surfel);
+  float& mean = frames_[static_cast<std::size_t>(index)];
+  const auto share = static_cast<float>(piece.information / surfel.information);
+  mean += share * (static_cast<float>(frame) - mean);
   return index;
 }
 
-int SurfelStore::Add(const Surfel& surfel) {
+int SurfelStore::Add(const Surfel& surfel, double frame) {
   const Cell cell = CellOf(surfel.point_m, kCellM);
   int tile = tile_of_key_.Find(KeyOf(cell));
   if (tile < 0) {
@@ -117,6 +121,7 @@ int SurfelStore::Add(const Surfel& surfel) {
   int& first = tiles_[static_cast<std::size_t>(tile)][PlaceOf(cell)];
   const int index = size();
   surfels_.push_back(surfel);
+  frames_.push_back(static_cast<float>(frame));
   next_in_cell_.push_back(first);
   first = index;
   return index;
@@ -124,6 +129,7 @@ int SurfelStore::Add(const Surfel& surfel) {
 
 void SurfelStore::Clear() {
   surfels_.clear();
+  frames_.clear();
   next_in_cell_.clear();
   tile_of_key_.Clear();
   tiles_.clear();

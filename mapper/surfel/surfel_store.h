@@ -40,9 +40,13 @@ class SurfelStore {
   }
   Association NearestFirmly(const Surfel& piece, const AssociationGate& gate) const;
   // Moves that surfel along its normal and turns it by what the piece says, or adds the piece as a
-  // surfel of its own. Returns its index.
-  int Merge(const Surfel& piece, const AssociationGate& gate);
-  int Add(const Surfel& surfel);
+  // surfel of its own. Returns its index. `frame`: the one that saw it, or a mean of several.
+  int Merge(const Surfel& piece, const AssociationGate& gate, double frame = 0.0);
+  int Add(const Surfel& surfel, double frame = 0.0);
+  // The mean of the frames that drew a surfel, weighed by information.
+  double FrameOf(int index) const {
+    return static_cast<double>(frames_[static_cast<std::size_t>(index)]);
+  }
   void Clear();
 
  private:
@@ -73,6 +77,7 @@ class SurfelStore {
   }
 
   std::vector<Surfel> surfels_;
+  std::vector<float> frames_;      // parallel to surfels_
   std::vector<int> next_in_cell_;  // parallel to surfels_
   TileIndex tile_of_key_;
   std::vector<Tile> tiles_;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include "mapper/core/level.h"
 
 namespace depthgrid {
 namespace {
@@ -28,39 +28,56 @@ TEST(InnovationSamples, AreThoseOfFramesThatMatched) {
   EXPECT_EQ(samples[0].degrees, 3);
 }
 
-TEST(RelativeMotionSamples, WorkedByHand) {
-  const Eigen::Matrix3d covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
-  // Both estimates are shifted and turned alike: only the last 3 cm and 4 mrad are errors.
-  const Pose2 shift{5.0, -2.0, 1.0};
-  std::vector<JudgedPose> poses;
-  for (int i = 0; i < 4; ++i) {
-    const Pose2 truth{0.0, 0.1 * i, 0.5};
-    poses.push_back({truth, shift * truth, covariance});
-  }
-  poses[2].estimate = poses[2].estimate * Pose2{0.03, 0.0, 0.004};
-  const std::vector<ChiSquareSample> samples = RelativeMotionSamples(poses, 2);
-  ASSERT_EQ(samples.size(), 1U);  // 0 to 2; 2 to 4 is not there
-  EXPECT_EQ(samples[0].degrees, 3);
-  // The first pose's heading is worth 0.2 m sideways here: with m the motion from 0 to 2,
-  // variances 2e-4 + m^2 1e-6. The error is forward, where the motion's sideways part counts.
-  const Pose2 motion = Between(poses[0].estimate, poses[2].estimate);
-  Eigen::Matrix3d by_before = Eigen::Matrix3d::Identity();
-  const double c = std::cos(motion.yaw_rad);
-  const double s = std::sin(motion.yaw_rad);
-  by_before << c, s, s * motion.x_m - c * motion.y_m,  //
-      -s, c, c * motion.x_m + s * motion.y_m,          //
-      0, 0, 1;
-  const Eigen::Matrix3d sum = by_before * covariance * by_before.transpose() + covariance;
-  const Eigen::Vector3d error = Between(motion, Between(poses[0].truth, poses[2].truth)).vector();
-  EXPECT_NEAR(error.head<2>().norm(), 0.03, 1e-9);
-  EXPECT_NEAR(samples[0].value, error.dot(sum.inverse() * error), 1e-9);
-  EXPECT_NEAR(samples[0].value, 0.0009 / 2e-4 + 1.6e-5 / 2e-6, 1.5);
+FrameReport ReportAt(int index, const Pose2& estimate, int motion_from) {
+  FrameReport report;
+  report.index = index;
+  report.stamp_s = 0.1 * index;
+  report.map_from_camera = CameraOf(estimate, 0.0);
+  report.motion_from = motion_from;
+  report.motion_covariance = Eigen::Vector3d(1e-4, 4e-4, 1e-6).asDiagonal();
+  return report;
 }
 
-TEST(RelativeMotionSamples, LeaveOutWhatIsNotTracked) {
-  std::vector<JudgedPose> poses(3);
-  for (JudgedPose& pose : poses) pose.covariance.setZero();
-  EXPECT_TRUE(RelativeMotionSamples(poses, 1).empty());
+TEST(MotionSamples, WorkedByHand) {
+  // Stretches 0 to 2 and 2 to 4; the frame after a correction, 5, goes on from nowhere, and 6 does
+  // not end its stretch.
+  const std::vector<int> from = {0, 0, 0, 2, 2, 5, 5};
+  // The estimate is shifted and turned, which no motion shows; from frame 1 on it is 2 cm ahead, to
+  // the left and turned by 3 mrad.
+  const Pose2 shift{5.0, -2.0, 1.0};
+  std::vector<FrameReport> reports;
+  Trajectory truth;
+  for (int i = 0; i < 7; ++i) {
+    const Pose2 pose{0.0, 0.1 * i, 0.5};
+    const Pose2 ahead = i == 0 ? Pose2{} : Pose2{0.02, 0.02, 0.003};
+    reports.push_back(ReportAt(i, shift * pose * ahead, from[static_cast<std::size_t>(i)]));
+    truth.push_back({0.1 * i, CameraOf(pose, 0.0)});
+  }
+  std::vector<ChiSquareSample> samples = MotionSamples(reports, truth);
+  ASSERT_EQ(samples.size(), 1U);  // that of 2 to 4 ends in a correction
+  EXPECT_EQ(samples[0].degrees, 3);
+  EXPECT_NEAR(samples[0].value, 4e-4 / 1e-4 + 4e-4 / 4e-4 + 9e-6 / 1e-6, 0.05);
+  reports[5].motion_from = 4;
+  reports[6].motion_from = 4;
+  samples = MotionSamples(reports, truth);
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_NEAR(samples[1].value, 0.0, 0.01);  // only the 3 mrad turn 0.2 m of way
+  // What is not known to be true says nothing, nor what is not tracked.
+  truth.erase(truth.begin() + 2);
+  EXPECT_TRUE(MotionSamples(reports, truth).empty());
+}
+
+TEST(MotionSamples, LeaveOutWhatIsNotTracked) {
+  std::vector<FrameReport> reports;
+  Trajectory truth;
+  for (int i = 0; i < 3; ++i) {
+    reports.push_back(ReportAt(i, {}, i == 0 ? 0 : i - 1));
+    reports.back().motion_covariance.setZero();
+    truth.push_back({0.1 * i, CameraOf({}, 0.0)});
+  }
+  EXPECT_TRUE(MotionSamples(reports, truth).empty());
+  for (FrameReport& report : reports) report.motion_from = -1;
+  EXPECT_TRUE(MotionSamples(reports, truth).empty());
 }
 
 }  // namespace

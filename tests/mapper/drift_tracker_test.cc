@@ -90,5 +90,28 @@ TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   EXPECT_LT(ErrorM(tracker, slam, 100, 0.003, 4), 0.02);
 }
 
+TEST(DriftTracker, BelievesThePriorNoMoreThanAnAdjustmentDoes) {
+  DriftTracker tracker;
+  Pose2 slam;
+  // SLAM creeps, but the matches are made against a map that creeps along: they agree with it.
+  for (int i = 0; i < 200; ++i) {
+    slam = slam * Pose2{0.001, 0.0, 0.0};
+    MatchResult match;
+    match.found = true;
+    match.information = MatchInformation();
+    match.map_from_base = slam;
+    const FusedPose fused = tracker.Fuse(slam, match);
+    tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
+  }
+  EXPECT_LT(tracker.noise().walk.norm() + tracker.noise().bias.norm(), 1e-5);
+  // The adjustment saw it; to the left it saw nothing, but that axis is not that much better.
+  tracker.BoundMotion({{0.001, 0.00001, 0.00001}, 7.0});
+  const MotionNoise& noise = tracker.noise();
+  EXPECT_NEAR(std::hypot(noise.bias.x(), noise.walk.x() / std::sqrt(7.0)), 0.0015, 1e-6);
+  EXPECT_NEAR(noise.bias.y(), 0.00075, 1e-6);
+  EXPECT_NEAR(noise.bias.z(), 0.000375, 1e-6);
+  EXPECT_GT(noise.bias_kept.minCoeff(), 0.9);
+}
+
 }  // namespace
 }  // namespace depthgrid

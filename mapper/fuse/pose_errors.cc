@@ -1,0 +1,242 @@
+#include "mapper/fuse/pose_errors.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+
+#include "mapper/core/error.h"
+#include "mapper/fuse/fusion.h"
+
+namespace depthgrid {
+namespace {
+
+// Frames newer than this are remembered as densely as those of this age.
+constexpr double kNewestAge = 8.0;
+// The noise of the map in view stays the same for so much of the map's age; measured
+// (docs/results.md, "Consistency").
+constexpr double kNoiseAge = 0.4;
+
+Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
+  return sigma.cwiseProduct(sigma).asDiagonal();
+}
+
+Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& adjoint) {
+  return adjoint * covariance * adjoint.transpose();
+}
+
+Eigen::Matrix3d PositivePart(const Eigen::Matrix3d& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+// How long ago the map in view was drawn, frames.
+double AgeOf(std::span<const MapPart> parts, int mapped) {
+  double sum = 0.0;
+  double weight = 0.0;
+  for (const MapPart& part : parts) {
+    const double w = part.information.topLeftCorner<2, 2>().trace();
+    sum += w * (mapped - part.mapped);
+    weight += w;
+  }
+  return weight > 0.0 ? std::max(sum / weight, 0.0) : 0.0;
+}
+
+// Of the match's variance.
+double ShareOfMapNoise(std::span<const MapPart> parts) {
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d noisy = Eigen::Matrix3d::Zero();
+  for (const MapPart& part : parts) {
+    all += part.information;
+    noisy += part.noise_share * part.information;
+  }
+  return std::clamp((SeenInverse(all) * noisy).trace() / 3.0, 0.0, 1.0);
+}
+
+}  // namespace
+
+PoseErrors::PoseErrors(int stretch_frames) : stretch_frames_(stretch_frames) {
+  newest_with_knots_.setZero();
+  covariance_.setZero();
+  share_.fill(Eigen::Matrix3d::Zero());
+  knots_.reserve(kKnots);
+  shared_.reserve(kKnots);
+}
+
+void PoseErrors::Add(const FilterStep& step, int index, int mapped,
+                     const Eigen::Matrix3d& information, std::span<const MapPart> parts) {
+  ++frame_;
+  if (!knots_.empty()) {  // the first pose is the origin
+    if (knots_.back().frame - knots_[marked_].frame >= stretch_frames_) marked_ = knots_.size() - 1;
+    Predict(step, parts);
+    Take(step, See(step, information, parts));
+  }
+  Keep(index, mapped);
+  if (broken_) marked_ = knots_.size() - 1;
+  broken_ = false;
+}
+
+// SLAM's motion: the bias, which is kept in base axes, adds to the pose.
+void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts) {
+  const Eigen::Matrix3d map_from_step = AdjointOf(step.predicted);
+  const double noise_kept = 1.0 - 1.0 / (1.0 + kNoiseAge * AgeOf(parts, knots_.back().mapped + 1));
+  Matrix9 f = Matrix9::Identity();
+  f.block<3, 3>(kPose, kBias) = map_from_step;
+  f.block<3, 3>(kBias, kBias) = step.bias_kept.asDiagonal();
+  f.block<3, 3>(kMapNoise, kMapNoise) *= noise_kept;
+  Matrix9 state = f * newest_.topLeftCorner<9, 9>() * f.transpose();
+  state.block<3, 3>(kPose, kPose) += Turned(Squared(step.walk), map_from_step);
+  state.block<3, 3>(kBias, kBias) += Squared(step.bias_renewed);
+  auto bias_with_knots = newest_with_knots_.middleRows<3>(kBias);
+  newest_with_knots_.middleRows<3>(kPose).noalias() += map_from_step * bias_with_knots;
+  bias_with_knots = (step.bias_kept.asDiagonal() * bias_with_knots).eval();
+  newest_with_knots_.middleRows<3>(kMapNoise) *= noise_kept;
+  if (step.new_bias) {
+    state.middleRows<3>(kBias).setZero();
+    state.middleCols<3>(kBias).setZero();
+    state.block<3, 3>(kBias, kBias) = Squared(*step.new_bias);
+    bias_with_knots.setZero();
+  }
+  newest_.topLeftCorner<9, 9>() = state;
+}
+
+// The slot of the frame that drew this: the nearest remembered one; -1 for what was there before
+// the first.
+int PoseErrors::SlotOf(double mapped) const {
+  if (mapped < knots_.front().mapped) return -1;
+  const auto after = std::lower_bound(knots_.begin(), knots_.end(), mapped,
+                                      [](const Knot& knot, double m) { return knot.mapped < m; });
+  if (after == knots_.end()) return knots_.back().slot;
+  if (after == knots_.begin()) return after->slot;
+  const auto before = after - 1;
+  return mapped - before->mapped < after->mapped - mapped ? before->slot : after->slot;
+}
+
+// A match's error is the mean of the errors of what it was made against, weighed by information:
+// error = (sum H_k)^-1 sum H_k error_k, in map axes.
+void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_base) {
+  for (const int slot : shared_) share_[static_cast<std::size_t>(slot)].setZero();
+  shared_.clear();
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  for (const MapPart& part : parts) {
+    all += part.information;
+    const int slot = SlotOf(part.mapped);
+    if (slot < 0) continue;
+    if (std::find(shared_.begin(), shared_.end(), slot) == shared_.end()) shared_.push_back(slot);
+    share_[static_cast<std::size_t>(slot)] += part.information;
+  }
+  const Eigen::Matrix3d mean = AdjointOf(map_from_base) * SeenInverse(all);
+  const Eigen::Matrix3d step_from_map = AdjointOf(Inverse(map_from_base));
+  for (const int slot : shared_) {
+    Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
+    share = (mean * share * step_from_map).eval();
+  }
+}
+
+// A match errs by what it was made against, by that surface's own noise, which is the same as long
+// as it stays in view, and by the noise of the scan, which is new each time.
+PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matrix3d& information,
+                                       std::span<const MapPart> parts) {
+  MatchError match{Eigen::Matrix3d::Zero(), Matrix93::Zero()};
+  match_with_knots_.setZero();
+  if (parts.empty()) return match;
+  Weigh(parts, step.predicted);
+  const double noise_share = ShareOfMapNoise(parts);
+  const Eigen::Matrix3d noise = Turned(SeenInverse(information), AdjointOf(step.predicted));
+  auto map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
+  map_noise += PositivePart(noise_share * noise - map_noise);
+  for (const int slot : shared_) {
+    const Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
+    match_with_knots_.noalias() += share * covariance_.middleRows<3>(3 * slot);
+    match.with_state.noalias() += newest_with_knots_.block<9, 3>(0, 3 * slot) * share.transpose();
+  }
+  for (const int slot : shared_) {
+    match.covariance.noalias() += match_with_knots_.middleCols<3>(3 * slot) *
+                                  share_[static_cast<std::size_t>(slot)].transpose();
+  }
+  const Eigen::Matrix3d noise_with_map = match.with_state.middleRows<3>(kMapNoise);
+  match.covariance +=
+      noise_with_map + noise_with_map.transpose() + map_noise + (1.0 - noise_share) * noise;
+  match.with_state += newest_.block<9, 3>(0, kMapNoise);
+  match_with_knots_ += newest_with_knots_.middleRows<3>(kMapNoise);
+  return match;
+}
+
+// With i = pose + jitter - match the error of the innovation: state -= G i, camera = pose + jitter
+// - K i.
+void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
+  const Eigen::Matrix3d map_from_step = AdjointOf(step.predicted);
+  const Eigen::Matrix3d step_from_map = AdjointOf(Inverse(step.predicted));
+  const Eigen::Matrix3d k = map_from_step * step.gain * step_from_map;
+  Matrix93 g = Matrix93::Zero();
+  g.middleRows<3>(kPose) = map_from_step * step.state_gain.topRows<3>() * step_from_map;
+  g.middleRows<3>(kBias) = step.state_gain.bottomRows<3>() * step_from_map;
+  const Matrix9 state = newest_.topLeftCorner<9, 9>();
+  const Eigen::Matrix3d camera =
+      state.block<3, 3>(kPose, kPose) + Turned(Squared(step.jitter), map_from_step);
+  const Eigen::Matrix3d pose_with_match = match.with_state.middleRows<3>(kPose);
+  const Eigen::Matrix3d camera_with_i = camera - pose_with_match;
+  const Eigen::Matrix3d i = camera_with_i - pose_with_match.transpose() + match.covariance;
+  const Matrix93 state_with_i = state.middleCols<3>(kPose) - match.with_state;
+
+  const Matrix9 taken = g * state_with_i.transpose();
+  newest_.topLeftCorner<9, 9>() = state - taken - taken.transpose() + g * i * g.transpose();
+  const Eigen::Matrix3d moved = k * camera_with_i.transpose();
+  newest_.block<3, 3>(kCamera, kCamera) =
+      camera - moved - moved.transpose() + k * i * k.transpose();
+  const Matrix93 state_with_camera = state.middleCols<3>(kPose) - state_with_i * k.transpose() -
+                                     g * camera_with_i.transpose() + g * i * k.transpose();
+  newest_.block<9, 3>(0, kCamera) = state_with_camera;
+  newest_.block<3, 9>(kCamera, 0) = state_with_camera.transpose();
+  // What rounding makes asymmetric would grow from frame to frame.
+  newest_ = (0.5 * (newest_ + newest_.transpose())).eval();
+
+  const WithKnots pose_with_knots = newest_with_knots_.middleRows<3>(kPose);
+  const WithKnots i_with_knots = pose_with_knots - match_with_knots_;
+  newest_with_knots_.topRows<6>().noalias() -= g.topRows<6>() * i_with_knots;
+  newest_with_knots_.middleRows<3>(kCamera) = pose_with_knots;
+  newest_with_knots_.middleRows<3>(kCamera).noalias() -= k * i_with_knots;
+}
+
+// The knot that is missed least: the one whose neighbours are nearest each other for their age.
+std::size_t PoseErrors::Spare() const {
+  std::size_t spare = 1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i + 1 < knots_.size(); ++i) {
+    if (i == marked_) continue;
+    const double worth =
+        (knots_[i + 1].frame - knots_[i - 1].frame) / (frame_ - knots_[i].frame + kNewestAge);
+    if (worth < least) {
+      least = worth;
+      spare = i;
+    }
+  }
+  return spare;
+}
+
+void PoseErrors::Keep(int index, int mapped) {
+  int slot = static_cast<int>(knots_.size());
+  if (slot == kKnots) {
+    const std::size_t spare = Spare();
+    slot = knots_[spare].slot;
+    knots_.erase(knots_.begin() + static_cast<std::ptrdiff_t>(spare));
+    if (spare < marked_) --marked_;
+  }
+  newest_with_knots_.middleCols<3>(3 * slot) = newest_.middleCols<3>(kCamera);
+  const WithKnots camera = newest_with_knots_.middleRows<3>(kCamera);
+  covariance_.middleRows<3>(3 * slot) = camera;
+  covariance_.middleCols<3>(3 * slot) = camera.transpose();
+  knots_.push_back({frame_, index, mapped, slot});
+}
+
+Eigen::Matrix3d PoseErrors::MotionCovariance(const Pose2& map_from_base) const {
+  Require(!knots_.empty(), "a motion takes a frame");
+  const int slot = 3 * knots_[marked_].slot;
+  const Eigen::Matrix3d cross = newest_with_knots_.block<3, 3>(kCamera, slot);
+  const Eigen::Matrix3d both = newest_.block<3, 3>(kCamera, kCamera) +
+                               covariance_.block<3, 3>(slot, slot) - cross - cross.transpose();
+  const Eigen::Matrix3d motion = Turned(both, AdjointOf(Inverse(map_from_base)));
+  return 0.5 * (motion + motion.transpose());
+}
+
+}  // namespace depthgrid

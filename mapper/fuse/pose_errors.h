@@ -1,0 +1,85 @@
+// How the errors of the online poses go together (docs/math.md, "What the map passes on"). What is
+// drawn at a pose carries that pose's error on, and every match against it repeats the error: a
+// filter that takes the map for exact believes its poses far better known than they are. Here the
+// error of the newest pose is carried along with those of earlier ones, and of a match's error that
+// share is theirs which they drew. Nothing here changes a pose; it says how well motions are known.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "mapper/fuse/filter_step.h"
+#include "mapper/reference_map.h"
+
+namespace depthgrid {
+
+class PoseErrors {
+ public:
+  // Motions are told over at most so many frames.
+  explicit PoseErrors(int stretch_frames);
+
+  // The next frame with a pose. `index` is its own number, `mapped` its position among the mapped
+  // frames, or the one it would have. `information` is that of the match that the step took,
+  // `parts` what it was made against; none: the frame was not matched.
+  void Add(const FilterStep& step, int index, int mapped, const Eigen::Matrix3d& information,
+           std::span<const MapPart> parts);
+  // The map was corrected, or SLAM began anew: no motion goes on from before.
+  void Break() { broken_ = true; }
+
+  // The frame that motions are told from; the newest itself after a break.
+  int motion_from() const { return knots_[marked_].index; }
+  // Of the motion from there to the newest frame, in base axes of the newest, at this pose.
+  Eigen::Matrix3d MotionCovariance(const Pose2& map_from_base) const;
+
+ private:
+  // So many earlier frames are remembered, denser the newer they are.
+  static constexpr int kKnots = 32;
+  // Rows of newest_, all in map axes: true pose = Exp(error) * estimate.
+  static constexpr int kPose = 0;      // the filter's state
+  static constexpr int kBias = 3;      // and its bias
+  static constexpr int kMapNoise = 6;  // of the map's surface that is in view
+  static constexpr int kCamera = 9;    // the pose as reported
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  using Matrix93 = Eigen::Matrix<double, 9, 3>;
+  using WithKnots = Eigen::Matrix<double, 3, 3 * kKnots>;
+
+  struct Knot {
+    int frame = 0;  // counted by Add()
+    int index = 0;
+    int mapped = 0;  // position among the mapped frames
+    int slot = 0;    // its columns, in threes
+  };
+  // The error of a match: covariance, and that with the state and the knots.
+  struct MatchError {
+    Eigen::Matrix3d covariance;
+    Matrix93 with_state;
+  };
+
+  void Predict(const FilterStep& step, std::span<const MapPart> parts);
+  void Weigh(std::span<const MapPart> parts, const Pose2& map_from_base);
+  MatchError See(const FilterStep& step, const Eigen::Matrix3d& information,
+                 std::span<const MapPart> parts);
+  void Take(const FilterStep& step, const MatchError& match);
+  void Keep(int index, int mapped);
+  int SlotOf(double mapped) const;
+  std::size_t Spare() const;
+
+  int stretch_frames_;
+  bool broken_ = false;
+  int frame_ = -1;
+  Eigen::Matrix<double, 12, 12> newest_ = Eigen::Matrix<double, 12, 12>::Zero();
+  // Rows: those of newest_; columns: the knots.
+  Eigen::Matrix<double, 12, 3 * kKnots> newest_with_knots_;
+  Eigen::Matrix<double, 3 * kKnots, 3 * kKnots> covariance_;  // of the knots
+  std::vector<Knot> knots_;                                   // by frame
+  std::size_t marked_ = 0;
+  // Of the match at hand: the share of its error that is a knot's, by slot; slots with a share; and
+  // the match's covariance with the knots.
+  std::array<Eigen::Matrix3d, kKnots> share_;
+  std::vector<int> shared_;
+  WithKnots match_with_knots_;
+};
+
+}  // namespace depthgrid

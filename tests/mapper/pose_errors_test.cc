@@ -1,0 +1,161 @@
+#include "mapper/fuse/pose_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+#include "mapper/core/rng.h"
+#include "mapper/fuse/fusion.h"
+
+namespace depthgrid {
+namespace {
+
+const Eigen::Vector3d kWalk(0.004, 0.002, 0.003);
+const Eigen::Vector3d kMatchSigma(0.006, 0.003, 0.002);
+
+Eigen::Matrix3d MatchInformation() {
+  return kMatchSigma.cwiseProduct(kMatchSigma).cwiseInverse().asDiagonal();
+}
+
+// Round a circle of 2 m.
+Pose2 TruePose(int frame) {
+  const double angle = 0.02 * frame;
+  return {2.0 * std::sin(angle), 2.0 - 2.0 * std::cos(angle), angle};
+}
+
+FilterStep StepAt(int frame, const Eigen::Vector3d& gain) {
+  FilterStep step;
+  step.predicted = TruePose(frame);
+  if (frame == 0) return step;
+  step.walk = kWalk;
+  step.gain = gain.asDiagonal();
+  step.state_gain.topRows<3>() = step.gain;
+  return step;
+}
+
+MapPart PartOf(double mapped) { return {mapped, MatchInformation(), 0.0}; }
+
+TEST(PoseErrors, AgainstAnExactMapAreThoseOfTheFilter) {
+  PoseErrors errors(1000);
+  Prediction prediction;
+  for (int i = 0; i < 100; ++i) {
+    // Drawn before the first frame: a finished map.
+    const MapPart part = PartOf(-5.0);
+    MatchResult match;
+    match.map_from_base = TruePose(i);
+    match.information = MatchInformation();
+    if (i > 0) {
+      prediction.covariance =
+          Transported(prediction.covariance, Between(TruePose(i - 1), TruePose(i)));
+      prediction.covariance += kWalk.cwiseProduct(kWalk).asDiagonal();
+    }
+    prediction.map_from_base = TruePose(i);
+    FilterStep step = StepAt(i, Eigen::Vector3d::Zero());
+    if (i > 0) {
+      const FusedPose fused = FuseKalman(prediction, match);
+      step.gain = fused.gain;
+      step.state_gain.topRows<3>() = fused.gain;
+      prediction.covariance = fused.covariance;
+    }
+    errors.Add(step, i, i, MatchInformation(), {&part, 1});
+  }
+  EXPECT_EQ(errors.motion_from(), 0);
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(99)).isApprox(prediction.covariance, 1e-9));
+}
+
+TEST(PoseErrors, WithoutMatchesAreSlamsMotions) {
+  PoseErrors errors(1000);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  for (int i = 0; i <= 50; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), i, i, Eigen::Matrix3d::Zero(), {});
+    if (i == 0) continue;
+    expected = Transported(expected, Between(TruePose(i - 1), TruePose(i)));
+    expected += kWalk.cwiseProduct(kWalk).asDiagonal();
+  }
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(50)).isApprox(expected, 1e-9));
+}
+
+TEST(PoseErrors, WhatAFrameDrewTellsTheMotionFromIt) {
+  // However badly frame 20 is known: a later match, taken as it is, against what it alone drew is
+  // off by the match's noise.
+  PoseErrors errors(20);
+  for (int i = 0; i <= 30; ++i) {
+    const MapPart part = PartOf(20.0);
+    const bool matched = i > 20;
+    errors.Add(StepAt(i, matched ? Eigen::Vector3d::Ones() : Eigen::Vector3d::Zero()), i, i,
+               MatchInformation(), {&part, matched ? 1U : 0U});
+  }
+  EXPECT_EQ(errors.motion_from(), 20);
+  const Eigen::Matrix3d noise = kMatchSigma.cwiseProduct(kMatchSigma).asDiagonal();
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(30)).isApprox(noise, 1e-6));
+}
+
+// Errors as they come about, on estimates that are off: frames match what those 3 to 12 frames
+// before drew.
+TEST(PoseErrors, AgreeWithManySimulatedRuns) {
+  constexpr int kRuns = 400;
+  constexpr int kFrames = 80;
+  const Eigen::Vector3d gain(0.5, 0.7, 0.3);
+  RandomStream random(7, RandomStage::kTest);
+  const auto normal = [&](const Eigen::Vector3d& sigma) -> Eigen::Vector3d {
+    return sigma.cwiseProduct(Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()));
+  };
+  PoseErrors errors(1000);
+  for (int i = 0; i <= kFrames; ++i) {
+    std::vector<MapPart> parts;
+    for (int k = 3; k <= 12 && i - k >= 0; ++k) parts.push_back(PartOf(i - k));
+    errors.Add(StepAt(i, parts.empty() ? Eigen::Vector3d::Zero() : gain), i, i, MatchInformation(),
+               parts);
+    if (i == kFrames / 2) errors.Break();  // motions are told from the frame after
+  }
+  constexpr int kFrom = kFrames / 2 + 1;
+  ASSERT_EQ(errors.motion_from(), kFrom);
+  const Eigen::LDLT<Eigen::Matrix3d> factor(errors.MotionCovariance(TruePose(kFrames)));
+  double sum = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<Eigen::Vector3d> error = {Eigen::Vector3d::Zero()};  // in map axes
+    for (int i = 1; i <= kFrames; ++i) {
+      const Eigen::Matrix3d map_from_base = AdjointOf(TruePose(i));
+      const Eigen::Matrix3d base_from_map = AdjointOf(Inverse(TruePose(i)));
+      Eigen::Vector3d predicted = error.back() + map_from_base * normal(kWalk);
+      Eigen::Vector3d map = Eigen::Vector3d::Zero();
+      int parts = 0;
+      for (int k = 3; k <= 12 && i - k >= 0; ++k, ++parts) {
+        map += error[static_cast<std::size_t>(i - k)];
+      }
+      if (parts > 0) {
+        const Eigen::Vector3d match = map / parts + map_from_base * normal(kMatchSigma);
+        predicted += map_from_base * gain.asDiagonal() * base_from_map * (match - predicted);
+      }
+      error.push_back(predicted);
+    }
+    const Eigen::Vector3d motion = AdjointOf(Inverse(TruePose(kFrames))) *
+                                   (error.back() - error[static_cast<std::size_t>(kFrom)]);
+    sum += motion.dot(factor.solve(motion));
+  }
+  // 1,200 degrees of freedom: the mean of one is known to 4 %; the parts are merged to remembered
+  // frames where they are old.
+  EXPECT_NEAR(sum / (3.0 * kRuns), 1.0, 0.12);
+}
+
+TEST(PoseErrors, StretchesEndWhereTheNextBegins) {
+  PoseErrors errors(10);
+  std::vector<int> from;
+  for (int i = 0; i < 40; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), 2 * i, i, Eigen::Matrix3d::Zero(), {});
+    from.push_back(errors.motion_from());
+    if (i == 15) {
+      EXPECT_TRUE(errors.MotionCovariance(TruePose(i)).isZero(1e-15));
+    }
+    if (i == 14) errors.Break();
+  }
+  for (int i = 0; i < 40; ++i) {
+    const int expected = i <= 10 ? 0 : i <= 14 ? 20 : i <= 25 ? 30 : i <= 35 ? 50 : 70;
+    EXPECT_EQ(from[static_cast<std::size_t>(i)], expected) << i;
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
