@@ -12,6 +12,10 @@ Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
   // In units where a metre and a radian of a view 3 m deep weigh alike.
   const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
   const Eigen::Matrix3d scaled = unit.asDiagonal() * information * unit.asDiagonal();
+  // Mostly all is seen, and nothing has to be told apart.
+  constexpr double kPlain = 1e6;  // condition
+  const Eigen::Matrix3d plain = scaled.inverse();
+  if (scaled.norm() * plain.norm() < kPlain) return unit.asDiagonal() * plain * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scaled);
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {

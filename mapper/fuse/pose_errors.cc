@@ -56,7 +56,7 @@ double ShareOfMapNoise(std::span<const MapPart> parts) {
 }  // namespace
 
 PoseErrors::PoseErrors(int stretch_frames) : stretch_frames_(stretch_frames) {
-  newest_with_knots_.setZero();
+  knots_with_newest_.setZero();
   covariance_.setZero();
   share_.fill(Eigen::Matrix3d::Zero());
   knots_.reserve(kKnots);
@@ -87,15 +87,15 @@ void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts)
   Matrix9 state = f * newest_.topLeftCorner<9, 9>() * f.transpose();
   state.block<3, 3>(kPose, kPose) += Turned(Squared(step.walk), map_from_step);
   state.block<3, 3>(kBias, kBias) += Squared(step.bias_renewed);
-  auto bias_with_knots = newest_with_knots_.middleRows<3>(kBias);
-  newest_with_knots_.middleRows<3>(kPose).noalias() += map_from_step * bias_with_knots;
-  bias_with_knots = (step.bias_kept.asDiagonal() * bias_with_knots).eval();
-  newest_with_knots_.middleRows<3>(kMapNoise) *= noise_kept;
+  auto knots_with_bias = knots_with_newest_.middleCols<3>(kBias);
+  knots_with_newest_.middleCols<3>(kPose).noalias() += knots_with_bias * map_from_step.transpose();
+  knots_with_bias = (knots_with_bias * step.bias_kept.asDiagonal()).eval();
+  knots_with_newest_.middleCols<3>(kMapNoise) *= noise_kept;
   if (step.new_bias) {
     state.middleRows<3>(kBias).setZero();
     state.middleCols<3>(kBias).setZero();
     state.block<3, 3>(kBias, kBias) = Squared(*step.new_bias);
-    bias_with_knots.setZero();
+    knots_with_bias.setZero();
   }
   newest_.topLeftCorner<9, 9>() = state;
 }
@@ -138,7 +138,7 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
 PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matrix3d& information,
                                        std::span<const MapPart> parts) {
   MatchError match{Eigen::Matrix3d::Zero(), Matrix93::Zero()};
-  match_with_knots_.setZero();
+  knots_with_match_.setZero();
   if (parts.empty()) return match;
   Weigh(parts, step.predicted);
   const double noise_share = ShareOfMapNoise(parts);
@@ -147,18 +147,19 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
   map_noise += PositivePart(noise_share * noise - map_noise);
   for (const int slot : shared_) {
     const Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
-    match_with_knots_.noalias() += share * covariance_.middleRows<3>(3 * slot);
-    match.with_state.noalias() += newest_with_knots_.block<9, 3>(0, 3 * slot) * share.transpose();
+    knots_with_match_.noalias() += covariance_.middleCols<3>(3 * slot) * share.transpose();
+    match.with_state.noalias() +=
+        knots_with_newest_.block<3, 9>(3 * slot, 0).transpose() * share.transpose();
   }
   for (const int slot : shared_) {
-    match.covariance.noalias() += match_with_knots_.middleCols<3>(3 * slot) *
+    match.covariance.noalias() += knots_with_match_.middleRows<3>(3 * slot).transpose() *
                                   share_[static_cast<std::size_t>(slot)].transpose();
   }
   const Eigen::Matrix3d noise_with_map = match.with_state.middleRows<3>(kMapNoise);
   match.covariance +=
       noise_with_map + noise_with_map.transpose() + map_noise + (1.0 - noise_share) * noise;
   match.with_state += newest_.block<9, 3>(0, kMapNoise);
-  match_with_knots_ += newest_with_knots_.middleRows<3>(kMapNoise);
+  knots_with_match_ += knots_with_newest_.middleCols<3>(kMapNoise);
   return match;
 }
 
@@ -191,11 +192,11 @@ void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
   // What rounding makes asymmetric would grow from frame to frame.
   newest_ = (0.5 * (newest_ + newest_.transpose())).eval();
 
-  const WithKnots pose_with_knots = newest_with_knots_.middleRows<3>(kPose);
-  const WithKnots i_with_knots = pose_with_knots - match_with_knots_;
-  newest_with_knots_.topRows<6>().noalias() -= g.topRows<6>() * i_with_knots;
-  newest_with_knots_.middleRows<3>(kCamera) = pose_with_knots;
-  newest_with_knots_.middleRows<3>(kCamera).noalias() -= k * i_with_knots;
+  const KnotsWith knots_with_pose = knots_with_newest_.middleCols<3>(kPose);
+  const KnotsWith knots_with_i = knots_with_pose - knots_with_match_;
+  knots_with_newest_.leftCols<6>().noalias() -= knots_with_i * g.topRows<6>().transpose();
+  knots_with_newest_.middleCols<3>(kCamera) = knots_with_pose;
+  knots_with_newest_.middleCols<3>(kCamera).noalias() -= knots_with_i * k.transpose();
 }
 
 // The knot that is missed least: the one whose neighbours are nearest each other for their age.
@@ -222,17 +223,17 @@ void PoseErrors::Keep(int index, int mapped) {
     knots_.erase(knots_.begin() + static_cast<std::ptrdiff_t>(spare));
     if (spare < marked_) --marked_;
   }
-  newest_with_knots_.middleCols<3>(3 * slot) = newest_.middleCols<3>(kCamera);
-  const WithKnots camera = newest_with_knots_.middleRows<3>(kCamera);
-  covariance_.middleRows<3>(3 * slot) = camera;
-  covariance_.middleCols<3>(3 * slot) = camera.transpose();
+  knots_with_newest_.middleRows<3>(3 * slot) = newest_.middleRows<3>(kCamera);
+  const KnotsWith camera = knots_with_newest_.middleCols<3>(kCamera);
+  covariance_.middleCols<3>(3 * slot) = camera;
+  covariance_.middleRows<3>(3 * slot) = camera.transpose();
   knots_.push_back({frame_, index, mapped, slot});
 }
 
 Eigen::Matrix3d PoseErrors::MotionCovariance(const Pose2& map_from_base) const {
   Require(!knots_.empty(), "a motion takes a frame");
   const int slot = 3 * knots_[marked_].slot;
-  const Eigen::Matrix3d cross = newest_with_knots_.block<3, 3>(kCamera, slot);
+  const Eigen::Matrix3d cross = knots_with_newest_.block<3, 3>(slot, kCamera);
   const Eigen::Matrix3d both = newest_.block<3, 3>(kCamera, kCamera) +
                                covariance_.block<3, 3>(slot, slot) - cross - cross.transpose();
   const Eigen::Matrix3d motion = Turned(both, AdjointOf(Inverse(map_from_base)));

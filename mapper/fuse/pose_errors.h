@@ -43,7 +43,7 @@ class PoseErrors {
   static constexpr int kCamera = 9;    // the pose as reported
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
   using Matrix93 = Eigen::Matrix<double, 9, 3>;
-  using WithKnots = Eigen::Matrix<double, 3, 3 * kKnots>;
+  using KnotsWith = Eigen::Matrix<double, 3 * kKnots, 3>;
 
   struct Knot {
     int frame = 0;  // counted by Add()
@@ -70,8 +70,8 @@ class PoseErrors {
   bool broken_ = false;
   int frame_ = -1;
   Eigen::Matrix<double, 12, 12> newest_ = Eigen::Matrix<double, 12, 12>::Zero();
-  // Rows: those of newest_; columns: the knots.
-  Eigen::Matrix<double, 12, 3 * kKnots> newest_with_knots_;
+  // Rows: the knots, so that they lie side by side; columns: those of newest_.
+  Eigen::Matrix<double, 3 * kKnots, 12> knots_with_newest_;
   Eigen::Matrix<double, 3 * kKnots, 3 * kKnots> covariance_;  // of the knots
   std::vector<Knot> knots_;                                   // by frame
   std::size_t marked_ = 0;
@@ -79,7 +79,7 @@ class PoseErrors {
   // the match's covariance with the knots.
   std::array<Eigen::Matrix3d, kKnots> share_;
   std::vector<int> shared_;
-  WithKnots match_with_knots_;
+  KnotsWith knots_with_match_;
 };
 
 }  // namespace depthgrid
