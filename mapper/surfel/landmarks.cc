@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "mapper/surfel/misfit.h"
 
@@ -81,7 +82,7 @@ void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTr
   std::vector<Motion2> motions;
   for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
   std::vector<Row> rows;
-  std::vector<std::pair<int, Eigen::Vector3d>> sums;
+  std::vector<PoseShare> sums;
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
     const std::size_t begin = begin_[landmark];
     const std::size_t end = begin_[landmark + 1];
@@ -102,17 +103,13 @@ void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTr
       const Eigen::Vector3d weighted_row = row.weight * row.jacobian;
       g.segment<3>(3 * row.group) -= (row.error_m - offset_m) * weighted_row;
       h.AddBlock(row.group, row.group, weighted_row * row.jacobian.transpose());
-      if (!sums.empty() && sums.back().first == row.group) {
-        sums.back().second += weighted_row;
-      } else {
-        sums.emplace_back(row.group, weighted_row);
-      }
+      if (sums.empty() || sums.back().pose != row.group) sums.push_back({row.group});
+      sums.back().share += weighted_row;
     }
     for (std::size_t k = 0; k < sums.size(); ++k) {
-      const Eigen::Vector3d scaled = sums[k].second / weights;
-      for (std::size_t l = 0; l <= k; ++l) {
-        h.AddBlock(sums[k].first, sums[l].first, -scaled * sums[l].second.transpose());
-      }
+      const Eigen::Vector3d scaled = -sums[k].share / weights;
+      h.AddProducts(sums[k].pose, scaled, std::span(sums).first(k));
+      h.AddBlock(sums[k].pose, sums[k].pose, scaled * sums[k].share.transpose());
     }
   }
 }

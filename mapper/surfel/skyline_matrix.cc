@@ -80,6 +80,23 @@ void SkylineMatrix::AddBlock(int row_pose, int column_pose, const Eigen::Matrix3
   }
 }
 
+void SkylineMatrix::AddProducts(int row_pose, const Eigen::Vector3d& left,
+                                std::span<const PoseShare> right) {
+  if (right.empty()) return;
+  const int first = kBlock * right[0].pose;
+  double* const a = At(kBlock * row_pose, first);
+  double* const b = At(kBlock * row_pose + 1, first);
+  double* const c = At(kBlock * row_pose + 2, first);
+  for (const PoseShare& of : right) {
+    for (int k = 0; k < kBlock; ++k) {
+      const int column = kBlock * of.pose + k - first;
+      a[column] += left[0] * of.share[k];
+      b[column] += left[1] * of.share[k];
+      c[column] += left[2] * of.share[k];
+    }
+  }
+}
+
 bool SkylineMatrix::IsInBlocks() const {
   if (size() % kBlock != 0) return false;
   for (int i = 0; i < size(); ++i) {

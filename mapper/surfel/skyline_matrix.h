@@ -27,6 +27,8 @@ class SkylineMatrix : public PoseMatrix {
   }
   // The blocks given lie in the rows.
   void AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) override;
+  void AddProducts(int row_pose, const Eigen::Vector3d& left,
+                   std::span<const PoseShare> right) override;
   double& Diagonal(int i) override { return *At(i, i); }
   // Becomes the lower factor L of L L^T.
   bool Factor() override;
