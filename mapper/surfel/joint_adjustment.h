@@ -15,9 +15,11 @@ struct JointOptions {
   int rounds = 6;
   // They go on to so many while the prior turns out better with each.
   int most_rounds = 6;
-  // Rounds and first gate of adjustments during the run without new loops.
+  // Rounds, first gate and most groups of adjustments during the run without new loops. Without
+  // that bound they take twice as long and are no more accurate (docs/bench.md, "Growing floors").
   int refine_rounds = 3;
   double refine_gate_m = 0.2;
+  int refine_groups = 150;
   // What groups see is one landmark when it lies this near: in the first round, in the last.
   double first_gate_m = 0.5;
   double last_gate_m = 0.1;

@@ -103,14 +103,14 @@ SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) 
   return joined;
 }
 
-SurfelGroups SurfelGroups::Joined(const std::vector<bool>& apart) const {
+SurfelGroups SurfelGroups::Joined(int most, const std::vector<bool>& apart) const {
   constexpr int kMostJoined = 8;  // 1.2 m: farther on another part of the room is in view
   const int groups = static_cast<int>(groups_.size());
-  if (groups <= options_.most) return *this;
-  int factor = (groups + options_.most - 1) / options_.most;
+  if (groups <= most) return *this;
+  int factor = (groups + most - 1) / most;
   while (true) {
     SurfelGroups joined = JoinedBy(std::min(factor, kMostJoined), apart);
-    if (factor >= kMostJoined || static_cast<int>(joined.groups_.size()) <= options_.most) {
+    if (factor >= kMostJoined || static_cast<int>(joined.groups_.size()) <= most) {
       return joined;
     }
     ++factor;

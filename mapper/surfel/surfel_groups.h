@@ -47,9 +47,9 @@ class SurfelGroups {
   const std::vector<GroupPlace>& places() const { return places_; }  // one a frame
   // Corrected poses, one a frame. What the groups saw does not change.
   void MoveTo(const std::vector<Pose2>& map_from_base);
-  // The same frames in no more than options.most groups, as far as these may be joined: group g
+  // The same frames in no more than `most` groups, as far as these may be joined: group g
   // stays apart from the one before where `apart[g]`.
-  SurfelGroups Joined(const std::vector<bool>& apart) const;
+  SurfelGroups Joined(int most, const std::vector<bool>& apart) const;
 
  private:
   bool Ends(const Pose2& group_from_base) const;

@@ -173,11 +173,12 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
   }
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
-  groups = groups.Joined(GapsBefore(groups, frames));
+  const JointOptions joint = JointOptionsFor(effort);
+  groups = groups.Joined(joint.groups.most, GapsBefore(groups, frames));
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
   const JointResult result =
-      AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, JointOptionsFor(effort));
+      AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
   const auto group_count = static_cast<int>(groups.groups().size());
@@ -198,6 +199,7 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
   if (effort == AdjustEffort::kRefine) {
     joint.rounds = joint.refine_rounds;
     joint.first_gate_m = joint.refine_gate_m;
+    joint.groups.most = std::min(joint.groups.most, joint.refine_groups);
   }
   if (effort == AdjustEffort::kBend) joint.rounds = 0;
   return joint;

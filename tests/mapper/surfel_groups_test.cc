@@ -20,10 +20,9 @@ std::vector<Surfel> WallFrom(double x_m) {
 }
 
 // Twelve frames 0.1 m apart, a group each.
-SurfelGroups Walk(int most) {
+SurfelGroups Walk() {
   SurfelGroupOptions options;
   options.length_m = 0.08;
-  options.most = most;
   SurfelGroups groups(options);
   for (int i = 0; i < 12; ++i) groups.Add(WallFrom(0.1 * i), {0.1 * i, 0.0, 0.0});
   return groups;
@@ -32,15 +31,15 @@ SurfelGroups Walk(int most) {
 const std::vector<bool> kTogether(12, false);
 
 TEST(SurfelGroups, FewAreLeftAsTheyAre) {
-  const SurfelGroups groups = Walk(12);
+  const SurfelGroups groups = Walk();
   EXPECT_EQ(groups.groups().size(), 12U);
-  EXPECT_EQ(groups.Joined(kTogether).groups().size(), 12U);
+  EXPECT_EQ(groups.Joined(12, kTogether).groups().size(), 12U);
 }
 
 // Groups may reach 0.24 m then: frames 0-2, 3-5 ...
 TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
-  const SurfelGroups walk = Walk(4);
-  const SurfelGroups joined = walk.Joined(kTogether);
+  const SurfelGroups walk = Walk();
+  const SurfelGroups joined = walk.Joined(4, kTogether);
   ASSERT_EQ(joined.groups().size(), 4U);
   EXPECT_EQ(joined.groups()[1].first_frame, 3);
   EXPECT_EQ(joined.groups()[1].frames, 3);
@@ -54,7 +53,7 @@ TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
 TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
   std::vector<bool> apart = kTogether;
   apart[4] = true;
-  const SurfelGroups joined = Walk(5).Joined(apart);
+  const SurfelGroups joined = Walk().Joined(5, apart);
   EXPECT_EQ(joined.groups().size(), 5U);
   EXPECT_EQ(joined.groups()[2].first_frame, 4);
 }
@@ -63,7 +62,6 @@ TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
 TEST(SurfelGroups, TiedFramesMoveWithTheirGroup) {
   SurfelGroupOptions options;
   options.length_m = 0.08;
-  options.most = 2;
   SurfelGroups groups(options);
   for (int i = 0; i < 3; ++i) groups.Add(WallFrom(0.1 * i), {0.1 * i, 0.0, 0.0});
   for (int i = 3; i < 6; ++i) groups.AddTied(0, {0.01 * i, 0.0, 0.0});
@@ -80,7 +78,7 @@ TEST(SurfelGroups, TiedFramesMoveWithTheirGroup) {
   groups.MoveTo(moved);
   EXPECT_NEAR(groups.groups()[0].map_from_group.y_m, 0.1, 1e-12);
   EXPECT_NEAR(groups.places()[4].group_from_base.x_m, 0.04, 1e-12);
-  const SurfelGroups joined = groups.Joined({false, false, false, true});
+  const SurfelGroups joined = groups.Joined(2, {false, false, false, true});
   ASSERT_EQ(joined.groups().size(), 2U);
   EXPECT_EQ(joined.places()[5].group, 0);
   EXPECT_EQ(joined.places()[6].group, 1);
