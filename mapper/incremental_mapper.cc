@@ -64,8 +64,10 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
   const Prediction prediction = state_->Predict(scans.matched, report);
   state_->Match(scans.matched, prediction, report);
+  state_->DoubtGuess(report);
   const FusedPose fused = state_->Fuse(prediction, report);
   state_->Insert(scans, fused, report);
+  state_->Relocate(scans, report);
   state_->FindLoops(scans, report);
   return report;
 }
@@ -139,10 +141,46 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
   if (outcome.adjusted) MoveTo(outcome.map_from_base);
 }
 
+// The first match after a loss says whether the guess was near enough.
+void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
+  if (!reference || fixed_map || mapped.empty()) return;
+  const double share = report.match.found ? report.match.score : 0.0;
+  const FrameRecord* last = history.PosedBefore(history.newest());
+  const double lost_s = last == nullptr ? 0.0 : report.stamp_s - last->stamp_s;
+  if (relocation.Begins(lost_s, share, mapped.size())) {
+    reference->BeginPart();
+  } else {
+    relocation.Explained(share);
+  }
+}
+
+// All that was mapped since the loss moves to where it belongs.
+void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
+  const StageTimer timer(clock, report.times.loops_us);
+  if (!relocation.active() || !report.inserted) return;
+  const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
+  if (!moved) return;
+  const int first = relocation.first_frame();
+  std::vector<Pose2> map_from_base;
+  for (int i = 0; i < mapped.size(); ++i) {
+    const Pose2& pose = mapped.all()[static_cast<std::size_t>(i)].map_from_base;
+    map_from_base.push_back(i < first ? pose : *moved * pose);
+  }
+  mapped.ForgetMotionTo(first);
+  MoveTo(map_from_base, first);
+  if (loop_search) loop_search->Forget();
+  report.relocated = true;
+}
+
 // The newest pose is the newest mapped frame's.
-void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base) {
+void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
+                                      const std::optional<int>& moved_apart) {
   mapped.MoveTo(map_from_base);
-  reference->Rebuild(mapped.all());
+  if (moved_apart) {
+    reference->RebuildMoved(mapped.all(), *moved_apart);
+  } else {
+    reference->Rebuild(mapped.all());
+  }
   const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
   errors.Break();
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
@@ -231,7 +269,9 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& 
   frame.match = report.match;
   history.newest().mapped = mapped.size();
   // Where nothing is matched nothing can speak against a place.
-  const double explained = reference ? (report.match.found ? report.match.score : 0.0) : 1.0;
+  std::optional<double> explained = 1.0;
+  if (reference) explained = report.match.found ? report.match.score : 0.0;
+  if (relocation.active()) explained.reset();
   const MappedFrame& added = mapped.Add(std::move(frame), scans, explained);
   report.inserted = added.kept();
   report.well_seen = !added.kept();

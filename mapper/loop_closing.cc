@@ -13,6 +13,7 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Number("bend_frames", bend_frames, {0, 1e9},
            "mapped frames beyond which loops only bend the poses until the end");
   v.Group("search", search, "loops that the mapper finds itself");
+  v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }
 
 AdjustEffort LoopCloser::EffortFor(const std::vector<MappedFrame>& frames) const {

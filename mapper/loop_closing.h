@@ -7,6 +7,7 @@
 #include "mapper/frame_history.h"
 #include "mapper/graph/loop_overlap.h"
 #include "mapper/graph/loop_search_options.h"
+#include "mapper/graph/relocation.h"
 
 namespace depthgrid {
 
@@ -20,6 +21,7 @@ struct LoopOptions {
   // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/bench.md, "Growing floors").
   int bend_frames = 4000;
   LoopSearchOptions search;
+  RelocationOptions relocation;
 
   void Visit(OptionsVisitor& v);
 };

@@ -29,10 +29,12 @@ MappedFrame MappedFrames::WithScans(MappedFrame frame, const FrameScans& scans) 
   return frame;
 }
 
-const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans, double explained) {
-  const std::optional<int> tie =
-      keeping_.TieOf(frames_, frame.map_from_base, explained >= options_.min_explained);
-  frame.tied_to = tie.value_or(-1);
+const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans,
+                                     const std::optional<double>& explained) {
+  if (explained) {
+    const bool well = *explained >= options_.min_explained;
+    frame.tied_to = keeping_.TieOf(frames_, frame.map_from_base, well).value_or(-1);
+  }
   if (frame.kept()) {
     kept_.Keep(scans, frame);
     keeping_.Add(size(), frame.map_from_base);
@@ -59,6 +61,10 @@ void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
     frame.map_from_base = map_from_base[i];
   }
   keeping_.Rebuild(frames_);
+}
+
+void MappedFrames::ForgetMotionTo(int position) {
+  frames_[static_cast<std::size_t>(position)].slam_motion.reset();
 }
 
 std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,

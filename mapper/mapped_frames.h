@@ -25,9 +25,13 @@ class MappedFrames {
   MappedFrame WithScans(MappedFrame frame, const FrameScans& scans);
   // The frame and its scans, kept unless its place is well seen already. `explained` is the share
   // of the scan that the map explains.
-  const MappedFrame& Add(MappedFrame frame, const FrameScans& scans, double explained);
+  // Empty: it is kept wherever it is.
+  const MappedFrame& Add(MappedFrame frame, const FrameScans& scans,
+                         const std::optional<double>& explained);
   // Corrected poses, one a frame. Matches of frames that are tied move with them.
   void MoveTo(const std::vector<Pose2>& map_from_base);
+  // What SLAM says of the motion to this frame is wrong.
+  void ForgetMotionTo(int position);
 
  private:
   struct Archive {

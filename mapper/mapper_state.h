@@ -34,6 +34,7 @@ struct IncrementalMapper::State {
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
+  Relocation relocation;
   AdjustmentRounds rounds;
   MappedFrames mapped;
   bool has_prior = false;
@@ -49,6 +50,7 @@ struct IncrementalMapper::State {
         filter(opts.fusion),
         errors(opts.submap.scans),
         loop_closer(opts.loops),
+        relocation(opts.loops.relocation, opts.loops.search, opts.loops.overlap),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
         mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)) {
@@ -62,7 +64,10 @@ struct IncrementalMapper::State {
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   void AdjustBetweenFrames();
   void FindLoops(const FrameScans& scans, FrameReport& report);
-  void MoveTo(const std::vector<Pose2>& map_from_base);
+  void DoubtGuess(const FrameReport& report);
+  void Relocate(const FrameScans& scans, FrameReport& report);
+  // Only the frames from `moved_apart` on were moved, as one, if it is given.
+  void MoveTo(const std::vector<Pose2>& map_from_base, const std::optional<int>& moved_apart = {});
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);

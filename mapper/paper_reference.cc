@@ -73,4 +73,12 @@ void PaperReference::Rebuild(const std::vector<MappedFrame>& frames) {
   }
 }
 
+// What was measured between the frames before and those moved was of the old guess.
+void PaperReference::RebuildMoved(const std::vector<MappedFrame>& frames, int first_moved) {
+  Rebuild(frames);
+  for (auto i = static_cast<std::size_t>(first_moved); i < frames.size(); ++i) {
+    measurements_[i] = MeasurementOf(map_from_base_, static_cast<int>(i), scans_per_submap_);
+  }
+}
+
 }  // namespace depthgrid

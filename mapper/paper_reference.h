@@ -30,6 +30,7 @@ class PaperReference : public ReferenceMap {
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
+  void RebuildMoved(const std::vector<MappedFrame>& frames, int first_moved) override;
 
  private:
   void Draw(const Scan& scan, const Pose2& map_from_base);

@@ -87,6 +87,10 @@ class ReferenceMap {
                             const std::vector<PlanarLoop>& loops, AdjustEffort effort) = 0;
   // Forgets everything and inserts the frames again at their (corrected) poses.
   virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
+  // The next frame's place among those before is not known: nothing is measured between them.
+  virtual void BeginPart() {}
+  // As Rebuild, after the frames from this position on were moved as one.
+  virtual void RebuildMoved(const std::vector<MappedFrame>& frames, int) { Rebuild(frames); }
 };
 
 }  // namespace depthgrid

@@ -22,18 +22,26 @@ GridOptions PlaceGrid(const OverlapOptions& options) {
   return grid;
 }
 
-Place PlaceAround(const std::vector<MappedFrame>& frames, int middle,
-                  const OverlapOptions& options) {
-  ScanRasterizer rasterizer;
-  ProbabilityGrid grid(PlaceGrid(options));
-  Place place;
-  const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
+std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
+                              const OverlapOptions& options) {
+  std::vector<int> members;
   const int steps = options.window_frames / options.stride;
   for (int step = -steps; step <= steps; ++step) {
     const int index = middle + step * options.stride;
     if (index < 0 || index >= static_cast<int>(frames.size())) continue;
+    if (frames[static_cast<std::size_t>(index)].scan) members.push_back(index);
+  }
+  return members;
+}
+
+Place PlaceOf(const std::vector<MappedFrame>& frames, const std::vector<int>& members, int middle,
+              const OverlapOptions& options) {
+  ScanRasterizer rasterizer;
+  ProbabilityGrid grid(PlaceGrid(options));
+  Place place;
+  const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
+  for (const int index : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
-    if (!frame.scan) continue;
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
     const Scan scan = *frame.scan;
     grid.Insert(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m));
@@ -81,8 +89,15 @@ void OverlapOptions::Visit(OptionsVisitor& v) {
 
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
                   const OverlapOptions& options) {
-  const Place first = PlaceAround(frames, loop.first, options);
-  const Place second = PlaceAround(frames, loop.second, options);
+  return OverlapOf(frames, FramesAround(frames, loop.first, options),
+                   FramesAround(frames, loop.second, options), loop, options);
+}
+
+Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>& first_members,
+                  const std::vector<int>& second_members, const PlanarLoop& loop,
+                  const OverlapOptions& options) {
+  const Place first = PlaceOf(frames, first_members, loop.first, options);
+  const Place second = PlaceOf(frames, second_members, loop.second, options);
   Overlap overlap;
   Compare(first, second, loop.first_from_second, options, overlap);
   Compare(second, first, Inverse(loop.first_from_second), options, overlap);

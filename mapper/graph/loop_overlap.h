@@ -37,6 +37,11 @@ struct Overlap {
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
                   const OverlapOptions& options);
 
+// The same with these frames for the places.
+Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>& first_members,
+                  const std::vector<int>& second_members, const PlanarLoop& loop,
+                  const OverlapOptions& options);
+
 bool Agrees(const Overlap& overlap, const OverlapOptions& options);
 
 }  // namespace depthgrid

@@ -13,13 +13,13 @@ const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return frames[static_cast<std::size_t>(i)].map_from_base;
 }
 
-// The last frame on one side that is still within reach.
+// The last frame on one side that is still within reach, from `begin` to before `end`.
 int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
-                  const PlaceOptions& options) {
+                  const PlaceOptions& options, int begin, int end) {
   double way_m = 0.0;
   double turn_rad = 0.0;
   int i = middle;
-  while (i + step >= 0 && i + step < static_cast<int>(frames.size())) {
+  while (i + step >= begin && i + step < end) {
     const Pose2 motion = Between(PoseAt(frames, i), PoseAt(frames, i + step));
     way_m += motion.translation().norm();
     turn_rad += std::abs(motion.yaw_rad);
@@ -40,8 +40,13 @@ void PlaceOptions::Visit(OptionsVisitor& v) {
 
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options) {
-  const int first = FarthestFrame(frames, middle, -1, options);
-  const int last = FarthestFrame(frames, middle, 1, options);
+  return FramesAround(frames, middle, options, 0, static_cast<int>(frames.size()));
+}
+
+std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
+                              const PlaceOptions& options, int begin, int end) {
+  const int first = FarthestFrame(frames, middle, -1, options, begin, end);
+  const int last = FarthestFrame(frames, middle, 1, options, begin, end);
   std::vector<int> with_scan;
   for (int i = first; i <= last; ++i) {
     if (frames[static_cast<std::size_t>(i)].scan) with_scan.push_back(i);

@@ -23,6 +23,9 @@ struct PlaceOptions {
 // Positions among the mapped frames, in order of time. Frames whose scan was not kept do not count.
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options);
+// Only those from `begin` to before `end`.
+std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
+                              const PlaceOptions& options, int begin, int end);
 
 // The map that these scans draw.
 OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,

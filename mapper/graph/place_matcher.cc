@@ -93,6 +93,18 @@ std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFram
   return loop;
 }
 
+std::optional<PlanarLoop> PlaceMatcher::Confirmed(const std::vector<MappedFrame>& frames,
+                                                  const std::vector<int>& first_members,
+                                                  const std::vector<int>& second_members,
+                                                  PlanarLoop loop, double min_agreement) const {
+  if (!Refine(frames, first_members, second_members, loop)) return std::nullopt;
+  const Overlap overlap = OverlapOf(frames, first_members, second_members, loop, overlap_);
+  if (!Agrees(overlap, overlap_) || overlap.agreement() < min_agreement) {
+    return std::nullopt;
+  }
+  return loop;
+}
+
 bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames,
                           const std::vector<int>& first_members,
                           const std::vector<int>& second_members, PlanarLoop& loop) const {

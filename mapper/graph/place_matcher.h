@@ -19,6 +19,13 @@ class PlaceMatcher {
   std::optional<PlanarLoop> LoopBetween(const std::vector<MappedFrame>& frames, int first,
                                         int second, double half_m, double half_rad) const;
 
+  // A place found by other means: laid over precisely and tested like a loop. The places are those
+  // of the members, in axes of the loop's two frames.
+  std::optional<PlanarLoop> Confirmed(const std::vector<MappedFrame>& frames,
+                                      const std::vector<int>& first_members,
+                                      const std::vector<int>& second_members, PlanarLoop loop,
+                                      double min_agreement) const;
+
  private:
   bool Refine(const std::vector<MappedFrame>& frames, const std::vector<int>& first_members,
               const std::vector<int>& second_members, PlanarLoop& loop) const;

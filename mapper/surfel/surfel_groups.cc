@@ -49,10 +49,11 @@ void SurfelGroups::Collect(const std::vector<Surfel>& surfels, const Pose2& grou
 }
 
 void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base) {
-  if (groups_.empty() || places_.size() - last_added_ > kLongestGapFrames ||
+  if (groups_.empty() || part_begins_ || places_.size() - last_added_ > kLongestGapFrames ||
       Ends(Between(groups_.back().map_from_group, map_from_base))) {
     Begin(static_cast<int>(places_.size()), map_from_base);
   }
+  part_begins_ = false;
   last_added_ = places_.size();
   SurfelGroup& group = groups_.back();
   ++group.frames;

@@ -43,6 +43,8 @@ class SurfelGroups {
   void Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base);
   // The next frame, which moves with an earlier one and adds nothing to what its group saw.
   void AddTied(int tied_to, const Pose2& map_from_base);
+  // The next frame begins a group, wherever it is.
+  void BeginPart() { part_begins_ = true; }
   const std::vector<SurfelGroup>& groups() const { return groups_; }
   const std::vector<GroupPlace>& places() const { return places_; }  // one a frame
   // Corrected poses, one a frame. What the groups saw does not change.
@@ -61,6 +63,7 @@ class SurfelGroups {
   SurfelGroupOptions options_;
   std::vector<SurfelGroup> groups_;
   std::vector<GroupPlace> places_;
+  bool part_begins_ = false;
   std::size_t last_added_ = 0;  // the newest frame that is not tied
   SurfelStore newest_;          // the surfels of the last group, found by place
 };

@@ -43,6 +43,7 @@ class SurfelMap : public ReferenceMap {
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
+  void BeginPart() override { groups_.BeginPart(); }
 
   const SurfelStore& surfels() const { return map_; }
 

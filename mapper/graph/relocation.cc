@@ -1,0 +1,214 @@
+#include "mapper/graph/relocation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/graph/place_search.h"
+
+namespace depthgrid {
+namespace {
+
+// Means over the last ten frames or so.
+constexpr double kNewShare = 0.1;
+constexpr int kFramesToJudge = 15;
+// Old frames are drawn when they are so far from the one drawn before, and no more than so many.
+constexpr double kDrawnEveryM = 0.2;
+constexpr double kDrawnEveryRad = RadFromDeg(15.0);
+constexpr int kMostDrawn = 500;
+// Beyond the window, what could be seen from within.
+constexpr double kSightM = 6.0;
+// The search's points, at most: more say the same.
+constexpr std::size_t kMostPoints = 400;
+// Old frames that a new one is compared with.
+constexpr std::size_t kOldForEach = 2;
+constexpr double kMetresPerRadian = 1.0;
+// The found pose must not be looked at again as "elsewhere" within this.
+constexpr double kSameM = 0.5;
+constexpr double kSameRad = 0.2;
+
+const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
+  return frames[static_cast<std::size_t>(i)].map_from_base;
+}
+
+double Far(const Pose2& a, const Pose2& b) {
+  const Pose2 off = Between(a, b);
+  return off.translation().norm() + kMetresPerRadian * std::abs(off.yaw_rad);
+}
+
+// Frames before `end` around a pose that together show what can be seen there.
+std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,
+                           double reach_m) {
+  std::vector<int> old;
+  for (int i = 0; i < end; ++i) {
+    if (!frames[static_cast<std::size_t>(i)].scan) continue;
+    const Pose2& pose = PoseAt(frames, i);
+    if ((pose.translation() - around.translation()).norm() > reach_m) continue;
+    if (!old.empty()) {
+      const Pose2 step = Between(PoseAt(frames, old.back()), pose);
+      if (step.translation().norm() < kDrawnEveryM && std::abs(step.yaw_rad) < kDrawnEveryRad) {
+        continue;
+      }
+    }
+    old.push_back(i);
+  }
+  const std::size_t stride = old.size() / kMostDrawn + 1;
+  std::vector<int> drawn;
+  for (std::size_t k = 0; k < old.size(); k += stride) drawn.push_back(old[k]);
+  return drawn;
+}
+
+std::vector<Eigen::Vector2d> Thinned(const std::vector<Eigen::Vector2d>& points) {
+  const std::size_t stride = points.size() / kMostPoints + 1;
+  std::vector<Eigen::Vector2d> thinned;
+  for (std::size_t k = 0; k < points.size(); k += stride) thinned.push_back(points[k]);
+  return thinned;
+}
+
+// Those of the old frames that looked at what the new ones see, once they lie there.
+std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std::vector<int>& old,
+                              const std::vector<int>& members, const Pose2& shift) {
+  std::vector<int> near;
+  for (const int member : members) {
+    const Pose2 pose = shift * PoseAt(frames, member);
+    std::vector<int> ranked = old;
+    std::stable_sort(ranked.begin(), ranked.end(), [&](int a, int b) {
+      return Far(PoseAt(frames, a), pose) < Far(PoseAt(frames, b), pose);
+    });
+    const std::size_t count = std::min(ranked.size(), kOldForEach);
+    for (std::size_t k = 0; k < count; ++k) near.push_back(ranked[k]);
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+}  // namespace
+
+void RelocationOptions::Visit(OptionsVisitor& v) {
+  v.Flag("use", use, "whether the camera is searched for after SLAM was lost");
+  v.Number("min_lost_s", min_lost_s, {0.0, 1e6}, "without a pose for so long, at least");
+  v.Number("min_share", min_share, {0.0, 1.0},
+           "of what the map explained before: guesses that reach it are right");
+  v.Number("window_m", window_m, {0.1, 1e3}, "half width of the search, metres");
+  v.Number("speed_mps", speed_mps, {0.0, 100.0}, "and so much more for each second lost");
+  v.Number("max_window_m", max_window_m, {0.1, 1e3}, "at most");
+  v.Number("every_m", every_m, {0.01, 100.0}, "way between two searches");
+  v.Number("every_deg", every_deg, {1.0, 360.0}, "or turn between them");
+  v.Number("most_searches", most_searches, {1, 1e6}, "before the guess is left as it is");
+  v.Group("place", place, "what is searched for together");
+  v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
+  v.Number("max_second_score", max_second_score, {0.0, 1.0},
+           "a pose elsewhere with more than this share of the score makes it ambiguous");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
+  v.Number("consenting", consenting, {1, 1000}, "searches in a row that must find the same");
+  v.Number("consent_m", consent_m, {0.0, 10.0}, "to this");
+  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
+}
+
+void Relocation::Explained(double share) {
+  if (active_) return;
+  usual_share_ = usual_share_ == 0.0 ? share : usual_share_ + kNewShare * (share - usual_share_);
+}
+
+bool Relocation::Begins(double lost_s, double share, int next_frame) {
+  if (!options_.use || lost_s < options_.min_lost_s || next_frame == 0) return false;
+  // Lost again before the first loss was understood: all of it is one new part.
+  if (active_) {
+    lost_s_ += lost_s;
+    return false;
+  }
+  if (share >= options_.min_share * usual_share_) return false;
+  active_ = true;
+  first_frame_ = next_frame;
+  lost_s_ = lost_s;
+  way_m_ = turn_rad_ = 0.0;
+  next_m_ = options_.every_m;
+  next_rad_ = RadFromDeg(options_.every_deg);
+  searches_ = 0;
+  recent_share_ = 0.0;
+  waiting_.reset();
+  agreed_ = 0;
+  return true;
+}
+
+bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
+                              const std::shared_ptr<const Scan>& newest, ReferenceMap& reference) {
+  const double share = reference.ShareSeenBefore(newest, frames.back().map_from_base, first_frame_);
+  recent_share_ += kNewShare * (share - recent_share_);
+  return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge &&
+         recent_share_ >= options_.min_share * usual_share_;
+}
+
+// Whether both put a frame to the same place.
+bool Relocation::IsSame(const Pose2& a, const Pose2& b, const Pose2& map_from_base) const {
+  const Pose2 off = Between(a * map_from_base, b * map_from_base);
+  return off.translation().norm() < options_.consent_m &&
+         std::abs(off.yaw_rad) < RadFromDeg(options_.consent_deg);
+}
+
+std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
+                                      const std::shared_ptr<const Scan>& newest,
+                                      ReferenceMap& reference) {
+  const int last = static_cast<int>(frames.size()) - 1;
+  if (GuessIsRight(frames, newest, reference)) {
+    active_ = false;
+    return std::nullopt;
+  }
+  if (last > first_frame_) {
+    const Pose2 step = Between(PoseAt(frames, last - 1), PoseAt(frames, last));
+    way_m_ += step.translation().norm();
+    turn_rad_ += std::abs(step.yaw_rad);
+  }
+  if (way_m_ < next_m_ && turn_rad_ < next_rad_) return std::nullopt;
+  next_m_ = way_m_ + options_.every_m;
+  next_rad_ = turn_rad_ + RadFromDeg(options_.every_deg);
+  const std::optional<Pose2> found = Search(frames);
+  const bool same = found && waiting_ && IsSame(*waiting_, *found, PoseAt(frames, last));
+  agreed_ = found ? (same ? agreed_ + 1 : 1) : 0;
+  waiting_ = found;
+  if (agreed_ >= options_.consenting) {
+    active_ = false;
+    return found;
+  }
+  if (++searches_ >= options_.most_searches) active_ = false;
+  return std::nullopt;
+}
+
+std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) const {
+  const Pose2& last_known = PoseAt(frames, first_frame_ - 1);
+  const double half_m =
+      std::min(options_.window_m + options_.speed_mps * lost_s_ + way_m_, options_.max_window_m);
+  const std::vector<int> old = OldFrames(frames, first_frame_, last_known, half_m + kSightM);
+  const int last = static_cast<int>(frames.size()) - 1;
+  const std::vector<int> members =
+      FramesAround(frames, last, options_.place, first_frame_, last + 1);
+  if (old.empty() || members.empty()) return std::nullopt;
+  const int middle = members[members.size() / 2];
+  const double resolution_m = options_.place.resolution_m;
+  const WallPyramid walls(DrawPlace(frames, old, first_frame_ - 1, resolution_m));
+  const std::vector<Eigen::Vector2d> points =
+      Thinned(PointsOfPlace(frames, members, middle, resolution_m));
+  const PlaceWindow window{{}, half_m, kPi};
+  const PlaceMatch best = SearchPlace(walls, points, window, options_.min_score);
+  if (!best.found) return std::nullopt;
+  const NotNear elsewhere{best.place_from_query, kSameM, kSameRad};
+  if (SearchPlace(walls, points, window, options_.max_second_score * best.score, elsewhere).found) {
+    return std::nullopt;
+  }
+  const Pose2 found = last_known * best.place_from_query;
+  Pose2 shift = found * Inverse(PoseAt(frames, middle));
+  const std::vector<int> near = SeenFromNear(frames, old, members, shift);
+  const int first = *std::min_element(near.begin(), near.end(), [&](int a, int b) {
+    return Far(PoseAt(frames, a), found) < Far(PoseAt(frames, b), found);
+  });
+  PlanarLoop loop;
+  loop.first = first;
+  loop.second = middle;
+  loop.first_from_second = Between(PoseAt(frames, first), found);
+  const std::optional<PlanarLoop> confirmed =
+      matcher_.Confirmed(frames, near, members, loop, options_.min_agreement);
+  if (!confirmed) return std::nullopt;
+  return PoseAt(frames, first) * confirmed->first_from_second * Inverse(PoseAt(frames, middle));
+}
+
+}  // namespace depthgrid

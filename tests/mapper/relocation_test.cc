@@ -1,0 +1,108 @@
+#include "mapper/graph/relocation.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+// Once round a furnished room; then SLAM is lost for five seconds and comes back, metres off, where
+// the path leads in a world.
+struct LostRun {
+  double final_error_m = 0.0;  // mean since the loss
+  int relocated = 0;
+};
+
+using Path = Pose2 (*)(int frame);
+
+Pose2 RoundTheRoom(int frame) {
+  const double angle_rad = 2.0 * kPi * frame / 240;
+  return {3.0 + 0.7 * std::cos(angle_rad), 1.7 + 0.7 * std::sin(angle_rad),
+          WrapAngle(angle_rad + 0.5 * kPi)};
+}
+
+LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Path path_after,
+             bool use, MapperMethod method = MapperMethod::kSurfel) {
+  constexpr int kBefore = 240, kAfter = 160;
+  MapperOptions options;
+  options.method = method;
+  options.fusion.mode = FusionMode::kKalman;
+  options.loops.relocation.use = use;
+  IncrementalMapper mapper(options, std::nullopt);
+  LostRun run;
+  std::vector<Pose2> truths;
+  for (int i = 0; i < kBefore + kAfter; ++i) {
+    const bool is_after = i >= kBefore;
+    const Pose2 truth = is_after ? path_after(i - kBefore) : path(i);
+    const Pose2 off = is_after ? Pose2{1.6, -0.7, 0.9} : Pose2{};
+    truths.push_back(truth);
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0 + (is_after ? 5.0 : 0.0);
+    frame.slam_epoch = is_after ? 1 : 0;
+    frame.slam_from_camera = CameraOf(off * truth, 1.0);
+    const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(is_after ? after : before, truth, laser, 4, static_cast<std::uint32_t>(i)));
+    run.relocated += mapper.AddFrame(frame).relocated ? 1 : 0;
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = 0; i < kBefore + kAfter; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Pose2 pose = BaseOf(*result.map_from_camera[k]);
+    if (i >= kBefore) {
+      run.final_error_m += (pose.translation() - truths[k].translation()).norm() / kAfter;
+    }
+  }
+  return run;
+}
+
+TEST(Relocation, FindsTheCameraInWhatWasSeen) {
+  const PlanarWorld room = FurnishedRoom();
+  const Path elsewhere = [](int frame) { return RoundTheRoom(frame + 100); };
+  EXPECT_GT(Lose(room, room, RoundTheRoom, elsewhere, false).final_error_m, 0.5);
+  const LostRun found = Lose(room, room, RoundTheRoom, elsewhere, true);
+  EXPECT_EQ(found.relocated, 1);
+  EXPECT_LT(found.final_error_m, 0.02);
+  const LostRun paper = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kPaper);
+  EXPECT_EQ(paper.relocated, 1);
+  EXPECT_LT(paper.final_error_m, 0.1);
+}
+
+// Never seen before: nothing is moved.
+TEST(Relocation, AnotherRoomIsNotFound) {
+  PlanarWorld other = RectangleWorld(0.0, 0.0, 5.2, 4.1);
+  AddRectangle(other, 0.0, 0.9, 0.7, 1.9);
+  AddRectangle(other, 3.9, 3.4, 5.2, 4.1);
+  const Path elsewhere = [](int frame) { return RoundTheRoom(frame + 100); };
+  EXPECT_EQ(Lose(FurnishedRoom(), other, RoundTheRoom, elsewhere, true).relocated, 0);
+}
+
+// Along a corridor every place looks alike.
+TEST(Relocation, ACorridorIsAmbiguous) {
+  const PlanarWorld corridor = StraightCorridor();
+  const Path along = [](int frame) { return Pose2{0.02 * frame, 0.0, 0.0}; };
+  const Path farther = [](int frame) { return Pose2{2.0 + 0.02 * frame, 0.0, 0.0}; };
+  EXPECT_EQ(Lose(corridor, corridor, along, farther, true).relocated, 0);
+}
+
+TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
+  RelocationOptions options;
+  Relocation relocation(options, {}, {});
+  for (int i = 0; i < 50; ++i) relocation.Explained(0.9);
+  EXPECT_FALSE(relocation.Begins(1.9, 0.1, 50));  // not lost for long
+  EXPECT_FALSE(relocation.Begins(5.0, 0.6, 50));  // two thirds of what is usual
+  EXPECT_TRUE(relocation.Begins(5.0, 0.5, 50));
+  EXPECT_TRUE(relocation.active());
+  EXPECT_EQ(relocation.first_frame(), 50);
+  options.use = false;
+  Relocation off(options, {}, {});
+  off.Explained(0.9);
+  EXPECT_FALSE(off.Begins(5.0, 0.1, 50));
+}
+
+}  // namespace
+}  // namespace depthgrid
