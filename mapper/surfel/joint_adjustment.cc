@@ -202,7 +202,7 @@ void JointOptions::Visit(OptionsVisitor& v) {
   v.Number("refine_rounds", refine_rounds, {0, 1000}, "the same during the run, without new loops");
   v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first gate then");
   v.Number("refine_groups", refine_groups, {1, 1000000},
-           "neighbouring groups are adjusted as one then, down to about so many");
+           "of more groups than this two neighbours are adjusted as one then");
   v.Number("first_gate_m", first_gate_m, {0.01, 10.0},
            "how far apart one landmark may be seen, first");
   v.Number("last_gate_m", last_gate_m, {0.01, 10.0}, "and in the last round");

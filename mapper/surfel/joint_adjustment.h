@@ -15,8 +15,9 @@ struct JointOptions {
   int rounds = 6;
   // They go on to so many while the prior turns out better with each.
   int most_rounds = 6;
-  // Rounds, first gate and most groups of adjustments during the run without new loops. Without
-  // that bound they take twice as long and are no more accurate (docs/bench.md, "Growing floors").
+  // Rounds and first gate of adjustments during the run without new loops. Of more groups than
+  // these two neighbours are adjusted as one: half the time and no less accurate (docs/bench.md,
+  // "Growing floors").
   int refine_rounds = 3;
   double refine_gate_m = 0.2;
   int refine_groups = 150;

@@ -173,7 +173,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
   }
   Require(groups.places().size() == frames.size(), "the frames are those inserted");
-  const JointOptions joint = JointOptionsFor(effort);
+  const JointOptions joint = JointOptionsFor(effort, groups.groups().size());
   groups = groups.Joined(joint.groups.most, GapsBefore(groups, frames));
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
@@ -194,12 +194,13 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   return adjustment;
 }
 
-JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
+JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups) const {
   JointOptions joint = options_.joint;
   if (effort == AdjustEffort::kRefine) {
     joint.rounds = joint.refine_rounds;
     joint.first_gate_m = joint.refine_gate_m;
-    joint.groups.most = std::min(joint.groups.most, joint.refine_groups);
+    const int two_as_one = static_cast<int>(2 * groups / 3);  // as some stay apart
+    joint.groups.most = std::min(joint.groups.most, std::max(joint.refine_groups, two_as_one));
   }
   if (effort == AdjustEffort::kBend) joint.rounds = 0;
   return joint;

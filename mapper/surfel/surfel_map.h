@@ -50,7 +50,7 @@ class SurfelMap : public ReferenceMap {
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                   const Pose2& map_from_surfels, double frame) const;
-  JointOptions JointOptionsFor(AdjustEffort effort) const;
+  JointOptions JointOptionsFor(AdjustEffort effort, std::size_t groups) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,
                                   const std::vector<Pose2>& map_from_group);
