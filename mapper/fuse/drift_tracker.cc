@@ -117,9 +117,6 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
-  Eigen::Vector3d& sigma = spread_->sigma;
-  const double most = sigma.head<2>().maxCoeff();
-  sigma = sigma.cwiseMax(most * Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   evidence_ = DriftEvidence();
   Bound();
 }
@@ -127,14 +124,19 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound() {
   if (!spread_) return;
+  // What was seen of the prior's error: nothing where it is as good as it can be taken for.
+  const Eigen::Array3d seen2 = spread_->sigma.array().square() - spread_->least.array().square();
+  Eigen::Vector3d seen = seen2.max(0.0).sqrt();
+  seen = seen.cwiseMax(seen.head<2>().maxCoeff() *
+                       Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   const double root = std::sqrt(spread_->frames);
-  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
+  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma.cwiseMax(seen);
   noise_.bias = noise_.bias.cwiseMin(most);
   noise_.walk = noise_.walk.cwiseMin(root * most);
-  const Eigen::Vector3d least = kLeastSigmas * spread_->sigma;
   for (int axis = 0; axis < 3; ++axis) {
+    const double least = kLeastSigmas * seen[axis];
     const double walked = noise_.walk[axis] / root;
-    const double bias = std::sqrt(std::max(least[axis] * least[axis] - walked * walked, 0.0));
+    const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
     if (noise_.bias[axis] >= bias) continue;
     if (noise_.bias[axis] == 0.0) noise_.bias_kept[axis] = kUsualBiasKept;
     noise_.bias[axis] = bias;

@@ -166,6 +166,7 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   for (const SurfelGroup& group : problem.groups) {
     result.map_from_group.push_back(group.map_from_group);
   }
+  result.least_motion_sigma = kLeastMotionSigma;
   result.motion_sigma = MotionSigma(problem, result.map_from_group);
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
   bool settled = true;

@@ -60,7 +60,8 @@ double ErrorM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m, st
   return sum_m / frames;
 }
 
-const MotionSpread kNearlyPerfect{.sigma = {1e-5, 1e-5, 2e-6}, .frames = 6.0};
+const MotionSpread kNearlyPerfect{
+    .sigma = {1e-5, 1e-5, 2e-6}, .frames = 6.0, .least = {1e-5, 1e-5, 2e-6}};
 
 TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   DriftTracker free, bound;
@@ -105,12 +106,15 @@ TEST(DriftTracker, BelievesThePriorNoMoreThanAnAdjustmentDoes) {
   }
   EXPECT_LT(tracker.noise().walk.norm() + tracker.noise().bias.norm(), 1e-5);
   // The adjustment saw it; to the left it saw nothing, but that axis is not that much better.
-  tracker.BoundMotion({{0.001, 0.00001, 0.00001}, 7.0});
+  tracker.BoundMotion({{0.001, 0.00001, 0.00001}, 7.0, {0.00001, 0.00001, 0.000002}});
   const MotionNoise& noise = tracker.noise();
   EXPECT_NEAR(std::hypot(noise.bias.x(), noise.walk.x() / std::sqrt(7.0)), 0.0015, 1e-6);
   EXPECT_NEAR(noise.bias.y(), 0.00075, 1e-6);
   EXPECT_NEAR(noise.bias.z(), 0.000375, 1e-6);
   EXPECT_GT(noise.bias_kept.minCoeff(), 0.9);
+  // A prior that is as good as it can be taken for may be perfect.
+  tracker.BoundMotion(kNearlyPerfect);
+  EXPECT_LT(tracker.noise().bias.maxCoeff(), 4e-5);
 }
 
 }  // namespace
