@@ -9,6 +9,7 @@
 
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
+#include "mapper/io/config.h"
 #include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
@@ -17,6 +18,7 @@ namespace {
 constexpr double kRoomM = 5.0;
 constexpr double kDoorM = 1.2;
 constexpr double kStepM = 0.04;            // a frame: 1.2 m/s at 30 Hz
+constexpr double kWrongM = 0.5;            // a loop that is off by more is of another place
 constexpr double kTurnRad = kPi / 2 / 30;  // a frame
 
 double CpuUs() {
@@ -116,9 +118,8 @@ double Median(std::vector<double> values) {
 }
 
 struct Settings {
-  bool surfel = true;
+  MapperOptions mapper;
   bool finish = true;
-  KeepOptions keep;
 };
 
 // The most that was ever resident.
@@ -132,20 +133,16 @@ double PeakMib() {
 }
 
 void Walk(double floor_m, int frames, const Settings& settings) {
-  MapperOptions options;
-  options.method = settings.surfel ? MapperMethod::kSurfel : MapperMethod::kPaper;
-  options.keep = settings.keep;
-  if (settings.surfel) options.fusion.mode = FusionMode::kLearned;
   const int rooms = static_cast<int>(std::lround(floor_m / kRoomM));
   const double before_mib = ResidentMib();
-  IncrementalMapper mapper(options, std::nullopt, CpuUs);
+  IncrementalMapper mapper(settings.mapper, std::nullopt, CpuUs);
   Walker walker(rooms);
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),
                           .max_range_m = 6.0,
                           .sigma_of_range = 0.01};
   std::vector<double> times_us;
-  std::vector<Eigen::Vector2d> truths;
+  std::vector<Pose2> truths;
   Pose2 odometry, last;
   double sum_us = 0.0, error_m = 0.0;
   for (int k = 0; k < frames; ++k) {
@@ -156,7 +153,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
         k == 0 ? truth
                : odometry * Between(last, truth) * Pose2{4e-4 * swing, 2e-4 * swing, 7e-5 * swing};
     last = truth;
-    truths.push_back(truth.translation());
+    truths.push_back(truth);
     Frame frame;
     frame.index = k;
     frame.stamp_s = k / 30.0;
@@ -186,15 +183,26 @@ void Walk(double floor_m, int frames, const Settings& settings) {
     const double finish_us = CpuUs() - start_us;
     double final_error_m = 0.0, scan_bytes = 0.0;
     for (std::size_t k = 0; k < truths.size(); ++k) {
-      final_error_m += (BaseOf(*result.map_from_camera[k]).translation() - truths[k]).norm();
+      final_error_m +=
+          (BaseOf(*result.map_from_camera[k]).translation() - truths[k].translation()).norm();
     }
     for (const MappedFrame& frame : result.mapped) {
       const PackedScan packed = frame.scan.packed();
       scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
     }
+    const auto truth_of = [&](int mapped) {
+      return truths[static_cast<std::size_t>(
+          result.mapped[static_cast<std::size_t>(mapped)].frame)];
+    };
+    const auto wrong =
+        std::count_if(result.loops.begin(), result.loops.end(), [&](const PlanarLoop& loop) {
+          const Pose2 truth = Between(truth_of(loop.first), truth_of(loop.second));
+          return Between(truth, loop.first_from_second).translation().norm() > kWrongM;
+        });
     const auto kept = static_cast<double>(result.mapped.size());
-    std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f |", finish_us / frames,
-                final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib);
+    std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f | %d, %d |", finish_us / frames,
+                final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib,
+                static_cast<int>(result.loops.size()), static_cast<int>(wrong));
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -205,26 +213,30 @@ void Walk(double floor_m, int frames, const Settings& settings) {
 
 int main(int argc, char** argv) {
   depthgrid::Settings settings;
-  bool paper = false, no_finish = false;
+  bool no_finish = false;
+  std::vector<std::string> sets;
   std::vector<double> floors = {5, 20, 50, 100, 200};
   std::vector<int> frames = {1000, 5000, 20000, 50000, 100000};
   CLI::App app("Time a frame and memory over floors of growing size");
   app.add_option("--floors", floors, "side lengths, metres");
   app.add_option("--frames", frames, "of each");
-  app.add_flag("--paper", paper, "the paper's chain");
   app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
-  app.add_option("--keep-first", settings.keep.first_frames, "mapper.keep.first_frames");
-  app.add_option("--per-place", settings.keep.scans_per_place, "mapper.keep.scans_per_place");
+  app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
   CLI11_PARSE(app, argc, argv);
-  settings.surfel = !paper;
+  settings.mapper.method = depthgrid::MapperMethod::kSurfel;
+  settings.mapper.fusion.mode = depthgrid::FusionMode::kLearned;
+  depthgrid::Config config;
+  for (const std::string& set : sets) config.Set(set);
+  config.Read(settings.mapper);
   settings.finish = !no_finish;
   std::printf(
       "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
       "error m |%s\n",
-      settings.finish ? " finish us/frame | final error m | scans kept | bytes/scan | peak MiB |"
-                      : "");
+      settings.finish
+          ? " finish us/frame | final error m | scans kept | bytes/scan | peak MiB | loops, wrong |"
+          : "");
   std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n",
-              settings.finish ? "--:|--:|--:|--:|--:|" : "");
+              settings.finish ? "--:|--:|--:|--:|--:|--:|" : "");
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
     depthgrid::Walk(floors[i], frames[i], settings);
   }

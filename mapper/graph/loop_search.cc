@@ -51,7 +51,9 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
   v.Number("min_correction_m", min_correction_m, {0.0, 10.0}, "nearer places need no loop");
   v.Number("min_correction_deg", min_correction_deg, {0.0, 90.0}, "nor better aligned ones");
-  v.Number("consent_m", consent_m, {0.0, 10.0}, "two loops must want the same correction, to this");
+  v.Number("consenting", consenting, {1, 1000},
+           "loops in a row that must want the same correction");
+  v.Number("consent_m", consent_m, {0.0, 10.0}, "to this");
   v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
 }
 
@@ -143,15 +145,18 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
     if (!loop) continue;
     const Pose2 correction =
         Between(Between(PoseAt(frames, candidate), PoseAt(frames, query)), loop->first_from_second);
-    if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) return {};
-    const std::optional<PlanarLoop> before = waiting_;
-    waiting_ = loop;
-    if (before && Consents(frames, *before, *loop)) return {*before, *loop};
+    if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) {
+      waiting_.clear();  // what they wanted is not wanted here
+      return {};
+    }
+    if (!waiting_.empty() && !Consents(frames, waiting_.back(), *loop)) waiting_.clear();
+    waiting_.push_back(*loop);
+    if (static_cast<int>(waiting_.size()) >= options_.consenting) return waiting_;
     return {};
   }
   return {};
 }
 
-void LoopSearch::Forget() { waiting_.reset(); }
+void LoopSearch::Forget() { waiting_.clear(); }
 
 }  // namespace depthgrid

@@ -35,7 +35,7 @@ class LoopSearch {
   std::vector<double> way_m_;   // to each mapped frame
   std::vector<int> keyframes_;  // kept frames `every_m` apart
   double next_search_m_ = 0.0;
-  std::optional<PlanarLoop> waiting_;  // for another that consents
+  std::vector<PlanarLoop> waiting_;  // for more that consent
 };
 
 }  // namespace depthgrid

@@ -35,7 +35,8 @@ struct LoopSearchOptions {
   // Nearer to where they are anyway than this, places are left to the adjustment.
   double min_correction_m = 0.1;
   double min_correction_deg = 1.5;
-  // Two loops in a row must want the same correction, to this.
+  // So many loops in a row must want the same correction, to this.
+  int consenting = 4;
   double consent_m = 0.2;
   double consent_deg = 2.0;
 
