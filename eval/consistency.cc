@@ -11,8 +11,7 @@ namespace depthgrid {
 
 int DirectionsSeen(const MatchResult& match) {
   constexpr double kUnseen = 1e-6;  // of the best seen direction
-  // In units where a metre and a radian of a view 3 m deep weigh alike.
-  const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
+  const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d information = unit.asDiagonal() * match.information * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information, Eigen::EigenvaluesOnly);
   const Eigen::Vector3d values = solver.eigenvalues();

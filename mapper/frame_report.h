@@ -16,6 +16,10 @@ struct Prediction {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // base axes: forward m, left m, yaw rad
 };
 
+// Units of small motions (forward m, left m, yaw rad) in which a metre and a radian weigh alike to
+// a view 3 m deep.
+inline const Eigen::Vector3d kMotionUnit(1.0, 1.0, 1.0 / 3.0);
+
 // A scan matched against what was mapped before. Not finding a match is an ordinary outcome.
 struct MatchResult {
   bool found = false;

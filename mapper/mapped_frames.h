@@ -24,8 +24,7 @@ class MappedFrames {
   // The frame with its scans, for now.
   MappedFrame WithScans(MappedFrame frame, const FrameScans& scans);
   // The frame and its scans, kept unless its place is well seen already. `explained` is the share
-  // of the scan that the map explains.
-  // Empty: it is kept wherever it is.
+  // of the scan that the map explains; empty: it is kept wherever it is.
   const MappedFrame& Add(MappedFrame frame, const FrameScans& scans,
                          const std::optional<double>& explained);
   // Corrected poses, one a frame. Matches of frames that are tied move with them.

@@ -13,7 +13,6 @@ namespace {
 // A place's heading is the last part of its key.
 constexpr int kHeadingBits = 12;
 constexpr int kCoordinateBits = 26;
-constexpr double kMetresPerRadian = 1.0;
 // Where the map does not explain what is seen, as many scans once more.
 constexpr double kRoomForChange = 2.0;
 
@@ -64,16 +63,15 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
   const Place& place = places_[static_cast<std::size_t>(index)];
   if (place.count < RoomAfter(count, explained)) return std::nullopt;
   std::optional<int> nearest;
-  double nearest_m = std::numeric_limits<double>::infinity();
+  double least_apart = std::numeric_limits<double>::infinity();
   int before = -1;
   for (int i = place.newest; i >= 0; i = before) {
     const Kept& kept = kept_[static_cast<std::size_t>(i)];
     before = kept.before;
-    const Pose2 off =
-        Between(frames[static_cast<std::size_t>(kept.position)].map_from_base, map_from_base);
-    const double distance_m = off.translation().norm() + kMetresPerRadian * std::abs(off.yaw_rad);
-    if (distance_m >= nearest_m) continue;
-    nearest_m = distance_m;
+    const double apart =
+        Separation(frames[static_cast<std::size_t>(kept.position)].map_from_base, map_from_base);
+    if (apart >= least_apart) continue;
+    least_apart = apart;
     nearest = kept.position;
   }
   return nearest;

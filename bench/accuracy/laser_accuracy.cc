@@ -3,27 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <future>
 
+#include "bench/accuracy/laser_run.h"
 #include "eval/consistency.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
-#include "mapper/io/carmen_line.h"
-#include "mapper/io/carmen_log.h"
 #include "mapper/io/config.h"
-#include "mapper/io/trajectory_file.h"
-#include "sim/laser_world.h"
 #include "sim/odometry_noise.h"
 
 using namespace depthgrid;
 
 namespace {
-double NowUs() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
 struct Scores {
   double mean = 0, ate = 0, max = 0;
 };
@@ -80,18 +71,11 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
   std::vector<Pose2> online, final;
   std::vector<FrameReport> reports;
   Trajectory stamped_truth;
-  CarmenLogOptions log;
   for (std::size_t k = 0; k < truth.size(); ++k) {
-    CarmenScan line;
-    line.first_bearing_rad = laser.FirstBearingRad();
-    line.bearing_step_rad = laser.BearingStepRad();
-    line.max_range_m = laser.max_range_m;
-    line.range_m = DisturbScan(CastScan(world, truth[k], laser), laser,
-                               static_cast<std::uint64_t>(seed), static_cast<int>(k));
     Frame frame;
     frame.index = static_cast<int>(k);
     frame.stamp_s = static_cast<double>(k) / 30.0;
-    frame.scan = std::make_shared<Scan>(ScanOf(line, log));
+    frame.scan = SimulatedScan(world, truth[k], laser, seed, static_cast<int>(k));
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
     stamped_truth.push_back({frame.stamp_s, CameraOf(truth[k], 0.0)});
     const FrameReport report = mapper.AddFrame(frame);
@@ -172,12 +156,7 @@ int main(int argc, char** argv) {
   config.Read(options);
   for (const std::string& name : worlds) {
     const LaserWorld world = ReadLaserWorld(name + ".world.txt");
-    std::vector<Pose2> truth;
-    for (const StampedPose& p : ReadTrajectory(name + ".truth.txt")) {
-      const auto& q = p.world_from_camera.rotation;
-      truth.push_back({p.world_from_camera.translation.x(), p.world_from_camera.translation.y(),
-                       WrapAngle(2 * std::atan2(q.z(), q.w()))});
-    }
+    const std::vector<Pose2> truth = ReadPlanarTruth(name);
     std::vector<Run> runs(static_cast<std::size_t>(seeds));
     std::vector<std::future<void>> jobs;
     for (int t = 0; t < threads; ++t) {

@@ -3,37 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
+#include "bench/accuracy/laser_run.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 #include "mapper/incremental_mapper.h"
-#include "mapper/io/carmen_line.h"
-#include "mapper/io/carmen_log.h"
 #include "mapper/io/config.h"
-#include "mapper/io/trajectory_file.h"
-#include "sim/laser_world.h"
 #include "sim/odometry_noise.h"
 
 using namespace depthgrid;
 
 namespace {
-
-double NowUs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
-
-std::vector<Pose2> TruthOf(const std::string& name) {
-  std::vector<Pose2> truth;
-  for (const StampedPose& pose : ReadTrajectory(name + ".truth.txt")) {
-    truth.push_back(BaseOf(pose.world_from_camera));
-    const Eigen::Quaterniond& q = pose.world_from_camera.rotation;
-    truth.back().yaw_rad = WrapAngle(2.0 * std::atan2(q.z(), q.w()));
-  }
-  return truth;
-}
 
 // Which frames of the truth are driven: up to `lost_at`, then from `back_at`, backwards if so.
 struct Drive {
@@ -79,16 +59,10 @@ Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Driv
   IncrementalMapper mapper(options, std::nullopt, NowUs);
   Outcome outcome;
   for (std::size_t k = 0; k < driven.size(); ++k) {
-    CarmenScan line;
-    line.first_bearing_rad = laser.FirstBearingRad();
-    line.bearing_step_rad = laser.BearingStepRad();
-    line.max_range_m = laser.max_range_m;
-    line.range_m = DisturbScan(CastScan(world, driven[k], laser), laser,
-                               static_cast<std::uint64_t>(seed), static_cast<int>(k));
     Frame frame;
     frame.index = static_cast<int>(k);
     frame.stamp_s = stamps_s[k];
-    frame.scan = std::make_shared<Scan>(ScanOf(line, {}));
+    frame.scan = SimulatedScan(world, driven[k], laser, seed, static_cast<int>(k));
     frame.slam_from_camera = CameraOf(k < before ? odometry[k] : new_slam * odometry[k], 0.0);
     frame.slam_epoch = k < before ? 0 : 1;
     const FrameReport report = mapper.AddFrame(frame);
@@ -129,7 +103,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", sets, "mapper keys");
   CLI11_PARSE(app, argc, argv);
   const LaserWorld world = ReadLaserWorld(world_name + ".world.txt");
-  const std::vector<Pose2> truth = TruthOf(world_name);
+  const std::vector<Pose2> truth = ReadPlanarTruth(world_name);
   for (const bool use : {false, true}) {
     MapperOptions options;
     options.method = MapperMethod::kSurfel;

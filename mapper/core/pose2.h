@@ -47,4 +47,10 @@ inline Pose2 Between(const Pose2& world_from_i, const Pose2& world_from_j) {
   return Inverse(world_from_i) * world_from_j;
 }
 
+// How far apart two poses are where a radian counts like a metre, as it does to what is seen.
+inline double Separation(const Pose2& world_from_i, const Pose2& world_from_j) {
+  const Pose2 i_from_j = Between(world_from_i, world_from_j);
+  return i_from_j.translation().norm() + std::abs(i_from_j.yaw_rad);
+}
+
 }  // namespace depthgrid

@@ -8,10 +8,6 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
-  return sigma.cwiseProduct(sigma).asDiagonal();
-}
-
 }  // namespace
 
 Eigen::Vector3d RenewedBias(const MotionNoise& noise) {

@@ -22,8 +22,6 @@ constexpr double kBoundSigmas = 3.5;
 // And not below these many times: while the prior is believed the map follows it, and the matches,
 // made against that map, agree with it (docs/results.md, "Consistency").
 constexpr double kLeastSigmas = 1.5;
-// A lower bound that came with no bias of its own keeps this much of it a frame: 2 s at 30 Hz.
-constexpr double kUsualBiasKept = 0.98;
 // An axis is not believed to be known so much better than another; radians a metre for the yaw.
 constexpr double kLeastOfOthers = 0.5;
 constexpr double kLeastYawOfOthers = 0.25;
@@ -138,7 +136,8 @@ void DriftTracker::Bound() {
     const double walked = noise_.walk[axis] / root;
     const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
     if (noise_.bias[axis] >= bias) continue;
-    if (noise_.bias[axis] == 0.0) noise_.bias_kept[axis] = kUsualBiasKept;
+    // With no bias learnt there is nothing to tell how fast it changes.
+    if (noise_.bias[axis] == 0.0) noise_.bias_kept[axis] = MotionNoise().bias_kept[axis];
     noise_.bias[axis] = bias;
   }
 }

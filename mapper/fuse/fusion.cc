@@ -7,10 +7,13 @@
 
 namespace depthgrid {
 
+Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
+  return sigma.cwiseProduct(sigma).asDiagonal();
+}
+
 Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
   constexpr double kUnseen = 1e-9;  // of the largest eigenvalue
-  // In units where a metre and a radian of a view 3 m deep weigh alike.
-  const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
+  const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d scaled = unit.asDiagonal() * information * unit.asDiagonal();
   // Mostly all is seen, and nothing has to be told apart.
   constexpr double kPlain = 1e6;  // condition

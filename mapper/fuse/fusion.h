@@ -27,6 +27,9 @@ Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& 
 Pose2 Moved(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
             const Eigen::Matrix3d& gain);
 
+// The covariance of independent errors.
+Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma);
+
 // The covariance over the directions that a match sees; the others' is zero.
 Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information);
 

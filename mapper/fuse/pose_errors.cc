@@ -16,10 +16,6 @@ constexpr double kNewestAge = 8.0;
 // (docs/results.md, "Consistency").
 constexpr double kNoiseAge = 0.4;
 
-Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
-  return sigma.cwiseProduct(sigma).asDiagonal();
-}
-
 Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& adjoint) {
   return adjoint * covariance * adjoint.transpose();
 }

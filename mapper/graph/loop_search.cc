@@ -8,8 +8,6 @@
 namespace depthgrid {
 namespace {
 
-// How much a metre from the map's place and a radian from its heading speak against a candidate.
-constexpr double kMetresPerRadian = 1.0;
 // With a narrow view, places looked at from more different headings have little in common.
 constexpr double kMaxTurnDeg = 60.0;
 // Beyond the window, so that places beside a way count.
@@ -98,7 +96,7 @@ std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames, 
     if (std::abs(off.yaw_rad) > RadFromDeg(kMaxTurnDeg)) continue;
     const double distance_m = off.translation().norm();
     if (distance_m > WindowM(way_m) + kBesideM) continue;
-    ranked.push_back({distance_m + kMetresPerRadian * std::abs(off.yaw_rad), k});
+    ranked.push_back({Separation(PoseAt(frames, k), PoseAt(frames, query)), k});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });

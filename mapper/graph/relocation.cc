@@ -21,18 +21,9 @@ constexpr double kSightM = 6.0;
 constexpr std::size_t kMostPoints = 400;
 // Old frames that a new one is compared with.
 constexpr std::size_t kOldForEach = 2;
-constexpr double kMetresPerRadian = 1.0;
-// The found pose must not be looked at again as "elsewhere" within this.
-constexpr double kSameM = 0.5;
-constexpr double kSameRad = 0.2;
 
 const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return frames[static_cast<std::size_t>(i)].map_from_base;
-}
-
-double Far(const Pose2& a, const Pose2& b) {
-  const Pose2 off = Between(a, b);
-  return off.translation().norm() + kMetresPerRadian * std::abs(off.yaw_rad);
 }
 
 // Frames before `end` around a pose that together show what can be seen there.
@@ -72,7 +63,7 @@ std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std:
     const Pose2 pose = shift * PoseAt(frames, member);
     std::vector<int> ranked = old;
     std::stable_sort(ranked.begin(), ranked.end(), [&](int a, int b) {
-      return Far(PoseAt(frames, a), pose) < Far(PoseAt(frames, b), pose);
+      return Separation(PoseAt(frames, a), pose) < Separation(PoseAt(frames, b), pose);
     });
     const std::size_t count = std::min(ranked.size(), kOldForEach);
     for (std::size_t k = 0; k < count; ++k) near.push_back(ranked[k]);
@@ -191,7 +182,7 @@ std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) 
   const PlaceWindow window{{}, half_m, kPi};
   const PlaceMatch best = SearchPlace(walls, points, window, options_.min_score);
   if (!best.found) return std::nullopt;
-  const NotNear elsewhere{best.place_from_query, kSameM, kSameRad};
+  const NotNear elsewhere{best.place_from_query};
   if (SearchPlace(walls, points, window, options_.max_second_score * best.score, elsewhere).found) {
     return std::nullopt;
   }
@@ -199,7 +190,7 @@ std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) 
   Pose2 shift = found * Inverse(PoseAt(frames, middle));
   const std::vector<int> near = SeenFromNear(frames, old, members, shift);
   const int first = *std::min_element(near.begin(), near.end(), [&](int a, int b) {
-    return Far(PoseAt(frames, a), found) < Far(PoseAt(frames, b), found);
+    return Separation(PoseAt(frames, a), found) < Separation(PoseAt(frames, b), found);
   });
   PlanarLoop loop;
   loop.first = first;

@@ -22,8 +22,7 @@ constexpr double kFarthestRad = 0.05;
 
 // h^-1 g over the directions that h sees.
 Eigen::Vector3d SeenStep(const NormalEquations& equations) {
-  // In units where a metre and a radian of a view 3 m deep weigh alike.
-  const Eigen::Vector3d unit(1.0, 1.0, 1.0 / 3.0);
+  const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d h = unit.asDiagonal() * equations.h * unit.asDiagonal();
   const Eigen::Vector3d g = unit.cwiseProduct(equations.g);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);

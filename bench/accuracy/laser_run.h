@@ -1,0 +1,48 @@
+// What the programs that map simulated laser logs share.
+#pragma once
+
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/core/pose2.h"
+#include "mapper/io/carmen_line.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/trajectory_file.h"
+#include "sim/laser_world.h"
+
+namespace depthgrid {
+
+inline double NowUs() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+// The base poses of NAME.truth.txt, whose axes are those of the base.
+inline std::vector<Pose2> ReadPlanarTruth(const std::string& name) {
+  std::vector<Pose2> truth;
+  for (const StampedPose& pose : ReadTrajectory(name + ".truth.txt")) {
+    const Eigen::Quaterniond& q = pose.world_from_camera.rotation;
+    truth.push_back({pose.world_from_camera.translation.x(), pose.world_from_camera.translation.y(),
+                     WrapAngle(2.0 * std::atan2(q.z(), q.w()))});
+  }
+  return truth;
+}
+
+// What the laser sees there, with the noise of this frame.
+inline std::shared_ptr<const Scan> SimulatedScan(const LaserWorld& world,
+                                                 const Pose2& world_from_base,
+                                                 const LaserOptions& laser, int seed, int frame) {
+  CarmenScan line;
+  line.first_bearing_rad = laser.FirstBearingRad();
+  line.bearing_step_rad = laser.BearingStepRad();
+  line.max_range_m = laser.max_range_m;
+  line.range_m = DisturbScan(CastScan(world, world_from_base, laser), laser,
+                             static_cast<std::uint64_t>(seed), frame);
+  return std::make_shared<const Scan>(ScanOf(line, {}));
+}
+
+}  // namespace depthgrid
