@@ -14,7 +14,7 @@
 // After the above.
 #include <hwy/cache_control.h>
 
-#include "mapper/scan/bearing_tile-inl.h"
+#include "mapper/scan/bearing_stripe-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::internal {
@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 // Between two rows the smallest of linear functions is nowhere below its chord, the largest nowhere
 // above.
 struct ChordBounds {
-  LinearBound least, most;
+  AlongRows least, most;
 };
 ChordBounds BoundLinear(const BearingBlock& block, const float* at_0, const float* per_row) {
   const Floats d;
@@ -38,100 +38,12 @@ ChordBounds BoundLinear(const BearingBlock& block, const float* at_0, const floa
   const float spare = kRounding * hn::GetLane(hn::MaxOfLanes(d, size));
   const auto chord = [&](float from, float to) {
     const float slope = (to - from) / std::max(last - first, 1.0F);
-    return LinearBound{from - slope * first, slope};
+    return AlongRows{from - slope * first, slope};
   };
   return {chord(hn::GetLane(hn::MinOfLanes(d, at_first)) - spare,
                 hn::GetLane(hn::MinOfLanes(d, at_last)) - spare),
           chord(hn::GetLane(hn::MaxOfLanes(d, at_first)) + spare,
                 hn::GetLane(hn::MaxOfLanes(d, at_last)) + spare)};
-}
-
-VectorBounds BoundsOf(const BearingBlock& block, std::size_t lane) {
-  const ChordBounds height = BoundLinear(block, &block.g0[lane], &block.g1[lane]);
-  const ChordBounds range = BoundLinear(block, &block.h0[lane], &block.h1[lane]);
-  return {height.least, height.most, range.least};
-}
-
-// Of all pixels that any sample of a tile is made of, and so of the samples.
-struct DepthRange {
-  float least = 0.0F;
-  float most = std::numeric_limits<float>::infinity();
-};
-
-DepthRange DepthOf(const Tile& tile, const std::vector<float>& survey) {
-  if (tile.columns == 0) return {};
-  const Floats d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const float* HWY_RESTRICT columns = survey.data() + tile.start;
-  const float* HWY_RESTRICT greatest = columns + tile.bands->image.width_px;
-  Vec least = hn::LoadU(d, columns), most = hn::LoadU(d, greatest);
-  for (int at = lanes; at < tile.columns; at += lanes) {
-    const int from = std::min(at, tile.columns - lanes);
-    least = hn::Min(least, hn::LoadU(d, columns + from));
-    most = hn::Max(most, hn::LoadU(d, greatest + from));
-  }
-  return {hn::GetLane(hn::MinOfLanes(d, least)), hn::GetLane(hn::MaxOfLanes(d, most))};
-}
-
-Content ContentOf(const Tile& tile, const VectorBounds& bounds, const DepthRange& depth) {
-  const ReturnLimits& limits = tile.bands->limits;
-  const float near = std::max(depth.least, limits.min_depth_m);  // of what is usable
-  const float low = bounds.lowest.LeastOf(tile.rows), high = bounds.highest.MostOf(tile.rows);
-  const float bottom = std::min(near * low, depth.most * low);
-  const float top = std::max(near * high, depth.most * high);
-  const auto outside = [&](float from_m, float to_m) { return top < from_m || bottom > to_m; };
-  if (!tile.block->AreShared(tile.rows) ||
-      !outside(tile.bands->slice.low_m, tile.bands->slice.high_m))
-    return Content::kAnything;
-  if (depth.least < limits.min_depth_m) return Content::kNoSlice;
-  if (outside(limits.low_m, limits.high_m)) return Content::kPassing;
-  if (bottom < limits.low_m || top > limits.high_m) return Content::kNoSlice;
-  // A little less, for what DepthBetween rounds.
-  constexpr float kSurfaceShare = 0.999F * kSameSurfaceShare;
-  const bool surface = depth.most - depth.least <= kSurfaceShare * depth.least;
-  return surface ? Content::kSurface : Content::kInBand;
-}
-
-// Widths of the noise window by range. Whether what is skipped was far enough is seen afterwards.
-class SkipRule {
- public:
-  SkipRule(const NoiseWindow& window, float max_range_m) : max_range_m_(max_range_m) {
-    for (std::size_t k = 0; k < kSteps; ++k) {
-      width_m_[k] = window.At(kStepM * static_cast<float>(k + 1));
-    }
-  }
-  // From where on samples do not matter once each lane has one as near as this: the second mean
-  // looks half a window beyond the first.
-  float From(float nearest_m) const {
-    if (!(nearest_m < max_range_m_)) return max_range_m_;
-    const auto step = static_cast<std::size_t>(nearest_m / kStepM);
-    return std::min(nearest_m + 1.5F * width_m_[std::min(step, kSteps - 1)], max_range_m_);
-  }
-
- private:
-  static constexpr std::size_t kSteps = 32;
-  static constexpr float kStepM = 0.25F;
-  std::array<float, kSteps> width_m_{};
-  float max_range_m_;
-};
-
-void SampleOneTile(const Tile& tile, const std::vector<float>& survey, const SkipRule& rule,
-                   const VectorBounds& bounds, BlockSamples& out) {
-  const Floats d;
-  const DepthRange depth = DepthOf(tile, survey);
-  hn::Store(hn::Set(d, depth.least), d, out.band.samples.least_depth + tile.AtGroup());
-  const Content content = ContentOf(tile, bounds, depth);
-  if (content == Content::kPassing) return SampleAs(content, tile, out);
-  if (content != Content::kAnything && depth.least >= tile.bands->limits.min_depth_m) {
-    const float from_m = depth.least * bounds.shortest.LeastOf(tile.rows);
-    const Vec nearest = hn::Load(d, &out.band.nearest[tile.lane]);
-    if (from_m > rule.From(hn::GetLane(hn::MaxOfLanes(d, nearest)))) {
-      float* const skipped_from = &out.band.skipped_from[tile.lane];
-      hn::Store(hn::Min(hn::Load(d, skipped_from), hn::Set(d, from_m)), d, skipped_from);
-      return StoreNearest(tile, hn::Set(d, kSkipped), hn::Set(d, kPassing), out);
-    }
-  }
-  SampleAs(content, tile, out);
 }
 
 void SmallestOfGroups(const float* HWY_RESTRICT groups, std::size_t count, BlockLane& smallest) {
@@ -150,65 +62,109 @@ RowRange RowsOfGroup(const ReturnLimits& limits, std::size_t group) {
   return {from, std::min(from + static_cast<int>(kGroupRows) - 1, limits.last_row)};
 }
 
-// Some columns of the next group, a few with each tile: the processor does not foresee steps of a
-// whole row, and takes no more than a dozen at once.
-void FetchAhead(const float* pixels, int columns, int width) {
-  constexpr int kLineFloats = 16;
-  for (int at = 0; at < columns; at += kLineFloats) {
-    const float* to = pixels + at;
-    for (std::size_t r = 0; r < kGroupRows; ++r, to += width) hwy::Prefetch(to);
+// Fetches the columns of the next group, a few with each tile: the processor does not foresee steps
+// of a whole row, and takes no more than a dozen at once.
+class Fetching {
+ public:
+  Fetching(const DepthImage& image, int next_row, const Survey& survey, std::size_t tiles)
+      : width_(image.width_px), tiles_(tiles) {
+    if (next_row < 0 || survey.first >= survey.end) return;
+    next_ = image.Row(next_row) + survey.first;
+    lines_ = (static_cast<std::size_t>(survey.end - survey.first) + kLineFloats - 1) / kLineFloats;
   }
+  void WithTile() {
+    for (due_ += lines_; due_ >= tiles_; due_ -= tiles_, next_ += kLineFloats) {
+      const float* to = next_;
+      for (std::size_t r = 0; r < kGroupRows; ++r, to += width_) hwy::Prefetch(to);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLineFloats = 16;
+  std::ptrdiff_t width_;
+  std::size_t tiles_, lines_ = 0, due_ = 0;
+  const float* next_ = nullptr;
+};
+
+// Puts vectors of all blocks in their places.
+StripeVectors VectorsOf(std::span<const BearingBlock> blocks, int width) {
+  const std::size_t lanes = hn::Lanes(Floats());
+  const bool is_wide = width >= static_cast<int>(2 * lanes);
+  StripeVectors vectors;
+  vectors.count = blocks.size() * kBlockBearings / lanes;
+  for (std::size_t i = 0; i < kMostTiles; ++i) {
+    const std::size_t k = std::min(i, vectors.count - 1);
+    const std::size_t of = k * lanes / kBlockBearings, lane = k * lanes % kBlockBearings;
+    const BearingBlock& block = blocks[of];
+    const ChordBounds height = BoundLinear(block, &block.g0[lane], &block.g1[lane]);
+    const ChordBounds range = BoundLinear(block, &block.h0[lane], &block.h1[lane]);
+    vectors.of[i] = of;
+    vectors.lane[i] = lane;
+    vectors.rows_first[i] = static_cast<float>(block.rows.first);
+    vectors.rows_last[i] = static_cast<float>(block.rows.last);
+    vectors.shared_first[i] = static_cast<float>(block.shared_rows.first);
+    vectors.shared_last[i] = static_cast<float>(block.shared_rows.last);
+    vectors.is_known[i] = is_wide && block.all_ahead ? 1.0F : 0.0F;
+    vectors.left.Put(i, {block.u0[lane], block.u1[lane]});
+    vectors.right.Put(i, {block.u0[lane + lanes - 1], block.u1[lane + lanes - 1]});
+    vectors.lowest.Put(i, height.least);
+    vectors.highest.Put(i, height.most);
+    vectors.shortest.Put(i, range.least);
+  }
+  return vectors;
 }
 
-void SampleGroup(const ImageBands& bands, const SkipRule& rule, std::size_t group,
-                 std::span<const BearingBlock> blocks, std::vector<float>& survey,
-                 std::span<BlockSamples> found) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  std::array<Tile, kStripeBlocks * kBlockBearings / hn::MaxLanes(Floats())> tiles;
-  std::size_t count = 0;
-  int first = bands.image.width_px, end = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const BearingBlock& block = blocks[b];
-    if (group < block.first_group || group - block.first_group >= block.GroupCount()) continue;
-    const RowRange rows = block.RowsOfGroup(group - block.first_group);
-    for (std::size_t lane = 0; lane < kBlockBearings; lane += lanes) {
-      Tile& tile = tiles[count++];
-      tile = {&bands, &block, b, lane, rows};
-      FindColumns(tile);
-      if (tile.columns == 0) continue;
-      first = std::min(first, tile.start);
-      end = std::max(end, tile.start + tile.columns);
+// A stripe of the image.
+struct StripeJob {
+  const ImageBands& bands;
+  const SkipRule& rule;
+  std::span<const BearingBlock> blocks;
+  std::span<BlockSamples> found;
+};
+
+void SampleGroup(const StripeJob& job, std::size_t group, StripeVectors& vectors, Survey& survey) {
+  const Floats d;
+  const DepthImage& image = job.bands.image;
+  const ReturnLimits& limits = job.bands.limits;
+  const RowRange rows = RowsOfGroup(limits, group);
+  GroupTiles tiles;
+  FindSkipFrom(job.rule, job.found, vectors);
+  LayOut(vectors, image.width_px, rows, tiles);
+  SurveyColumns(image, rows, tiles.first_column, tiles.end_column, survey);
+  FindContents(job.bands, vectors, rows, survey, tiles);
+  const int next_row = group > 0 ? RowsOfGroup(limits, group - 1).first : -1;
+  Fetching fetching(image, next_row, survey, vectors.count);
+  for (std::size_t i = 0; i < vectors.count; ++i) {
+    fetching.WithTile();
+    if (tiles.rows[i] == 0) continue;
+    const RowRange own{rows.first, rows.first + tiles.rows[i] - 1};
+    const Tile tile{&job.bands,     &job.blocks[vectors.of[i]], vectors.lane[i],     own,
+                    tiles.start[i], tiles.columns[i],           tiles.inside[i] != 0};
+    BlockSamples& out = job.found[vectors.of[i]];
+    const auto content = static_cast<Content>(tiles.content[i]);
+    hn::Store(hn::Set(d, tiles.usable_from[i]), d, out.band.samples.least_depth + tile.AtGroup());
+    SampleAs(content, tile, out);
+    if (IsFar(content)) {
+      vectors.skipped_from[i] = std::min(vectors.skipped_from[i], tiles.range_from[i]);
     }
-  }
-  SurveyColumns(bands.image, RowsOfGroup(bands.limits, group), first, end, survey);
-  const float* above =
-      group > 0 ? bands.image.Row(RowsOfGroup(bands.limits, group - 1).first) : nullptr;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (above != nullptr) {
-      const auto part = [&](std::size_t k) {
-        return first + static_cast<int>(k) * (end - first) / static_cast<int>(count);
-      };
-      FetchAhead(above + part(i), part(i + 1) - part(i), bands.image.width_px);
-    }
-    BlockSamples& out = found[tiles[i].of];
-    SampleOneTile(tiles[i], survey, rule, out.bounds[tiles[i].lane / lanes], out);
   }
 }
 
 void SampleAll(const ImageBands& bands, const NoiseWindow& window,
-               std::span<const BearingBlock> blocks, std::vector<float>& survey,
+               std::span<const BearingBlock> blocks, std::vector<float>& memory,
                std::span<BlockSamples> found) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  const std::size_t vectors = kBlockBearings / lanes;
+  const Floats d;
   const SkipRule rule(window, bands.limits.max_range_m);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (std::size_t k = 0; k < vectors; ++k) {
-      found[b].bounds[k] = BoundsOf(blocks[b], k * lanes);
-    }
-  }
+  StripeVectors vectors = VectorsOf(blocks, bands.image.width_px);
+  vectors.skipped_from.fill(std::numeric_limits<float>::infinity());
+  Survey survey(bands.image.width_px, memory);
   const auto rows = static_cast<std::size_t>(bands.limits.last_row - bands.limits.first_row + 1);
   for (std::size_t group = (rows + kGroupRows - 1) / kGroupRows; group-- > 0;) {
-    SampleGroup(bands, rule, group, blocks, survey, found);
+    SampleGroup({bands, rule, blocks, found}, group, vectors, survey);
+  }
+  for (std::size_t i = 0; i < vectors.count; ++i) {
+    float* const skipped_from = &found[vectors.of[i]].band.skipped_from[vectors.lane[i]];
+    hn::Store(hn::Set(d, vectors.skipped_from[i]), d, skipped_from);
   }
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     SmallestOfGroups(found[b].band.samples.least_depth, blocks[b].GroupCount(),
@@ -220,9 +176,8 @@ void SampleRest(const ImageBands& bands, const BearingBlock& block, BlockSamples
   const Floats d;
   for (std::size_t group = 0; group < block.GroupCount(); ++group) {
     for (std::size_t lane = 0; lane < kBlockBearings; lane += hn::Lanes(d)) {
-      Tile tile{&bands, &block, 0, lane, block.RowsOfGroup(group)};
+      const Tile tile{&bands, &block, lane, block.RowsOfGroup(group)};
       if (found.band.samples.nearest[tile.AtGroup()] != kSkipped) continue;
-      FindColumns(tile);
       SampleAs(Content::kNoSlice, tile, found);
     }
   }
@@ -244,7 +199,6 @@ void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
   for (BlockSamples& block : found) {
     block.band.nearest.fill(kUnusable);
     block.slice.nearest.fill(kPassing);
-    block.band.skipped_from.fill(std::numeric_limits<float>::infinity());
     block.slice.skipped_from.fill(std::numeric_limits<float>::infinity());
   }
   HWY_DYNAMIC_DISPATCH(SampleAll)(bands, window, blocks, survey, found);

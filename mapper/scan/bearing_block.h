@@ -15,9 +15,14 @@ namespace depthgrid::internal {
 
 // Bearings that are laid out together.
 constexpr std::size_t kBlockBearings = 64;
-// Blocks that are sampled together: 128 columns of the image are lines of memory enough for the
-// processor to foresee the next ones, and their samples stay in the second-level cache.
-constexpr std::size_t kStripeBlocks = 2;
+// Blocks that are sampled together at most: 128 columns of the image are lines of memory enough for
+// the processor to foresee the next ones, and their samples stay in the second-level cache.
+constexpr std::size_t kMostStripeBlocks = 4;
+constexpr std::size_t StripeBlocks(std::size_t bearings, int width_px) {
+  constexpr std::size_t kColumns = 128, kLeast = 2;
+  const std::size_t in_columns = kColumns * bearings / static_cast<std::size_t>(width_px);
+  return std::clamp(in_columns / kBlockBearings, kLeast, kMostStripeBlocks);
+}
 
 struct alignas(64) BlockLane : std::array<float, kBlockBearings> {};
 
@@ -54,8 +59,8 @@ BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t
 // A block's samples of one band: samples[row - rows.first][lane], and nearest[group][lane], the
 // smallest of each group of rows. Of groups whose smallest is no range the samples may be missing.
 // Unlike SampleAt's, ranges may exceed the limit: that is one comparison less for each, and whoever
-// reads them stops at it. least_depth[group][lane], null of a slice: no usable depth is smaller;
-// where it is not usable itself, all samples of the group are there.
+// reads them stops at it. least_depth[group][lane], null of a slice: if it is usable, so are all
+// samples of the group; where it is not, those that are not are there.
 struct BandSamples {
   float* samples = nullptr;
   float* nearest = nullptr;
@@ -65,20 +70,6 @@ struct BandSamples {
 // Stands for the smallest of a group that was too far away to be sampled.
 constexpr float kSkipped = 1.5e9F;
 static_assert(kSkipped > kPassing && kSkipped < kUnusable);
-
-// Linear in the row.
-struct LinearBound {
-  float at_0 = 0.0F, per_row = 0.0F;
-  float At(int row) const { return at_0 + per_row * static_cast<float>(row); }
-  float LeastOf(const RowRange& rows) const { return std::min(At(rows.first), At(rows.last)); }
-  float MostOf(const RowRange& rows) const { return std::max(At(rows.first), At(rows.last)); }
-};
-
-// Of the lanes of one vector. No ray of theirs rises less or more a depth, or comes less far,
-// rounding included.
-struct VectorBounds {
-  LinearBound lowest, highest, shortest;
-};
 
 // Of each lane.
 struct BandFound {
@@ -90,8 +81,7 @@ struct BandFound {
 // `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range.
 struct BlockSamples {
   BandFound band, slice;
-  BlockLane least_depth;                            // of its groups
-  std::array<VectorBounds, kBlockBearings> bounds;  // of its vectors, however wide
+  BlockLane least_depth;  // of its groups
 };
 
 struct ImageBands {
@@ -109,10 +99,33 @@ void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
 // Samples what was skipped of a block after all.
 void SampleSkipped(const ImageBands& bands, const BearingBlock& block, BlockSamples& found);
 
-// Least and, after those of all columns, greatest depth in some rows of the columns from `first` up
-// to `end`.
+// What the columns of some rows hold.
+class Survey {
+ public:
+  Survey(int width_px, std::vector<float>& memory) : width_(static_cast<std::size_t>(width_px)) {
+    memory.resize(4 * width_);
+    columns_ = memory.data();
+  }
+  float* least() const { return columns_; }
+  float* most() const { return columns_ + width_; }
+  // Least depth but that of missing pixels; very large when all are missing.
+  float* least_there() const { return columns_ + 2 * width_; }
+  // Least of the greater depths of each pixel and the one to its right: not 0 when one of two
+  // neighbours is there everywhere.
+  float* least_of_two() const { return columns_ + 3 * width_; }
+
+  int first = 0, end = 0;  // the columns that are surveyed
+  bool has_holes = false;  // whether the last two are found as well
+
+ private:
+  std::size_t width_ = 0;
+  float* columns_ = nullptr;
+};
+// Finds the first two of the columns from `first` up to `end`.
 void SurveyColumns(const DepthImage& image, const RowRange& rows, int first, int end,
-                   std::vector<float>& survey);
+                   Survey& survey);
+// Finds the last two, unless they are found.
+void SurveyHoles(const DepthImage& image, const RowRange& rows, Survey& survey);
 
 // Mean of the samples in [low, high] of each lane, high below kPassing; `otherwise` where there is
 // none. `count`: their number.

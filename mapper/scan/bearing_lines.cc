@@ -1,6 +1,7 @@
 #include "mapper/scan/bearing_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -58,29 +59,63 @@ Axes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_ca
   return axes;
 }
 
-BearingLine LineAt(const Axes& axes, const Bearing& bearing) {
-  const double c = bearing.cosine;
-  const double s = bearing.sine;
-  const Eigen::RowVector3d off_plane = Eigen::RowVector3d(-s, c, 0.0) * axes.level_from_ray;
-  const Eigen::RowVector3d along = Eigen::RowVector3d(c, s, 0.0) * axes.level_from_ray;
-  const Eigen::RowVector3d up = axes.level_from_ray.row(2);
+// Bearings that are worked out together, so that the compiler can vectorise each step.
+constexpr std::size_t kBatch = 32;
+using Numbers = std::array<double, kBatch>;
+struct Linears {
+  Numbers at_zero, slope;
+  Linear operator[](std::size_t k) const { return {at_zero[k], slope[k]}; }
+};
+
+// The lines of some bearings, before rows are chosen.
+struct BatchLines {
+  Numbers across;  // how much faster than rows a column leaves the bearing
+  Linears horizontal, height, column;
+};
+
+// Of a function of rays, f . (a, b, 1), along rows; a is linear in b = (v - cy) / fy.
+struct Slopes {
+  double a_at_b0, a_slope, b_per_row, cy_px;
+};
+inline Linear AlongRows(double fx, double fy, double f1, const Slopes& s) {
+  const double slope = (fx * s.a_slope + fy) * s.b_per_row;
+  return {fx * s.a_at_b0 + f1 - slope * s.cy_px, slope};
+}
+
+void FindLines(const Axes& axes, const Bearing* bearings, std::size_t count, BatchLines& lines) {
+  const Eigen::Matrix3d& m = axes.level_from_ray;
+  const Eigen::RowVector3d ahead = m.row(0), left = m.row(1), up = m.row(2);
+  const double b_per_row = 1.0 / axes.fy_px;
+  Numbers cosine, sine;
+  for (std::size_t k = 0; k < kBatch; ++k) {
+    cosine[k] = bearings[std::min(k, count - 1)].cosine;
+    sine[k] = bearings[std::min(k, count - 1)].sine;
+  }
+  for (std::size_t k = 0; k < kBatch; ++k) {
+    const double c = cosine[k], s = sine[k];
+    const auto off_plane = [&](int i) { return -s * ahead[i] + c * left[i]; };
+    const auto along = [&](int i) { return c * ahead[i] + s * left[i]; };
+    // off_plane . (a, b, 1) = 0, so a is linear in b and all else with it.
+    const double inverse = -1.0 / off_plane(0);
+    const Slopes slopes{off_plane(2) * inverse, off_plane(1) * inverse, b_per_row, axes.cy_px};
+    const Linear horizontal = AlongRows(along(0), along(1), along(2), slopes);
+    const Linear height = AlongRows(up[0], up[1], up[2], slopes);
+    const double u_slope = axes.fx_px * slopes.a_slope * b_per_row;
+    lines.across[k] = off_plane(0);
+    lines.horizontal.at_zero[k] = horizontal.at_zero;
+    lines.horizontal.slope[k] = horizontal.slope;
+    lines.height.at_zero[k] = height.at_zero;
+    lines.height.slope[k] = height.slope;
+    lines.column.at_zero[k] = axes.cx_px + axes.fx_px * slopes.a_at_b0 - u_slope * axes.cy_px;
+    lines.column.slope[k] = u_slope;
+  }
+}
+
+BearingLine LineOf(const Axes& axes, const BatchLines& lines, std::size_t k) {
   BearingLine line;
   constexpr double kParallel = 1e-9;
-  if (std::abs(off_plane.x()) < kParallel) return line;
-  // off_plane . (a, b, 1) = 0, so a is linear in b and all else with it; b = (v - cy) / fy.
-  const double inverse = -1.0 / off_plane.x();
-  const double a_at_b0 = off_plane.z() * inverse;
-  const double a_slope = off_plane.y() * inverse;
-  const double b_per_row = 1.0 / axes.fy_px;
-  const auto along_rows = [&](const Eigen::RowVector3d& f) {
-    const double slope = (f.x() * a_slope + f.y()) * b_per_row;
-    return Linear{f.x() * a_at_b0 + f.z() - slope * axes.cy_px, slope};
-  };
-  const Linear horizontal = along_rows(along);
-  const Linear height = along_rows(up);
-  const double u_slope = axes.fx_px * a_slope * b_per_row;
-  const Linear column{axes.cx_px + axes.fx_px * a_at_b0 - u_slope * axes.cy_px, u_slope};
-
+  if (std::abs(lines.across[k]) < kParallel) return line;
+  const Linear horizontal = lines.horizontal[k], height = lines.height[k], column = lines.column[k];
   double low = 0.0;
   double high = axes.height_px - 1.0;
   ClipBelow(horizontal, kMinHorizontal, low, high);
@@ -105,9 +140,9 @@ bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& le
   return std::abs(off_plane.y()) * camera.fx_px > std::abs(off_plane.x()) * camera.fy_px;
 }
 
-std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
-                                  const Eigen::Quaterniond& level_from_camera, int beams,
-                                  std::vector<Bearing> memory) {
+const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
+                                         const Eigen::Quaterniond& level_from_camera, int beams,
+                                         BearingFan& fan) {
   const bool transposed = LinesRunAlongRows(camera, level_from_camera);
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
   // The image's borders are half a pixel beyond the outer pixels' centres; left is positive, and
@@ -117,21 +152,26 @@ std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
   const double last_rad = std::atan(left_per_a * (axes.width_px - 0.5 - axes.cx_px) / axes.fx_px);
   const double right_rad = std::min(first_rad, last_rad);
   const double step_rad = std::abs(last_rad - first_rad) / beams;
+  const auto count = static_cast<std::size_t>(beams);
+  if (fan.bearings.size() == count && fan.right_rad == right_rad && fan.step_rad == step_rad) {
+    return fan.bearings;
+  }
+  fan.right_rad = right_rad;
+  fan.step_rad = step_rad;
   const double first_angle_rad = right_rad + 0.5 * step_rad;
   // Each direction is the one before, turned by a step: a thousand steps err by 1e-13.
   const double step_cosine = std::cos(step_rad);
   const double step_sine = std::sin(step_rad);
   Bearing bearing{first_angle_rad, std::cos(first_angle_rad), std::sin(first_angle_rad)};
-  std::vector<Bearing> bearings = std::move(memory);
-  bearings.clear();
-  bearings.reserve(static_cast<std::size_t>(beams));
+  fan.bearings.clear();
+  fan.bearings.reserve(count);
   for (int k = 0; k < beams; ++k) {
-    bearings.push_back(bearing);
+    fan.bearings.push_back(bearing);
     bearing = {right_rad + (k + 1.5) * step_rad,
                step_cosine * bearing.cosine - step_sine * bearing.sine,
                step_sine * bearing.cosine + step_cosine * bearing.sine};
   }
-  return bearings;
+  return fan.bearings;
 }
 
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
@@ -140,9 +180,13 @@ std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
                                       std::vector<BearingLine> memory) {
   const Axes axes = AxesOf(camera, level_from_camera, transposed);
   std::vector<BearingLine> lines = std::move(memory);
-  lines.clear();
-  lines.reserve(bearings.size());
-  for (const Bearing& bearing : bearings) lines.push_back(LineAt(axes, bearing));
+  lines.resize(bearings.size());
+  BatchLines batch;
+  for (std::size_t begin = 0; begin < bearings.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, bearings.size() - begin);
+    FindLines(axes, &bearings[begin], count, batch);
+    for (std::size_t k = 0; k < count; ++k) lines[begin + k] = LineOf(axes, batch, k);
+  }
   return lines;
 }
 

@@ -32,12 +32,18 @@ struct Bearing {
   double sine = 0.0;
 };
 
+// Bearings of equal steps, kept from frame to frame: they rarely change.
+struct BearingFan {
+  double right_rad = 0.0;  // where the first bin begins
+  double step_rad = 0.0;
+  std::vector<Bearing> bearings;
+};
+
 // Bearings of `beams` bins of equal angle over the field of view the camera would have if it were
-// level (rolled to the nearest quarter turn), increasing (counter-clockwise). `memory`: of an
-// earlier result, to be used again.
-std::vector<Bearing> ScanBearings(const PinholeCamera& camera,
-                                  const Eigen::Quaterniond& level_from_camera, int beams,
-                                  std::vector<Bearing> memory = {});
+// level (rolled to the nearest quarter turn), increasing (counter-clockwise). They are `fan`'s.
+const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
+                                         const Eigen::Quaterniond& level_from_camera, int beams,
+                                         BearingFan& fan);
 
 // `transposed`: rows and columns of the image are exchanged; `camera` is still the original one.
 std::vector<BearingLine> BearingLines(const PinholeCamera& camera,

@@ -124,16 +124,16 @@ void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, cons
 
 // Some neighbouring blocks.
 struct Stripe {
-  std::array<BearingBlock, internal::kStripeBlocks> blocks;
-  std::array<BlockSamples, internal::kStripeBlocks> found;
+  std::array<BearingBlock, internal::kMostStripeBlocks> blocks;
+  std::array<BlockSamples, internal::kMostStripeBlocks> found;
   std::size_t size = 0;
 };
 
 void LayOut(const std::vector<BearingLine>& lines, std::size_t begin, const ReturnLimits& limits,
-            std::vector<Lanes>& memory, Stripe& stripe) {
+            std::size_t blocks, std::vector<Lanes>& memory, Stripe& stripe) {
   std::size_t lanes = 0;
   stripe.size = 0;
-  for (; stripe.size < stripe.blocks.size() && begin < lines.size(); begin += kBlockBearings) {
+  for (; stripe.size < blocks && begin < lines.size(); begin += kBlockBearings) {
     stripe.blocks[stripe.size] = internal::MakeBearingBlock(lines, begin, limits);
     lanes += 2 * LanesOf(stripe.blocks[stripe.size++]);
   }
@@ -157,8 +157,9 @@ const ImageReturns& FindReturns(const DepthImage& image, const std::vector<Beari
   all.slice.assign(slice ? lines.size() : 0, {});
   const ImageBands bands{image, limits, slice.value_or(kNoSlice)};
   Stripe stripe;
+  const std::size_t blocks = internal::StripeBlocks(lines.size(), image.width_px);
   for (std::size_t begin = 0; begin < lines.size(); begin += stripe.size * kBlockBearings) {
-    LayOut(lines, begin, limits, memory.samples, stripe);
+    LayOut(lines, begin, limits, blocks, memory.samples, stripe);
     internal::SampleBlocks(bands, window, std::span(stripe.blocks).first(stripe.size),
                            memory.survey, std::span(stripe.found).first(stripe.size));
     for (std::size_t b = 0; b < stripe.size; ++b) {

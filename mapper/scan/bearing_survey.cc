@@ -21,13 +21,12 @@ using Vec = hn::Vec<Floats>;
 // Neighbouring columns by vectors that begin where lines of memory do, as far as the image allows:
 // it is two vectors wide or more.
 template <int kRows>
-void SurveyRows(const DepthImage& image, const RowRange& rows, int first, int end,
-                float* HWY_RESTRICT least, float* HWY_RESTRICT most) {
+void SurveyRows(const DepthImage& image, const RowRange& rows, const Survey& survey) {
   const Floats d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const std::ptrdiff_t width = image.width_px;
   const int count = kRows > 0 ? kRows : rows.last - rows.first + 1;
-  for (int u = first; u < end; u += lanes) {
+  for (int u = survey.first; u < survey.end; u += lanes) {
     const int from = std::min(u, image.width_px - lanes);
     const float* HWY_RESTRICT pixels = image.Row(rows.first) + from;
     Vec low = hn::LoadU(d, pixels), high = low;
@@ -37,19 +36,59 @@ void SurveyRows(const DepthImage& image, const RowRange& rows, int first, int en
       low = hn::Min(low, z);
       high = hn::Max(high, z);
     }
-    hn::StoreU(low, d, least + from);
-    hn::StoreU(high, d, most + from);
+    hn::StoreU(low, d, survey.least() + from);
+    hn::StoreU(high, d, survey.most() + from);
   }
 }
 
-void Survey(const DepthImage& image, const RowRange& rows, int first, int end, float* least,
-            float* most) {
-  const auto lanes = hn::Lanes(Floats());
-  const auto at = reinterpret_cast<std::uintptr_t>(image.Row(rows.first) + first) / sizeof(float);
-  const int begin = std::max(first - static_cast<int>(at % lanes), 0);
+void Columns(const DepthImage& image, const RowRange& rows, const Survey& survey) {
   const bool is_whole = rows.last - rows.first + 1 == static_cast<int>(kGroupRows);
-  is_whole ? SurveyRows<static_cast<int>(kGroupRows)>(image, rows, begin, end, least, most)
-           : SurveyRows<0>(image, rows, begin, end, least, most);
+  is_whole ? SurveyRows<static_cast<int>(kGroupRows)>(image, rows, survey)
+           : SurveyRows<0>(image, rows, survey);
+}
+
+// Where lines of memory begin.
+int LineBegin(const DepthImage& image, int row, int first) {
+  const auto at = reinterpret_cast<std::uintptr_t>(image.Row(row) + first) / sizeof(float);
+  return std::max(first - static_cast<int>(at % hn::Lanes(Floats())), 0);
+}
+
+constexpr float kVeryFar = 1e30F;
+
+// The last column has none to its right.
+void HolesOfColumn(const DepthImage& image, const RowRange& rows, int u, const Survey& survey) {
+  float there = kVeryFar;
+  for (int v = rows.first; v <= rows.last; ++v) {
+    if (image.At(u, v) > 0.0F) there = std::min(there, image.At(u, v));
+  }
+  survey.least_there()[u] = there;
+  survey.least_of_two()[u] = kVeryFar;  // nobody reads pixels beyond
+}
+
+void Holes(const DepthImage& image, const RowRange& rows, const Survey& survey) {
+  const Floats d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const std::ptrdiff_t width = image.width_px;
+  const Vec very_far = hn::Set(d, kVeryFar);
+  for (int u = survey.first; u < survey.end; u += lanes) {
+    const int from = std::min(u, image.width_px - 1 - lanes);
+    const float* HWY_RESTRICT pixels = image.Row(rows.first) + from;
+    const Vec least = hn::LoadU(d, survey.least() + from);
+    Vec there = very_far, of_two = very_far;
+    if (hn::AllTrue(d, hn::Gt(least, hn::Zero(d)))) {  // no pixel is missing
+      hn::StoreU(least, d, survey.least_there() + from);
+      hn::StoreU(least, d, survey.least_of_two() + from);
+      continue;
+    }
+    for (int v = rows.first; v <= rows.last; ++v, pixels += width) {
+      const Vec z = hn::LoadU(d, pixels);
+      there = hn::Min(there, hn::IfThenElse(hn::Gt(z, hn::Zero(d)), z, very_far));
+      of_two = hn::Min(of_two, hn::Max(z, hn::LoadU(d, pixels + 1)));
+    }
+    hn::StoreU(there, d, survey.least_there() + from);
+    hn::StoreU(of_two, d, survey.least_of_two() + from);
+  }
+  if (survey.end == image.width_px) HolesOfColumn(image, rows, image.width_px - 1, survey);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -59,13 +98,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace depthgrid::internal {
 
-HWY_EXPORT(Survey);
+HWY_EXPORT(Columns);
+HWY_EXPORT(LineBegin);
+HWY_EXPORT(Holes);
 
 void SurveyColumns(const DepthImage& image, const RowRange& rows, int first, int end,
-                   std::vector<float>& survey) {
-  const auto width = static_cast<std::size_t>(image.width_px);
-  survey.resize(2 * width);
-  HWY_DYNAMIC_DISPATCH(Survey)(image, rows, first, end, survey.data(), survey.data() + width);
+                   Survey& survey) {
+  survey.first = HWY_DYNAMIC_DISPATCH(LineBegin)(image, rows.first, first);
+  survey.end = end;
+  survey.has_holes = false;
+  HWY_DYNAMIC_DISPATCH(Columns)(image, rows, survey);
+}
+
+void SurveyHoles(const DepthImage& image, const RowRange& rows, Survey& survey) {
+  if (survey.has_holes) return;
+  survey.has_holes = true;
+  HWY_DYNAMIC_DISPATCH(Holes)(image, rows, survey);
 }
 
 }  // namespace depthgrid::internal

@@ -32,12 +32,12 @@ using Mask = hn::Mask<Floats>;
 struct Tile {
   const ImageBands* bands;
   const BearingBlock* block;
-  std::size_t of;    // which block
   std::size_t lane;  // the first, in the block
   RowRange rows;
   // First of the pixels that any sample is made of, and how many side by side; 0 when not known.
   int start = 0;
   int columns = 0;
+  bool inside = false;  // whether columns need not be kept in the image
 
   std::size_t RowCount() const { return static_cast<std::size_t>(rows.last - rows.first + 1); }
   // Where samples and groups of the tile lie in the block.
@@ -50,38 +50,29 @@ struct Tile {
   }
 };
 
-// Columns are monotonic in the row, and in the bearing while all rays look ahead: the corners bound
-// them. Two vectors from `start` on are in the image.
-void FindColumns(Tile& tile) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  const BearingBlock& block = *tile.block;
-  const int max_start = tile.bands->image.width_px - static_cast<int>(2 * lanes);
-  if (!block.all_ahead || max_start < 0) return;
-  float least = LastColumn(tile.bands->image.width_px), most = 0.0F;
-  for (const std::size_t lane : {tile.lane, tile.lane + lanes - 1}) {
-    for (const int v : {tile.rows.first, tile.rows.last}) {
-      const float u = block.u0[lane] + block.u1[lane] * static_cast<float>(v);
-      least = std::min(least, u);
-      most = std::max(most, u);
-    }
-  }
-  const int last = static_cast<int>(std::min(most, LastColumn(tile.bands->image.width_px))) + 1;
-  tile.start = std::min(static_cast<int>(std::max(least, 0.0F)), max_start);
-  tile.columns = std::max(last - tile.start + 1, static_cast<int>(lanes));
-}
-
-// What a tile holds.
+// What a tile holds, and so what is found of it.
 enum class Content : std::uint8_t {
   kAnything,
+  kInSlice,  // all usable and in the band, some of it in the slice
   kNoSlice,  // nothing in the slice
-  kInBand,   // ... and all usable and in the band
+  kUsable,   // ... and all usable
+  kInBand,   // ... and in the band
   kSurface,  // ... and of one surface
-  kPassing,  // ... and all usable and outside the band
+  // Only which samples are usable is found of the following, which have nothing in the slice.
+  kPassing,       // all usable and outside the band
+  kPassingHoles,  // some are missing
+  kFar,           // all usable and too far away to matter
+  kFarHoles,      // some are missing
+  kUnusable,      // all unusable
 };
+constexpr bool IsFar(Content content) {
+  return content == Content::kFar || content == Content::kFarHoles;
+}
 
 // How the two pixels around each lane's column are fetched.
-enum class Fetch {
+enum class Fetch : std::uint8_t {
   kTwoVectors,  // from two vectors of neighbouring pixels
+  kInside,      // the same, and columns are in the image already
   kGather,      // from anywhere
 };
 
@@ -103,12 +94,13 @@ HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
                         hn::TableLookupLanes(right, within));
 }
 
-// A whole number below 2^23 as an integer: its bits after adding 2^23, less those of 2^23.
-HWY_INLINE hn::Vec<Ints> ToInt(Floats d, Vec whole) {
+// A whole number below 2^23 less another, as an integer: its bits after adding 2^23, less those of
+// 2^23.
+HWY_INLINE hn::Vec<Ints> IntLess(Floats d, Vec whole, int less) {
   constexpr float kTwoTo23 = 8388608.0F;
   constexpr int kBits = 0x4B000000;
   const Ints di;
-  return hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits));
+  return hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits + less));
 }
 
 // `column` are whole numbers from `start` on.
@@ -119,7 +111,7 @@ HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start
     const auto index = hn::ConvertTo(di, column);
     return {hn::GatherIndex(d, row, index), hn::GatherIndex(d, row + 1, index)};
   } else {
-    const auto index = hn::Sub(ToInt(d, column), hn::Set(di, start));
+    const auto index = IntLess(d, column, start);
     const Vec left = hn::LoadU(d, row + start), right = hn::LoadU(d, row + start + hn::Lanes(d));
     return {LookUp(d, left, right, index), LookUp(d, left, right, hn::Add(index, hn::Set(di, 1)))};
   }
@@ -140,7 +132,7 @@ HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
   return hn::IfThenElse(same_surface, between, apart);
 }
 
-void StoreNearest(const Tile& tile, Vec nearest, Vec slice_nearest, BlockSamples& out) {
+HWY_INLINE void StoreNearest(const Tile& tile, Vec nearest, Vec slice_nearest, BlockSamples& out) {
   const Floats d;
   hn::Store(nearest, d, out.band.samples.nearest + tile.AtGroup());
   hn::Store(slice_nearest, d, out.slice.samples.nearest + tile.AtGroup());
@@ -153,8 +145,11 @@ void StoreNearest(const Tile& tile, Vec nearest, Vec slice_nearest, BlockSamples
 // The samples of a tile that holds `kContent`.
 template <Fetch kFetch, Content kContent>
 HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
-  constexpr bool kSlice = kContent == Content::kAnything;
-  constexpr bool kMixed = kContent == Content::kAnything || kContent == Content::kNoSlice;
+  constexpr bool kHoles = kContent == Content::kPassingHoles;  // or kFarHoles
+  constexpr bool kSlice = kContent == Content::kAnything || kContent == Content::kInSlice;
+  constexpr bool kMixed = kContent == Content::kAnything || kContent == Content::kNoSlice ||
+                          kContent == Content::kUsable;
+  constexpr bool kAllUsable = kContent != Content::kAnything && kContent != Content::kNoSlice;
   const Floats d;
   const BearingBlock& block = *tile.block;
   const std::size_t i = tile.lane;
@@ -175,25 +170,37 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   float* HWY_RESTRICT samples = out.band.samples.samples + tile.AtRow();
   float* HWY_RESTRICT slice = kSlice ? out.slice.samples.samples + tile.AtRow() : nullptr;
   for (std::size_t r = 0; r < tile.RowCount(); ++r) {
-    const Vec u = hn::Min(hn::Max(hn::Add(u0, hn::Mul(u1, row)), hn::Zero(d)), max_column);
+    Vec u = hn::Add(u0, hn::Mul(u1, row));
+    if constexpr (kFetch != Fetch::kInside) u = hn::Min(hn::Max(u, hn::Zero(d)), max_column);
     const Vec column = hn::Floor(u);
     const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column);
-    const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, hn::Sub(u, column));
-    const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
-    Vec sample = range;
-    if constexpr (kMixed) {
-      const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
-      const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
-      Mask usable = hn::Ge(z, min_depth);
-      if constexpr (kSlice) {
-        usable = hn::And(usable, hn::And(hn::Ge(row, first), hn::Le(row, last)));
-        const Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
-        const Vec level_sample = hn::IfThenElse(hn::And(usable, level), range, passing);
-        hn::Store(level_sample, d, slice);
-        slice_nearest = hn::Min(slice_nearest, level_sample);
-        slice += kBlockBearings;
+    Vec sample;
+    if constexpr (kHoles) {
+      sample = hn::IfThenElse(hn::Gt(hn::Max(both.z0, both.z1), hn::Zero(d)), passing, unusable);
+    } else {
+      const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, hn::Sub(u, column));
+      const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
+      sample = range;
+      if constexpr (kMixed || kSlice) {
+        const Vec height = hn::Mul(z, hn::Add(g0, hn::Mul(g1, row)));
+        Mask usable = hn::Ge(z, min_depth);
+        if constexpr (kSlice) {
+          Mask level = hn::And(hn::Ge(height, slice_low), hn::Le(height, slice_high));
+          if constexpr (!kAllUsable) {
+            usable = hn::And(usable, hn::And(hn::Ge(row, first), hn::Le(row, last)));
+            level = hn::And(usable, level);
+          }
+          const Vec level_sample = hn::IfThenElse(level, range, passing);
+          hn::Store(level_sample, d, slice);
+          slice_nearest = hn::Min(slice_nearest, level_sample);
+          slice += kBlockBearings;
+        }
+        if constexpr (kMixed) {
+          const Mask marks = hn::And(hn::Ge(height, low), hn::Le(height, high));
+          sample = hn::IfThenElse(marks, range, passing);
+          if constexpr (!kAllUsable) sample = hn::IfThenElse(usable, sample, unusable);
+        }
       }
-      sample = hn::IfThenElse(usable, hn::IfThenElse(marks, range, passing), unusable);
     }
     hn::Store(sample, d, samples);
     nearest = hn::Min(nearest, sample);
@@ -201,29 +208,56 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
     pixels += tile.bands->image.width_px;
     samples += kBlockBearings;
   }
-  StoreNearest(tile, nearest, slice_nearest, out);
+  if constexpr (!kHoles) StoreNearest(tile, nearest, slice_nearest, out);
+}
+
+// Groups without a range.
+HWY_INLINE void SampleNothing(const Tile& tile, float nearest, BlockSamples& out) {
+  const Floats d;
+  hn::Store(hn::Set(d, nearest), d, out.band.samples.nearest + tile.AtGroup());
+  hn::Store(hn::Set(d, kPassing), d, out.slice.samples.nearest + tile.AtGroup());
+}
+
+void SampleUnusable(const Tile& tile, BlockSamples& out) {
+  const Floats d;
+  float* HWY_RESTRICT samples = out.band.samples.samples + tile.AtRow();
+  for (std::size_t r = 0; r < tile.RowCount(); ++r, samples += kBlockBearings) {
+    hn::Store(hn::Set(d, kUnusable), d, samples);
+  }
+  SampleNothing(tile, kUnusable, out);
 }
 
 template <Fetch kFetch>
-void SampleTileAs(Content content, const Tile& tile, BlockSamples& out) {
-  const Floats d;
+HWY_INLINE void SampleTileAs(Content content, const Tile& tile, BlockSamples& out) {
   switch (content) {
     case Content::kAnything:
       return SampleTile<kFetch, Content::kAnything>(tile, out);
+    case Content::kInSlice:
+      return SampleTile<kFetch, Content::kInSlice>(tile, out);
     case Content::kNoSlice:
       return SampleTile<kFetch, Content::kNoSlice>(tile, out);
+    case Content::kUsable:
+      return SampleTile<kFetch, Content::kUsable>(tile, out);
     case Content::kInBand:
       return SampleTile<kFetch, Content::kInBand>(tile, out);
     case Content::kSurface:
       return SampleTile<kFetch, Content::kSurface>(tile, out);
-    case Content::kPassing:  // nobody reads its samples
-      return StoreNearest(tile, hn::Set(d, kPassing), hn::Set(d, kPassing), out);
+    case Content::kPassingHoles:
+    case Content::kFarHoles:
+      SampleTile<kFetch, Content::kPassingHoles>(tile, out);
+      return SampleNothing(tile, IsFar(content) ? kSkipped : kPassing, out);
+    case Content::kPassing:
+    case Content::kFar:
+      return SampleNothing(tile, IsFar(content) ? kSkipped : kPassing, out);
+    case Content::kUnusable:
+      return SampleUnusable(tile, out);
   }
 }
 
 void SampleAs(Content content, const Tile& tile, BlockSamples& out) {
   if (tile.columns > 0 && tile.columns <= static_cast<int>(2 * hn::Lanes(Floats()))) {
-    SampleTileAs<Fetch::kTwoVectors>(content, tile, out);
+    tile.inside ? SampleTileAs<Fetch::kInside>(content, tile, out)
+                : SampleTileAs<Fetch::kTwoVectors>(content, tile, out);
   } else {
     SampleTileAs<Fetch::kGather>(content, tile, out);
   }

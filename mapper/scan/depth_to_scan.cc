@@ -36,9 +36,9 @@ Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera, const Ca
   reading.transposed = LinesRunAlongRows(camera, level_from_camera);
   if (reading.transposed) Transpose(depth, memory.transposed);
   reading.image = reading.transposed ? &memory.transposed : &depth;
-  memory.bearings = ScanBearings(camera, level_from_camera, beams, std::move(memory.bearings));
-  memory.lines = BearingLines(camera, level_from_camera, memory.bearings, reading.transposed,
-                              std::move(memory.lines));
+  memory.lines = BearingLines(camera, level_from_camera,
+                              ScanBearings(camera, level_from_camera, beams, memory.fan),
+                              reading.transposed, std::move(memory.lines));
   return reading;
 }
 
@@ -110,7 +110,7 @@ Scan ScanOf(const ScanMemory& memory, const std::vector<BearingReturns>& returns
   scan.beams.clear();
   scan.beams.reserve(returns.size());
   for (std::size_t k = 0; k < returns.size(); ++k) {
-    scan.beams.push_back(BeamOf(memory.bearings[k].angle_rad, memory.views[k], returns[k],
+    scan.beams.push_back(BeamOf(memory.fan.bearings[k].angle_rad, memory.views[k], returns[k],
                                 camera_height_m, options));
   }
   return scan;

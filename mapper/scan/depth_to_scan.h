@@ -24,7 +24,7 @@ struct ScanPair {
 // Memory for conversions, kept from frame to frame.
 struct ScanMemory {
   DepthImage transposed;
-  std::vector<Bearing> bearings;
+  BearingFan fan;
   std::vector<BearingLine> lines;
   NoiseWindow::Memory noise;
   ReturnsMemory returns;

@@ -10,9 +10,6 @@
 namespace depthgrid {
 namespace {
 
-// Classes of depth are this wide, from 0.
-constexpr float kClassM = 0.5F;
-
 // 1,280 samples of a 640x480 image, in rows that lie together in memory.
 constexpr int kRows = 16;
 constexpr int kColumnStep = 8;
@@ -28,11 +25,6 @@ constexpr double kQuantileSigmas = 1.2816 * 2.4495;
 constexpr std::size_t kMinSamples = 20;
 // Until something is measured: Kinect v1 (Nguyen 2012) has 0.0012 to 0.0019 a metre.
 constexpr double kDefaultInverseSigma = 0.002;
-
-constexpr double kWindowSigmas = 6.0;
-constexpr double kMinWindowM = 0.01;
-// Wider than this, the window would join a chair with the wall behind it.
-constexpr double kMaxWindowM = 0.4;
 
 // The value that std::nth_element puts at `nth`, of numbers that are not negative. Their bits order
 // as they do, and counting those below a middle vectorises: a fifth of the time for 300 of them.
@@ -69,7 +61,7 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
     for (int u = kLag; u + kLag < image.width_px; u += kColumnStep) {
       __builtin_prefetch(next_row + u);
       const float left = row[u - kLag], here = row[u], right = row[u + kLag];
-      const auto depth_class = static_cast<std::size_t>(here / kClassM);
+      const auto depth_class = static_cast<std::size_t>(here / static_cast<float>(kClassM));
       if (!(left > 0.0F && here > 0.0F && right > 0.0F) || depth_class >= kClasses) continue;
       const float difference = 1.0F / left - 2.0F / here + 1.0F / right;
       differences[depth_class].push_back(std::abs(difference));
@@ -87,20 +79,6 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   if (first < kClasses) {
     std::fill_n(inverse_sigma_.begin(), first, inverse_sigma_[static_cast<std::size_t>(first)]);
   }
-}
-
-double NoiseWindow::SigmaM(double z_m) const {
-  // Linear between the centres of the classes.
-  const double position = std::clamp(z_m / kClassM - 0.5, 0.0, kClasses - 1.0);
-  const auto below = std::min(static_cast<std::size_t>(position), std::size_t{kClasses - 2});
-  const double share = position - static_cast<double>(below);
-  const double inverse_sigma =
-      (1.0 - share) * inverse_sigma_[below] + share * inverse_sigma_[below + 1];
-  return z_m * z_m * inverse_sigma;
-}
-
-float NoiseWindow::At(float range_m) const {
-  return static_cast<float>(std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
 }
 
 }  // namespace depthgrid

@@ -4,6 +4,7 @@
 // factor of a hundred and grows with the square of the range.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -22,15 +23,31 @@ class NoiseWindow {
   // The same with memory kept from frame to frame.
   static constexpr int kClasses = 16;
   using Memory = std::array<std::vector<float>, kClasses>;
-  NoiseWindow(const DepthImage& image, Memory& memory);
+  NoiseWindow(const DepthImage& image, Memory& differences);
 
   // Width of the window at a range.
-  float At(float range_m) const;
+  float At(float range_m) const {
+    return static_cast<float>(
+        std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
+  }
 
-  // Standard deviation of depth as estimated for a class of depth, for tests.
-  double SigmaM(double z_m) const;
+  // Standard deviation of depth as estimated for a class of depth.
+  double SigmaM(double z_m) const {
+    // Linear between the centres of the classes.
+    const double position = std::clamp(z_m / kClassM - 0.5, 0.0, kClasses - 1.0);
+    const int below = std::min(static_cast<int>(position), kClasses - 2);
+    const double share = position - below;
+    const double* const inverse_sigma = &inverse_sigma_[static_cast<std::size_t>(below)];
+    return z_m * z_m * ((1.0 - share) * inverse_sigma[0] + share * inverse_sigma[1]);
+  }
 
  private:
+  static constexpr double kClassM = 0.5;  // classes of depth are this wide, from 0
+  static constexpr double kWindowSigmas = 6.0;
+  static constexpr double kMinWindowM = 0.01;
+  // Wider than this, the window would join a chair with the wall behind it.
+  static constexpr double kMaxWindowM = 0.4;
+
   std::array<double, kClasses> inverse_sigma_{};  // of 1/z, 1/m
 };
 

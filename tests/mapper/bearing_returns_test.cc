@@ -83,6 +83,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       {90, 200, 70.0, 80.0, 45.0, 90.0, {}}};
   RandomStream random(11, RandomStage::kTest);
   ReturnsMemory memory;
+  BearingFan fan;
   int cases = 0, hits = 0, slice_hits = 0, gaps = 0;
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
@@ -98,7 +99,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       if (i % 4 > 1) Damage(image, random);
       const Eigen::Quaterniond level = LevelFromCamera(pose);
       const auto lines =
-          BearingLines(camera, level, ScanBearings(camera, level, 8 + 37 * (i % 7)), false);
+          BearingLines(camera, level, ScanBearings(camera, level, 8 + 37 * (i % 7), fan), false);
       ReturnLimits limits;
       limits.min_depth_m = 0.4F;
       limits.max_range_m = 6.0F;
@@ -154,7 +155,8 @@ TEST_F(InstructionSets, AWallFarBehindCountsWhereNearSamplesAreAlone) {
     }
   }
   const Eigen::Quaterniond level = LevelFromCamera(TiltedCamera({}, 1.15, 0.0, 0.0));
-  const auto lines = BearingLines(camera, level, ScanBearings(camera, level, 160), false);
+  BearingFan fan;
+  const auto lines = BearingLines(camera, level, ScanBearings(camera, level, 160, fan), false);
   const ReturnLimits limits{0.4F, 6.0F, -1.05F, 2.0F, 3, 0, 119};
   const NoiseWindow window(image);
   ReturnsMemory memory;

@@ -1,0 +1,290 @@
+// What the tiles of a stripe hold in a group of rows, found for all of them at once, one a vector
+// lane (bearing_block.h). Compiled once for each instruction set by bearing_block.cc, so without an
+// ordinary guard.
+#if defined(DEPTHGRID_BEARING_STRIPE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_BEARING_STRIPE_INL_H
+#undef DEPTHGRID_BEARING_STRIPE_INL_H
+#else
+#define DEPTHGRID_BEARING_STRIPE_INL_H
+#endif
+
+#include <bit>
+
+#include "mapper/scan/bearing_tile-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::internal {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kMostTiles = kMostStripeBlocks * kBlockBearings / hn::MaxLanes(Floats());
+
+// One number a tile.
+template <class T>
+struct alignas(64) PerTile : std::array<T, kMostTiles> {};
+
+// Linear in the row.
+struct AlongRows {
+  float at_0 = 0.0F, per_row = 0.0F;
+};
+struct AllAlongRows {
+  PerTile<float> at_0, per_row;
+  void Put(std::size_t i, const AlongRows& line) {
+    at_0[i] = line.at_0;
+    per_row[i] = line.per_row;
+  }
+  HWY_INLINE Vec At(Floats d, std::size_t i, Vec row) const {
+    return hn::Add(hn::Load(d, &at_0[i]), hn::Mul(hn::Load(d, &per_row[i]), row));
+  }
+  HWY_INLINE Vec LeastOf(Floats d, std::size_t i, Vec first, Vec last) const {
+    return hn::Min(At(d, i, first), At(d, i, last));
+  }
+  HWY_INLINE Vec MostOf(Floats d, std::size_t i, Vec first, Vec last) const {
+    return hn::Max(At(d, i, first), At(d, i, last));
+  }
+};
+
+// The vectors of a stripe's bearings, of which each makes a tile of each group of rows.
+struct StripeVectors {
+  std::size_t count = 0;
+  PerTile<std::size_t> of, lane;  // which block, and which lane of it is the first
+  AllAlongRows left, right;       // columns of the first lane and of the last
+  // No ray rises less or more a depth, or comes less far, rounding included.
+  AllAlongRows lowest, highest, shortest;
+  PerTile<float> rows_first, rows_last;      // of the block
+  PerTile<float> shared_first, shared_last;  // rows in which all of its bearings take part
+  PerTile<float> is_known;                   // 1 where pixels of its tiles lie side by side, or 0
+  PerTile<float> skip_from;                  // nothing from here on matters
+  PerTile<float> skipped_from;               // what was skipped holds nothing nearer
+};
+
+// Of a group of rows. Tiles after the last one repeat it.
+struct GroupTiles {
+  int first_row = 0;
+  int first_column = 0, end_column = 0;  // of all of them
+  PerTile<float> last_row, is_shared;
+  PerTile<int> rows;            // 0 of those that have no part in the group
+  PerTile<int> start, columns;  // as of Tile
+  PerTile<int> inside;          // whether columns need not be kept in the image
+  PerTile<float> usable_from;   // no usable depth is smaller; 0 unless all are usable
+  PerTile<float> range_from;    // nor a range
+  PerTile<int> content;
+};
+
+// Columns are monotonic in the row, and in the bearing while all rays look ahead: the corners bound
+// them. They are not known otherwise, nor of images narrower than two vectors.
+void LayOut(const StripeVectors& vectors, int width, const RowRange& rows, GroupTiles& tiles) {
+  const Floats d;
+  const Ints di;
+  constexpr float kMargin = 0.01F;  // pixels, for rounding
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  const Vec max_column = hn::Set(d, LastColumn(width));
+  // Two vectors from `start` on are in the image.
+  const Vec max_start = hn::Set(d, static_cast<float>(std::max(width - 2 * lanes, 0)));
+  const Vec first = hn::Set(d, static_cast<float>(rows.first));
+  const Vec whole_group = hn::Set(d, static_cast<float>(rows.last));
+  Vec first_of_all = hn::Set(d, static_cast<float>(width)), end_of_all = zero;
+  for (std::size_t i = 0; i < vectors.count; i += static_cast<std::size_t>(lanes)) {
+    const Vec last = hn::Min(whole_group, hn::Load(d, &vectors.rows_last[i]));
+    const Mask takes_part =
+        hn::And(hn::Ge(first, hn::Load(d, &vectors.rows_first[i])), hn::Ge(last, first));
+    const Mask is_shared = hn::And(hn::Ge(first, hn::Load(d, &vectors.shared_first[i])),
+                                   hn::Le(last, hn::Load(d, &vectors.shared_last[i])));
+    const Vec least =
+        hn::Min(vectors.left.LeastOf(d, i, first, last), vectors.right.LeastOf(d, i, first, last));
+    const Vec most =
+        hn::Max(vectors.left.MostOf(d, i, first, last), vectors.right.MostOf(d, i, first, last));
+    const Mask is_known = hn::And(takes_part, hn::Gt(hn::Load(d, &vectors.is_known[i]), zero));
+    const Vec start = hn::IfThenElseZero(
+        is_known, hn::Min(hn::Floor(hn::Min(hn::Max(least, zero), max_column)), max_start));
+    const Vec end = hn::Add(hn::Floor(hn::Min(hn::Max(most, zero), max_column)), one);
+    const Vec columns = hn::IfThenElseZero(
+        is_known,
+        hn::Max(hn::Add(hn::Sub(end, start), one), hn::Set(d, static_cast<float>(lanes))));
+    const Mask inside = hn::And(hn::Ge(least, hn::Set(d, kMargin)),
+                                hn::Le(most, hn::Set(d, LastColumn(width) - kMargin)));
+    first_of_all = hn::Min(first_of_all, hn::IfThenElse(is_known, start, first_of_all));
+    end_of_all = hn::Max(end_of_all, hn::Add(start, columns));
+    const Vec count = hn::IfThenElseZero(takes_part, hn::Add(hn::Sub(last, first), one));
+    hn::Store(last, d, &tiles.last_row[i]);
+    hn::Store(hn::IfThenElseZero(is_shared, one), d, &tiles.is_shared[i]);
+    hn::Store(hn::ConvertTo(di, count), di, &tiles.rows[i]);
+    hn::Store(hn::ConvertTo(di, start), di, &tiles.start[i]);
+    hn::Store(hn::ConvertTo(di, columns), di, &tiles.columns[i]);
+    hn::Store(hn::VecFromMask(di, hn::RebindMask(di, inside)), di, &tiles.inside[i]);
+  }
+  tiles.first_row = rows.first;
+  tiles.first_column = static_cast<int>(hn::GetLane(hn::MinOfLanes(d, first_of_all)));
+  tiles.end_column = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, end_of_all)));
+}
+
+// The smallest or largest lane of each of `count` vectors, a power of two of them, in their order.
+template <class Choose>
+HWY_INLINE Vec OfEach(Floats d, Vec* vectors, std::size_t count, const Choose& choose) {
+  for (std::size_t lanes = hn::Lanes(d); lanes > 1; lanes /= 2) {
+    const std::size_t half = std::max<std::size_t>(count / 2, 1);
+    for (std::size_t i = 0; i < half; ++i) {
+      const Vec a = vectors[std::min(2 * i, count - 1)],
+                b = vectors[std::min(2 * i + 1, count - 1)];
+      vectors[i] = choose(hn::ConcatEven(d, b, a), hn::ConcatOdd(d, b, a));
+    }
+    count = half;
+  }
+  return vectors[0];
+}
+
+// Of the tiles from `at` on, one a lane: the smallest or largest of what was surveyed of their
+// columns, `unknown` of those without columns.
+template <class Choose>
+HWY_INLINE Vec OverColumns(Floats d, const GroupTiles& tiles, std::size_t at, std::size_t count,
+                           const float* HWY_RESTRICT survey, float unknown, const Choose& choose) {
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  std::array<Vec, hn::MaxLanes(Floats())> found;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float* HWY_RESTRICT from = survey + tiles.start[at + k];
+    const int columns = tiles.columns[at + k];
+    if (HWY_UNLIKELY(columns == 0)) {
+      found[k] = hn::Set(d, unknown);
+      continue;
+    }
+    found[k] = choose(hn::LoadU(d, from), hn::LoadU(d, from + (columns - lanes)));
+    for (int column = lanes; column + lanes < columns; column += lanes) {
+      found[k] = choose(found[k], hn::LoadU(d, from + column));
+    }
+  }
+  return OfEach(d, found.data(), count, choose);
+}
+
+struct Smaller {
+  HWY_INLINE Vec operator()(Vec a, Vec b) const { return hn::Min(a, b); }
+};
+struct Larger {
+  HWY_INLINE Vec operator()(Vec a, Vec b) const { return hn::Max(a, b); }
+};
+
+// Widths of the noise window by range. Whether what is skipped was far enough is seen afterwards.
+class SkipRule {
+ public:
+  SkipRule(const NoiseWindow& window, float max_range_m) : max_range_m_(max_range_m) {
+    for (std::size_t k = 0; k < kSteps; ++k) {
+      width_m_[k] = window.At(kStepM * static_cast<float>(k + 1));
+    }
+  }
+  // From where on samples do not matter once each lane of a vector has one as near as this: the
+  // second mean looks half a window beyond the first.
+  HWY_INLINE Vec From(Floats d, Vec nearest_m) const {
+    const Ints di;
+    const Vec max_range = hn::Set(d, max_range_m_);
+    const Vec step =
+        hn::Min(hn::Div(nearest_m, hn::Set(d, kStepM)), hn::Set(d, static_cast<float>(kSteps - 1)));
+    const Vec width = hn::GatherIndex(d, width_m_.data(), hn::ConvertTo(di, step));
+    const Vec from = hn::Add(nearest_m, hn::Mul(hn::Set(d, 1.5F), width));
+    return hn::Min(from, max_range);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 32;
+  static constexpr float kStepM = 0.25F;
+  std::array<float, kSteps> width_m_{};
+  float max_range_m_;
+};
+
+void FindSkipFrom(const SkipRule& rule, std::span<const BlockSamples> found,
+                  StripeVectors& vectors) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < vectors.count; i += lanes) {
+    const std::size_t count = std::min(lanes, std::bit_ceil(vectors.count - i));
+    std::array<Vec, hn::MaxLanes(Floats())> nearest;
+    for (std::size_t k = 0; k < count; ++k) {
+      nearest[k] = hn::Load(d, &found[vectors.of[i + k]].band.nearest[vectors.lane[i + k]]);
+    }
+    const Vec farthest = OfEach(d, nearest.data(), count, Larger());
+    hn::Store(rule.From(d, farthest), d, &vectors.skip_from[i]);
+  }
+}
+
+// What the surveys say of the tiles from one on, one a lane.
+struct TileDepths {
+  Vec near;     // no usable depth is smaller ...
+  Vec most;     // ... and none greater
+  Mask usable;  // all are usable
+  Mask whole;   // no pixel is missing either
+  Mask told;    // what is not usable is missing: none is too near
+};
+
+TileDepths DepthsOf(const ImageBands& bands, const RowRange& rows, const GroupTiles& tiles,
+                    std::size_t at, std::size_t count, Survey& survey) {
+  constexpr float kFar = 1e30F;
+  const Floats d;
+  const Vec min_depth = hn::Set(d, bands.limits.min_depth_m);
+  const Vec least = OverColumns(d, tiles, at, count, survey.least(), 0.0F, Smaller());
+  const Mask whole = hn::Ge(least, min_depth);
+  TileDepths depths{least, OverColumns(d, tiles, at, count, survey.most(), kFar, Larger()), whole,
+                    whole, whole};
+  if (!hn::AllTrue(d, whole)) {
+    SurveyHoles(bands.image, rows, survey);
+    depths.near = OverColumns(d, tiles, at, count, survey.least_there(), 0.0F, Smaller());
+    const Vec nearer = OverColumns(d, tiles, at, count, survey.least_of_two(), 0.0F, Smaller());
+    depths.told = hn::Ge(depths.near, min_depth);
+    depths.usable = hn::And(depths.told, hn::Gt(nearer, hn::Zero(d)));
+  }
+  depths.near = hn::Max(depths.near, min_depth);
+  return depths;
+}
+
+void FindContents(const ImageBands& bands, const StripeVectors& vectors, const RowRange& rows,
+                  Survey& survey, GroupTiles& tiles) {
+  const Floats d;
+  const Ints di;
+  const ReturnLimits& limits = bands.limits;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < vectors.count; i += lanes) {
+    const std::size_t count = std::min(lanes, std::bit_ceil(vectors.count - i));
+    const auto [near, most, usable, whole, told] = DepthsOf(bands, rows, tiles, i, count, survey);
+    const Vec first = hn::Set(d, static_cast<float>(rows.first));
+    const Vec last = hn::Load(d, &tiles.last_row[i]);
+    const Vec low = vectors.lowest.LeastOf(d, i, first, last);
+    const Vec high = vectors.highest.MostOf(d, i, first, last);
+    const Vec bottom = hn::Min(hn::Mul(near, low), hn::Mul(most, low));
+    const Vec top = hn::Max(hn::Mul(near, high), hn::Mul(most, high));
+    const Vec range_from = hn::Mul(near, vectors.shortest.LeastOf(d, i, first, last));
+    const auto above = [&](Vec a, float b) HWY_ATTR { return hn::Gt(a, hn::Set(d, b)); };
+    const auto below = [&](Vec a, float b) HWY_ATTR { return hn::Lt(a, hn::Set(d, b)); };
+    const Mask is_shared = hn::Gt(hn::Load(d, &tiles.is_shared[i]), hn::Zero(d));
+    const Mask off_slice = hn::Or(below(top, bands.slice.low_m), above(bottom, bands.slice.high_m));
+    const Mask off_band = hn::Or(below(top, limits.low_m), above(bottom, limits.high_m));
+    const Mask is_mixed = hn::Or(below(bottom, limits.low_m), above(top, limits.high_m));
+    const Mask is_plain = hn::And(is_shared, off_slice);
+    const Mask is_far = hn::Gt(range_from, hn::Load(d, &vectors.skip_from[i]));
+    // A little less, for what DepthBetween rounds.
+    constexpr float kSurfaceShare = 0.999F * kSameSurfaceShare;
+    const Mask is_surface =
+        hn::And(whole, hn::Le(hn::Sub(most, near), hn::Mul(hn::Set(d, kSurfaceShare), near)));
+    // The last that is true counts.
+    auto content = hn::Set(di, static_cast<int>(Content::kAnything));
+    const auto set = [&](Mask where, Content what) HWY_ATTR {
+      content =
+          hn::IfThenElse(hn::RebindMask(di, where), hn::Set(di, static_cast<int>(what)), content);
+    };
+    const Mask in_band = hn::AndNot(is_mixed, usable);
+    set(hn::And(is_shared, in_band), Content::kInSlice);
+    set(is_plain, Content::kNoSlice);
+    set(hn::And(is_plain, usable), Content::kUsable);
+    set(hn::And(is_plain, in_band), Content::kInBand);
+    set(hn::And(is_plain, hn::And(in_band, is_surface)), Content::kSurface);
+    set(hn::And(is_plain, hn::And(told, is_far)), Content::kFarHoles);
+    set(hn::And(is_plain, hn::And(told, off_band)), Content::kPassingHoles);
+    set(hn::And(is_plain, hn::And(usable, is_far)), Content::kFar);
+    set(hn::And(is_plain, hn::And(usable, off_band)), Content::kPassing);
+    set(below(most, limits.min_depth_m), Content::kUnusable);
+    hn::Store(content, di, &tiles.content[i]);
+    hn::Store(range_from, d, &tiles.range_from[i]);
+    hn::Store(hn::IfThenElseZero(usable, near), d, &tiles.usable_from[i]);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace depthgrid::internal
+HWY_AFTER_NAMESPACE();
+#endif  // guard
