@@ -91,6 +91,9 @@ HWY_INLINE Gap Longer(Mask here, Vec from, Vec to, const Gap& gap) {
   return {hn::IfThenElse(longer, from, gap.from), hn::IfThenElse(longer, to, gap.to)};
 }
 
+// Stands for the last usable row before there is one: the run to the first is longer than any.
+constexpr float kNeverSeen = -1e6F;
+
 // Lanes of which every row was usable.
 void SeeAll(const BearingBlock& block, std::size_t i, BlockViews& out) {
   const Floats d;
@@ -111,23 +114,24 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
       continue;
     }
     const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
-    Vec first = zero, last = hn::Set(d, -1.0F);
+    Vec first = zero, last = hn::Set(d, kNeverSeen);
     // A run needs a row between: the difference of its ends exceeds one.
     Gap below{zero, one}, above{zero, one};
-    bool all_before = false;  // every lane was usable in the row before
+    // Runs up to this long change nothing; the first usable row is looked at too.
+    Vec noticed = one;
     const auto take = [&](int v, Mask usable) HWY_ATTR {
       const Vec row = hn::Set(d, static_cast<float>(v));
-      const bool all = hn::AllTrue(d, usable);
-      if (HWY_UNLIKELY(!all || !all_before)) {
+      const Mask ends_run = hn::And(usable, hn::Gt(hn::Sub(row, last), noticed));
+      if (HWY_UNLIKELY(!hn::AllFalse(d, ends_run))) {
         const Mask started = hn::Ge(last, zero);
-        const Mask ends_gap = hn::And(usable, started);
+        const Mask ends_gap = hn::And(ends_run, started);
         const Mask high = hn::Gt(hn::Add(g0, hn::Mul(g1, row)), zero);
         above = Longer(hn::And(ends_gap, high), last, row, above);
         below = Longer(hn::AndNot(high, ends_gap), last, row, below);
-        first = hn::IfThenElse(hn::AndNot(started, usable), row, first);
+        first = hn::IfThenElse(hn::AndNot(started, ends_run), row, first);
+        noticed = hn::Min(hn::Sub(below.to, below.from), hn::Sub(above.to, above.from));
       }
       last = hn::IfThenElse(usable, row, last);
-      all_before = all;
     };
     for (std::size_t r = 0; r < block.RowCount(); r += kGroupRows) {
       const RowRange rows = block.RowsOfGroup(r / kGroupRows);
@@ -143,7 +147,7 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
       }
     }
     hn::Store(first, d, &out.first[i]);
-    hn::Store(last, d, &out.last[i]);
+    hn::Store(hn::Max(last, hn::Set(d, -1.0F)), d, &out.last[i]);
     hn::Store(below.from, d, &out.below_from[i]);
     hn::Store(below.to, d, &out.below_to[i]);
     hn::Store(above.from, d, &out.above_from[i]);
