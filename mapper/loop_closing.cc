@@ -55,7 +55,10 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
                                     const std::vector<MappedFrame>& frames,
                                     ReferenceMap& reference) {
   const std::vector<PlanarLoop> known = loops_;
-  for (const PlanarLoop& loop : found) loops_.push_back(BetweenKept(loop, frames));
+  for (const PlanarLoop& loop : found) {
+    loops_.push_back(BetweenKept(loop, frames));
+    loops_.back().on_trial = true;
+  }
   const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];
@@ -72,6 +75,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
     outcome.adjusted = true;
     outcome.map_from_base = adjustment.map_from_base;
     outcome.accepted = static_cast<int>(found.size());
+    for (PlanarLoop& loop : loops_) loop.on_trial = false;
   } else {
     loops_ = known;
     outcome.rejected = static_cast<int>(found.size());

@@ -37,6 +37,8 @@ struct PlanarLoop {
   Pose2 first_from_second;
   double sigma_translation_m = 0.02;
   double sigma_yaw_rad = 0.01;
+  // Nothing is wanted of an adjustment that does not accept it: it may end there.
+  bool on_trial = false;
 };
 
 struct Adjustment {

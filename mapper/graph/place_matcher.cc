@@ -35,25 +35,38 @@ struct JointMatch {
   double explained = 0.0;
 };
 
+// A scan of a place, cut once for all matches.
+struct CutScan {
+  Pose2 place_from_base;
+  std::vector<Surfel> pieces;
+};
+
+std::vector<CutScan> CutScans(SurfelMap& map, const std::vector<MappedFrame>& frames,
+                              const std::vector<int>& members, int middle) {
+  const Pose2 place_from_map = Inverse(FrameAt(frames, middle).map_from_base);
+  std::vector<CutScan> scans;
+  for (const int i : members) {
+    const MappedFrame& frame = FrameAt(frames, i);
+    scans.push_back({place_from_map * frame.map_from_base, map.Cut(*frame.scan)});
+  }
+  return scans;
+}
+
 // All scans of `second`'s place against the map of `first`'s, as one small motion of it.
-JointMatch MatchTogether(SurfelMap& first_map, const std::vector<MappedFrame>& frames,
-                         const std::vector<int>& members, int second,
+JointMatch MatchTogether(SurfelMap& first_map, const std::vector<CutScan>& scans,
                          const Pose2& first_from_second) {
   JointMatch joint;
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
-  const Pose2 second_from_map = Inverse(FrameAt(frames, second).map_from_base);
   const Eigen::Matrix3d covariance = kSearchSigma.cwiseProduct(kSearchSigma).asDiagonal();
-  for (const int i : members) {
-    const MappedFrame& frame = FrameAt(frames, i);
-    const Pose2 second_from_base = second_from_map * frame.map_from_base;
-    const Prediction prediction{first_from_second * second_from_base, covariance};
-    const MatchResult match = first_map.Match(ScanOf(frame), prediction);
+  for (const CutScan& scan : scans) {
+    const Prediction prediction{first_from_second * scan.place_from_base, covariance};
+    const MatchResult match = first_map.MatchCut(scan.pieces, prediction);
     if (!match.found) continue;
-    const Eigen::Matrix3d to_base = AdjointOf(Inverse(second_from_base));
+    const Eigen::Matrix3d to_base = AdjointOf(Inverse(scan.place_from_base));
     const Eigen::Matrix3d weighted = to_base.transpose() * match.information;
     joint.information += weighted * to_base;
     g += weighted * InnovationOf(prediction.map_from_base, match.map_from_base);
-    joint.explained += match.score / static_cast<double>(members.size());
+    joint.explained += match.score / static_cast<double>(scans.size());
   }
   const Eigen::Matrix3d ridge = kSearchSigma.cwiseProduct(kSearchSigma).cwiseInverse().asDiagonal();
   joint.step = (joint.information + ridge).ldlt().solve(g);
@@ -114,9 +127,10 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames,
     first_map.Insert(ScanOf(FrameAt(frames, i)), first_from_map * FrameAt(frames, i).map_from_base,
                      Eigen::Matrix3d::Zero());
   }
+  const std::vector<CutScan> scans = CutScans(first_map, frames, second_members, loop.second);
   JointMatch match;
   for (int i = 0; i < kIterations; ++i) {
-    match = MatchTogether(first_map, frames, second_members, loop.second, loop.first_from_second);
+    match = MatchTogether(first_map, scans, loop.first_from_second);
     loop.first_from_second = loop.first_from_second * Pose2::FromVector(match.step);
   }
   if (match.explained < options_.min_explained) return false;

@@ -239,11 +239,11 @@ JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
       worst = sigmas;
       worst_loop = i;
     }
-    if (worst_loop == loops.size()) {
+    if (worst_loop < loops.size()) accepted[worst_loop] = false;
+    if (worst_loop == loops.size() || loops[worst_loop].on_trial) {
       result.loop_accepted = accepted;
       return result;
     }
-    accepted[worst_loop] = false;
   }
 }
 

@@ -77,7 +77,17 @@ void SurfelGroups::AddTied(int tied_to, const Pose2& map_from_base) {
   places_.push_back({group, Between(map_from_group, map_from_base)});
 }
 
-SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) const {
+SurfelGroups SurfelGroups::WithoutSurfels() const {
+  SurfelGroups bare(options_);
+  bare.places_ = places_;
+  for (const SurfelGroup& group : groups_) {
+    bare.groups_.push_back({group.first_frame, group.frames, group.map_from_group, {}});
+  }
+  return bare;
+}
+
+SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart,
+                                    GroupContent content) const {
   SurfelGroupOptions wider = options_;
   wider.length_m *= factor;
   wider.turn_deg *= factor;
@@ -93,6 +103,7 @@ SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) 
     const Pose2 into_from_group = Between(into.map_from_group, group.map_from_group);
     place_of_group.push_back({static_cast<int>(joined.groups_.size()) - 1, into_from_group});
     into.frames += group.frames;
+    if (content == GroupContent::kPosesOnly) continue;
     joined.Collect(group.surfels, into_from_group);
     into.surfels = joined.newest_.surfels();
   }
@@ -104,13 +115,14 @@ SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart) 
   return joined;
 }
 
-SurfelGroups SurfelGroups::Joined(int most, const std::vector<bool>& apart) const {
+SurfelGroups SurfelGroups::Joined(int most, const std::vector<bool>& apart,
+                                  GroupContent content) const {
   constexpr int kMostJoined = 8;  // 1.2 m: farther on another part of the room is in view
   const int groups = static_cast<int>(groups_.size());
-  if (groups <= most) return *this;
+  if (groups <= most) return content == GroupContent::kSurfels ? *this : WithoutSurfels();
   int factor = (groups + most - 1) / most;
   while (true) {
-    SurfelGroups joined = JoinedBy(std::min(factor, kMostJoined), apart);
+    SurfelGroups joined = JoinedBy(std::min(factor, kMostJoined), apart, content);
     if (factor >= kMostJoined || static_cast<int>(joined.groups_.size()) <= most) {
       return joined;
     }

@@ -35,6 +35,9 @@ struct GroupPlace {
   Pose2 group_from_base;
 };
 
+// What joined groups are wanted for: what was seen takes most of the time to join.
+enum class GroupContent { kSurfels, kPosesOnly };
+
 class SurfelGroups {
  public:
   explicit SurfelGroups(const SurfelGroupOptions& options) : options_(options) {}
@@ -51,14 +54,16 @@ class SurfelGroups {
   void MoveTo(const std::vector<Pose2>& map_from_base);
   // The same frames in no more than `most` groups, as far as these may be joined: group g
   // stays apart from the one before where `apart[g]`.
-  SurfelGroups Joined(int most, const std::vector<bool>& apart) const;
+  SurfelGroups Joined(int most, const std::vector<bool>& apart,
+                      GroupContent content = GroupContent::kSurfels) const;
 
  private:
   bool Ends(const Pose2& group_from_base) const;
   void Begin(int first_frame, const Pose2& map_from_group);
   // More surfels of the newest group.
   void Collect(const std::vector<Surfel>& surfels, const Pose2& group_from_surfels);
-  SurfelGroups JoinedBy(int factor, const std::vector<bool>& apart) const;
+  SurfelGroups JoinedBy(int factor, const std::vector<bool>& apart, GroupContent content) const;
+  SurfelGroups WithoutSurfels() const;
 
   SurfelGroupOptions options_;
   std::vector<SurfelGroup> groups_;

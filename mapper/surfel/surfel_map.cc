@@ -72,6 +72,7 @@ GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) 
   link.first_from_second =
       first.group_from_base * loop.first_from_second * Inverse(second.group_from_base);
   link.sigma = {loop.sigma_translation_m, loop.sigma_translation_m, loop.sigma_yaw_rad};
+  link.on_trial = loop.on_trial;
   return link;
 }
 
@@ -115,6 +116,11 @@ const std::vector<Surfel>& SurfelMap::PiecesOf(const std::shared_ptr<const Scan>
   pieces_ = maker_.Make(*scan, noise_, std::move(pieces_));
   scan_ = scan;
   return pieces_;
+}
+
+std::vector<Surfel> SurfelMap::Cut(const Scan& scan) {
+  noise_.Add(scan);
+  return maker_.Make(scan, noise_);
 }
 
 MatchResult SurfelMap::Match(const std::shared_ptr<const Scan>& scan,
@@ -167,14 +173,8 @@ double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
 
 Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
                              const std::vector<PlanarLoop>& loops, AdjustEffort effort) {
-  SurfelGroups groups = groups_;
-  // A provisional frame at the end was not inserted yet.
-  for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
-    groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
-  }
-  Require(groups.places().size() == frames.size(), "the frames are those inserted");
-  const JointOptions joint = JointOptionsFor(effort, groups.groups().size());
-  groups = groups.Joined(joint.groups.most, GapsBefore(groups, frames));
+  const SurfelGroups groups = GroupsOf(frames, effort);
+  const JointOptions joint = JointOptionsFor(effort, groups_.groups().size());
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
   const JointResult result =
@@ -193,6 +193,22 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;
+}
+
+SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort) {
+  const auto joined = [&](const SurfelGroups& groups) {
+    Require(groups.places().size() == frames.size(), "the frames are those inserted");
+    return groups.Joined(
+        JointOptionsFor(effort, groups.groups().size()).groups.most, GapsBefore(groups, frames),
+        effort == AdjustEffort::kBend ? GroupContent::kPosesOnly : GroupContent::kSurfels);
+  };
+  if (groups_.places().size() >= frames.size()) return joined(groups_);
+  // A provisional frame at the end was not inserted yet.
+  SurfelGroups groups = groups_;
+  for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
+    groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
+  }
+  return joined(groups);
 }
 
 JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups) const {

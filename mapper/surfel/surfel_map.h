@@ -45,11 +45,19 @@ class SurfelMap : public ReferenceMap {
   void Rebuild(const std::vector<MappedFrame>& frames) override;
   void BeginPart() override { groups_.BeginPart(); }
 
+  // What Match and Insert make of a scan, for one that is matched again and again.
+  std::vector<Surfel> Cut(const Scan& scan);
+  MatchResult MatchCut(const std::vector<Surfel>& pieces, const Prediction& prediction) {
+    return matcher_.Match(pieces, map_, prediction);
+  }
+
   const SurfelStore& surfels() const { return map_; }
 
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                   const Pose2& map_from_surfels, double frame) const;
+  // The frames' groups, joined as far as an adjustment wants them.
+  SurfelGroups GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort);
   JointOptions JointOptionsFor(AdjustEffort effort, std::size_t groups) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,

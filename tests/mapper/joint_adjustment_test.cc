@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace depthgrid {
@@ -67,6 +68,29 @@ TEST(JointAdjustment, WhatOnlyThePriorHoldsStays) {
     EXPECT_LT(std::hypot(moved.x_m, moved.y_m), 0.01) << g;
     EXPECT_LT(std::abs(moved.yaw_rad), 0.001) << g;
   }
+}
+
+// Two loops that contradict what was seen along the way; each alone is taken out.
+TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
+  const Corridor corridor = WalkWithAJump(0.001);
+  const auto sideways = [](int first, double by_m, bool on_trial) {
+    const Pose2 measured{(kGroups - 1 - first) * kStep_m, by_m, 0.0};
+    GroupLink loop{first, kGroups - 1, measured, {0.02, 0.02, 0.01}};
+    loop.on_trial = on_trial;
+    return loop;
+  };
+  const auto accepted = [&](bool first_on_trial, bool second_on_trial) {
+    const std::vector<GroupLink> loops = {sideways(0, 1.5, first_on_trial),
+                                          sideways(1, 1.4, second_on_trial)};
+    return AdjustJointly(corridor.groups, corridor.motions, loops, {}).loop_accepted;
+  };
+  const std::vector<bool> none = {false, false};
+  EXPECT_EQ(accepted(false, false), none);
+  const std::vector<bool> both = accepted(true, true);
+  EXPECT_EQ(std::count(both.begin(), both.end(), false), 1);
+  // The one that is not on trial may be what made the other look wrong.
+  const int worst = both[0] ? 1 : 0;
+  EXPECT_EQ(accepted(worst != 0, worst != 1), none);
 }
 
 }  // namespace

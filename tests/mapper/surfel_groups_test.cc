@@ -50,6 +50,26 @@ TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
   EXPECT_NEAR(joined.places()[4].group_from_base.x_m, 0.1, 1e-9);
 }
 
+TEST(SurfelGroups, PosesAloneAreJoinedTheSame) {
+  const SurfelGroups walk = Walk();
+  for (const int most : {12, 4}) {
+    const SurfelGroups joined = walk.Joined(most, kTogether);
+    const SurfelGroups bare = walk.Joined(most, kTogether, GroupContent::kPosesOnly);
+    ASSERT_EQ(bare.groups().size(), joined.groups().size());
+    for (std::size_t g = 0; g < bare.groups().size(); ++g) {
+      EXPECT_EQ(bare.groups()[g].first_frame, joined.groups()[g].first_frame);
+      EXPECT_EQ(bare.groups()[g].frames, joined.groups()[g].frames);
+      EXPECT_EQ(bare.groups()[g].map_from_group, joined.groups()[g].map_from_group);
+      EXPECT_TRUE(bare.groups()[g].surfels.empty());
+    }
+    ASSERT_EQ(bare.places().size(), joined.places().size());
+    for (std::size_t i = 0; i < bare.places().size(); ++i) {
+      EXPECT_EQ(bare.places()[i].group, joined.places()[i].group);
+      EXPECT_EQ(bare.places()[i].group_from_base, joined.places()[i].group_from_base);
+    }
+  }
+}
+
 TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
   std::vector<bool> apart = kTogether;
   apart[4] = true;
