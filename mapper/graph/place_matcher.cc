@@ -25,10 +25,6 @@ const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
   return frames[static_cast<std::size_t>(i)];
 }
 
-std::shared_ptr<const Scan> ScanOf(const MappedFrame& frame) {
-  return std::make_shared<const Scan>(*frame.scan);
-}
-
 struct JointMatch {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
@@ -122,10 +118,8 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames,
                           const std::vector<int>& first_members,
                           const std::vector<int>& second_members, PlanarLoop& loop) const {
   SurfelMap first_map(SurfelOptions{});
-  const Pose2 first_from_map = Inverse(FrameAt(frames, loop.first).map_from_base);
-  for (const int i : first_members) {
-    first_map.Insert(ScanOf(FrameAt(frames, i)), first_from_map * FrameAt(frames, i).map_from_base,
-                     Eigen::Matrix3d::Zero());
+  for (const CutScan& scan : CutScans(first_map, frames, first_members, loop.first)) {
+    first_map.InsertCut(scan.pieces, scan.place_from_base);
   }
   const std::vector<CutScan> scans = CutScans(first_map, frames, second_members, loop.second);
   JointMatch match;

@@ -139,7 +139,7 @@ WallPyramid::WallPyramid(const OccupancyMap& map) : resolution_m_(map.geometry.r
   finest.geometry.min_cell = {map.geometry.min_cell.x - 1, map.geometry.min_cell.y - 1};
   finest.geometry.width_cells += 2;
   finest.geometry.height_cells += 2;
-  finest.score.assign(finest.geometry.size(), 0);
+  finest.score.assign(finest.geometry.size() + 1, 0);
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
     if (!(map.occupied_prob[i] > kWallProb)) continue;
     const Cell wall = map.geometry.CellAt(i);
@@ -167,7 +167,7 @@ void WallPyramid::AddLevel() {
   level.geometry.min_cell.y -= half;
   level.geometry.width_cells += half;
   level.geometry.height_cells += half;
-  level.score.assign(level.geometry.size(), 0);
+  level.score.assign(level.geometry.size() + 1, 0);
   const auto width = static_cast<std::size_t>(below.geometry.width_cells);
   for (int row = 0; row < below.geometry.height_cells; ++row) {
     const std::uint8_t* scores = below.score.data() + static_cast<std::size_t>(row) * width;
@@ -193,6 +193,8 @@ int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int leve
   const Cell first{l.geometry.min_cell.x - shift.x, l.geometry.min_cell.y - shift.y};
   const auto width = static_cast<unsigned>(l.geometry.width_cells);
   const auto height = static_cast<unsigned>(l.geometry.height_cells);
+  const auto outside = static_cast<unsigned>(l.geometry.size());
+  std::array<unsigned, kTogether> at;  // found apart, as that vectorises
   int sum = 0;
   for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, cells.size());
@@ -200,8 +202,9 @@ int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int leve
       // Cells before the first are large without a sign.
       const auto x = static_cast<unsigned>(cells[i].x - first.x);
       const auto y = static_cast<unsigned>(cells[i].y - first.y);
-      if (x < width && y < height) sum += l.score[std::size_t{y} * width + x];
+      at[i - begin] = x < width && y < height ? y * width + x : outside;
     }
+    for (std::size_t i = 0; i < end - begin; ++i) sum += l.score[at[i]];
     const int most = sum + kBestWallScore * static_cast<int>(cells.size() - end);
     if (most <= of_interest) return most;
   }

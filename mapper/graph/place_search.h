@@ -28,7 +28,7 @@ class WallPyramid {
  private:
   struct Level {
     GridGeometry geometry;
-    std::vector<std::uint8_t> score;
+    std::vector<std::uint8_t> score;  // and one more, of all that is outside
   };
   void AddLevel();
 

@@ -47,6 +47,10 @@ class SurfelMap : public ReferenceMap {
 
   // What Match and Insert make of a scan, for one that is matched again and again.
   std::vector<Surfel> Cut(const Scan& scan);
+  // Insert for a map that is never adjusted.
+  void InsertCut(const std::vector<Surfel>& pieces, const Pose2& map_from_base) {
+    InsertInto(map_, pieces, map_from_base, 0.0);
+  }
   MatchResult MatchCut(const std::vector<Surfel>& pieces, const Prediction& prediction) {
     return matcher_.Match(pieces, map_, prediction);
   }
