@@ -1,5 +1,6 @@
 // Does time a frame stay flat and memory grow with the area seen? A laser walks through floors of
 // 5 m to 200 m: square rooms of 5 m with doors and a cupboard each, up and down the rows and back.
+// And does the mapper take one of these rooms, which look alike, for another?
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -20,6 +21,7 @@ constexpr double kDoorM = 1.2;
 constexpr double kStepM = 0.04;            // a frame: 1.2 m/s at 30 Hz
 constexpr double kWrongM = 0.5;            // a loop that is off by more is of another place
 constexpr double kTurnRad = kPi / 2 / 30;  // a frame
+constexpr double kPhaseOfSeed = 2.4;       // where the odometry's bias begins, radians
 
 double CpuUs() {
   timespec now{};
@@ -48,19 +50,26 @@ void AddSide(const Eigen::Vector2d& from, const Eigen::Vector2d& to, bool whole,
   world.push_back({middle + half_door, to});
 }
 
+struct Floor {
+  int columns = 1;
+  int rows = 1;
+  std::uint32_t seed = 1;
+};
+
 // The walls of the rooms around a place: more than 6 m in every direction.
-PlanarWorld WallsAround(const Eigen::Vector2d& place_m, int rooms) {
+PlanarWorld WallsAround(const Eigen::Vector2d& place_m, const Floor& floor) {
   PlanarWorld world;
   const Cell here = CellOf(place_m, kRoomM);
-  for (int y = std::max(here.y - 2, 0); y <= std::min(here.y + 2, rooms - 1); ++y) {
-    for (int x = std::max(here.x - 2, 0); x <= std::min(here.x + 2, rooms - 1); ++x) {
+  for (int y = std::max(here.y - 2, 0); y <= std::min(here.y + 2, floor.rows - 1); ++y) {
+    for (int x = std::max(here.x - 2, 0); x <= std::min(here.x + 2, floor.columns - 1); ++x) {
       const Eigen::Vector2d low(kRoomM * x, kRoomM * y), high(low.x() + kRoomM, low.y() + kRoomM);
       AddSide(low, {high.x(), low.y()}, y == 0, world);
       AddSide(low, {low.x(), high.y()}, x == 0, world);
-      if (y == rooms - 1) AddSide({low.x(), high.y()}, high, true, world);
-      if (x == rooms - 1) AddSide({high.x(), low.y()}, high, true, world);
+      if (y == floor.rows - 1) AddSide({low.x(), high.y()}, high, true, world);
+      if (x == floor.columns - 1) AddSide({high.x(), low.y()}, high, true, world);
       // A cupboard in a corner that differs from room to room.
-      RandomStream random(1, RandomStage::kTest, static_cast<std::uint32_t>(y * rooms + x));
+      RandomStream random(floor.seed, RandomStage::kTest,
+                          static_cast<std::uint32_t>(y * floor.columns + x));
       const double side = random.Uniform() < 0.5 ? 0.2 : 3.4;
       const Eigen::Vector2d corner = low + Eigen::Vector2d(side, random.Uniform(0.2, 1.0));
       const Eigen::Vector2d size(random.Uniform(0.4, 1.3), random.Uniform(0.3, 0.7));
@@ -75,10 +84,10 @@ PlanarWorld WallsAround(const Eigen::Vector2d& place_m, int rooms) {
 // Walks from room to room; turns on the spot.
 class Walker {
  public:
-  explicit Walker(int rooms) : rooms_(rooms) {
-    for (int y = 0; y < rooms; ++y) {
-      for (int x = 0; x < rooms; ++x) {
-        const int column = y % 2 == 0 ? x : rooms - 1 - x;
+  explicit Walker(const Floor& floor) {
+    for (int y = 0; y < floor.rows; ++y) {
+      for (int x = 0; x < floor.columns; ++x) {
+        const int column = y % 2 == 0 ? x : floor.columns - 1 - x;
         stops_.emplace_back(kRoomM * (column + 0.5), kRoomM * (y + 0.5));
       }
     }
@@ -86,7 +95,7 @@ class Walker {
     pose_ = {stops_[0].x(), stops_[0].y(), 0.0};
   }
   Pose2 Next() {
-    if (rooms_ == 1) {  // round and round on the spot
+    if (stops_.size() == 2) {  // round and round on the spot
       pose_.yaw_rad = WrapAngle(pose_.yaw_rad + kTurnRad);
       return pose_;
     }
@@ -105,7 +114,6 @@ class Walker {
   }
 
  private:
-  int rooms_;
   std::vector<Eigen::Vector2d> stops_;
   std::size_t goal_ = 1;
   Pose2 pose_;
@@ -120,7 +128,32 @@ double Median(std::vector<double> values) {
 struct Settings {
   MapperOptions mapper;
   bool finish = true;
+  bool loops = false;   // list them
+  int rows = 0;         // of rooms; 0: as many as columns
+  std::uint32_t seed = 1;
+  double drift = 1.0;
 };
+
+struct JudgedLoop {
+  int first = 0;  // frames
+  int second = 0;
+  double error_m = 0.0;
+};
+
+std::vector<JudgedLoop> JudgedLoops(const MapperResult& result, const std::vector<Pose2>& truths) {
+  const auto frame_of = [&](int mapped) {
+    return result.mapped[static_cast<std::size_t>(mapped)].frame;
+  };
+  std::vector<JudgedLoop> judged;
+  for (const PlanarLoop& loop : result.loops) {
+    const int first = frame_of(loop.first);
+    const int second = frame_of(loop.second);
+    const Pose2 truth =
+        Between(truths[static_cast<std::size_t>(first)], truths[static_cast<std::size_t>(second)]);
+    judged.push_back({first, second, Between(truth, loop.first_from_second).translation().norm()});
+  }
+  return judged;
+}
 
 // The most that was ever resident.
 double PeakMib() {
@@ -133,10 +166,11 @@ double PeakMib() {
 }
 
 void Walk(double floor_m, int frames, const Settings& settings) {
-  const int rooms = static_cast<int>(std::lround(floor_m / kRoomM));
+  const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
+  const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
   const double before_mib = ResidentMib();
   IncrementalMapper mapper(settings.mapper, std::nullopt, CpuUs);
-  Walker walker(rooms);
+  Walker walker(floor);
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),
                           .max_range_m = 6.0,
@@ -148,7 +182,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
   for (int k = 0; k < frames; ++k) {
     const Pose2 truth = walker.Next();
     // Odometry with a slowly varying bias: 1 % of the way, 0.1 degree a metre.
-    const double swing = std::sin(k / 200.0);
+    const double swing = settings.drift * std::sin(k / 200.0 + kPhaseOfSeed * (floor.seed - 1));
     odometry =
         k == 0 ? truth
                : odometry * Between(last, truth) * Pose2{4e-4 * swing, 2e-4 * swing, 7e-5 * swing};
@@ -157,8 +191,9 @@ void Walk(double floor_m, int frames, const Settings& settings) {
     Frame frame;
     frame.index = k;
     frame.stamp_s = k / 30.0;
-    frame.scan = std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), rooms), truth,
-                                                     laser, 2, static_cast<std::uint32_t>(k)));
+    frame.scan = std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), floor), truth,
+                                                     laser, floor.seed + 1,
+                                                     static_cast<std::uint32_t>(k)));
     frame.slam_from_camera = CameraOf(odometry, 0.0);
     const FrameReport report = mapper.AddFrame(frame);
     times_us.push_back(report.times.total_us);
@@ -171,6 +206,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
     };
     return Median({at(from), at(to)});
   };
+  std::vector<JudgedLoop> loops;
   const double walked_mib = ResidentMib() - before_mib;
   std::printf("| %4.0f m | %6d | %5.0f | %5.0f | %5.0f | %6.0f | %6.1f | %7.1f | %7.3f |", floor_m,
               frames, part(0.05, 0.15), part(0.45, 0.55), part(0.9, 1.0), sum_us / frames,
@@ -190,21 +226,21 @@ void Walk(double floor_m, int frames, const Settings& settings) {
       const PackedScan packed = frame.scan.packed();
       scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
     }
-    const auto truth_of = [&](int mapped) {
-      return truths[static_cast<std::size_t>(
-          result.mapped[static_cast<std::size_t>(mapped)].frame)];
-    };
-    const auto wrong =
-        std::count_if(result.loops.begin(), result.loops.end(), [&](const PlanarLoop& loop) {
-          const Pose2 truth = Between(truth_of(loop.first), truth_of(loop.second));
-          return Between(truth, loop.first_from_second).translation().norm() > kWrongM;
-        });
+    loops = JudgedLoops(result, truths);
+    const auto wrong = std::count_if(loops.begin(), loops.end(), [](const JudgedLoop& loop) {
+      return loop.error_m > kWrongM;
+    });
     const auto kept = static_cast<double>(result.mapped.size());
     std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f | %d, %d |", finish_us / frames,
                 final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib,
-                static_cast<int>(result.loops.size()), static_cast<int>(wrong));
+                static_cast<int>(loops.size()), static_cast<int>(wrong));
   }
   std::printf("\n");
+  if (settings.loops) {
+    for (const JudgedLoop& loop : loops) {
+      std::printf("frame %d seen from %d: off by %.2f m\n", loop.first, loop.second, loop.error_m);
+    }
+  }
   std::fflush(stdout);
 }
 
@@ -221,6 +257,10 @@ int main(int argc, char** argv) {
   app.add_option("--floors", floors, "side lengths, metres");
   app.add_option("--frames", frames, "of each");
   app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
+  app.add_flag("--loops", settings.loops, "list the loops that were taken");
+  app.add_option("--rows", settings.rows, "of rooms; a square floor without");
+  app.add_option("--seed", settings.seed, "of cupboards, noise and odometry, from 1");
+  app.add_option("--drift", settings.drift, "of the odometry: 1 is 1 % and 0.1 degree a metre");
   app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
   CLI11_PARSE(app, argc, argv);
   settings.mapper.method = depthgrid::MapperMethod::kSurfel;
