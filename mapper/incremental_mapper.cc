@@ -132,7 +132,8 @@ void IncrementalMapper::State::AdjustBetweenFrames() {
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
   if (!loop_search || !(report.inserted || report.well_seen)) return;
-  const std::vector<PlanarLoop> found = loop_search->Find(mapped.all(), scans.matched, *reference);
+  const std::vector<PlanarLoop> found =
+      loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
   if (found.empty()) return;
   const LoopCloser::Outcome outcome = loop_closer.Add(found, mapped.all(), *reference);
   report.loops_accepted += outcome.accepted;

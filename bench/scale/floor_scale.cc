@@ -128,10 +128,11 @@ double Median(std::vector<double> values) {
 struct Settings {
   MapperOptions mapper;
   bool finish = true;
-  bool loops = false;   // list them
-  int rows = 0;         // of rooms; 0: as many as columns
+  bool loops = false;  // list them
+  int rows = 0;        // of rooms; 0: as many as columns
   std::uint32_t seed = 1;
   double drift = 1.0;
+  double noise = 0.01;
 };
 
 struct JudgedLoop {
@@ -174,7 +175,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),
                           .max_range_m = 6.0,
-                          .sigma_of_range = 0.01};
+                          .sigma_of_range = settings.noise};
   std::vector<double> times_us;
   std::vector<Pose2> truths;
   Pose2 odometry, last;
@@ -191,9 +192,9 @@ void Walk(double floor_m, int frames, const Settings& settings) {
     Frame frame;
     frame.index = k;
     frame.stamp_s = k / 30.0;
-    frame.scan = std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), floor), truth,
-                                                     laser, floor.seed + 1,
-                                                     static_cast<std::uint32_t>(k)));
+    frame.scan =
+        std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), floor), truth, laser,
+                                            floor.seed + 1, static_cast<std::uint32_t>(k)));
     frame.slam_from_camera = CameraOf(odometry, 0.0);
     const FrameReport report = mapper.AddFrame(frame);
     times_us.push_back(report.times.total_us);
@@ -227,9 +228,8 @@ void Walk(double floor_m, int frames, const Settings& settings) {
       scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
     }
     loops = JudgedLoops(result, truths);
-    const auto wrong = std::count_if(loops.begin(), loops.end(), [](const JudgedLoop& loop) {
-      return loop.error_m > kWrongM;
-    });
+    const auto wrong = std::count_if(loops.begin(), loops.end(),
+                                     [](const JudgedLoop& loop) { return loop.error_m > kWrongM; });
     const auto kept = static_cast<double>(result.mapped.size());
     std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f | %d, %d |", finish_us / frames,
                 final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib,
@@ -261,6 +261,7 @@ int main(int argc, char** argv) {
   app.add_option("--rows", settings.rows, "of rooms; a square floor without");
   app.add_option("--seed", settings.seed, "of cupboards, noise and odometry, from 1");
   app.add_option("--drift", settings.drift, "of the odometry: 1 is 1 % and 0.1 degree a metre");
+  app.add_option("--noise", settings.noise, "of ranges, as a share");
   app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
   CLI11_PARSE(app, argc, argv);
   settings.mapper.method = depthgrid::MapperMethod::kSurfel;

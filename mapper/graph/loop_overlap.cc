@@ -104,6 +104,17 @@ Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>
   return overlap;
 }
 
+Overlap OverlapWithItself(const std::vector<MappedFrame>& frames, int frame,
+                          const OverlapOptions& options) {
+  std::vector<int> even, odd;
+  for (const int member : FramesAround(frames, frame, options)) {
+    (even.size() > odd.size() ? odd : even).push_back(member);
+  }
+  PlanarLoop same;
+  same.first = same.second = frame;
+  return OverlapOf(frames, even, odd, same, options);
+}
+
 bool Agrees(const Overlap& overlap, const OverlapOptions& options) {
   return overlap.compared >= options.min_points && overlap.agreement() >= options.min_agreement;
 }

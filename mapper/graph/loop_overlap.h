@@ -42,6 +42,11 @@ Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>
                   const std::vector<int>& second_members, const PlanarLoop& loop,
                   const OverlapOptions& options);
 
+// What a place agrees with itself by: every other of its scans against those between. Less than 1
+// where ranges are noisy or people walk, and a true loop cannot agree by more.
+Overlap OverlapWithItself(const std::vector<MappedFrame>& frames, int frame,
+                          const OverlapOptions& options);
+
 bool Agrees(const Overlap& overlap, const OverlapOptions& options);
 
 }  // namespace depthgrid

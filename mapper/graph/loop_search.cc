@@ -51,8 +51,26 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("min_correction_deg", min_correction_deg, {0.0, 90.0}, "nor better aligned ones");
   v.Number("consenting", consenting, {1, 1000},
            "loops in a row that must want the same correction");
+  v.Number("consent_ways", consent_ways, {0.0, 1000.0},
+           "and over a way of so many times the correction and the likely drift");
+  v.Number("likely_drift_share", likely_drift_share, {0.0, 1.0}, "the latter, of the way");
+  v.Number("most_unanswered", most_unanswered, {0, 1000},
+           "searches that may find nothing meanwhile");
   v.Number("consent_m", consent_m, {0.0, 10.0}, "to this");
   v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
+}
+
+// The way over which two frames' estimates drifted apart: along the poses, or by way of one loop.
+double LoopSearch::DriftingM(const std::vector<PlanarLoop>& known, int first, int second) const {
+  const auto along = [&](int a, int b) {
+    return std::abs(way_m_[static_cast<std::size_t>(a)] - way_m_[static_cast<std::size_t>(b)]);
+  };
+  double shortest_m = along(first, second);
+  for (const PlanarLoop& loop : known) {
+    const auto [earlier, later] = std::minmax(loop.first, loop.second);
+    shortest_m = std::min(shortest_m, along(first, earlier) + along(later, second));
+  }
+  return shortest_m;
 }
 
 double LoopSearch::WindowM(double way_m) const {
@@ -82,7 +100,8 @@ void LoopSearch::Walk(const std::vector<MappedFrame>& frames) {
 }
 
 // Places that the query may be at, the likeliest first.
-std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames, int query) const {
+std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames,
+                                        const std::vector<PlanarLoop>& known, int query) const {
   struct Ranked {
     double cost = 0.0;
     int frame = 0;
@@ -95,7 +114,8 @@ std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames, 
     const Pose2 off = Between(PoseAt(frames, k), PoseAt(frames, query));
     if (std::abs(off.yaw_rad) > RadFromDeg(kMaxTurnDeg)) continue;
     const double distance_m = off.translation().norm();
-    if (distance_m > WindowM(way_m) + kBesideM) continue;
+    if (distance_m > options_.max_window_m + kBesideM) continue;
+    if (distance_m > WindowM(DriftingM(known, k, query)) + kBesideM) continue;
     ranked.push_back({Separation(PoseAt(frames, k), PoseAt(frames, query)), k});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
@@ -117,8 +137,22 @@ bool LoopSearch::Consents(const std::vector<MappedFrame>& frames, const PlanarLo
   return IsSmall(Between(by_a, by_b), options_.consent_m, options_.consent_deg);
 }
 
+// Where old places are near, the right correction would have shown one of them.
+void LoopSearch::Unanswered() {
+  if (waiting_.empty() || ++unanswered_ <= options_.most_unanswered) return;
+  waiting_.clear();
+}
+
+bool LoopSearch::Suffices(double correction_m, double way_m) const {
+  const auto places = static_cast<double>(waiting_.size());
+  const double off_m = std::min(correction_m + options_.likely_drift_share * way_m, WindowM(way_m));
+  return places >= options_.consenting &&
+         places * options_.every_m >= options_.consent_ways * off_m;
+}
+
 std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
                                          const std::shared_ptr<const Scan>& newest,
+                                         const std::vector<PlanarLoop>& known,
                                          ReferenceMap& reference) {
   Walk(frames);
   if (way_m_.back() < next_search_m_) return {};
@@ -130,14 +164,14 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
   };
   if (query_way_m < options_.min_way_m) return {};
   const int query = at(query_way_m);
-  const std::vector<int> candidates = Candidates(frames, query);
+  const std::vector<int> candidates = Candidates(frames, known, query);
   if (candidates.empty()) return {};
   if (reference.ShareSeenBefore(newest, frames.back().map_from_base,
                                 at(query_way_m - options_.min_way_m)) > kKnownShare) {
     return {};
   }
   for (const int candidate : candidates) {
-    const double way_m = query_way_m - way_m_[static_cast<std::size_t>(candidate)];
+    const double way_m = DriftingM(known, candidate, query);
     const std::optional<PlanarLoop> loop =
         matcher_.LoopBetween(frames, candidate, query, WindowM(way_m), WindowRad(way_m));
     if (!loop) continue;
@@ -148,10 +182,12 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
       return {};
     }
     if (!waiting_.empty() && !Consents(frames, waiting_.back(), *loop)) waiting_.clear();
+    if (waiting_.empty()) unanswered_ = 0;
     waiting_.push_back(*loop);
-    if (static_cast<int>(waiting_.size()) >= options_.consenting) return waiting_;
+    if (Suffices(correction.translation().norm(), way_m)) return waiting_;
     return {};
   }
+  Unanswered();
   return {};
 }
 

@@ -16,19 +16,25 @@ class LoopSearch {
   LoopSearch(const LoopSearchOptions& options, const OverlapOptions& overlap)
       : options_(options), matcher_(options, overlap) {}
 
-  // To be asked after each frame that was mapped: loops that came to be believed.
+  // To be asked after each frame that was mapped: loops that came to be believed. `known` are those
+  // that the poses were adjusted by.
   std::vector<PlanarLoop> Find(const std::vector<MappedFrame>& frames,
-                               const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
+                               const std::shared_ptr<const Scan>& newest,
+                               const std::vector<PlanarLoop>& known, ReferenceMap& reference);
   // The frames were moved.
   void Forget();
 
  private:
   void Walk(const std::vector<MappedFrame>& frames);
-  std::vector<int> Candidates(const std::vector<MappedFrame>& frames, int query) const;
+  std::vector<int> Candidates(const std::vector<MappedFrame>& frames,
+                              const std::vector<PlanarLoop>& known, int query) const;
+  double DriftingM(const std::vector<PlanarLoop>& known, int first, int second) const;
   double WindowM(double way_m) const;
   double WindowRad(double way_m) const;
   bool Consents(const std::vector<MappedFrame>& frames, const PlanarLoop& a,
                 const PlanarLoop& b) const;
+  void Unanswered();
+  bool Suffices(double correction_m, double way_m) const;
 
   LoopSearchOptions options_;
   PlaceMatcher matcher_;
@@ -36,6 +42,7 @@ class LoopSearch {
   std::vector<int> keyframes_;  // kept frames `every_m` apart
   double next_search_m_ = 0.0;
   std::vector<PlanarLoop> waiting_;  // for more that consent
+  int unanswered_ = 0;               // searches since the first of them that found nothing
 };
 
 }  // namespace depthgrid

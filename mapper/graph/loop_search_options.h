@@ -31,12 +31,21 @@ struct LoopSearchOptions {
   double min_explained = 0.5;
   double max_sigma_m = 0.03;
   double max_sigma_deg = 0.6;
-  double min_agreement = 0.85;  // of what both places saw, see loops.overlap
+  // Of what both places saw, see loops.overlap. Right places agree by 0.98 and more, a third of the
+  // rooms that look alike as well (docs/bench.md, "Rooms that look alike").
+  double min_agreement = 0.99;
   // Nearer to where they are anyway than this, places are left to the adjustment.
   double min_correction_m = 0.1;
   double min_correction_deg = 1.5;
   // So many loops in a row must want the same correction, to this.
   int consenting = 4;
+  // And over a way of so many times what they correct and what the estimate is likely off by (both
+  // together no more than the window): rooms that look alike differ somewhere along several of them
+  // (docs/bench.md, "Rooms that look alike").
+  double consent_ways = 7.0;
+  double likely_drift_share = 0.005;  // of the way
+  // Meanwhile so many searches may find nothing where old places are near.
+  int most_unanswered = 1;
   double consent_m = 0.2;
   double consent_deg = 2.0;
 

@@ -96,9 +96,10 @@ std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFram
   loop.first_from_second = best.place_from_query;
   if (!Refine(frames, first_members, second_members, loop)) return std::nullopt;
   const Overlap overlap = OverlapOf(frames, loop, overlap_);
-  if (!Agrees(overlap, overlap_) || overlap.agreement() < options_.min_agreement) {
-    return std::nullopt;
-  }
+  if (!Agrees(overlap, overlap_)) return std::nullopt;
+  const double possible = std::min(OverlapWithItself(frames, first, overlap_).agreement(),
+                                   OverlapWithItself(frames, second, overlap_).agreement());
+  if (overlap.agreement() < options_.min_agreement * possible) return std::nullopt;
   return loop;
 }
 

@@ -131,7 +131,7 @@ TEST(LoopSearch, FindsTheSlipWithinAFewMetresAndFourPlacesConsent) {
     frames.push_back(FrameAt(FurnishedRoom(), truth, slipped ? slip * truth : truth, i));
     const auto scan = std::make_shared<const Scan>(*frames.back().scan);
     map.Insert(scan, frames.back().map_from_base, Eigen::Matrix3d::Zero());
-    found = search.Find(frames, scan, map);
+    found = search.Find(frames, scan, {}, map);
     EXPECT_TRUE(slipped || found.empty()) << i;
   }
   ASSERT_EQ(found.size(), 4U);

@@ -1,0 +1,141 @@
+// Places that look alike: what the loop search makes of them.
+#include <gtest/gtest.h>
+
+#include "mapper/graph/loop_search.h"
+#include "mapper/surfel/surfel_map.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr PlanarLaser kLaser{
+    .beams = 160, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
+constexpr double kOtherCorridorM = 100.0;  // to the left of the first
+
+void AddCupboard(PlanarWorld& world, double x_m, double y_m, bool left) {
+  if (left) {
+    AddRectangle(world, x_m, y_m + 0.9, x_m + 0.7, y_m + 1.5);
+  } else {
+    AddRectangle(world, x_m, y_m - 1.5, x_m + 0.5, y_m - 0.9);
+  }
+}
+
+// Two corridors 30 m long whose cupboards stand at the same places but for some, which stand
+// opposite.
+PlanarWorld TwoCorridors(double differing_from_m, double differing_to_m) {
+  PlanarWorld world = RectangleWorld(-5, -1.5, 30, 1.5);
+  AddRectangle(world, -5, kOtherCorridorM - 1.5, 30, kOtherCorridorM + 1.5);
+  bool left = true;
+  for (double x_m :
+       {-2.0, 1.1, 2.9, 4.4, 7.0, 8.2, 10.5, 13.1, 14.2, 16.7, 19.0, 20.3, 23.0, 25.4}) {
+    AddCupboard(world, x_m, 0.0, left);
+    const bool differs = x_m >= differing_from_m && x_m < differing_to_m;
+    AddCupboard(world, x_m, kOtherCorridorM, left != differs);
+    left = !left;
+  }
+  return world;
+}
+
+// Along the first corridor for 22 m, 18 m around in the open, and along a corridor again: poses as
+// estimated, the second corridor's (true: `second`) off from those of the first by `slip`.
+class Walk {
+ public:
+  Walk(const PlanarWorld& world, const Pose2& second, const Pose2& slip) {
+    for (int i = 0; i < kSteps; ++i) Add(world, Along(i), Along(i));
+    for (int i = 0; i < kAround; ++i) {
+      Add({}, {0.0, -50.0, 0.0}, {22.0 - 22.0 * i / kAround, -3.0 + 0.01 * i, kPi});
+    }
+    for (int i = 0; i < kSteps; ++i) Add(world, second * Along(i), slip * Along(i));
+  }
+
+  static constexpr int kSteps = 220;
+  static constexpr int kAround = 60;
+
+  // The first loops that the search comes to believe.
+  std::vector<PlanarLoop> Found(const LoopSearchOptions& options,
+                                const std::vector<PlanarLoop>& known = {}) const {
+    SurfelMap map(SurfelOptions{});
+    LoopSearch search(options, {});
+    std::vector<MappedFrame> so_far;
+    for (const MappedFrame& frame : frames_) {
+      so_far.push_back(frame);
+      const auto scan = std::make_shared<const Scan>(*frame.scan);
+      map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
+      std::vector<PlanarLoop> found = search.Find(so_far, scan, known, map);
+
+      if (!found.empty()) return found;
+    }
+    return {};
+  }
+
+ private:
+  static Pose2 Along(int i) { return {0.1 * i, 0.1, 0.0}; }
+  void Add(const PlanarWorld& world, const Pose2& truth, const Pose2& estimate) {
+    const int i = static_cast<int>(frames_.size());
+    MappedFrame frame;
+    frame.frame = i;
+    frame.stamp_s = i / 30.0;
+    frame.map_from_base = estimate;
+    frame.scan = archive_.Keep(ScanOf(world, truth, kLaser, 1, static_cast<std::uint32_t>(i)));
+    frame.obstacles = frame.scan;
+    frames_.push_back(frame);
+  }
+
+  ScanArchive archive_;
+  std::vector<MappedFrame> frames_;
+};
+
+// 44 m of way may be off by 1.8 m.
+LoopSearchOptions Options() {
+  LoopSearchOptions options;
+  options.drift_share = 0.04;
+  return options;
+}
+
+const Pose2 kOther{0.0, kOtherCorridorM, 0.0};
+const Pose2 kSlip{1.4, 0.2, 0.02};
+
+TEST(LookAlikes, ACorridorThatIsAlikeForAFewMetresIsNotTakenForTheOther) {
+  const Walk walk(TwoCorridors(14.0, 30.0), kOther, kSlip);
+  EXPECT_TRUE(walk.Found(Options()).empty());
+  // It would be, were a few places in a row enough.
+  LoopSearchOptions few = Options();
+  few.consent_ways = 0.0;
+  EXPECT_FALSE(walk.Found(few).empty());
+}
+
+TEST(LookAlikes, OrIsAlikeAgainFartherOn) {
+  const Walk walk(TwoCorridors(14.0, 15.0), kOther, kSlip);
+  EXPECT_TRUE(walk.Found(Options()).empty());
+  LoopSearchOptions lenient = Options();
+  lenient.most_unanswered = 100;
+  EXPECT_FALSE(walk.Found(lenient).empty());
+}
+
+TEST(LookAlikes, TheSameCorridorIsFoundAgain) {
+  const Walk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
+  const std::vector<PlanarLoop> found = walk.Found(Options());
+  ASSERT_GE(found.size(), 5U);
+  for (const PlanarLoop& loop : found) {
+    const double way_m = 0.1 * (loop.second - Walk::kAround - Walk::kSteps - loop.first);
+    EXPECT_NEAR(loop.first_from_second.x_m, way_m, 0.03);
+    EXPECT_NEAR(loop.first_from_second.y_m, 0.0, 0.03);
+    EXPECT_NEAR(loop.first_from_second.yaw_rad, 0.0, 0.01);
+  }
+}
+
+// After a loop the estimate is known to within the way since.
+TEST(LookAlikes, AKnownLoopLeavesLittleToSearch) {
+  const Walk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
+  std::vector<PlanarLoop> known;
+  for (int i = 0; i < Walk::kSteps; i += 20) {
+    PlanarLoop loop;
+    loop.first = i;
+    loop.second = i + Walk::kSteps + Walk::kAround;
+    known.push_back(loop);
+  }
+  EXPECT_TRUE(walk.Found(Options(), known).empty());
+}
+
+}  // namespace
+}  // namespace depthgrid
