@@ -118,18 +118,20 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
     // A run needs a row between: the difference of its ends exceeds one.
     Gap below{zero, one}, above{zero, one};
     // Runs up to this long change nothing; the first usable row is looked at too.
-    Vec noticed = one;
+    Vec long_above = one, long_below = one;
     const auto take = [&](int v, Mask usable) HWY_ATTR {
       const Vec row = hn::Set(d, static_cast<float>(v));
+      const Mask high = hn::Gt(hn::Add(g0, hn::Mul(g1, row)), zero);
+      const Vec noticed = hn::IfThenElse(high, long_above, long_below);
       const Mask ends_run = hn::And(usable, hn::Gt(hn::Sub(row, last), noticed));
       if (HWY_UNLIKELY(!hn::AllFalse(d, ends_run))) {
         const Mask started = hn::Ge(last, zero);
         const Mask ends_gap = hn::And(ends_run, started);
-        const Mask high = hn::Gt(hn::Add(g0, hn::Mul(g1, row)), zero);
         above = Longer(hn::And(ends_gap, high), last, row, above);
         below = Longer(hn::AndNot(high, ends_gap), last, row, below);
         first = hn::IfThenElse(hn::AndNot(started, ends_run), row, first);
-        noticed = hn::Min(hn::Sub(below.to, below.from), hn::Sub(above.to, above.from));
+        long_above = hn::Sub(above.to, above.from);
+        long_below = hn::Sub(below.to, below.from);
       }
       last = hn::IfThenElse(usable, row, last);
     };

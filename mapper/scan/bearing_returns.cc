@@ -93,7 +93,7 @@ bool FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
     } else {
       returns[i].hit = false;
       mattered_m = FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window,
-                               memory.heap, returns[i]);
+                               memory.sorted, returns[i]);
     }
     if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return false;
   }

@@ -75,10 +75,10 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 
 // The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself. `heap` is memory. Returns up to where samples
+// supported sample, once more centred on itself. `sorted` is memory. Returns up to where samples
 // mattered: more of them beyond would change nothing.
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                  const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns);
+                  const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns);
 
 // What an image says of every line. The slice's lines are seen as the others are: only the nearest
 // surface differs.
@@ -94,7 +94,7 @@ struct ReturnsMemory {
   };
   std::vector<Lanes> samples;
   std::vector<float> survey;
-  std::vector<float> column, heap;
+  std::vector<float> column, sorted;
   ImageReturns returns;
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <functional>
-#include <iterator>
+#include <bit>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mapper/scan/bearing_returns.h"
@@ -18,6 +19,22 @@ float MeanWithin(std::span<const float> samples, float low, float high, float ot
     }
   }
   return count > 0.0F ? sum / count : otherwise;
+}
+
+// Ranges are not negative, so their bits order as they do; and integers vectorise without ado.
+std::uint32_t SmallestFrom(std::span<const float> samples, std::uint32_t from) {
+  std::uint32_t smallest = std::numeric_limits<std::uint32_t>::max();
+  for (const float sample : samples) {
+    const auto bits = std::bit_cast<std::uint32_t>(sample);
+    smallest = std::min(smallest, bits >= from ? bits : std::numeric_limits<std::uint32_t>::max());
+  }
+  return smallest;
+}
+
+std::size_t CountOf(std::span<const float> samples, float wanted) {
+  std::uint32_t count = 0;
+  for (const float sample : samples) count += sample == wanted ? 1 : 0;
+  return count;
 }
 
 }  // namespace
@@ -43,28 +60,27 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 }
 
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                  const NoiseWindow& window, std::vector<float>& heap, BearingReturns& returns) {
-  // Samples come out of the heap in increasing order, to its end, and few of them do before one is
-  // supported.
-  heap.clear();
-  std::copy_if(samples.begin(), samples.end(), std::back_inserter(heap),
-               [](float sample) { return sample < kPassing; });
-  std::make_heap(heap.begin(), heap.end(), std::greater<>());
-  const auto needed = static_cast<std::ptrdiff_t>(limits.min_returns);
-  for (auto end = heap.end(); end != heap.begin();) {
-    std::pop_heap(heap.begin(), end, std::greater<>());
-    const auto largest = --end;
-    if (heap.end() - largest < needed) continue;
-    const float smallest = *(largest + needed - 1);
-    const float width_m = window.At(smallest);
-    if (*largest > smallest + width_m) continue;
-    const float half_m = 0.5F * width_m;
-    const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
-    returns.hit = true;
-    returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
-    return std::max(smallest + width_m, centre_m + half_m);
+                  const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns) {
+  sorted.clear();
+  const auto needed = static_cast<std::size_t>(limits.min_returns);
+  std::size_t last = needed - 1;
+  for (std::uint32_t from = 0;;) {
+    const std::uint32_t next = SmallestFrom(samples, from);
+    if (next >= std::bit_cast<std::uint32_t>(kPassing)) return kPassing;
+    const auto sample = std::bit_cast<float>(next);
+    sorted.insert(sorted.end(), CountOf(samples, sample), sample);
+    from = next + 1;
+    for (; last < sorted.size(); ++last) {
+      const float smallest = sorted[last + 1 - needed];
+      const float width_m = window.At(smallest);
+      if (sorted[last] > smallest + width_m) continue;
+      const float half_m = 0.5F * width_m;
+      const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
+      returns.hit = true;
+      returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
+      return std::max(smallest + width_m, centre_m + half_m);
+    }
   }
-  return kPassing;
 }
 
 }  // namespace depthgrid
