@@ -71,8 +71,8 @@ bool FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
   const BandSamples& band = found.samples;
   const BlockLane& nearest = found.nearest;
   BlockLane width, high;
+  window.At(nearest, width.data());
   for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    width[i] = window.At(nearest[i]);
     high[i] = std::min(nearest[i] + width[i], limits.max_range_m);
   }
   const BlockMean first = internal::MeanUpTo(band, rows, high, nearest);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "mapper/core/depth_image.h"
@@ -30,6 +31,9 @@ class NoiseWindow {
     return static_cast<float>(
         std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
   }
+
+  // The same of many ranges.
+  void At(std::span<const float> ranges_m, float* widths_m) const;
 
   // Standard deviation of depth as estimated for a class of depth.
   double SigmaM(double z_m) const {
