@@ -172,15 +172,16 @@ void SampleAll(const ImageBands& bands, const NoiseWindow& window,
   }
 }
 
-void SampleRest(const ImageBands& bands, const BearingBlock& block, BlockSamples& found) {
+void SampleRest(const ImageBands& bands, const BearingBlock& block, std::size_t of_lane,
+                BlockSamples& found) {
   const Floats d;
+  const std::size_t lane = of_lane / hn::Lanes(d) * hn::Lanes(d);
   for (std::size_t group = 0; group < block.GroupCount(); ++group) {
-    for (std::size_t lane = 0; lane < kBlockBearings; lane += hn::Lanes(d)) {
-      const Tile tile{&bands, &block, lane, block.RowsOfGroup(group)};
-      if (found.band.samples.nearest[tile.AtGroup()] != kSkipped) continue;
-      SampleAs(Content::kNoSlice, tile, found);
-    }
+    const Tile tile{&bands, &block, lane, block.RowsOfGroup(group)};
+    if (found.band.samples.nearest[tile.AtGroup()] != kSkipped) continue;
+    SampleAs(Content::kNoSlice, tile, found);
   }
+  hn::Store(hn::Set(d, std::numeric_limits<float>::infinity()), d, &found.band.skipped_from[lane]);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -204,9 +205,9 @@ void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
   HWY_DYNAMIC_DISPATCH(SampleAll)(bands, window, blocks, survey, found);
 }
 
-void SampleSkipped(const ImageBands& bands, const BearingBlock& block, BlockSamples& found) {
-  HWY_DYNAMIC_DISPATCH(SampleRest)(bands, block, found);
-  found.band.skipped_from.fill(std::numeric_limits<float>::infinity());
+void SampleSkipped(const ImageBands& bands, const BearingBlock& block, std::size_t lane,
+                   BlockSamples& found) {
+  HWY_DYNAMIC_DISPATCH(SampleRest)(bands, block, lane, found);
 }
 
 }  // namespace depthgrid::internal

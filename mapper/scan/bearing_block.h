@@ -96,8 +96,9 @@ struct ImageBands {
 void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
                   std::span<const BearingBlock> blocks, std::vector<float>& survey,
                   std::span<BlockSamples> found);
-// Samples what was skipped of a block after all.
-void SampleSkipped(const ImageBands& bands, const BearingBlock& block, BlockSamples& found);
+// Samples what was skipped of a lane, and others beside it, after all.
+void SampleSkipped(const ImageBands& bands, const BearingBlock& block, std::size_t lane,
+                   BlockSamples& found);
 
 // What the columns of some rows hold.
 class Survey {

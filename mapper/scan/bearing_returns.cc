@@ -63,10 +63,10 @@ RowRange RangeOf(float first, float last) {
 RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, to) : RowRange{}; }
 
 // FindNearest for a block. Lanes whose smallest sample is not supported by others (a stray pixel)
-// are done one by one. False when what was skipped could matter.
-bool FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
-                        const ReturnLimits& limits, const NoiseWindow& window,
-                        ReturnsMemory& memory, BearingReturns* returns) {
+// are done one by one. A lane of which what was skipped could matter, or none.
+std::optional<std::size_t> FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
+                                              const ReturnLimits& limits, const NoiseWindow& window,
+                                              ReturnsMemory& memory, BearingReturns* returns) {
   const std::size_t rows = block.RowCount();
   const BandSamples& band = found.samples;
   const BlockLane& nearest = found.nearest;
@@ -95,9 +95,9 @@ bool FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
       mattered_m = FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window,
                                memory.sorted, returns[i]);
     }
-    if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return false;
+    if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return i;
   }
-  return true;
+  return std::nullopt;
 }
 
 void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const BandSamples& band,
@@ -170,9 +170,9 @@ const ImageReturns& FindReturns(const DepthImage& image, const std::vector<Beari
       BearingReturns* const obstacles = &all.obstacles[at];
       FindViewsOfBlock(block, found, found.band.samples, limits.min_depth_m, obstacles);
       if (slice) std::copy_n(obstacles, block.bearings, &all.slice[at]);
-      if (!FindNearestOfBlock(block, found.band, limits, window, memory, obstacles)) {
-        internal::SampleSkipped(bands, block, found);
-        FindNearestOfBlock(block, found.band, limits, window, memory, obstacles);
+      while (const auto lane =
+                 FindNearestOfBlock(block, found.band, limits, window, memory, obstacles)) {
+        internal::SampleSkipped(bands, block, *lane, found);
       }
       if (slice) FindNearestOfBlock(block, found.slice, limits, window, memory, &all.slice[at]);
     }

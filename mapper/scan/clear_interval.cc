@@ -44,8 +44,8 @@ Distances ClearInterval(const BearingView& view, double camera_height_m, double 
   if (!view.seen) return {};
   Distances clear = WhereEdgeIsSeen(*view.seen, options.band_low_m - camera_height_m);
   clear.to_m = std::min(clear.to_m, limit_m);
-  for (const auto& gap : {view.gap_below, view.gap_above}) {
-    if (gap) clear = Without(clear, WhereGapHides(*gap, camera_height_m, options));
+  for (const auto* gap : {&view.gap_below, &view.gap_above}) {
+    if (*gap) clear = Without(clear, WhereGapHides(**gap, camera_height_m, options));
   }
   return clear.from_m < clear.to_m ? clear : Distances{};
 }
