@@ -23,6 +23,16 @@ struct Running {
   Vec from, to, sum, count;
 
   HWY_INLINE void Add(Floats d, Vec sample) {
+#if HWY_TARGET <= HWY_AVX3
+    if constexpr (hn::MaxLanes(Floats()) == 16) {  // masks are half of the operations otherwise
+      const __mmask16 near = _mm512_cmp_ps_mask(sample.raw, to.raw, _CMP_LE_OQ);
+      const __mmask16 inside =
+          kFromLeast ? near : _mm512_mask_cmp_ps_mask(near, sample.raw, from.raw, _CMP_GE_OQ);
+      sum = Vec{_mm512_mask_add_ps(sum.raw, inside, sum.raw, sample.raw)};
+      count = Vec{_mm512_mask_add_ps(count.raw, inside, count.raw, hn::Set(d, 1.0F).raw)};
+      return;
+    }
+#endif
     Mask inside = hn::Le(sample, to);
     if constexpr (!kFromLeast) inside = hn::And(inside, hn::Ge(sample, from));
     sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));

@@ -94,24 +94,36 @@ HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
                         hn::TableLookupLanes(right, within));
 }
 
-// A whole number below 2^23 less another, as an integer: its bits after adding 2^23, less those of
-// 2^23.
-HWY_INLINE hn::Vec<Ints> IntLess(Floats d, Vec whole, int less) {
+// A column, not negative, as its whole part and what is left.
+struct Column {
+  hn::Vec<Ints> whole;
+  Vec share;
+};
+HWY_INLINE Column ColumnOf(Floats d, Vec u) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(Floats()) == 16) {
+    constexpr __mmask16 kAll = 0xFFFF;  // without masks g++ 12 warns of its own header
+    const __m512i whole = _mm512_maskz_cvttps_epi32(kAll, u.raw);
+    return {hn::Vec<Ints>{whole}, hn::Sub(u, Vec{_mm512_maskz_cvtepi32_ps(kAll, whole)})};
+  }
+#endif
+  // Of a whole number below 2^23 the bits after adding 2^23, less those of 2^23.
   constexpr float kTwoTo23 = 8388608.0F;
   constexpr int kBits = 0x4B000000;
   const Ints di;
-  return hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits + less));
+  const Vec whole = hn::Floor(u);
+  return {hn::Sub(hn::BitCast(di, hn::Add(whole, hn::Set(d, kTwoTo23))), hn::Set(di, kBits)),
+          hn::Sub(u, whole)};
 }
 
-// `column` are whole numbers from `start` on.
 template <Fetch kFetch>
-HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start, Vec column) {
+HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start,
+                              hn::Vec<Ints> column) {
   const Ints di;
   if constexpr (kFetch == Fetch::kGather) {
-    const auto index = hn::ConvertTo(di, column);
-    return {hn::GatherIndex(d, row, index), hn::GatherIndex(d, row + 1, index)};
+    return {hn::GatherIndex(d, row, column), hn::GatherIndex(d, row + 1, column)};
   } else {
-    const auto index = IntLess(d, column, start);
+    const auto index = hn::Sub(column, hn::Set(di, start));
     const Vec left = hn::LoadU(d, row + start), right = hn::LoadU(d, row + start + hn::Lanes(d));
     return {LookUp(d, left, right, index), LookUp(d, left, right, hn::Add(index, hn::Set(di, 1)))};
   }
@@ -172,13 +184,13 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   for (std::size_t r = 0; r < tile.RowCount(); ++r) {
     Vec u = hn::Add(u0, hn::Mul(u1, row));
     if constexpr (kFetch != Fetch::kInside) u = hn::Min(hn::Max(u, hn::Zero(d)), max_column);
-    const Vec column = hn::Floor(u);
-    const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column);
+    const Column column = ColumnOf(d, u);
+    const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column.whole);
     Vec sample;
     if constexpr (kHoles) {
       sample = hn::IfThenElse(hn::Gt(hn::Max(both.z0, both.z1), hn::Zero(d)), passing, unusable);
     } else {
-      const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, hn::Sub(u, column));
+      const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, column.share);
       const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
       sample = range;
       if constexpr (kMixed || kSlice) {
