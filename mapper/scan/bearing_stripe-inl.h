@@ -175,8 +175,8 @@ class SkipRule {
   HWY_INLINE Vec From(Floats d, Vec nearest_m) const {
     const Ints di;
     const Vec max_range = hn::Set(d, max_range_m_);
-    const Vec step =
-        hn::Min(hn::Div(nearest_m, hn::Set(d, kStepM)), hn::Set(d, static_cast<float>(kSteps - 1)));
+    const Vec step = hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / kStepM)),
+                             hn::Set(d, static_cast<float>(kSteps - 1)));
     const Vec width = hn::GatherIndex(d, width_m_.data(), hn::ConvertTo(di, step));
     const Vec from = hn::Add(nearest_m, hn::Mul(hn::Set(d, 1.5F), width));
     return hn::Min(from, max_range);
