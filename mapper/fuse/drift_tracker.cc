@@ -17,11 +17,11 @@ constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
-// Times what the adjusted poses say, which is too small: they are drawn towards the prior.
-constexpr double kBoundSigmas = 3.5;
-// And not below these many times: while the prior is believed the map follows it, and the matches,
-// made against that map, agree with it (docs/results.md, "Consistency").
-constexpr double kLeastSigmas = 1.5;
+// What is learnt from the matches is kept between these many times what the adjustments find. While
+// the prior is believed the map follows it, and the matches, made against that map, agree with it;
+// while the matches are believed the map wanders with them (docs/results.md, "Consistency").
+constexpr double kBoundSigmas = 2.0;
+constexpr double kLeastSigmas = 1.0;
 // An axis is not believed to be known so much better than another; radians a metre for the yaw.
 constexpr double kLeastOfOthers = 0.5;
 constexpr double kLeastYawOfOthers = 0.25;
@@ -115,6 +115,9 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
+  Eigen::Vector3d& sigma = spread_->sigma;
+  const double most = sigma.head<2>().maxCoeff();
+  sigma = sigma.cwiseMax(most * Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   evidence_ = DriftEvidence();
   Bound();
 }
@@ -122,17 +125,12 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound() {
   if (!spread_) return;
-  // What was seen of the prior's error: nothing where it is as good as it can be taken for.
-  const Eigen::Array3d seen2 = spread_->sigma.array().square() - spread_->least.array().square();
-  Eigen::Vector3d seen = seen2.max(0.0).sqrt();
-  seen = seen.cwiseMax(seen.head<2>().maxCoeff() *
-                       Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   const double root = std::sqrt(spread_->frames);
-  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma.cwiseMax(seen);
+  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
   noise_.bias = noise_.bias.cwiseMin(most);
   noise_.walk = noise_.walk.cwiseMin(root * most);
   for (int axis = 0; axis < 3; ++axis) {
-    const double least = kLeastSigmas * seen[axis];
+    const double least = kLeastSigmas * spread_->sigma[axis];
     const double walked = noise_.walk[axis] / root;
     const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
     if (noise_.bias[axis] >= bias) continue;

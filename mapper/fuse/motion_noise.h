@@ -25,8 +25,6 @@ struct MotionNoise {
 struct MotionSpread {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   double frames = 1.0;
-  // No adjustment finds less; what sigma is beyond it, squared, was seen.
-  Eigen::Vector3d least = Eigen::Vector3d::Zero();
 };
 
 // Variances of the summed error over 1, 2, 4, ... frames tell the three parts apart: jitter's stays

@@ -20,15 +20,18 @@ double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_grou
   return LinkError(link, map_from_group).cwiseQuotient(link.sigma).norm();
 }
 
+// A small motion of `first` moves second_from_first's far end by minus its adjoint.
+Eigen::Matrix3d ErrorByFirst(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
+  return -AdjointOf(Inverse(RelativePose(link, map_from_group)));
+}
+
 void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, PoseMatrix& h,
              Eigen::VectorXd& g) {
   const Eigen::Vector3d error = LinkError(link, map_from_group);
   Eigen::Vector3d weight = link.sigma.cwiseProduct(link.sigma).cwiseInverse();
   const double sigmas = LinkSigmas(link, map_from_group);
   if (link.huber_sigmas > 0.0 && sigmas > link.huber_sigmas) weight *= link.huber_sigmas / sigmas;
-  // A small motion of `first` moves second_from_first's far end by minus its adjoint.
-  const Pose2 second_from_first = Inverse(RelativePose(link, map_from_group));
-  const Eigen::Matrix3d by_first = -AdjointOf(second_from_first);
+  const Eigen::Matrix3d by_first = ErrorByFirst(link, map_from_group);
   const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
   const Eigen::Matrix3d first_block = by_first.transpose() * weighted;
   h.AddBlock(link.first, link.first, first_block);

@@ -24,6 +24,9 @@ Eigen::Vector3d LinkError(const GroupLink& link, const std::vector<Pose2>& map_f
 // Its length in standard deviations.
 double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_group);
 
+// How the error changes with a small motion of `first`; with one of `second` it changes by that.
+Eigen::Matrix3d ErrorByFirst(const GroupLink& link, const std::vector<Pose2>& map_from_group);
+
 // Adds the link to the normal equations h step = g of small motions of all groups, three rows a
 // group.
 void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, PoseMatrix& h,

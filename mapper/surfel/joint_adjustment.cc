@@ -5,14 +5,13 @@
 #include <memory>
 
 #include "mapper/surfel/landmarks.h"
+#include "mapper/surfel/motion_sigma.h"
 #include "mapper/surfel/skyline_matrix.h"
 #include "mapper/surfel/sparse_pose_matrix.h"
 
 namespace depthgrid {
 namespace {
 
-// The prior is never believed beyond this, a frame: simulated priors can be perfect.
-const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
 // How well the online estimate joins neighbouring groups, before loops have bent it: what keeps the
 // chain together in the first step, which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
@@ -60,17 +59,21 @@ std::unique_ptr<PoseMatrix> MatrixOf(const std::vector<int>& first_group) {
   return std::make_unique<SkylineMatrix>(first);
 }
 
-// Solves for small motions of all groups and applies them. False when nothing could be solved.
-bool Step(PoseMatrix& h, const Eigen::VectorXd& g, std::vector<Pose2>& map_from_group) {
+// False when nothing could be solved.
+bool Factor(PoseMatrix& h) {
   for (int i = 0; i < h.size(); ++i) h.Diagonal(i) *= 1.0 + kRidge;
   for (int i = 0; i < 3; ++i) h.Diagonal(i) += kAnchor;
-  if (!h.Factor()) return false;
-  const Eigen::VectorXd step = h.Solve(g);
+  return h.Factor();
+}
+
+// Solves for small motions of all groups and applies them.
+void Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
+          std::vector<Pose2>& map_from_group) {
+  const Eigen::VectorXd step = factored.Solve(g);
   for (std::size_t i = 0; i < map_from_group.size(); ++i) {
     const Eigen::Vector3d motion = step.segment<3>(3 * static_cast<Eigen::Index>(i));
     map_from_group[i] = map_from_group[i] * Pose2::FromVector(motion);
   }
-  return true;
 }
 
 // What ties groups to earlier ones than the one before.
@@ -98,7 +101,8 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), links));
     Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
     for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
-    if (!Step(*h, g, map_from_group)) return;
+    if (!Factor(*h)) return;
+    Step(*h, g, map_from_group);
   }
 }
 
@@ -115,23 +119,9 @@ std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d
   return links;
 }
 
-// By the median: where a group sees only walls along one direction nothing but the prior holds it,
-// and a mean square of such groups' errors would let go of the prior everywhere.
-Eigen::Vector3d MotionSigma(const Problem& problem, const std::vector<Pose2>& map_from_group) {
-  constexpr double kSigmaOfMedian = 1.4826;  // of |error|, normal distribution
-  const std::vector<GroupLink> links = MotionLinks(problem, Eigen::Vector3d::Ones());
-  if (links.empty()) return kLeastMotionSigma;
-  Eigen::Vector3d sigma;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> errors;
-    for (const GroupLink& link : links) {
-      errors.push_back(std::abs(LinkError(link, map_from_group)[axis] / link.sigma[axis]));
-    }
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
-    sigma[axis] = kSigmaOfMedian * *middle;
-  }
-  return sigma.cwiseMax(kLeastMotionSigma);
+// The same of a prior that errs by 1 a frame.
+std::vector<GroupLink> UnitMotionLinks(const Problem& problem) {
+  return MotionLinks(problem, Eigen::Vector3d::Ones());
 }
 
 double GateOf(int round, const JointOptions& options) {
@@ -139,9 +129,11 @@ double GateOf(int round, const JointOptions& options) {
   return options.first_gate_m * std::pow(options.last_gate_m / options.first_gate_m, share);
 }
 
-// One Gauss-Newton step of everything: landmarks are found anew at the current poses.
+// One Gauss-Newton step of everything: landmarks are found anew at the current poses, and what is
+// known of the prior afterwards. False when nothing could be solved.
 bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
-                const Eigen::Vector3d& motion_sigma, std::vector<Pose2>& map_from_group) {
+                JointResult& result) {
+  std::vector<Pose2>& map_from_group = result.map_from_group;
   const JointOptions& options = problem.options;
   const AssociationGate gate{0.6 * options.landmark_m, gate_m,
                              std::cos(RadFromDeg(options.max_angle_deg))};
@@ -154,11 +146,14 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
   const double factor = options.judge_misfit ? landmarks.VarianceFactor(map_from_group) : 1.0;
   landmarks.AddTo(map_from_group, {options.huber_sigmas, factor}, *h, g);
-  for (const GroupLink& link : MotionLinks(problem, motion_sigma)) {
-    AddLink(link, map_from_group, *h, g);
-  }
+  const std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
+  links.insert(links.end(), motions.begin(), motions.end());
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
-  return Step(*h, g, map_from_group);
+  if (!Factor(*h)) return false;
+  const Eigen::Vector3d share = ShareSeen(motions, map_from_group, *h);
+  Step(*h, g, map_from_group);
+  result.motion_sigma = MotionSigma(UnitMotionLinks(problem), map_from_group, share);
+  return true;
 }
 
 JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) {
@@ -166,19 +161,15 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   for (const SurfelGroup& group : problem.groups) {
     result.map_from_group.push_back(group.map_from_group);
   }
-  result.least_motion_sigma = kLeastMotionSigma;
-  result.motion_sigma = MotionSigma(problem, result.map_from_group);
+  result.motion_sigma =
+      MotionSigma(UnitMotionLinks(problem), result.map_from_group, Eigen::Vector3d::Ones());
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
   bool settled = true;
   for (int round = 0;
        round < problem.options.rounds || (!settled && round < problem.options.most_rounds);
        ++round) {
     const Eigen::Vector3d sigma_before = result.motion_sigma;
-    if (!AdjustOnce(problem, loops, GateOf(round, problem.options), result.motion_sigma,
-                    result.map_from_group)) {
-      break;
-    }
-    result.motion_sigma = MotionSigma(problem, result.map_from_group);
+    if (!AdjustOnce(problem, loops, GateOf(round, problem.options), result)) break;
     settled = (result.motion_sigma.array() >= kSettledShare * sigma_before.array()).all();
   }
   return result;

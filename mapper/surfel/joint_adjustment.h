@@ -52,8 +52,7 @@ struct GroupMotion {
 struct JointResult {
   std::vector<Pose2> map_from_group;  // the first is unchanged
   std::vector<bool> loop_accepted;
-  Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();        // of the prior, a frame, as learnt
-  Eigen::Vector3d least_motion_sigma = Eigen::Vector3d::Zero();  // it is never taken for better
+  Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();  // of the prior, a frame, as learnt
 };
 
 // `motions` has one entry a group; the first is not used. `loops` are links without an order of

@@ -184,8 +184,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   const auto group_count = static_cast<int>(groups.groups().size());
   if (group_count >= kMinGroupsForSpread) {
     adjustment.motion_spread = {result.motion_sigma,
-                                static_cast<double>(frames.size()) / group_count,
-                                result.least_motion_sigma};
+                                static_cast<double>(frames.size()) / group_count};
   }
   adjustment.map_from_base = effort == AdjustEffort::kFinish
                                  ? SmoothedOver(frames, groups, result.map_from_group)

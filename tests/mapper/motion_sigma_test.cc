@@ -1,0 +1,122 @@
+#include "mapper/surfel/motion_sigma.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "mapper/core/rng.h"
+#include "mapper/surfel/skyline_matrix.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kAnchor = 1e12;
+
+// Poses one metre apart, each linked to the one before; the first stays where it is.
+struct Chain {
+  std::vector<Pose2> map_from_group;
+  std::vector<GroupLink> links;
+};
+
+Chain ChainOf(int poses, const Eigen::Vector3d& sigma) {
+  Chain chain;
+  for (int i = 0; i < poses; ++i) {
+    chain.map_from_group.push_back({static_cast<double>(i), 0.0, 0.1 * i});
+    if (i == 0) continue;
+    const Pose2 motion = Between(chain.map_from_group[static_cast<std::size_t>(i - 1)],
+                                 chain.map_from_group[static_cast<std::size_t>(i)]);
+    chain.links.push_back({i - 1, i, motion, sigma, 0.0});
+  }
+  return chain;
+}
+
+SkylineMatrix EquationsOf(const Chain& chain) {
+  const auto poses = static_cast<int>(chain.map_from_group.size());
+  SkylineMatrix h(std::vector<int>(static_cast<std::size_t>(3 * poses), 0));
+  for (int i = 0; i < 3; ++i) h.Diagonal(i) += kAnchor;
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(h.size());
+  for (const GroupLink& link : chain.links) AddLink(link, chain.map_from_group, h, g);
+  return h;
+}
+
+// A pose seen with information d: of what is known of the motion, d / (d + 1 / sigma^2) was seen.
+TEST(ShareSeen, IsWhatThePriorDoesNotTell) {
+  const Chain chain = ChainOf(2, {0.1, 0.2, 0.05});
+  SkylineMatrix h = EquationsOf(chain);
+  h.Diagonal(3) += 300.0;  // forward: 300 against 100
+  h.Diagonal(4) += 25.0;   // left: as much as the prior; yaw: nothing
+  ASSERT_TRUE(h.Factor());
+  const Eigen::Vector3d share = ShareSeen(chain.links, chain.map_from_group, h);
+  EXPECT_NEAR(share.x(), 0.75, 1e-9);
+  EXPECT_NEAR(share.y(), 0.5, 1e-9);
+  EXPECT_NEAR(share.z(), 0.0, 1e-9);
+}
+
+TEST(ShareSeen, ManyLinksAreEstimatedWell) {
+  const Chain chain = ChainOf(200, {0.02, 0.01, 0.004});
+  SkylineMatrix h = EquationsOf(chain);
+  RandomStream random(1, RandomStage::kTest);
+  // Seen are the motions over thirty poses.
+  Eigen::VectorXd none = Eigen::VectorXd::Zero(h.size());
+  for (int i = 30; i < 200; ++i) {
+    const double sigma = 0.005 + 0.02 * random.Uniform();
+    const Pose2 motion = Between(chain.map_from_group[static_cast<std::size_t>(i - 30)],
+                                 chain.map_from_group[static_cast<std::size_t>(i)]);
+    AddLink({i - 30, i, motion, {sigma, sigma, sigma}, 0.0}, chain.map_from_group, h, none);
+  }
+  Eigen::MatrixXd dense(h.size(), h.size());
+  for (int row = 0; row < h.size(); ++row) {
+    for (int column = 0; column <= row; ++column) {
+      dense(row, column) = dense(column, row) = *h.At(row, column);
+    }
+  }
+  const Eigen::MatrixXd covariance =
+      dense.ldlt().solve(Eigen::MatrixXd::Identity(h.size(), h.size()));
+  Eigen::Vector3d exact = Eigen::Vector3d::Ones();
+  for (const GroupLink& link : chain.links) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, h.size());
+    rows.block<3, 3>(0, 3 * link.first) = ErrorByFirst(link, chain.map_from_group);
+    rows.block<3, 3>(0, 3 * link.second).setIdentity();
+    const Eigen::Matrix3d left = rows * covariance * rows.transpose();
+    exact -= left.diagonal().cwiseQuotient(link.sigma.cwiseAbs2()) / 199.0;
+  }
+  ASSERT_TRUE(h.Factor());
+  const Eigen::Vector3d share = ShareSeen(chain.links, chain.map_from_group, h);
+  EXPECT_GT(exact.minCoeff(), 0.02);
+  EXPECT_LT(exact.maxCoeff(), 0.9);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(share[axis], exact[axis], 0.03) << axis;
+}
+
+// Adjusted between a prior and sightings of the same variance, motions show half of the prior's
+// errors: shrunk to half, and share is half.
+TEST(MotionSigma, CountsWhatThePriorHasDrawnToItself) {
+  constexpr double kTrueSigma = 0.003;
+  constexpr int kMotions = 40000;  // the median's own error is 0.6 %
+  RandomStream random(2, RandomStage::kTest);
+  std::vector<GroupLink> links;
+  std::vector<Pose2> poses(1);
+  for (int i = 1; i <= kMotions; ++i) {
+    const double prior_error = kTrueSigma * random.Normal();
+    const double sight_error = kTrueSigma * random.Normal();
+    const double left_after = 0.5 * (sight_error - prior_error);
+    poses.push_back(poses.back() * Pose2{1.0 + left_after, 0.0, 0.0});
+    links.push_back({i - 1, i, {1.0, 0.0, 0.0}, Eigen::Vector3d::Ones(), 0.0});
+  }
+  const Eigen::Vector3d sigma = MotionSigma(links, poses, {0.5, 0.5, 0.5});
+  EXPECT_NEAR(sigma.x(), kTrueSigma, 0.02 * kTrueSigma);
+  // What did not move at all is still not known perfectly.
+  EXPECT_GT(sigma.y(), 0.0);
+}
+
+TEST(MotionSigma, OneWrongMotionIsNotTheRule) {
+  Chain chain = ChainOf(21, Eigen::Vector3d::Ones());
+  for (GroupLink& link : chain.links) link.first_from_second.x_m += 0.001;
+  const Eigen::Vector3d share = Eigen::Vector3d::Ones();
+  const Eigen::Vector3d before = MotionSigma(chain.links, chain.map_from_group, share);
+  chain.links[7].first_from_second.x_m += 5.0;
+  const Eigen::Vector3d after = MotionSigma(chain.links, chain.map_from_group, share);
+  EXPECT_NEAR(after.x(), before.x(), 0.01 * before.x());
+}
+
+}  // namespace
+}  // namespace depthgrid
