@@ -22,9 +22,6 @@ constexpr int kFitGrowth = 4;
 // while the matches are believed the map wanders with them (docs/results.md, "Consistency").
 constexpr double kBoundSigmas = 2.0;
 constexpr double kLeastSigmas = 1.0;
-// An axis is not believed to be known so much better than another; radians a metre for the yaw.
-constexpr double kLeastOfOthers = 0.5;
-constexpr double kLeastYawOfOthers = 0.25;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/results.md).
 constexpr double kMostChi2 = 200.0;
@@ -115,9 +112,6 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
-  Eigen::Vector3d& sigma = spread_->sigma;
-  const double most = sigma.head<2>().maxCoeff();
-  sigma = sigma.cwiseMax(most * Eigen::Vector3d(kLeastOfOthers, kLeastOfOthers, kLeastYawOfOthers));
   evidence_ = DriftEvidence();
   Bound();
 }

@@ -10,6 +10,9 @@ namespace {
 
 // The prior is never believed beyond this, a frame: simulated priors can be perfect.
 const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
+// Nor is it in one direction so much better than in another: in a corridor nothing tells how it
+// errs lengthways, and a direction's sigma may fall to the least. Radians a metre for the yaw.
+const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
 // With a smaller share the prior's errors are hardly told from those of what is seen: it is taken
 // for a little better each time, down to the least if it is perfect (measured in docs/results.md).
 constexpr double kLeastShare = 0.3;
@@ -59,7 +62,8 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
     std::nth_element(errors.begin(), middle, errors.end());
     sigma[axis] = kSigmaOfMedian * *middle / std::sqrt(std::max(share_seen[axis], kLeastShare));
   }
-  return sigma.cwiseMax(kLeastMotionSigma);
+  const double most = sigma.head<2>().maxCoeff();
+  return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);
 }
 
 }  // namespace depthgrid
