@@ -1,9 +1,9 @@
 #include "eval/mapping_run.h"
 
-#include <ctime>
 #include <utility>
 
 #include "eval/metrics/association.h"
+#include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/io/pose_track.h"
 
@@ -12,12 +12,6 @@ namespace {
 
 // How many frames are kept whole for the report, evenly spread.
 constexpr int kSampleFrames = 5;
-
-double ThreadCpuUs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
-}
 
 bool IsSample(int position, int count) {
   if (count <= kSampleFrames) return true;

@@ -61,11 +61,7 @@ std::vector<std::optional<Pose3>> PosesAt(const Trajectory& trajectory,
 // never looks straight up to the last digit.
 bool IsPlanar(const Pose3& pose) { return pose.rotation.x() == 0.0 && pose.rotation.y() == 0.0; }
 
-Pose2 BaseOfRow(const Pose3& pose) {
-  if (!IsPlanar(pose)) return BaseOf(pose);
-  const Eigen::Quaterniond& q = pose.rotation;
-  return {pose.translation.x(), pose.translation.y(), WrapAngle(2.0 * std::atan2(q.z(), q.w()))};
-}
+Pose2 BaseOfRow(const Pose3& pose) { return IsPlanar(pose) ? PlanarPoseOf(pose) : BaseOf(pose); }
 
 Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
   Json json = {{"x", Json::array()}, {"y", Json::array()}, {"yaw", Json::array()}};

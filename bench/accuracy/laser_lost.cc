@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/accuracy/laser_run.h"
+#include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 #include "mapper/incremental_mapper.h"
@@ -56,7 +57,7 @@ Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Driv
                   RadFromDeg(drive.off_deg) * (random.Uniform() < 0.5 ? 1.0 : -1.0)};
   // SLAM believes to be where it was lost, but for this.
   const Pose2 new_slam = odometry[before - 1] * off * Inverse(odometry[before]);
-  IncrementalMapper mapper(options, std::nullopt, NowUs);
+  IncrementalMapper mapper(options, std::nullopt, ThreadCpuUs);
   Outcome outcome;
   for (std::size_t k = 0; k < driven.size(); ++k) {
     Frame frame;

@@ -1,13 +1,11 @@
 // What the programs that map simulated laser logs share.
 #pragma once
 
-#include <cmath>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "mapper/core/pose2.h"
+#include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/trajectory_file.h"
@@ -15,19 +13,11 @@
 
 namespace depthgrid {
 
-inline double NowUs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
-
 // The base poses of NAME.truth.txt, whose axes are those of the base.
 inline std::vector<Pose2> ReadPlanarTruth(const std::string& name) {
   std::vector<Pose2> truth;
   for (const StampedPose& pose : ReadTrajectory(name + ".truth.txt")) {
-    const Eigen::Quaterniond& q = pose.world_from_camera.rotation;
-    truth.push_back({pose.world_from_camera.translation.x(), pose.world_from_camera.translation.y(),
-                     WrapAngle(2.0 * std::atan2(q.z(), q.w()))});
+    truth.push_back(PlanarPoseOf(pose.world_from_camera));
   }
   return truth;
 }

@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <string>
 
+#include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/io/config.h"
@@ -22,12 +22,6 @@ constexpr double kStepM = 0.04;            // a frame: 1.2 m/s at 30 Hz
 constexpr double kWrongM = 0.5;            // a loop that is off by more is of another place
 constexpr double kTurnRad = kPi / 2 / 30;  // a frame
 constexpr double kPhaseOfSeed = 2.4;       // where the odometry's bias begins, radians
-
-double CpuUs() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
-}
 
 // Resident now, not at most: a floor's memory must not hide behind that of the one before.
 double ResidentMib() {
@@ -170,7 +164,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
   const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
   const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
   const double before_mib = ResidentMib();
-  IncrementalMapper mapper(settings.mapper, std::nullopt, CpuUs);
+  IncrementalMapper mapper(settings.mapper, std::nullopt, ThreadCpuUs);
   Walker walker(floor);
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),
@@ -215,9 +209,9 @@ void Walk(double floor_m, int frames, const Settings& settings) {
               error_m / frames);
   std::fflush(stdout);
   if (settings.finish) {
-    const double start_us = CpuUs();
+    const double start_us = ThreadCpuUs();
     const MapperResult result = mapper.Finish();
-    const double finish_us = CpuUs() - start_us;
+    const double finish_us = ThreadCpuUs() - start_us;
     double final_error_m = 0.0, scan_bytes = 0.0;
     for (std::size_t k = 0; k < truths.size(); ++k) {
       final_error_m +=

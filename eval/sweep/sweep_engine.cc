@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <map>
 #include <mutex>
 
@@ -12,6 +11,7 @@
 #include "eval/sweep/scan_maker.h"
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
+#include "mapper/core/cpu_clock.h"
 
 namespace depthgrid {
 namespace {
@@ -24,12 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double ThreadCpuS() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
 // Runs that share their scans.

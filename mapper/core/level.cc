@@ -31,6 +31,12 @@ Pose2 BaseOf(const Pose3& world_from_camera) {
           HeadingOf(world_from_camera.rotation)};
 }
 
+Pose2 PlanarPoseOf(const Pose3& world_from_base) {
+  const Eigen::Vector3d& at_m = world_from_base.translation;
+  const Eigen::Quaterniond& q = world_from_base.rotation;
+  return {at_m.x(), at_m.y(), WrapAngle(2.0 * std::atan2(q.z(), q.w()))};
+}
+
 Eigen::Quaterniond LevelFromCamera(const Pose3& world_from_camera) {
   const Eigen::Quaterniond level_from_world(
       Eigen::AngleAxisd(-HeadingOf(world_from_camera.rotation), Eigen::Vector3d::UnitZ()));

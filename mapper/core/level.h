@@ -15,6 +15,10 @@ constexpr double kVerticalAxisLimitRad = RadFromDeg(10.0);
 // world_from_base of a camera whose world has z up.
 Pose2 BaseOf(const Pose3& world_from_camera);
 
+// The same where the pose's own axes are those of the base, as laser logs have it: a rotation about
+// z alone.
+Pose2 PlanarPoseOf(const Pose3& world_from_base);
+
 // The rotation that levels the camera: level_from_camera, where `level` has base's heading, z up
 // and the camera's centre as origin. Multiplying a point in camera axes gives (forward, left, up)
 // in metres from the camera.

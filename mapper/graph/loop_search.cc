@@ -56,8 +56,8 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("likely_drift_share", likely_drift_share, {0.0, 1.0}, "the latter, of the way");
   v.Number("most_unanswered", most_unanswered, {0, 1000},
            "searches that may find nothing meanwhile");
-  v.Number("consent_m", consent_m, {0.0, 10.0}, "to this");
-  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
+  v.Number("consent_m", consent_m, {0.0, 10.0}, "the same correction, to this");
+  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this, in heading");
 }
 
 // The way over which two frames' estimates drifted apart: along the poses, or by way of one loop.

@@ -37,7 +37,7 @@ struct LoopSearchOptions {
   // Nearer to where they are anyway than this, places are left to the adjustment.
   double min_correction_m = 0.1;
   double min_correction_deg = 1.5;
-  // So many loops in a row must want the same correction, to this.
+  // So many loops in a row must want the same correction, to consent_m and consent_deg.
   int consenting = 4;
   // And over a way of so many times what they correct and what the estimate is likely off by (both
   // together no more than the window): rooms that look alike differ somewhere along several of them

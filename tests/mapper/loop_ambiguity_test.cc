@@ -62,7 +62,6 @@ class Walk {
       const auto scan = std::make_shared<const Scan>(*frame.scan);
       map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
       std::vector<PlanarLoop> found = search.Find(so_far, scan, known, map);
-
       if (!found.empty()) return found;
     }
     return {};
