@@ -4,10 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include "sim/usable_threads.h"
 
@@ -15,6 +18,36 @@ namespace depthgrid::cli {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
+
+// One keystroke or one `timeout` may send a signal twice (to the program and to its group): within
+// this time it is one request. After it a further one ends the program at once.
+constexpr long long kSameRequestNs = 1'000'000'000;
+volatile long long first_signal_ns = 0;  // written by the handler alone
+bool on_terminal = false;                // standard error, known before any signal
+
+long long MonotonicNs() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+// Only what POSIX allows in a handler.
+void Remember(int signal) {
+  const int saved_errno = errno;
+  const long long now_ns = MonotonicNs();
+  if (interrupted == 0) {
+    first_signal_ns = now_ns;
+    interrupted = 1;
+    constexpr std::string_view kStopping = "\ndepthgrid: stopping; again to end at once\n";
+    if (on_terminal) {
+      [[maybe_unused]] const auto shown = write(STDERR_FILENO, kStopping.data(), kStopping.size());
+    }
+  } else if (now_ns - first_signal_ns > kSameRequestNs) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  errno = saved_errno;
+}
 
 std::string TimeText(double seconds) {
   const auto whole = static_cast<int>(seconds + 0.5);
@@ -91,13 +124,11 @@ void Warn(const std::vector<std::string>& warnings) {
 }
 
 void CatchInterrupts() {
-  // A second signal ends the program at once, whatever it is doing.
-  const auto remember = [](int signal) {
-    interrupted = 1;
-    std::signal(signal, SIG_DFL);
-  };
-  std::signal(SIGINT, remember);
-  std::signal(SIGTERM, remember);
+  on_terminal = isatty(STDERR_FILENO) == 1;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What the caller had ignored (nohup, a shell's background jobs) stays ignored.
+    if (std::signal(signal, &Remember) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 void ThrowIfInterrupted() {

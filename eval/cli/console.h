@@ -48,7 +48,8 @@ std::string Printable(std::string text);
 
 void Warn(const std::vector<std::string>& warnings);
 
-// Ctrl-C makes the next progress report throw, so that half-written output is removed.
+// Ctrl-C, `kill` and a closed terminal make the next progress report throw, so that half-written
+// output is removed.
 void CatchInterrupts();
 void ThrowIfInterrupted();
 

@@ -1,13 +1,13 @@
 // The `depthgrid` program: arguments in, exit code out. CLI11 is slow to compile and is included
-// here only.
+// here and in usage only.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <functional>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/usage.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
@@ -201,14 +201,8 @@ void AddSweep(Program& program) {
   AddKeys(*app, &ExperimentKeys);
 }
 
-// CLI11 reads -3 as 2^64 - 3 and takes what is too large for the largest number.
 void AddSeed(CLI::App& app, const char* flag, std::uint64_t& seed, const char* meaning) {
-  const auto refusal = [](const std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && *stop == '\0' ? "" : "'" + text + "' is no whole number";
-  };
-  app.add_option(flag, seed, meaning)->check(refusal)->capture_default_str();
+  app.add_option(flag, seed, meaning)->check(RefusalUnlessSeed)->capture_default_str();
 }
 
 void AddSlam(Program& program) {
@@ -233,7 +227,7 @@ void AddSlamCalibrate(Program& program) {
       ->required();
   app->add_option("--target", arguments->target_m, "Mean distance to the truth in xy, metres")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(RefusalUnlessPositive);
   app->add_option("--seeds", arguments->seeds, "How many runs to average")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -265,7 +259,7 @@ void AddEval(Program& program) {
   trajectory
       ->add_option("--max-difference", t->max_difference_s,
                    "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(RefusalIfNegative);
   trajectory
       ->add_option("--convention", t->convention,
                    "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
@@ -343,7 +337,7 @@ void AddRegrid(Program& program) {
   app->add_option("folder", arguments->folder, "Folder that `run` or `map` wrote")->required();
   app->add_option("--resolution", arguments->resolution_m, "Cell size, metres")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(RefusalUnlessPositive);
   AddMapMode(*app, arguments->map_mode);
 }
 
@@ -381,7 +375,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return program.app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return Complain(std::string(error.what()) + " (see --help)", kBadInput);
+    return Complain(UsageMessage(program.app, error), kBadInput);
   }
   CatchInterrupts();
   try {

@@ -49,13 +49,13 @@ struct MapSettings {
 
 Config ConfigOf(const MapArguments& arguments) {
   Config config;
-  const std::pair<const char*, const std::string&> short_names[] = {
-      {"sequence.format", arguments.format},
-      {"sequence.camera", arguments.camera},
-      {"sequence.world_up", arguments.world_up}};
-  for (const auto& [key, value] : short_names) {
-    if (!value.empty()) config.Set(key, value);
-  }
+  const auto set = [&config](const std::string& key, const std::string& option,
+                             const std::string& value) {
+    if (!value.empty()) config.Set(key, value, option + " " + value);
+  };
+  set("sequence.format", "--format", arguments.format);
+  set("sequence.camera", "--camera", arguments.camera);
+  set("sequence.world_up", "--up", arguments.world_up);
   for (const std::string& assignment : arguments.common.set) config.Set(assignment);
   return config;
 }

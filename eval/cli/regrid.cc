@@ -21,10 +21,11 @@ GridOptions GridOptionsOf(const std::string& run_yaml) {
   return options;
 }
 
-// --resolution with the range and the words of the key it stands for.
+// --resolution with the range of the key it stands for.
 void SetResolution(GridOptions& options, double resolution_m) {
   Config config;
-  config.Set("resolution_m", fmt::format("{}", resolution_m));
+  const std::string value = fmt::format("{}", resolution_m);
+  config.Set("resolution_m", value, "--resolution " + value);
   config.Read(options);
 }
 

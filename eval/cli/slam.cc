@@ -43,7 +43,7 @@ struct SlamSettings {
 
 void Slam(const SlamArguments& arguments) {
   Config config;
-  config.Set("slam.profile", arguments.profile);
+  config.Set("slam.profile", arguments.profile, "--profile " + arguments.profile);
   for (const std::string& assignment : arguments.common.set) config.Set(assignment);
   SlamSettings settings;
   config.Read(settings);

@@ -12,6 +12,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 namespace {
@@ -113,6 +114,7 @@ class CarmenLogSource : public FrameSource {
   };
 
   void Rewind() {
+    RequireFile(path_);
     file_ = std::ifstream(path_, std::ios::binary);
     if (!file_) throw InputError(path_, "cannot be read");
     line_number_ = 0;

@@ -104,8 +104,8 @@ std::string ListKeys(Options options) {
   return out;
 }
 
-// The candidate closest to `word` in edit distance, or "" when none is near (more than half its
-// letters differ).
+// The candidate closest to `word` in edit distance (two neighbouring letters swapped are one slip),
+// or "" when none is near (more than half its letters differ).
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace depthgrid

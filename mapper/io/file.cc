@@ -32,11 +32,17 @@ std::string TemporaryName(const std::string& path) {
 
 }  // namespace
 
-std::string ReadFile(const std::string& path, std::size_t max_bytes) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
+void RequireFile(const std::string& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) throw InputError(path, "no such file");
+  if (fs::is_directory(status)) throw InputError(path, "is a folder, must be a file");
   if (!fs::is_regular_file(status)) throw InputError(path, "is not a regular file");
+}
+
+std::string ReadFile(const std::string& path, std::size_t max_bytes) {
+  RequireFile(path);
+  std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(path, "cannot be read: " + error.message());
   if (size > max_bytes) {

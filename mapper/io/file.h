@@ -11,6 +11,9 @@ namespace depthgrid {
 // Larger than any file the program reads whole (a laser log of hours is about 500 MB).
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U;
 
+// Throws InputError when the file is missing, a folder, or no regular file.
+void RequireFile(const std::string& path);
+
 // Throws InputError when the file is missing, is no regular file, cannot be read or is larger than
 // `max_bytes`.
 std::string ReadFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);

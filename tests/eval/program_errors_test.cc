@@ -112,11 +112,25 @@ TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
 
 TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("", {"--help"});
-  ExpectRefusal("runn ./small.yaml -o out", {"--help"});
+  ExpectRefusal("rnu ./small.yaml -o out", {"'rnu'", "'run'", "--help"});
+  ExpectRefusal("eval mpa a b", {"'mpa'", "'map'", "depthgrid eval --help"});
   ExpectRefusal("run ./small.yaml", {"--output"});
-  ExpectRefusal("run ./small.yaml -o out --thread 3", {"--help"});
+  ExpectRefusal("run ./small.yaml -o out --thread 3", {"'--thread'", "'--threads'", "run --help"});
+  ExpectRefusal("run ./small.yaml more -o out", {"'more'"});
   ExpectRefusal("run ./small.yaml -o out --threads=-1", {"--threads"});
   ExpectRefusal("eval", {"--help"});
+}
+
+TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
+  Write("log.txt", "FLASER 2 1 1 0 0 0 0 0 0 1 host 1\n");
+  ExpectRefusal("map log.txt --format kitti -o out", {"--format kitti: ", "carmen"});
+  ExpectRefusal("map log.txt --up w -o out", {"--up w: ", "auto"});
+  ExpectRefusal("map . --format carmen -o out", {".: is a folder"});
+  ExpectRefusal("slam . --profile orb -o out", {"--profile orb: ", "orb_slam2"});
+  // CLI11's own words for these are 300 digits long.
+  ExpectRefusal("regrid . --resolution 0", {"--resolution: is '0', must be a number above 0"});
+  ExpectRefusal("eval trajectory a b --max-difference=-1",
+                {"is '-1', must be a number, 0 or more"});
 }
 
 TEST_F(ProgramErrors, SeedsAreWholeNumbers) {

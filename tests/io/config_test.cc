@@ -219,6 +219,9 @@ TEST(Config, ReadsTuplesAndRows) {
 TEST(NearestWord, FindsSmallSlipsOnly) {
   EXPECT_EQ(NearestWord("gian", {"mode", "gain"}), "gain");
   EXPECT_EQ(NearestWord("zzz", {"mode", "gain"}), "");
+  EXPECT_EQ(NearestWord("rnu", {"map", "run"}), "run");
+  EXPECT_EQ(NearestWord("frams", {"frame_rate", "frames"}), "frames");
+  EXPECT_EQ(NearestWord("", {"mode"}), "");
 }
 
 }  // namespace

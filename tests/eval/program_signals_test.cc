@@ -1,0 +1,65 @@
+// Ctrl-C, `kill` and a closed terminal: nothing half-written stays.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+class ProgramSignals : public ProgramTest {
+ protected:
+  // Starts a run; no shell in between, whose background jobs ignore Ctrl-C.
+  pid_t Start(const char* frames, bool ignores_hangup) const {
+    const pid_t child = ::fork();
+    if (child != 0) return child;
+    if (ignores_hangup) std::signal(SIGHUP, SIG_IGN);
+    const bool ready = ::chdir(root_.c_str()) == 0 &&
+                       std::freopen("/dev/null", "w", stdout) != nullptr &&
+                       std::freopen("err.txt", "w", stderr) != nullptr;
+    if (ready) {
+      ::execl(kProgramFile, kProgramFile, "run", "./small.yaml", "--set", frames, "-o", "out",
+              nullptr);
+    }
+    ::_exit(99);
+  }
+  bool HasUnfinishedFolder() const {
+    for (const auto& entry : std::filesystem::directory_iterator(root_)) {
+      if (entry.path().filename().string().starts_with(".out.partial")) return true;
+    }
+    return false;
+  }
+  // The exit code of a run that gets these signals once it has made its folder.
+  int ExitCodeAfter(const std::vector<int>& signals, const char* frames,
+                    bool ignores_hangup = false) const {
+    const pid_t child = Start(frames, ignores_hangup);
+    int status = 0;
+    while (!HasUnfinishedFolder() && ::waitpid(child, &status, WNOHANG) == 0) ::usleep(1000);
+    for (const int signal : signals) ::kill(child, signal);
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+};
+
+TEST_F(ProgramSignals, LeaveNothing) {
+  // `timeout` and a terminal's group may send one twice.
+  const std::vector<std::vector<int>> requests = {
+      {SIGINT}, {SIGTERM, SIGTERM}, {SIGHUP}, {SIGINT, SIGHUP}};
+  for (const std::vector<int>& signals : requests) {
+    EXPECT_EQ(ExitCodeAfter(signals, "frames=3000"), 1) << signals.front();
+    EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
+    EXPECT_FALSE(HasUnfinishedFolder());
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  }
+}
+
+TEST_F(ProgramSignals, WhatTheCallerIgnoresStaysIgnored) {
+  EXPECT_EQ(ExitCodeAfter({SIGHUP}, "frames=100", true), 0);
+  EXPECT_EQ(ReadFile(Path("err.txt")), "");
+  EXPECT_TRUE(std::filesystem::exists(Path("out/report.html")));
+}
+
+}  // namespace
+}  // namespace depthgrid
