@@ -145,17 +145,31 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
       }
       last = hn::IfThenElse(usable, row, last);
     };
+    bool was_whole = false;  // the row before, in all lanes: no run ends at the next
     for (std::size_t r = 0; r < block.RowCount(); r += kGroupRows) {
       const RowRange rows = block.RowsOfGroup(r / kGroupRows);
       const Vec least = hn::Load(d, band.least_depth + r / kGroupRows * kBlockBearings + i);
       if (block.AreShared(rows) && hn::AllTrue(d, hn::Ge(least, min_depth))) {
-        take(rows.first, hn::Eq(zero, zero));
+        if (!was_whole) take(rows.first, hn::Eq(zero, zero));
         last = hn::Set(d, static_cast<float>(rows.last));
+        was_whole = true;
+        continue;
+      }
+      const Vec nearest = hn::Load(d, band.nearest + r / kGroupRows * kBlockBearings + i);
+      if (hn::AllTrue(d, hn::Ge(nearest, hn::Set(d, kUnusable)))) {  // nothing is usable
+        was_whole = false;
         continue;
       }
       const float* HWY_RESTRICT samples = band.samples + r * kBlockBearings + i;
       for (int v = rows.first; v <= rows.last; ++v, samples += kBlockBearings) {
-        take(v, hn::Lt(hn::Load(d, samples), hn::Set(d, kUnusable)));
+        const Mask usable = hn::Lt(hn::Load(d, samples), hn::Set(d, kUnusable));
+        const bool is_whole = hn::AllTrue(d, usable);
+        if (is_whole && was_whole) {
+          last = hn::Set(d, static_cast<float>(v));
+          continue;
+        }
+        if (!hn::AllFalse(d, usable)) take(v, usable);
+        was_whole = is_whole;
       }
     }
     hn::Store(first, d, &out.first[i]);

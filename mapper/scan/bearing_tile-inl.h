@@ -116,15 +116,16 @@ HWY_INLINE Column ColumnOf(Floats d, Vec u) {
           hn::Sub(u, whole)};
 }
 
+// `row` begins at column `start`; at column 0 where pixels are gathered.
 template <Fetch kFetch>
-HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, int start,
+HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, hn::Vec<Ints> start,
                               hn::Vec<Ints> column) {
   const Ints di;
   if constexpr (kFetch == Fetch::kGather) {
     return {hn::GatherIndex(d, row, column), hn::GatherIndex(d, row + 1, column)};
   } else {
-    const auto index = hn::Sub(column, hn::Set(di, start));
-    const Vec left = hn::LoadU(d, row + start), right = hn::LoadU(d, row + start + hn::Lanes(d));
+    const auto index = hn::Sub(column, start);
+    const Vec left = hn::LoadU(d, row), right = hn::LoadU(d, row + hn::Lanes(d));
     return {LookUp(d, left, right, index), LookUp(d, left, right, hn::Add(index, hn::Set(di, 1)))};
   }
 }
@@ -175,17 +176,22 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   const Vec slice_low = hn::Set(d, tile.bands->slice.low_m),
             slice_high = hn::Set(d, tile.bands->slice.high_m);
   const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
+  // Here, as stores of vectors could change anything that is behind a pointer.
+  const std::size_t rows = tile.RowCount();
+  const std::ptrdiff_t width = tile.bands->image.width_px;
+  const int first_column = kFetch == Fetch::kGather ? 0 : tile.start;
+  const auto start = hn::Set(Ints(), first_column);
   const Vec max_column = hn::Set(d, LastColumn(tile.bands->image.width_px));
   Vec nearest = unusable, slice_nearest = passing;
   Vec row = hn::Set(d, static_cast<float>(tile.rows.first));
-  const float* HWY_RESTRICT pixels = tile.bands->image.Row(tile.rows.first);
+  const float* HWY_RESTRICT pixels = tile.bands->image.Row(tile.rows.first) + first_column;
   float* HWY_RESTRICT samples = out.band.samples.samples + tile.AtRow();
   float* HWY_RESTRICT slice = kSlice ? out.slice.samples.samples + tile.AtRow() : nullptr;
-  for (std::size_t r = 0; r < tile.RowCount(); ++r) {
+  for (std::size_t r = 0; r < rows; ++r) {
     Vec u = hn::Add(u0, hn::Mul(u1, row));
     if constexpr (kFetch != Fetch::kInside) u = hn::Min(hn::Max(u, hn::Zero(d)), max_column);
     const Column column = ColumnOf(d, u);
-    const Pixels both = FetchPixels<kFetch>(d, pixels, tile.start, column.whole);
+    const Pixels both = FetchPixels<kFetch>(d, pixels, start, column.whole);
     Vec sample;
     if constexpr (kHoles) {
       sample = hn::IfThenElse(hn::Gt(hn::Max(both.z0, both.z1), hn::Zero(d)), passing, unusable);
@@ -217,7 +223,7 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
     hn::Store(sample, d, samples);
     nearest = hn::Min(nearest, sample);
     row = hn::Add(row, hn::Set(d, 1.0F));
-    pixels += tile.bands->image.width_px;
+    pixels += width;
     samples += kBlockBearings;
   }
   if constexpr (!kHoles) StoreNearest(tile, nearest, slice_nearest, out);

@@ -6,8 +6,6 @@
 #include <sstream>
 
 #include "mapper/core/error.h"
-#include "mapper/scan/bearing_returns.h"
-#include "mapper/scan/clear_interval.h"
 
 namespace depthgrid {
 namespace {
@@ -64,56 +62,10 @@ ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, b
   return limits;
 }
 
-float SlopeAt(const BearingLine& line, int v) {
-  const auto row = static_cast<float>(v);
-  return (line.g0 + line.g1 * row) / (line.h0 + line.h1 * row);
-}
-
-std::optional<SlopeRange> SlopesOf(const BearingLine& line, const RowRange& rows) {
-  if (rows.first > rows.last) return {};
-  const float a = SlopeAt(line, rows.first);
-  const float b = SlopeAt(line, rows.last);
-  return SlopeRange{std::min(a, b), std::max(a, b)};
-}
-
-BearingView ViewOf(const BearingLine& line, const BearingReturns& returns) {
-  return {SlopesOf(line, returns.seen), SlopesOf(line, returns.gap_below),
-          SlopesOf(line, returns.gap_above)};
-}
-
-Beam BeamOf(double bearing_rad, const BearingView& view, const BearingReturns& returns,
-            double camera_height_m, const ScanOptions& options) {
-  Beam beam;
-  beam.bearing_rad = static_cast<float>(bearing_rad);
-  beam.hit = returns.hit;
-  beam.range_m = returns.range_m;
-  const double limit_m = beam.hit ? beam.range_m : options.max_range_m;
-  const Distances clear = options.mode == ScanMode::kFull
-                              ? ClearInterval(view, camera_height_m, limit_m, options)
-                              : LaserClearInterval(view, camera_height_m, limit_m, options);
-  beam.clear_from_m = static_cast<float>(clear.from_m);
-  beam.clear_to_m = static_cast<float>(clear.to_m);
-  return beam;
-}
-
-// What the rays of each line say; the slice's lines are seen as the obstacles' are.
-void FindViews(const std::vector<BearingReturns>& returns, ScanMemory& memory) {
-  memory.views.clear();
-  for (std::size_t k = 0; k < returns.size(); ++k) {
-    memory.views.push_back(ViewOf(memory.lines[k], returns[k]));
-  }
-}
-
-Scan ScanOf(const ScanMemory& memory, const std::vector<BearingReturns>& returns,
-            double camera_height_m, const ScanOptions& options, Scan scan = {}) {
-  scan.max_range_m = options.max_range_m;
-  scan.beams.clear();
-  scan.beams.reserve(returns.size());
-  for (std::size_t k = 0; k < returns.size(); ++k) {
-    scan.beams.push_back(BeamOf(memory.fan.bearings[k].angle_rad, memory.views[k], returns[k],
-                                camera_height_m, options));
-  }
-  return scan;
+Scan ScanOf(ScanMemory& memory, const std::vector<BearingReturns>& returns, double camera_height_m,
+            const ScanOptions& options, Scan scan = {}) {
+  return ScanOf(memory.fan.bearings, memory.views, returns, camera_height_m, options, memory.beams,
+                std::move(scan));
 }
 
 // A band of this half height above a floor that lies as far below the camera.
@@ -146,7 +98,7 @@ Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) con
   const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  FindViews(returns.obstacles, memory);
+  FindViews(memory.lines, returns.obstacles, memory.views);
   return ScanOf(memory, returns.obstacles, stand.height_m, options_);
 }
 
@@ -161,7 +113,7 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                             SliceBand{slice_limits.low_m, slice_limits.high_m},
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  FindViews(returns.obstacles, memory);
+  FindViews(memory.lines, returns.obstacles, memory.views);
   return {
       ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
       ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice))};

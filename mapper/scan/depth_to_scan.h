@@ -10,7 +10,7 @@
 #include "mapper/core/scan.h"
 #include "mapper/scan/bearing_returns.h"
 #include "mapper/scan/camera_stand.h"
-#include "mapper/scan/clear_interval.h"
+#include "mapper/scan/scan_beams.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {
@@ -28,7 +28,8 @@ struct ScanMemory {
   std::vector<BearingLine> lines;
   NoiseWindow::Memory noise;
   ReturnsMemory returns;
-  std::vector<BearingView> views;
+  BearingViews views;
+  BeamNumbers beams;
 };
 
 class DepthToScan {

@@ -1,0 +1,49 @@
+// Beams of what an image says of each bearing: the hit and the stretch that is free.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/scan.h"
+#include "mapper/scan/bearing_lines.h"
+#include "mapper/scan/bearing_returns.h"
+#include "mapper/scan/scan_options.h"
+
+namespace depthgrid {
+
+// Slopes (height over horizontal distance) of the lowest and the highest of some rays of each
+// bearing.
+struct Slopes {
+  std::vector<float> low, high;
+};
+
+// What the rays of each bearing say, besides the hit; bearings without rays fill up the last batch.
+// Memory is kept from frame to frame.
+struct BearingViews {
+  Slopes seen;  // where no ray was seen, low is infinite and high its negative
+  // The largest unseen gaps between them below and above the horizon; nothing from 0 to 0.
+  Slopes below, above;
+  std::vector<char> has_gap;  // of so many bearings each
+  static constexpr std::size_t kBatch = 32;
+};
+
+void FindViews(const std::vector<BearingLine>& lines, const std::vector<BearingReturns>& returns,
+               BearingViews& views);
+
+// Memory for ScanOf, a number a beam and more to fill up the last batch.
+struct BeamNumbers {
+  std::vector<double> limit_m;
+  std::vector<float> clear_from_m, clear_to_m;
+};
+
+namespace internal {
+// ClearInterval of every bearing, for the beams' limits.
+void FindClear(const BearingViews& views, double camera_height_m, const ScanOptions& options,
+               BeamNumbers& beams);
+}  // namespace internal
+
+// `returns` may differ from those that `views` are of in hits and ranges. `scan` is used again.
+Scan ScanOf(const std::vector<Bearing>& bearings, const BearingViews& views,
+            const std::vector<BearingReturns>& returns, double camera_height_m,
+            const ScanOptions& options, BeamNumbers& memory, Scan scan);
+
+}  // namespace depthgrid
