@@ -1,6 +1,7 @@
 #include "eval/truth_record.h"
 
 #include "mapper/io/map_file.h"
+#include "mapper/scan/depth_to_scan.h"
 #include "sim/observable_cells.h"
 #include "sim/truth_grid.h"
 
@@ -17,7 +18,12 @@ StateMap AsStates(const CellSet& cells) {
 
 }  // namespace
 
+void RequireUsableScans(const World& world, const MapperOptions& options) {
+  DepthToScan(world.camera, options.scan);
+}
+
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads) {
+  RequireUsableScans(world, options);
   const TruthGridOptions band = {options.grid.resolution_m, options.scan.band_low_m,
                                  options.scan.band_high_m};
   ObservableOptions seen;

@@ -17,6 +17,9 @@ struct TruthRecord {
   std::optional<CellSet> observable;
 };
 
+// Throws InputError naming the keys when settings of the scans contradict each other.
+void RequireUsableScans(const World& world, const MapperOptions& options);
+
 // Band, ranges and resolution are the mapper's settings: they say what the map is a map of.
 // `threads` only changes the speed.
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads);

@@ -1,5 +1,6 @@
 #include "eval/cli/console.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <iterator>
 #include <stdexcept>
@@ -123,6 +125,22 @@ void Warn(const std::vector<std::string>& warnings) {
   }
 }
 
+void OpenStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // open() takes the lowest number that is free: this one.
+    if (fcntl(stream, F_GETFD) == -1) open("/dev/null", O_RDWR);
+  }
+}
+
+void FinishOutput() {
+  const bool flushed = std::fflush(stdout) == 0;
+  const int error = errno;
+  if (!flushed || std::ferror(stdout) != 0) {
+    throw std::runtime_error(std::string("standard output: cannot be written: ") +
+                             std::strerror(flushed ? EIO : error));
+  }
+}
+
 void CatchInterrupts() {
   on_terminal = isatty(STDERR_FILENO) == 1;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -161,6 +179,8 @@ std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }  
 std::string Number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
+
+double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 int ThreadsOr(int requested) { return requested > 0 ? requested : UsableThreads(); }
 

@@ -48,6 +48,13 @@ std::string Printable(std::string text);
 
 void Warn(const std::vector<std::string>& warnings);
 
+// A standard stream that the caller closed would be the first file the program opens, and words for
+// the screen would be written into it.
+void OpenStandardStreams();
+// What was printed reached its file or pipe; throws std::runtime_error when it did not (a full
+// disk), so that half a table is not taken for a whole one.
+void FinishOutput();
+
 // Ctrl-C, `kill` and a closed terminal make the next progress report throw, so that half-written
 // output is removed.
 void CatchInterrupts();
@@ -60,6 +67,9 @@ std::string Table(const std::vector<std::vector<std::string>>& rows);
 std::string Short(double value);
 // "-" for nothing.
 std::string Number(const std::optional<double>& value, int digits);
+
+// CPU time of this program so far, all threads.
+double ProcessCpuS();
 
 int ThreadsOr(int requested);
 

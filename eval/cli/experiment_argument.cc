@@ -5,7 +5,8 @@
 #include <filesystem>
 
 #include "eval/shipped.h"
-#include "mapper/io/config.h"
+#include "mapper/core/error.h"
+#include "sim/mesh_file.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -29,9 +30,20 @@ ExperimentOptions Read(Config config, const std::vector<std::string>& set,
 
 }  // namespace
 
+Config ExperimentFile(const std::string& path) {
+  if (IsMeshFile(path)) {
+    throw InputError(path, "is a mesh; an experiment is a YAML file that names it as its scene");
+  }
+  Config config = Config::FromFile(path);
+  if (config.Has("shapes") && !config.Has("scene")) {
+    throw InputError(path, "is a scene; an experiment is a YAML file that names it as its scene");
+  }
+  return config;
+}
+
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set) {
   const std::string path = ResolveName(name, ShippedKind::kExperiment);
-  return Read(Config::FromFile(path), set, fs::path(path).parent_path().string());
+  return Read(ExperimentFile(path), set, fs::path(path).parent_path().string());
 }
 
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set) {

@@ -6,8 +6,12 @@
 
 #include "eval/cli/commands.h"
 #include "eval/experiment_options.h"
+#include "mapper/io/config.h"
 
 namespace depthgrid::cli {
+
+// The file's settings; throws InputError for a scene or a mesh, which an experiment only names.
+Config ExperimentFile(const std::string& path);
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
 

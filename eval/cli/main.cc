@@ -353,6 +353,7 @@ int Complain(const std::string& message, int exit_code) {
 }
 
 int Main(int argc, char** argv) {
+  OpenStandardStreams();
   Program program;
   program.app.require_subcommand(1);
   program.app.set_version_flag("--version", DEPTHGRID_VERSION);
@@ -370,16 +371,17 @@ int Main(int argc, char** argv) {
   AddCompare(program);
   AddAblate(program);
   AddReport(program);
-  try {
-    program.app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return program.app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    return Complain(UsageMessage(program.app, error), kBadInput);
-  }
   CatchInterrupts();
   try {
-    program.chosen();
+    try {
+      program.app.parse(argc, argv);
+      program.chosen();
+    } catch (const CLI::Success& asked) {  // --help, --keys, --version
+      program.app.exit(asked);
+    } catch (const CLI::ParseError& error) {
+      return Complain(UsageMessage(program.app, error), kBadInput);
+    }
+    FinishOutput();
     return kDone;
   } catch (const InputError& error) {
     return Complain(error.what(), kBadInput);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <filesystem>
 
 #include "eval/cli/commands.h"
@@ -110,12 +109,17 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   return sequence;
 }
 
-// The finished map to go on from, and where in it the sequence begins.
-std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& settings,
-                                  std::vector<std::string>& warnings) {
+// The finished map to go on from.
+std::optional<PriorMap> OpenPrior(const MapArguments& arguments) {
   if (arguments.map.empty()) return {};
   PriorMap prior = ReadPriorRun(arguments.map);
   prior.fixed = arguments.localise;
+  return prior;
+}
+
+// Where in the finished map the sequence begins.
+void FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& settings,
+                 std::vector<std::string>& warnings) {
   // The paper's chain reads the last two submaps only: here one holds everything.
   settings.mapper.submap.scans = kAllScansInOneSubmap;
   const auto slam = ReadSlam(arguments, settings.sequence);
@@ -134,7 +138,6 @@ std::optional<PriorMap> OpenPrior(const MapArguments& arguments, MapSettings& se
                        ": where in it the sequence begins is uncertain, another place "
                        "fits nearly as well");
   }
-  return prior;
 }
 
 // What was only localised in stays as it is, byte for byte.
@@ -193,9 +196,10 @@ void Map(const MapArguments& arguments) {
   settings.localise = arguments.localise;
   if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
   OutputFolder folder(arguments.common.output, arguments.common.force);
+  std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, config, settings, warnings);
-  const std::optional<PriorMap> prior = OpenPrior(arguments, settings, warnings);
+  if (prior) FindStartIn(*prior, arguments, settings, warnings);
   ProgressBar bar("mapping");
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
@@ -208,7 +212,7 @@ void Map(const MapArguments& arguments) {
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  record.cpu_s_total = ProcessCpuS();
   WriteRunFolder(folder, record);
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run, settings.mapper.grid);

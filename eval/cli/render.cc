@@ -44,6 +44,7 @@ void Render(const RenderArguments& arguments) {
   const int threads = ThreadsOr(arguments.common.threads);
   const World world = LoadWorld(given, threads);
   const ExperimentOptions options = Completed(given, world.scene);
+  RequireUsableScans(world, options.mapper);  // they set the true map's band: now, not at the end
   const SyntheticSensor sensor(world, options, CacheFolder(arguments.common));
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   {

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "eval/cli/commands.h"
+#include "eval/cli/console.h"
 #include "eval/run_report.h"
 #include "eval/study_report.h"
 #include "eval/sweep/sweep_database.h"
@@ -20,6 +21,7 @@ void Report(const ReportArguments& arguments) {
   } else {
     WriteRunReport(arguments.folder);
   }
+  SayReport(arguments.folder);
 }
 
 }  // namespace depthgrid::cli

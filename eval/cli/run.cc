@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <ctime>
 #include <filesystem>
 
 #include "eval/cli/commands.h"
@@ -23,8 +22,6 @@ namespace depthgrid::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 void PrintScores(const RunScores& scores) {
   const auto row = [](const char* name, const std::optional<TrajectoryScore>& score) {
@@ -125,7 +122,7 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
 
 void Run(const RunArguments& arguments) {
   const std::string path = ResolveName(arguments.experiment, ShippedKind::kExperiment);
-  if (IsStudy(Config::FromFile(path))) {
+  if (IsStudy(ExperimentFile(path))) {
     RunCases(arguments, path);
   } else {
     RunOne(arguments);

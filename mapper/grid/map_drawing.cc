@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
+#include "mapper/core/error.h"
 #include "mapper/grid/log_odds.h"
 
 namespace depthgrid {
@@ -12,6 +14,21 @@ namespace {
 std::size_t CellInTile(const Cell& cell) {
   return static_cast<std::size_t>((cell.y & (kWordCells - 1)) * kWordCells +
                                   (cell.x & (kWordCells - 1)));
+}
+
+// A gigabyte of probabilities, 819 x 819 m at 5 cm: beyond it a pose is wrong rather than the
+// building large, and the machine would be out of memory before anything was said.
+constexpr std::size_t kMaxMapCells = std::size_t{1} << 28U;
+
+void RequireDrawable(const GridGeometry& seen) {
+  if (seen.size() <= kMaxMapCells) return;
+  const auto metres = [&](int cells) {
+    return std::to_string(std::llround(cells * seen.resolution_m)) + " m";
+  };
+  throw InputError("map", "spans " + metres(seen.width_cells) + " x " + metres(seen.height_cells) +
+                              ", " + std::to_string(seen.size()) + " cells, at most " +
+                              std::to_string(kMaxMapCells) +
+                              ": a pose lies far off, or the resolution is too fine");
 }
 
 }  // namespace
@@ -106,7 +123,9 @@ GridGeometry MapDrawing::SeenRectangle() const {
 }
 
 OccupancyMap MapDrawing::Map() const {
-  OccupancyMap map(SeenRectangle());
+  const GridGeometry seen = SeenRectangle();
+  RequireDrawable(seen);
+  OccupancyMap map(seen);
   for (const auto& [index, tile] : tiles_) {
     for (int i = 0; i < kWordCells * kWordCells; ++i) {
       const Cell cell{index.second * kWordCells + i % kWordCells,

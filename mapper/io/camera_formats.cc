@@ -216,7 +216,12 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
     camera.y_up = true;
     pinhole.fy_px = -pinhole.fy_px;
   }
-  Validate(pinhole, place);
+  PinholeCamera checked = pinhole;
+  if (!camera.has_size) {  // checked again beside the first image
+    constexpr int kLargestImagePx = 16384;
+    checked.width_px = checked.height_px = kLargestImagePx;
+  }
+  Validate(checked, place);
   if (!(camera.file.depth_scale_per_m > 0.0))
     throw InputError(place, "depth scale must be positive");
   return camera;

@@ -20,6 +20,16 @@ namespace {
 // 20,000 readings and as many remissions fit; a longer "line" is a binary file.
 constexpr std::size_t kMaxLineBytes = 1U << 20U;
 
+// No robot moves so far and so fast between two scans: its odometry was set anew, or the line is
+// damaged.
+constexpr double kJumpM = 10.0;
+constexpr double kJumpMps = 50.0;
+
+bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
+  const double distance_m = (odom_from_next.translation() - odom_from_last.translation()).norm();
+  return distance_m > std::max(kJumpM, kJumpMps * time_s);
+}
+
 Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
             const CarmenLogOptions& options) {
   Beam beam;
@@ -97,6 +107,7 @@ class CarmenLogSource : public FrameSource {
     frame.stamp_s = line->stamp_s;
     frame.scan = std::make_shared<const Scan>(ScanOf(*line, options_));
     frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
+    frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
     }
@@ -121,6 +132,8 @@ class CarmenLogSource : public FrameSource {
     lines_of_scans_ = 0;
     next_index_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
+    odom_from_last_.reset();
+    epoch_ = 0;
   }
 
   void Note(const std::string& reason) {
@@ -163,7 +176,13 @@ class CarmenLogSource : public FrameSource {
         Note("a scan that is not later than the one before it");
         continue;
       }
+      if (odom_from_last_ &&
+          IsJump(*odom_from_last_, scan->odom_from_laser, scan->stamp_s - last_stamp_s_)) {
+        Note("the pose jumps by more than 10 m: no motion is taken there");
+        ++epoch_;
+      }
       last_stamp_s_ = scan->stamp_s;
+      odom_from_last_ = scan->odom_from_laser;
       if (file_.eof()) Note("the last line has no line end; it is used, but may be cut");
       return std::move(*scan);
     }
@@ -181,6 +200,8 @@ class CarmenLogSource : public FrameSource {
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
   double last_stamp_s_ = 0.0;
+  std::optional<Pose2> odom_from_last_;
+  int epoch_ = 0;
   std::map<std::string, Problem> problems_;
   std::vector<std::string> warnings_;
 };

@@ -196,10 +196,11 @@ void CompleteSize(const Recording& recording, CameraDescription& camera) {
       const DepthImage depth = ReadDepthPng(image.depth_path);
       camera.file.camera.width_px = depth.width_px;
       camera.file.camera.height_px = depth.height_px;
-      return;
     } catch (const InputError&) {
       continue;  // OpenRecording says what is wrong when none can be read
     }
+    Validate(camera.file.camera, "camera of " + image.depth_path);
+    return;
   }
 }
 

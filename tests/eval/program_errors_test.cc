@@ -121,6 +121,44 @@ TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("eval", {"--help"});
 }
 
+TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
+  for (const char* command : {"run", "render"}) {
+    ExpectRefusal(std::string(command) + " ./small.yaml --set mapper.scan.band_low_m=10 -o out",
+                  {"mapper.scan.band_low_m", "band_high_m"});
+    ExpectRefusal(std::string(command) + " ./small.yaml --set mapper.scan.max_range_m=0.1 -o out",
+                  {"mapper.scan.min_range_m", "max_range_m"});
+    // So far below the image that no ray is left.
+    ExpectRefusal(std::string(command) + " ./small.yaml --set sensor.cy=20000 -o out",
+                  {"sensor", "cy is 20000", "outside the image"});
+  }
+}
+
+TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
+  Write("cube.ply", "ply\n");
+  ExpectRefusal("run ./room.yaml -o out", {"room.yaml", "is a scene"});
+  ExpectRefusal("run ./cube.ply -o out", {"cube.ply", "is a mesh"});
+  ExpectRefusal("ablate ./room.yaml -o out", {"room.yaml", "is a scene"});
+}
+
+TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {
+  // Half a table would be taken for a whole one.
+  for (const char* arguments : {"scenes", "--help", "run --keys"}) {
+    const std::string command = std::string("'") + kProgramFile + "' " + arguments +
+                                " >/dev/full 2>'" + Path("full.txt") + "'";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << arguments;
+    EXPECT_THAT(ReadFile(Path("full.txt")), HasSubstr("No space left")) << arguments;
+  }
+}
+
+TEST_F(ProgramErrors, ClosedStreamsAreNotTakenForFiles) {
+  const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile +
+                              "' run ./small.yaml -o closed <&- >&- 2>&-";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  Succeed("run ./small.yaml -o open");
+  ExpectSameBytes("open", "closed");
+}
+
 TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
   Write("log.txt", "FLASER 2 1 1 0 0 0 0 0 0 1 host 1\n");
   ExpectRefusal("map log.txt --format kitti -o out", {"--format kitti: ", "carmen"});

@@ -92,6 +92,8 @@ TEST(CameraFormats, OneClearLineForEachFault) {
                     "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"),
             "c: distortion_model is equidistant, must be plumb_bob");
   EXPECT_EQ(ErrorOf("what: ever\n"), "c: key 'width' is missing");
+  // A matrix does not say the image's size: what fits some image is no error yet.
+  EXPECT_EQ(ErrorOf("5000 0 1920\n0 5000 1080\n0 0 1\n"), "no error");
 }
 
 TEST(FlipY, IsConjugationWithTheReflection) {

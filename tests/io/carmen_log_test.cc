@@ -164,6 +164,22 @@ TEST(CarmenLog, ScansKeepTheirNumbers) {
   EXPECT_EQ(names.numbers, (std::vector<std::int64_t>{0, 2, 4}));
 }
 
+TEST(CarmenLog, MotionIsNotTakenAcrossAJumpOfThePose) {
+  const auto scan_at = [](const std::string& x_m, const std::string& stamp_s) {
+    return "FLASER 3 1.0 2.0 2.0 " + x_m + " 2 0.5 0.9 2 0.5 " + stamp_s + " host 0.2\n";
+  };
+  // 14 km and back within a tenth of a second; then 90 m, in which two seconds may have passed.
+  const TextFile file(scan_at("1", "0") + scan_at("1.1", "0.1") + scan_at("14000", "0.2") +
+                      scan_at("1.2", "0.3") + scan_at("91.2", "2.3") + scan_at("101.3", "2.4"));
+  const auto source = OpenCarmenLog(file.path());
+  std::vector<int> epochs;
+  for (const Frame& frame : ReadAll(*source)) epochs.push_back(frame.slam_epoch);
+  EXPECT_EQ(epochs, (std::vector<int>{0, 0, 1, 2, 2, 3}));
+  ASSERT_EQ(source->Warnings().size(), 1U);
+  EXPECT_THAT(source->Warnings()[0], testing::HasSubstr(":3: the pose jumps"));
+  EXPECT_THAT(source->Warnings()[0], testing::HasSubstr("(3 such lines)"));
+}
+
 TEST(CarmenLog, EveryTruncationOfALineIsSurvived) {
   const std::string good = kRobotLaser;
   int cases = 0;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mapper/core/error.h"
 #include "mapper/grid/log_odds.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/grid/probability_grid.h"
@@ -192,6 +193,20 @@ TEST(MapDrawing, IsAsLargeAsWhatWasSeen) {
   EXPECT_EQ(map.geometry.width_cells, 5);
   EXPECT_EQ(map.geometry.height_cells, 1);
   EXPECT_THAT(map.occupied_prob, testing::ElementsAre(0, 0, 0, 0, 1));
+}
+
+TEST(MapDrawing, AMapOfAbsurdSizeIsRefusedBeforeItIsMade) {
+  MapDrawing drawing{GridOptions{}};
+  const Scan scan{{HitAt(0.0F, 0.2F)}, 6.0};
+  drawing.Add(scan, {0.0, 0.0, 0.0});
+  drawing.Add(scan, {8000.0, 14000.0, 0.0});
+  try {
+    drawing.Map();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("map: spans 800"));
+    EXPECT_THAT(error.what(), testing::HasSubstr(" x 1400"));
+  }
 }
 
 TEST(MapDrawing, CountsWeighHits) {
