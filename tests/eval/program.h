@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -27,7 +28,8 @@ class ProgramTest : public ::testing::Test {
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     root_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string("depthgrid_") + info->test_suite_name() + "_" + info->name());
+            (std::string("depthgrid_") + info->test_suite_name() + "_" + info->name() + "_" +
+             std::to_string(::getpid()));  // two trees may run their tests at once
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
     Write("room.yaml", kRoom);
