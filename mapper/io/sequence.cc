@@ -90,8 +90,13 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
 }
 
 // A folder's own poses do not say where SLAM corrected itself: it is read off them.
-void FindCorrections(SlamOutput& slam, std::vector<std::string>& notes) {
+void FindCorrections(const std::string& path, DepthSequence& sequence,
+                     std::vector<std::string>& notes) {
+  SlamOutput& slam = sequence.slam;
   const std::vector<int> jumps = FindJumps(slam.live, {});
+  if (const auto doubt = DoubtOf(slam.live, jumps)) {
+    sequence.recording.warnings.push_back(path + ": " + *doubt);
+  }
   if (jumps.empty()) return;
   notes.push_back(
       fmt::format("the poses jump at {} frames: no motion is taken there", jumps.size()));
@@ -222,7 +227,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                                ? TumSequence(path, options, slam, result.notes)
                            : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
                                                             : FrameSequence(path, options, slam);
-  if (!slam) FindCorrections(sequence.slam, result.notes);
+  if (!slam) FindCorrections(path, sequence, result.notes);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(sequence, options.recording, result)
                                  : AxisOf(options.world_up);

@@ -105,6 +105,9 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
     input.notes.push_back(
         fmt::format("SLAM corrected itself at {} frames (jumps of its live poses)", jumps.size()));
   }
+  if (const auto doubt = DoubtOf(slam.live, jumps)) {
+    input.warnings.push_back(paths.live + ": " + *doubt);
+  }
   StartEpochs(jumps, slam.live);
   if (!paths.loops.empty() || paths.final.empty()) return;
   slam.loops = LoopsFromRevision(slam.live, revised, jumps);

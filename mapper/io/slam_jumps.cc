@@ -186,6 +186,34 @@ std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
   return loops;
 }
 
+std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
+                                   const std::vector<int>& jumps) {
+  // So few poses as three can be far apart in truth.
+  constexpr std::size_t kFewJumps = 3;
+  constexpr double kFastestMps = 50.0;  // cars are slower
+  std::vector<double> speeds_mps;
+  const SlamPose* last = nullptr;
+  for (const SlamPose& pose : live) {
+    if (!pose.slam_from_camera) continue;
+    if (last != nullptr) {
+      const double step_m =
+          (pose.slam_from_camera->translation - last->slam_from_camera->translation).norm();
+      speeds_mps.push_back(step_m / (pose.stamp_s - last->stamp_s));
+    }
+    last = &pose;
+  }
+  if (speeds_mps.size() <= kFewJumps) return {};
+  const auto middle = speeds_mps.begin() + static_cast<std::ptrdiff_t>(speeds_mps.size() / 2);
+  std::nth_element(speeds_mps.begin(), middle, speeds_mps.end());
+  if (*middle > kFastestMps) {
+    return "the camera moves at " + std::to_string(std::llround(*middle)) +
+           " m/s: are the poses in metres, and the stamps in seconds?";
+  }
+  if (2 * jumps.size() <= speeds_mps.size()) return {};
+  return std::to_string(jumps.size()) + " of " + std::to_string(speeds_mps.size()) +
+         " steps are jumps: are the poses in metres, and those of this recording?";
+}
+
 void StartEpochs(const std::vector<int>& jumps, std::vector<SlamPose>& live) {
   auto jump = jumps.begin();
   int begun = 0;

@@ -2,6 +2,8 @@
 // live poses that the revised trajectory, or the motion around it, does not know.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "mapper/core/slam_output.h"
@@ -18,6 +20,11 @@ std::vector<int> FindJumps(const std::vector<SlamPose>& live, const Trajectory& 
 // the revised trajectory brings both together. Ordered by the frame that reports them.
 std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
                                            const Trajectory& final, const std::vector<int>& jumps);
+
+// What to say when most steps jump or are faster than a car, as poses in millimetres or of another
+// recording are; nothing for others.
+std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
+                                   const std::vector<int>& jumps);
 
 // Begins a new epoch at each of the positions.
 void StartEpochs(const std::vector<int>& jumps, std::vector<SlamPose>& live);

@@ -44,6 +44,23 @@ Trajectory Revised() {
   return final;
 }
 
+TEST(SlamJumps, PosesThatHardlyDoAnythingElseAreDoubted) {
+  std::vector<SlamPose> live = Drifting();
+  EXPECT_EQ(DoubtOf(live, FindJumps(live, {})), std::nullopt);
+  for (SlamPose& pose : live) pose.slam_from_camera->translation *= 1000.0;  // millimetres
+  EXPECT_EQ(DoubtOf(live, {}),  // a turn in 6 s is 1.05 m/s
+            "the camera moves at 1047 m/s: are the poses in metres, and the stamps in seconds?");
+  std::vector<SlamPose> shaken = Drifting();
+  for (std::size_t i = 0; i < shaken.size(); i += 2) {
+    shaken[i].slam_from_camera->translation.z() += 0.3;
+  }
+  const auto doubt = DoubtOf(shaken, FindJumps(shaken, {}));
+  ASSERT_TRUE(doubt);
+  EXPECT_THAT(*doubt, testing::HasSubstr(" of 239 steps are jumps: are the poses in metres"));
+  live.resize(4);  // three steps say nothing
+  EXPECT_EQ(DoubtOf(live, FindJumps(live, {})), std::nullopt);
+}
+
 TEST(SlamJumps, AreSeenWithAndWithoutARevisedTrajectory) {
   EXPECT_THAT(FindJumps(Drifting(), Revised()), ElementsAre(kJumpAt));
   EXPECT_THAT(FindJumps(Drifting(), {}), ElementsAre(kJumpAt));
