@@ -12,16 +12,6 @@
 namespace depthgrid {
 namespace {
 
-std::vector<std::string_view> SplitAtCommas(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 double CellValue(std::string_view cell, const std::string& place) {
   if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto value = ParseNumber(cell);

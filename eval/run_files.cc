@@ -8,13 +8,8 @@
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {
-namespace {
 
 namespace fs = std::filesystem;
-
-StateMap ReadStates(const std::string& path) { return StatesOf(AlignedMap(ReadMap(path))); }
-
-}  // namespace
 
 RunFiles ReadRunFolder(const std::string& folder) {
   const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
@@ -27,13 +22,7 @@ RunFiles ReadRunFolder(const std::string& folder) {
   run.map = ReadStates(path("map.yaml"));
   if (exists("input_map.yaml")) run.input_map = ReadStates(path("input_map.yaml"));
   if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));
-  if (exists("observable.yaml")) {
-    const StateMap states = ReadStates(path("observable.yaml"));
-    run.observable.emplace(states.geometry);
-    for (std::size_t i = 0; i < states.states.size(); ++i) {
-      run.observable->members[i] = states.states[i] == CellState::kFree;
-    }
-  }
+  if (exists("observable.yaml")) run.observable = ReadFreeCells(path("observable.yaml"));
   if (exists("trajectory_truth.txt")) run.truth = ReadTrajectory(path("trajectory_truth.txt"));
   run.slam = ReadTrajectoryFile(path("trajectory_slam.txt")).poses;
   run.online = ReadTrajectoryFile(path("trajectory_online.txt")).poses;

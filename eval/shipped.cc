@@ -63,10 +63,9 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
   if (std::find(names.begin(), names.end(), name) != names.end()) {
     return (fs::path(ShippedFolder(kind)) / (name + ".yaml")).string();
   }
-  const std::string nearest = NearestWord(name, names);
+  const std::string hint = DidYouMean(name, names);
   throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" +
-                             (nearest.empty() ? "; see `depthgrid scenes`"
-                                              : ", did you mean '" + nearest + "'?"));
+                             (hint.empty() ? "; see `depthgrid scenes`" : hint));
 }
 
 }  // namespace depthgrid

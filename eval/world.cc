@@ -32,11 +32,8 @@ const std::string& NamedTrajectory(const Scene& scene, const std::string& name) 
   if (name.empty()) return scene.trajectories.begin()->first;
   const auto found = scene.trajectories.find(name);
   if (found != scene.trajectories.end()) return found->first;
-  const std::string nearest = NearestWord(name, names);
-  throw InputError(
-      "trajectory",
-      fmt::format("is '{}', must be one of {} or a TUM file{}", name, fmt::join(names, ", "),
-                  nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+  throw InputError("trajectory", fmt::format("is '{}', must be one of {} or a TUM file{}", name,
+                                             fmt::join(names, ", "), DidYouMean(name, names)));
 }
 
 Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {

@@ -21,15 +21,8 @@ namespace {
 constexpr std::array<const char*, 6> kExtensions = {".obj",  ".ply", ".stl",
                                                     ".gltf", ".glb", ".dae"};
 
-std::string ExtensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 bool IsGltf(const std::string& path) {
-  return ExtensionOf(path) == ".gltf" || ExtensionOf(path) == ".glb";
+  return LowerCaseExtension(path) == ".gltf" || LowerCaseExtension(path) == ".glb";
 }
 
 void RequireReadableFile(const std::string& path) {
@@ -162,7 +155,7 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
                                   aiComponent_COLORS | aiComponent_TEXCOORDS |
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-  const bool is_dae = ExtensionOf(path) == ".dae";
+  const bool is_dae = LowerCaseExtension(path) == ".dae";
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kAuto);
   const aiScene* scene = importer.ReadFile(
       path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
@@ -179,8 +172,15 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
 
 }  // namespace
 
+std::string LowerCaseExtension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
 bool IsMeshFile(const std::string& path) {
-  const std::string extension = ExtensionOf(path);
+  const std::string extension = LowerCaseExtension(path);
   return std::any_of(kExtensions.begin(), kExtensions.end(),
                      [&](const char* known) { return extension == known; });
 }
@@ -190,8 +190,8 @@ MeshFile ReadMeshFile(const std::string& path, double scale, UpAxis up) {
     throw InputError(path, "is not a mesh file (.obj .ply .stl .gltf .glb .dae)");
   }
   RequireReadableFile(path);
-  MeshFile file =
-      ExtensionOf(path) == ".ply" ? ReadPlyFile(path, scale, up) : ReadByAssimp(path, scale, up);
+  MeshFile file = LowerCaseExtension(path) == ".ply" ? ReadPlyFile(path, scale, up)
+                                                     : ReadByAssimp(path, scale, up);
   if (file.mesh.triangles.empty()) throw InputError(path, "has no triangles");
   return file;
 }

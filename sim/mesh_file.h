@@ -21,6 +21,9 @@ struct MeshFile {
 // Whether the path ends like a mesh file.
 bool IsMeshFile(const std::string& path);
 
+// ".ply" of "Room.PLY".
+std::string LowerCaseExtension(const std::string& path);
+
 // Reads all triangles, node transforms applied, lines and points left out. Throws InputError for a
 // file that is missing, broken, too large or holds no triangle or a vertex that is not finite.
 MeshFile ReadMeshFile(const std::string& path, double scale = 1.0, UpAxis up = UpAxis::kAuto);

@@ -15,13 +15,6 @@
 namespace depthgrid {
 namespace {
 
-std::string LowerCaseExtension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 void RequireSaneMesh(const TriangleMesh& mesh, const std::string& path) {
   if (mesh.triangles.empty()) throw InputError(path, "the scene has no triangles");
   for (const auto& vertex : mesh.vertices) {

@@ -126,11 +126,6 @@ struct MeshOptions {
   }
 };
 
-std::string DidYouMean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = NearestWord(word, known);
-  return nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest);
-}
-
 struct Group {
   std::string name;
   std::vector<Config> items;

@@ -1,6 +1,6 @@
 #include "sim/slam_events.h"
 
-#include <algorithm>
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -9,12 +9,6 @@ constexpr double kGapSteps = 1.5;  // a step longer than this many usual ones is
 constexpr double kJumpMedians = 5.0;
 constexpr double kOneJumpS = 0.2;
 constexpr double kCorrectedShare = 0.5;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -27,8 +21,8 @@ std::vector<RunEvent> FindEvents(const SlamRun& run) {
     steps_s.push_back(run.StepS(to));
     errors_m.push_back(MotionError(run, to - 1, to).translation.norm());
   }
-  const double gap_s = kGapSteps * Median(steps_s);
-  const double jump_m = kJumpMedians * Median(errors_m);
+  const double gap_s = kGapSteps * UpperMedian(steps_s);
+  const double jump_m = kJumpMedians * UpperMedian(errors_m);
   for (std::size_t to = 1; to < run.truth.size(); ++to) {
     const bool gap = steps_s[to - 1] > gap_s;
     if (!gap && errors_m[to - 1] <= jump_m) continue;

@@ -20,17 +20,6 @@ using Row = std::vector<std::string>;
 
 OccupancyMap ReadAligned(const std::string& path) { return AlignedMap(ReadMap(path)); }
 
-StateMap ReadStates(const std::string& path) { return StatesOf(ReadAligned(path)); }
-
-CellSet ReadObservable(const std::string& path) {
-  const StateMap states = ReadStates(path);
-  CellSet observable(states.geometry);
-  for (std::size_t i = 0; i < states.states.size(); ++i) {
-    observable.members[i] = states.states[i] == CellState::kFree;
-  }
-  return observable;
-}
-
 // A trinary file keeps states only, of which a calibration would say nothing.
 bool HoldsProbabilities(const OccupancyMap& map) {
   return std::any_of(map.occupied_prob.begin(), map.occupied_prob.end(),
@@ -143,7 +132,7 @@ void EvalMap(const EvalMapArguments& arguments) {
   if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
   std::optional<CellSet> observable;
   if (!observable_path.empty()) {
-    observable = ReadObservable(observable_path);
+    observable = ReadFreeCells(observable_path);
     RequireSameResolution(truth.geometry, arguments.reference, observable->geometry,
                           observable_path);
   }

@@ -36,11 +36,6 @@ std::vector<std::string> Options(const CLI::App& app) {
   return names;
 }
 
-std::string DidYouMean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = NearestWord(word, known);
-  return nearest.empty() ? "" : fmt::format(", did you mean '{}'?", nearest);
-}
-
 std::string UnknownWord(const CLI::App& app, const std::string& word) {
   if (word.starts_with('-')) {
     const std::string name = word.substr(0, word.find('='));

@@ -26,9 +26,7 @@ std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format(
 
 [[noreturn]] void FailFinding(const std::string& folder, const char* what, const std::string& name,
                               const std::vector<std::string>& names) {
-  const std::string nearest = NearestWord(name, names);
-  throw InputError(folder, fmt::format("has no {} '{}'{}", what, name,
-                                       nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+  throw InputError(folder, fmt::format("has no {} '{}'{}", what, name, DidYouMean(name, names)));
 }
 
 }  // namespace

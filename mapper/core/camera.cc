@@ -23,15 +23,17 @@ void Validate(const PinholeCamera& camera, const std::string& place) {
   require(positive(camera.fx_px), "fx", camera.fx_px, "positive");
   require(positive(camera.fy_px), "fy", camera.fy_px,
           "positive (a y-up world is expressed in the poses, see docs/conventions.md)");
-  // A cut-out of an image may not hold its principal point; one far outside is a slip of units or
-  // columns, and leaves no usable rays.
-  const auto near = [](double centre_px, int size_px) {
-    return centre_px >= -size_px && centre_px <= 2.0 * size_px;  // false for NaN too
+  // A cut-out of an image need not hold its principal point; one this far outside is a slip of
+  // units or columns: its rays are 84 degrees off the axis and more.
+  constexpr double kMostFocalLengths = 10.0;
+  const auto near = [](double centre_px, int size_px, double focal_px) {
+    const double most_px = kMostFocalLengths * focal_px;
+    return centre_px >= -most_px && centre_px <= size_px + most_px;  // false for NaN too
   };
-  require(near(camera.cx_px, camera.width_px), "cx", camera.cx_px,
-          "at most an image's width outside the image");
-  require(near(camera.cy_px, camera.height_px), "cy", camera.cy_px,
-          "at most an image's height outside the image");
+  require(near(camera.cx_px, camera.width_px, camera.fx_px), "cx", camera.cx_px,
+          "within ten focal lengths of the image");
+  require(near(camera.cy_px, camera.height_px, camera.fy_px), "cy", camera.cy_px,
+          "within ten focal lengths of the image");
   for (const double k : camera.distortion) require(std::isfinite(k), "distortion", k, "finite");
 }
 

@@ -22,12 +22,12 @@ constexpr std::size_t kMaxLineBytes = 1U << 20U;
 
 // No robot moves so far and so fast between two scans: its odometry was set anew, or the line is
 // damaged.
-constexpr double kJumpM = 10.0;
-constexpr double kJumpMps = 50.0;
+constexpr double kOdometryJumpM = 10.0;
+constexpr double kOdometryJumpMps = 50.0;
 
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
   const double distance_m = (odom_from_next.translation() - odom_from_last.translation()).norm();
-  return distance_m > std::max(kJumpM, kJumpMps * time_s);
+  return distance_m > std::max(kOdometryJumpM, kOdometryJumpMps * time_s);
 }
 
 Beam BeamOf(double bearing_rad, double range_m, double max_range_m,

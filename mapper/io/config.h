@@ -108,4 +108,8 @@ std::string ListKeys(Options options) {
 // or "" when none is near (more than half its letters differ).
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
+// ", did you mean 'prefixNEAREST'?" for the end of a message, or "" when no candidate is near.
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates,
+                       const std::string& prefix = "");
+
 }  // namespace depthgrid

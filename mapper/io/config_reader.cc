@@ -159,12 +159,10 @@ class YamlReader final : public OptionsVisitor {
       bool used = false;
       for (const auto& known : level.known) used = used || known == key;
       if (used) continue;
-      const std::string nearest = NearestWord(key, level.known);
       const std::string prefix = level.path.empty() ? "" : level.path + ".";
       throw InputError(
           tree_.PlaceOfKey(prefix + key, entry.first),
-          fmt::format("unknown key '{}{}'{}", prefix, key,
-                      nearest.empty() ? "" : ", did you mean '" + prefix + nearest + "'?"));
+          fmt::format("unknown key '{}{}'{}", prefix, key, DidYouMean(key, level.known, prefix)));
     }
   }
 

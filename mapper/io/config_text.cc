@@ -60,4 +60,10 @@ std::string NearestWord(const std::string& word, const std::vector<std::string>&
   return best;
 }
 
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates,
+                       const std::string& prefix) {
+  const std::string nearest = NearestWord(word, candidates);
+  return nearest.empty() ? "" : fmt::format(", did you mean '{}{}'?", prefix, nearest);
+}
+
 }  // namespace depthgrid

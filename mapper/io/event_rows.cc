@@ -16,17 +16,6 @@ constexpr double kMaxNormError = 1e-3;
 constexpr std::size_t kCsvColumns = 14;
 constexpr std::size_t kCsvColumnsWithStamps = 17;
 
-// The fields of one line, empty ones included; SplitRows has no empty fields.
-std::vector<std::string_view> SplitAtCommas(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 void RequirePossible(const LoopClosure& loop, const std::string& place) {
   const double norm = loop.first_from_second.rotation.norm();
   if (!(std::abs(norm - 1.0) <= kMaxNormError)) {

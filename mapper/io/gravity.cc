@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -42,12 +43,6 @@ constexpr std::size_t kFirstViews = 3;
 constexpr double kDriftRad = RadFromDeg(0.8);
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The direction that most normals share, of a few hundred tried.
 template <typename Patches>
@@ -160,7 +155,7 @@ Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
   std::vector<double> sizes;
   sizes.reserve(fits.size());
   for (const PlaneFit& fit : fits) sizes.push_back(static_cast<double>(fit.points));
-  const double usual = Median(sizes);
+  const double usual = UpperMedian(sizes);
   std::erase_if(fits, [&](const PlaneFit& f) { return static_cast<double>(f.points) < usual; });
   fits.resize(std::min(fits.size(), kFirstViews));
   Eigen::Vector3d middle = up;
@@ -236,10 +231,10 @@ FloorOfViews FloorUnder(const Views& views, const std::vector<Eigen::Vector3d>& 
   if (!floors_m.empty() &&
       static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(floors_m.size())) {
     floors_m.resize(std::min(floors_m.size(), kFirstViews));
-    return {Median(floors_m), Median(above_own_m)};
+    return {UpperMedian(floors_m), UpperMedian(above_own_m)};
   }
   const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
-  return {floor_m, Median(above_lowest_m) + lowest_m - floor_m};
+  return {floor_m, UpperMedian(above_lowest_m) + lowest_m - floor_m};
 }
 
 }  // namespace

@@ -140,6 +140,17 @@ OccupancyMap AlignedMap(const MapFile& file) {
   return aligned;
 }
 
+StateMap ReadStates(const std::string& path) { return StatesOf(AlignedMap(ReadMap(path))); }
+
+CellSet ReadFreeCells(const std::string& path) {
+  const StateMap states = ReadStates(path);
+  CellSet free(states.geometry);
+  for (std::size_t i = 0; i < states.states.size(); ++i) {
+    free.members[i] = states.states[i] == CellState::kFree;
+  }
+  return free;
+}
+
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode,
               const StateThresholds& thresholds) {
   Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/pose2.h"
 
@@ -30,6 +31,12 @@ MapFile ReadMap(const std::string& yaml_path);
 
 // The map redrawn on world-aligned cells: each takes the value of the cell its centre falls into.
 OccupancyMap AlignedMap(const MapFile& file);
+
+// The states of a map file's cells, on the lattice.
+StateMap ReadStates(const std::string& path);
+
+// The cells a map file calls free: in observable.yaml those that could be seen.
+CellSet ReadFreeCells(const std::string& path);
 
 // Writes `yaml_path` and the image beside it: the same name with .pgm, or for `scale`, which needs
 // transparency, .scale.png.

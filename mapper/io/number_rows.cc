@@ -37,6 +37,16 @@ std::vector<TextRow> SplitRows(std::string_view text) {
   return rows;
 }
 
+std::vector<std::string_view> SplitAtCommas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    fields.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
 std::optional<double> ParseNumber(std::string_view field) {
   if (field.starts_with('+')) field.remove_prefix(1);
   double value = 0.0;

@@ -17,6 +17,9 @@ struct TextRow {
 // Windows line ends and a byte order mark are ignored. The views point into `text`.
 std::vector<TextRow> SplitRows(std::string_view text);
 
+// The fields of one line of CSV, empty ones included.
+std::vector<std::string_view> SplitAtCommas(std::string_view line);
+
 // A decimal number whatever the locale; "nan" and "inf" are numbers. Nothing when the field is not
 // entirely a number.
 std::optional<double> ParseNumber(std::string_view field);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/median.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
@@ -98,9 +99,7 @@ Eigen::Vector3d MedianAround(const std::vector<Step>& steps, std::size_t at, Val
       if (i != at) values.push_back(value(steps[i])[axis]);
     }
     if (values.empty()) return median;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    median[axis] = *middle;
+    median[axis] = UpperMedian(std::move(values));
   }
   return median;
 }
@@ -203,10 +202,9 @@ std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
     last = &pose;
   }
   if (speeds_mps.size() <= kFewJumps) return {};
-  const auto middle = speeds_mps.begin() + static_cast<std::ptrdiff_t>(speeds_mps.size() / 2);
-  std::nth_element(speeds_mps.begin(), middle, speeds_mps.end());
-  if (*middle > kFastestMps) {
-    return "the camera moves at " + std::to_string(std::llround(*middle)) +
+  const double usual_mps = UpperMedian(speeds_mps);
+  if (usual_mps > kFastestMps) {
+    return "the camera moves at " + std::to_string(std::llround(usual_mps)) +
            " m/s: are the poses in metres, and the stamps in seconds?";
   }
   if (2 * jumps.size() <= speeds_mps.size()) return {};

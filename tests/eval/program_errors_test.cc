@@ -129,7 +129,7 @@ TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
                   {"mapper.scan.min_range_m", "max_range_m"});
     // So far below the image that no ray is left.
     ExpectRefusal(std::string(command) + " ./small.yaml --set sensor.cy=20000 -o out",
-                  {"sensor", "cy is 20000", "outside the image"});
+                  {"sensor", "cy is 20000", "ten focal lengths"});
   }
 }
 

@@ -39,8 +39,8 @@ TEST(CameraFile, NamesKeyAndRule) {
             "camera.yaml:7: unknown key 'fz', did you mean 'fx'?");
   EXPECT_EQ(ErrorOf("width: 0\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
             "camera.yaml:1: width is '0', must be from 1 to 16384");
-  EXPECT_EQ(ErrorOf("width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 31.5\ncy: 97\n"),
-            "camera.yaml: cy is 97.000000, must be at most an image's height outside the image");
+  EXPECT_EQ(ErrorOf("width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 31.5\ncy: 549\n"),
+            "camera.yaml: cy is 549.000000, must be within ten focal lengths of the image");
 }
 
 }  // namespace
