@@ -82,8 +82,11 @@ function heatPicture(cells, best, width) {
       if (!cell || w < 44 || h < 16) return;
       const [red, green, blue] = shade(cell.mean);
       context.fillStyle = 0.3 * red + 0.6 * green + 0.1 * blue > 120 ? "#000" : "#fff";
-      context.textAlign = w < 80 ? "center" : "left";  // beside the best line where there is room
-      context.fillText(String(Number(cell.mean.toPrecision(3))), u(c) + (w < 80 ? w / 2 : 8), v(r) + h / 2 + 4);
+      // Out of the way of the best line, which runs through the cells' middles, where there is room.
+      const beside = w >= 80;
+      context.textAlign = beside ? "left" : "center";
+      const middle = v(r) + h / 2 + 4;
+      context.fillText(String(Number(cell.mean.toPrecision(3))), u(c) + (beside ? 8 : w / 2), h >= 30 ? v(r) + 13 : middle);
     }));
     drawBestLine(context, best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
     context.strokeStyle = colour("ink");

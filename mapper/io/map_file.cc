@@ -95,8 +95,15 @@ const char* NameOf(MapMode mode) {
 }  // namespace
 
 MapFile ReadMap(const std::string& yaml_path) {
+  const std::string extension = fs::path(yaml_path).extension().string();
+  if (extension == ".pgm" || extension == ".png") {
+    throw InputError(yaml_path, "is a map's image; the map is the YAML file that names it");
+  }
   const MapYaml yaml = ReadYaml(yaml_path);
   const fs::path image_path = fs::path(yaml_path).parent_path() / yaml.image;
+  if (!fs::exists(image_path)) {
+    throw InputError(yaml_path, "image is '" + yaml.image + "': no such file");
+  }
   const ShadeImage image = internal::ReadShades(image_path.string(), yaml.rule.mode);
   MapFile file;
   Place(yaml, file);

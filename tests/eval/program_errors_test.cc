@@ -67,6 +67,13 @@ TEST_F(ProgramErrors, MissingAndEmptyFiles) {
   ExpectRefusal("regrid . --resolution 0.05", {"run.yaml"});
 }
 
+TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
+  Write("map.yaml", "image: gone.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  ExpectRefusal("eval map map.yaml map.yaml", {"map.yaml: image is 'gone.pgm': no such file"});
+  Write("map.pgm", "P5 1 1 255\n0");
+  ExpectRefusal("eval map map.pgm map.yaml", {"map.pgm: is a map's image", "YAML"});
+}
+
 TEST_F(ProgramErrors, QuotedBytesOfADamagedFileStayReadable) {
   Write("noise.txt", "\x07\x1b\xb7\xff 2 3 4 5 6 7 8\n");
   ExpectRefusal("eval trajectory noise.txt noise.txt", {"noise.txt:1: '?\?\?\?' is not a number"});
