@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/occupancy_map.h"
 #include "mapper/grid/probability_grid.h"
@@ -10,69 +11,104 @@
 namespace depthgrid {
 namespace {
 
-// One place: its scans relative to the frame in its middle, and the map they draw.
-struct Place {
-  std::vector<Eigen::Vector2d> points;  // obstacles, in the middle frame's base axes
-  OccupancyMap map;
-};
-
 GridOptions PlaceGrid(const OverlapOptions& options) {
   GridOptions grid;
   grid.resolution_m = options.resolution_m;
   return grid;
 }
 
-std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
-                              const OverlapOptions& options) {
-  std::vector<int> members;
-  const int steps = options.window_frames / options.stride;
-  for (int step = -steps; step <= steps; ++step) {
-    const int index = middle + step * options.stride;
-    if (index < 0 || index >= static_cast<int>(frames.size())) continue;
-    if (frames[static_cast<std::size_t>(index)].scan) members.push_back(index);
+void RaiseRow(const SeenPlace::Finding* findings, std::size_t count, SeenPlace::Finding* into) {
+  for (std::size_t i = 0; i < count; ++i) {
+    into[i] =
+        std::max(into[i], findings[i] == SeenPlace::kWall ? SeenPlace::kWall : SeenPlace::kUnseen);
   }
-  return members;
 }
 
-Place PlaceOf(const std::vector<MappedFrame>& frames, const std::vector<int>& members, int middle,
-              const OverlapOptions& options) {
-  ScanRasterizer rasterizer;
-  ProbabilityGrid grid(PlaceGrid(options));
-  Place place;
+// Raised all around walls, so that one look at a cell tells of its neighbourhood: along rows, then
+// across.
+void RaiseAroundWalls(int reach_cells, SeenPlace& place) {
+  const auto width = static_cast<std::size_t>(place.geometry.width_cells);
+  const auto height = static_cast<std::size_t>(place.geometry.height_cells);
+  for (std::size_t step = 1; step <= 2; ++step) {
+    const std::size_t stride = step == 1 ? 1 : width;
+    const std::vector<SeenPlace::Finding> before = place.findings;
+    for (std::size_t away = stride; away <= static_cast<std::size_t>(reach_cells) * stride;
+         away += stride) {
+      const std::size_t count = width * height - away;
+      RaiseRow(before.data(), count, place.findings.data() + away);
+      RaiseRow(before.data() + away, count, place.findings.data());
+    }
+  }
+}
+
+// The border is so wide that no wall lies near it.
+void SetFindings(const OccupancyMap& map, int reach_cells, SeenPlace& place) {
+  place.geometry = map.geometry;
+  place.geometry.min_cell = {map.geometry.min_cell.x - reach_cells,
+                             map.geometry.min_cell.y - reach_cells};
+  place.geometry.width_cells += 2 * reach_cells;
+  place.geometry.height_cells += 2 * reach_cells;
+  place.findings.assign(place.geometry.size(), SeenPlace::kUnseen);
+  const float* prob = map.occupied_prob.data();
+  for (int y = 0; y < map.geometry.height_cells; ++y) {
+    const Cell first{map.geometry.min_cell.x, map.geometry.min_cell.y + y};
+    SeenPlace::Finding* const row = &place.findings[place.geometry.Index(first)];
+    for (int x = 0; x < map.geometry.width_cells; ++x, ++prob) {
+      const SeenPlace::Finding free = *prob == *prob ? SeenPlace::kFree : SeenPlace::kUnseen;
+      row[x] = *prob > 0.5F ? SeenPlace::kWall : free;
+    }
+  }
+  RaiseAroundWalls(reach_cells, place);
+}
+
+struct PlacedScan {
+  Scan scan;
+  Pose2 middle_from_base;
+};
+
+PlacedScan ScanOf(const std::vector<MappedFrame>& frames, int member, int middle) {
+  const MappedFrame& frame = frames[static_cast<std::size_t>(member)];
   const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
-  for (const int index : members) {
-    const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
-    const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    const Scan scan = *frame.scan;
-    grid.Insert(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m));
-    for (const Beam& beam : scan.beams) {
-      if (beam.hit) place.points.push_back(middle_from_base * EndPoint(beam));
-    }
-  }
-  place.map = grid.map();
-  return place;
+  return {*frame.scan, middle_from_map * frame.map_from_base};
 }
 
-enum class Finding { kUnseen, kFree, kWall };
-
-Finding Look(const OccupancyMap& map, const Eigen::Vector2d& point, int reach_cells) {
-  const Cell centre = CellOf(point, map.geometry.resolution_m);
-  const float here = map.At(centre);
-  for (int dy = -reach_cells; dy <= reach_cells; ++dy) {
-    for (int dx = -reach_cells; dx <= reach_cells; ++dx) {
-      if (map.At({centre.x + dx, centre.y + dy}) > 0.5F) return Finding::kWall;
-    }
+std::vector<Eigen::Vector2d> HitsOf(const Scan& scan, const Pose2& middle_from_base) {
+  std::vector<Eigen::Vector2d> hits;
+  for (const Beam& beam : scan.beams) {
+    if (beam.hit) hits.emplace_back(middle_from_base * EndPoint(beam));
   }
-  return std::isnan(here) ? Finding::kUnseen : Finding::kFree;
+  return hits;
 }
 
-void Compare(const Place& place, const Place& other, const Pose2& place_from_other,
-             const OverlapOptions& options, Overlap& overlap) {
-  const int reach_cells = static_cast<int>(std::lround(options.tolerance_m / options.resolution_m));
+// What some scans saw, one by one.
+class SeenSoFar {
+ public:
+  explicit SeenSoFar(const OverlapOptions& options)
+      : reach_cells_(static_cast<int>(std::lround(options.tolerance_m / options.resolution_m))),
+        grid_(PlaceGrid(options)) {}
+  void Add(const ScanCells& cells, const std::vector<Eigen::Vector2d>& hits) {
+    grid_.Insert(cells);
+    place_.points.insert(place_.points.end(), hits.begin(), hits.end());
+  }
+  SeenPlace Place() {
+    SetFindings(grid_.map(), reach_cells_, place_);
+    return std::move(place_);
+  }
+
+ private:
+  int reach_cells_;
+  ProbabilityGrid grid_;
+  SeenPlace place_;
+};
+
+void Compare(const SeenPlace& place, const SeenPlace& other, const Pose2& place_from_other,
+             Overlap& overlap) {
   for (const Eigen::Vector2d& point : other.points) {
-    const Finding finding = Look(place.map, place_from_other * point, reach_cells);
-    overlap.compared += finding == Finding::kUnseen ? 0 : 1;
-    overlap.agreeing += finding == Finding::kWall ? 1 : 0;
+    const Cell cell = CellOf(place_from_other * point, place.geometry.resolution_m);
+    if (!place.geometry.Contains(cell)) continue;
+    const SeenPlace::Finding finding = place.findings[place.geometry.Index(cell)];
+    overlap.compared += finding == SeenPlace::kUnseen ? 0 : 1;
+    overlap.agreeing += finding == SeenPlace::kWall ? 1 : 0;
   }
 }
 
@@ -87,32 +123,68 @@ void OverlapOptions::Visit(OptionsVisitor& v) {
   v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of them that must lie on walls");
 }
 
+std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middle,
+                               const OverlapOptions& options, int end) {
+  std::vector<int> members;
+  const int steps = options.window_frames / options.stride;
+  for (int step = -steps; step <= steps; ++step) {
+    const int index = middle + step * options.stride;
+    if (index < 0 || index >= end) continue;
+    if (frames[static_cast<std::size_t>(index)].scan) members.push_back(index);
+  }
+  return members;
+}
+
+SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
+                   int middle, const OverlapOptions& options) {
+  SeenSoFar seen(options);
+  ScanRasterizer rasterizer;
+  for (const int member : members) {
+    const auto [scan, middle_from_base] = ScanOf(frames, member, middle);
+    seen.Add(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m),
+             HitsOf(scan, middle_from_base));
+  }
+  return seen.Place();
+}
+
+SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
+                              const std::vector<int>& members, int middle,
+                              const OverlapOptions& options) {
+  SeenSoFar all(options), even(options), odd(options);
+  ScanRasterizer rasterizer;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const auto [scan, middle_from_base] = ScanOf(frames, members[i], middle);
+    const auto& cells = rasterizer.Rasterize(scan, middle_from_base, options.resolution_m);
+    const std::vector<Eigen::Vector2d> hits = HitsOf(scan, middle_from_base);
+    all.Add(cells, hits);
+    (i % 2 == 0 ? even : odd).Add(cells, hits);
+  }
+  return {all.Place(), even.Place(), odd.Place()};
+}
+
+Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second, const Pose2& first_from_second) {
+  Overlap overlap;
+  Compare(first, second, first_from_second, overlap);
+  Compare(second, first, Inverse(first_from_second), overlap);
+  return overlap;
+}
+
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
                   const OverlapOptions& options) {
-  return OverlapOf(frames, FramesAround(frames, loop.first, options),
-                   FramesAround(frames, loop.second, options), loop, options);
+  const int end = static_cast<int>(frames.size());
+  return OverlapOf(frames, FramesOfPlace(frames, loop.first, options, end),
+                   FramesOfPlace(frames, loop.second, options, end), loop, options);
 }
 
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>& first_members,
                   const std::vector<int>& second_members, const PlanarLoop& loop,
                   const OverlapOptions& options) {
-  const Place first = PlaceOf(frames, first_members, loop.first, options);
-  const Place second = PlaceOf(frames, second_members, loop.second, options);
-  Overlap overlap;
-  Compare(first, second, loop.first_from_second, options, overlap);
-  Compare(second, first, Inverse(loop.first_from_second), options, overlap);
-  return overlap;
+  return OverlapOf(SeenFrom(frames, first_members, loop.first, options),
+                   SeenFrom(frames, second_members, loop.second, options), loop.first_from_second);
 }
 
-Overlap OverlapWithItself(const std::vector<MappedFrame>& frames, int frame,
-                          const OverlapOptions& options) {
-  std::vector<int> even, odd;
-  for (const int member : FramesAround(frames, frame, options)) {
-    (even.size() > odd.size() ? odd : even).push_back(member);
-  }
-  PlanarLoop same;
-  same.first = same.second = frame;
-  return OverlapOf(frames, even, odd, same, options);
+Overlap OverlapWithItself(const SeenInHalves& place) {
+  return OverlapOf(place.even, place.odd, Pose2{});
 }
 
 bool Agrees(const Overlap& overlap, const OverlapOptions& options) {

@@ -2,8 +2,10 @@
 // into rooms; a true one puts walls on walls.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
+#include "mapper/core/grid_geometry.h"
 #include "mapper/core/options.h"
 #include "mapper/reference_map.h"
 
@@ -32,6 +34,29 @@ struct Overlap {
   }
 };
 
+// What a place saw, in base axes of the frame in its middle.
+struct SeenPlace {
+  enum Finding : std::uint8_t { kUnseen, kFree, kWall };
+  std::vector<Eigen::Vector2d> points;  // obstacles
+  GridGeometry geometry;
+  std::vector<Finding> findings;  // of each cell: a wall is within the tolerance, or else free
+};
+
+// The frames whose scans stand for the place of one of them, as if there were none from `end` on.
+std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middle,
+                               const OverlapOptions& options, int end);
+SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
+                   int middle, const OverlapOptions& options);
+Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second, const Pose2& first_from_second);
+
+// The same of all members, of every other of them and of those between.
+struct SeenInHalves {
+  SeenPlace all, even, odd;
+};
+SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
+                              const std::vector<int>& members, int middle,
+                              const OverlapOptions& options);
+
 // Both ways: points of the second place in the grid of the first and the other way round. Places
 // are drawn from the frames' current poses, which are good over a second or two.
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
@@ -44,8 +69,7 @@ Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>
 
 // What a place agrees with itself by: every other of its scans against those between. Less than 1
 // where ranges are noisy or people walk, and a true loop cannot agree by more.
-Overlap OverlapWithItself(const std::vector<MappedFrame>& frames, int frame,
-                          const OverlapOptions& options);
+Overlap OverlapWithItself(const SeenInHalves& place);
 
 bool Agrees(const Overlap& overlap, const OverlapOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/growth.h"
 
@@ -12,6 +13,9 @@ namespace {
 constexpr double kMaxTurnDeg = 60.0;
 // Beyond the window, so that places beside a way count.
 constexpr double kBesideM = 1.0;
+// Keyframes are `every_m` of way apart and a frame more; an adjustment does not pull them farther
+// apart than so many times that.
+constexpr double kMostStretch = 2.0;
 // Where the newest scans already lie on what was seen long ago, the adjustment sees it too.
 constexpr double kKnownShare = 0.5;
 
@@ -54,6 +58,9 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("consent_ways", consent_ways, {0.0, 1000.0},
            "and over a way of so many times the correction and the likely drift");
   v.Number("likely_drift_share", likely_drift_share, {0.0, 1.0}, "the latter, of the way");
+  v.Number(
+      "idle_searches", idle_searches, {1, 1000},
+      "while none waits for consent, one of so many is made; the others once it finds a place");
   v.Number("most_unanswered", most_unanswered, {0, 1000},
            "searches that may find nothing meanwhile");
   v.Number("consent_m", consent_m, {0.0, 10.0}, "the same correction, to this");
@@ -107,14 +114,23 @@ std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames,
     int frame = 0;
   };
   std::vector<Ranked> ranked;
-  for (const int k : keyframes_) {
+  const double farthest_m = options_.max_window_m + kBesideM;
+  const Eigen::Vector2d here = PoseAt(frames, query).translation();
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
+    const int k = keyframes_[i];
     const double way_m =
         way_m_[static_cast<std::size_t>(query)] - way_m_[static_cast<std::size_t>(k)];
     if (way_m < options_.min_way_m) break;
+    // From so far away the way does not come near before the next few of them.
+    const double beyond_m = (PoseAt(frames, k).translation() - here).norm() - farthest_m;
+    if (beyond_m > options_.every_m * kMostStretch) {
+      i += static_cast<std::size_t>(beyond_m / (options_.every_m * kMostStretch)) - 1;
+      continue;
+    }
     const Pose2 off = Between(PoseAt(frames, k), PoseAt(frames, query));
     if (std::abs(off.yaw_rad) > RadFromDeg(kMaxTurnDeg)) continue;
     const double distance_m = off.translation().norm();
-    if (distance_m > options_.max_window_m + kBesideM) continue;
+    if (distance_m > farthest_m) continue;
     if (distance_m > WindowM(DriftingM(known, k, query)) + kBesideM) continue;
     ranked.push_back({Separation(PoseAt(frames, k), PoseAt(frames, query)), k});
   }
@@ -163,34 +179,59 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
     return static_cast<int>(std::lower_bound(way_m_.begin(), way_m_.end(), way_m) - way_m_.begin());
   };
   if (query_way_m < options_.min_way_m) return {};
-  const int query = at(query_way_m);
-  const std::vector<int> candidates = Candidates(frames, known, query);
-  if (candidates.empty()) return {};
+  const Query query{at(query_way_m), static_cast<int>(frames.size())};
+  if (Candidates(frames, known, query.frame).empty()) return {};
   if (reference.ShareSeenBefore(newest, frames.back().map_from_base,
                                 at(query_way_m - options_.min_way_m)) > kKnownShare) {
     return {};
   }
-  for (const int candidate : candidates) {
-    const double way_m = DriftingM(known, candidate, query);
-    const std::optional<PlanarLoop> loop =
-        matcher_.LoopBetween(frames, candidate, query, WindowM(way_m), WindowRad(way_m));
-    if (!loop) continue;
-    const Pose2 correction =
-        Between(Between(PoseAt(frames, candidate), PoseAt(frames, query)), loop->first_from_second);
-    if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) {
-      waiting_.clear();  // what they wanted is not wanted here
-      return {};
-    }
-    if (!waiting_.empty() && !Consents(frames, waiting_.back(), *loop)) waiting_.clear();
-    if (waiting_.empty()) unanswered_ = 0;
-    waiting_.push_back(*loop);
-    if (Suffices(correction.translation().norm(), way_m)) return waiting_;
+  if (waiting_.empty() && static_cast<int>(put_off_.size()) + 1 < options_.idle_searches) {
+    put_off_.push_back(query);
     return {};
   }
-  Unanswered();
+  const Answer answer = AnswerTo(frames, known, query);
+  const std::vector<Query> before = std::exchange(put_off_, {});
+  if (answer.loop) {
+    for (const Query& earlier : before) Take(frames, AnswerTo(frames, known, earlier));
+  }
+  return Take(frames, answer) ? waiting_ : std::vector<PlanarLoop>{};
+}
+
+LoopSearch::Answer LoopSearch::AnswerTo(const std::vector<MappedFrame>& frames,
+                                        const std::vector<PlanarLoop>& known, const Query& query) {
+  KnownPlace query_place(frames, query.frame, options_.place, overlap_, query.end);
+  for (const int candidate : Candidates(frames, known, query.frame)) {
+    const double way_m = DriftingM(known, candidate, query.frame);
+    KnownPlace& place = places_.Of({frames, candidate, options_.place, overlap_});
+    const std::optional<PlanarLoop> loop =
+        matcher_.LoopBetween(frames, place, query_place, WindowM(way_m), WindowRad(way_m));
+    if (loop) return {loop, way_m};
+  }
   return {};
 }
 
-void LoopSearch::Forget() { waiting_.clear(); }
+// Whether enough consent now.
+bool LoopSearch::Take(const std::vector<MappedFrame>& frames, const Answer& answer) {
+  if (!answer.loop) {
+    Unanswered();
+    return false;
+  }
+  const PlanarLoop& loop = *answer.loop;
+  const Pose2 correction = Between(Between(PoseAt(frames, loop.first), PoseAt(frames, loop.second)),
+                                   loop.first_from_second);
+  if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) {
+    waiting_.clear();  // what they wanted is not wanted here
+    return false;
+  }
+  if (!waiting_.empty() && !Consents(frames, waiting_.back(), loop)) waiting_.clear();
+  if (waiting_.empty()) unanswered_ = 0;
+  waiting_.push_back(loop);
+  return Suffices(correction.translation().norm(), answer.way_m);
+}
+
+void LoopSearch::Forget() {
+  waiting_.clear();
+  put_off_.clear();
+}
 
 }  // namespace depthgrid

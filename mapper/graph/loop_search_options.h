@@ -44,6 +44,10 @@ struct LoopSearchOptions {
   // (docs/bench.md, "Rooms that look alike").
   double consent_ways = 7.0;
   double likely_drift_share = 0.005;  // of the way
+  // While none waits for others to consent only one of so many searches is made. Once it finds a
+  // place the others are made up for, so that only rows of places in which a search finds nothing
+  // begin later.
+  int idle_searches = 3;
   // Meanwhile so many searches may find nothing where old places are near.
   int most_unanswered = 1;
   double consent_m = 0.2;

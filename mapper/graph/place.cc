@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "mapper/grid/probability_grid.h"
 #include "mapper/grid/scan_rasterizer.h"
@@ -27,6 +28,21 @@ int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
     i += step;
   }
   return i;
+}
+
+GridGeometry Around(const std::vector<Cell>& cells, double resolution_m) {
+  GridGeometry geometry;
+  geometry.resolution_m = resolution_m;
+  if (cells.empty()) return geometry;
+  Cell least = cells[0], most = cells[0];
+  for (const Cell& cell : cells) {
+    least = {std::min(least.x, cell.x), std::min(least.y, cell.y)};
+    most = {std::max(most.x, cell.x), std::max(most.y, cell.y)};
+  }
+  geometry.min_cell = least;
+  geometry.width_cells = most.x - least.x + 1;
+  geometry.height_cells = most.y - least.y + 1;
+  return geometry;
 }
 
 }  // namespace
@@ -81,11 +97,8 @@ OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector
 std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frames,
                                            const std::vector<int>& members, int middle,
                                            double resolution_m) {
-  struct Placed {
-    Cell cell;
-    Eigen::Vector2d point;
-  };
-  std::vector<Placed> placed;
+  std::vector<Eigen::Vector2d> hits;
+  std::vector<Cell> cells;
   const Pose2 middle_from_map = Inverse(PoseAt(frames, middle));
   for (const int i : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
@@ -93,17 +106,20 @@ std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frame
     const Scan scan = *frame.scan;
     for (const Beam& beam : scan.beams) {
       if (!beam.hit) continue;
-      const Eigen::Vector2d point = middle_from_base * EndPoint(beam);
-      placed.push_back({CellOf(point, resolution_m), point});
+      hits.emplace_back(middle_from_base * EndPoint(beam));
+      cells.push_back(CellOf(hits.back(), resolution_m));
     }
   }
-  // The first of each cell, so that near walls do not outweigh far ones.
-  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
-    return a.cell.y != b.cell.y ? a.cell.y < b.cell.y : a.cell.x < b.cell.x;
-  });
+  // The first of each cell, so that near walls do not outweigh far ones; row by row.
+  constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  const GridGeometry geometry = Around(cells, resolution_m);
+  std::vector<std::uint32_t> first(geometry.size(), kNone);
+  for (std::size_t i = cells.size(); i-- > 0;) {
+    first[geometry.Index(cells[i])] = static_cast<std::uint32_t>(i);
+  }
   std::vector<Eigen::Vector2d> points;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (i == 0 || !(placed[i].cell == placed[i - 1].cell)) points.push_back(placed[i].point);
+  for (const std::uint32_t i : first) {
+    if (i != kNone) points.push_back(hits[i]);
   }
   return points;
 }

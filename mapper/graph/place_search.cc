@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "mapper/core/error.h"
 
@@ -12,6 +14,8 @@ namespace {
 constexpr float kWallProb = 0.5F;
 // The widest square is 32 cells, 1.6 m of a 5 cm grid: wider ones hold a wall nearly everywhere.
 constexpr int kMaxLevels = 6;
+constexpr int kTopLevel = kMaxLevels - 1;
+constexpr int kWithin = (1 << kTopLevel) - 1;
 
 void RaiseTo(std::uint8_t score, const Cell& cell, const GridGeometry& geometry,
              std::vector<std::uint8_t>& scores) {
@@ -23,15 +27,15 @@ void RaiseRow(const std::uint8_t* scores, std::size_t count, std::uint8_t* into)
   for (std::size_t i = 0; i < count; ++i) into[i] = std::max(into[i], scores[i]);
 }
 
+static_assert(std::endian::native == std::endian::little);  // bytes of a word in their order
+
 // The points' cells at one rotation.
-std::vector<Cell> CellsOf(const std::vector<Eigen::Vector2d>& points, const PointCells& at) {
-  std::vector<Cell> cells;
-  cells.reserve(points.size());
-  for (const Eigen::Vector2d& point : points) {
-    const auto x = static_cast<float>(point.x());
-    const auto y = static_cast<float>(point.y());
-    cells.push_back({at.whole_cells.x + static_cast<int>(at.X(x, y)),
-                     at.whole_cells.y + static_cast<int>(at.Y(x, y))});
+std::vector<Cell> CellsOf(const std::vector<float>& x_m, const std::vector<float>& y_m,
+                          const PointCells& at) {
+  std::vector<Cell> cells(x_m.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {  // a loop that vectorises
+    cells[i].x = at.whole_cells.x + static_cast<int>(at.X(x_m[i], y_m[i]));
+    cells[i].y = at.whole_cells.y + static_cast<int>(at.Y(x_m[i], y_m[i]));
   }
   return cells;
 }
@@ -52,13 +56,16 @@ class Search {
          const PlaceWindow& window, double least_score, const std::optional<NotNear>& except)
       : walls_(walls), except_(except) {
     double farthest2 = 0.0;
+    std::vector<float> x_m, y_m;
     for (const Eigen::Vector2d& point : points) {
+      x_m.push_back(static_cast<float>(point.x()));
+      y_m.push_back(static_cast<float>(point.y()));
       farthest2 = std::max(farthest2, point.squaredNorm());
     }
     lattice_ = MakeLattice(window.place_from_query, window.half_m, window.half_rad,
                            walls.resolution_m(), std::sqrt(farthest2));
     for (int yaw = -lattice_.half_yaw_steps; yaw <= lattice_.half_yaw_steps; ++yaw) {
-      cells_.push_back(CellsOf(points, lattice_.CellsAt(yaw)));
+      cells_.push_back(CellsOf(x_m, y_m, lattice_.CellsAt(yaw)));
     }
     best_score_ = static_cast<int>(std::ceil(least_score * kBestWallScore *
                                              static_cast<double>(points.size()))) -
@@ -68,11 +75,14 @@ class Search {
   void Run() {
     const int level = walls_.levels() - 1;
     std::vector<Candidate> candidates;
+    const int from = -lattice_.half_cells, count = (2 * lattice_.half_cells >> level) + 1;
     for (int yaw = -lattice_.half_yaw_steps; yaw <= lattice_.half_yaw_steps; ++yaw) {
-      for (int y = -lattice_.half_cells; y <= lattice_.half_cells; y += 1 << level) {
-        for (int x = -lattice_.half_cells; x <= lattice_.half_cells; x += 1 << level) {
-          candidates.push_back(CandidateAt({x, y, yaw}, level));
-        }
+      const std::vector<int> sums = walls_.SumsOfSquares(CellsAt(yaw), {from, from}, count);
+      for (int i = 0; i < count * count; ++i) {
+        const int bound = sums[static_cast<std::size_t>(i)];
+        if (bound <= best_score_) continue;
+        const LatticeStep step{from + ((i % count) << level), from + ((i / count) << level), yaw};
+        candidates.push_back({step, bound});
       }
     }
     std::sort(candidates.begin(), candidates.end(), Better);
@@ -89,10 +99,13 @@ class Search {
   }
 
  private:
+  const std::vector<Cell>& CellsAt(int yaw_steps) const {
+    return cells_[static_cast<std::size_t>(yaw_steps + lattice_.half_yaw_steps)];
+  }
+
   Candidate CandidateAt(const LatticeStep& step, int level) const {
-    const std::vector<Cell>& cells =
-        cells_[static_cast<std::size_t>(step.yaw_steps + lattice_.half_yaw_steps)];
-    return {step, walls_.Sum(cells, {step.x_cells, step.y_cells}, level, best_score_)};
+    return {step,
+            walls_.Sum(CellsAt(step.yaw_steps), {step.x_cells, step.y_cells}, level, best_score_)};
   }
 
   bool IsExcepted(const LatticeStep& step) const {
@@ -153,6 +166,7 @@ WallPyramid::WallPyramid(const OccupancyMap& map) : resolution_m_(map.geometry.r
   }
   levels_.push_back(std::move(finest));
   while (static_cast<int>(levels_.size()) < kMaxLevels) AddLevel();
+  FindSquares();
 }
 
 // The squares of a level are made of four of the level below: the larger of two side by side, then
@@ -179,6 +193,85 @@ void WallPyramid::AddLevel() {
     }
   }
   levels_.push_back(std::move(level));
+}
+
+void WallPyramid::FindSquares() {
+  const Level& level = levels_.back();
+  squares_.width = ((level.geometry.width_cells - 1) >> kTopLevel) + 1 + 2 * kSideBySide;
+  squares_.height = ((level.geometry.height_cells - 1) >> kTopLevel) + 1 + 2 * kSideBySide;
+  const auto width = static_cast<std::size_t>(squares_.width);
+  const std::size_t size = width * static_cast<std::size_t>(squares_.height);
+  squares_.score.assign(size << (2 * kTopLevel), 0);
+  for (int within = 0; within <= kWithin; ++within) {  // so that what is written lies together
+    for (int y = within; y < level.geometry.height_cells; y += kWithin + 1) {
+      const auto row = static_cast<std::size_t>((y >> kTopLevel) + kSideBySide) * width;
+      const std::uint8_t* from =
+          level.score.data() +
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(level.geometry.width_cells);
+      for (int x = 0; x < level.geometry.width_cells; ++x) {
+        const auto column = static_cast<std::size_t>((x >> kTopLevel) + kSideBySide);
+        const auto grid = static_cast<std::size_t>((within << kTopLevel) + (x & kWithin));
+        squares_.score[grid * size + row + column] = from[x];
+      }
+    }
+  }
+}
+
+std::vector<int> WallPyramid::SumsOfSquares(const std::vector<Cell>& cells, const Cell& shift,
+                                            int count) const {
+  const Level& level = levels_.back();
+  const Cell first{level.geometry.min_cell.x - shift.x, level.geometry.min_cell.y - shift.y};
+  std::vector<int> sums(static_cast<std::size_t>(count * count));
+  for (int y = 0; y < count; y += kSideBySide) {
+    for (int x = 0; x < count; x += kSideBySide) {
+      const FourByFour some =
+          SumsOfFourByFour(cells, {first.x - (x << kTopLevel), first.y - (y << kTopLevel)});
+      for (int dy = 0; dy < std::min(kSideBySide, count - y); ++dy) {
+        for (int dx = 0; dx < std::min(kSideBySide, count - x); ++dx) {
+          sums[static_cast<std::size_t>((y + dy) * count + x + dx)] =
+              some[static_cast<std::size_t>(dy * kSideBySide + dx)];
+        }
+      }
+    }
+  }
+  return sums;
+}
+
+// Bytes are summed as long as they cannot overflow, four in a word.
+WallPyramid::FourByFour WallPyramid::SumsOfFourByFour(const std::vector<Cell>& cells,
+                                                      const Cell& first) const {
+  constexpr std::size_t kTogether = 64;
+  static_assert(kTogether * kBestWallScore < 256 && sizeof(std::uint32_t) == kSideBySide);
+  const auto width = static_cast<std::size_t>(squares_.width);
+  const int size = squares_.width * squares_.height;
+  FourByFour sums{};
+  std::array<int, kTogether> at;  // found apart, as that vectorises
+  for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
+    const std::size_t end = std::min(begin + kTogether, cells.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      const int x = cells[i].x - first.x, y = cells[i].y - first.y;
+      // Four squares beyond the border are as good as any further ones.
+      const int column =
+          std::clamp((x >> kTopLevel) + kSideBySide, 0, squares_.width - kSideBySide);
+      const int row = std::clamp((y >> kTopLevel) + kSideBySide, 0, squares_.height - kSideBySide);
+      const int grid = ((y & kWithin) << kTopLevel) + (x & kWithin);
+      at[i - begin] = grid * size + row * squares_.width + column;
+    }
+    std::array<std::uint32_t, kSideBySide> rows{};
+    for (std::size_t i = 0; i < end - begin; ++i) {
+      const std::uint8_t* from = squares_.score.data() + at[i];
+      for (std::uint32_t& row : rows) {
+        std::uint32_t four = 0;
+        std::memcpy(&four, from, sizeof(four));
+        row += four;
+        from += width;
+      }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += static_cast<int>(rows[i / kSideBySide] >> (8 * (i % kSideBySide)) & 0xFFU);
+    }
+  }
+  return sums;
 }
 
 int WallPyramid::Best(const Cell& cell, int level) const {

@@ -2,6 +2,7 @@
 // 2016; Olson 2009 for the pyramid), exact: the same pose as trying them all.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -25,15 +26,33 @@ class WallPyramid {
   // between the two.
   int Sum(const std::vector<Cell>& cells, const Cell& shift, int level, int of_interest) const;
 
+  // The same of squares of the highest level side by side, `count` in each direction from `shift`
+  // on: the sum of square (x, y) is at y * count + x.
+  std::vector<int> SumsOfSquares(const std::vector<Cell>& cells, const Cell& shift,
+                                 int count) const;
+
  private:
+  // The highest level's scores in another order: of cells that are whole squares apart together, so
+  // that four by four squares are four short rows.
+  struct Squares {
+    int width = 0, height = 0;        // of such a grid, with what is outside around it
+    std::vector<std::uint8_t> score;  // [y within a square][x within a square][y][x]
+  };
   struct Level {
     GridGeometry geometry;
     std::vector<std::uint8_t> score;  // and one more, of all that is outside
   };
+  static constexpr int kSideBySide = 4;  // squares that are summed together, in each direction
+  using FourByFour = std::array<int, kSideBySide * kSideBySide>;
+
   void AddLevel();
+  void FindSquares();
+  // `first`: the highest level's first cell, less the shift.
+  FourByFour SumsOfFourByFour(const std::vector<Cell>& cells, const Cell& first) const;
 
   double resolution_m_;
   std::vector<Level> levels_;
+  Squares squares_;
 };
 
 constexpr int kBestWallScore = 2;

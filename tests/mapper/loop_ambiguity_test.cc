@@ -94,6 +94,26 @@ LoopSearchOptions Options() {
 const Pose2 kOther{0.0, kOtherCorridorM, 0.0};
 const Pose2 kSlip{1.4, 0.2, 0.02};
 
+// Searches that were put off while none waited are made up for.
+TEST(LookAlikes, TheSamePlacesAreFoundWhenFewAreLookedFor) {
+  const Walk walk(TwoCorridors(100.0, 100.0), {}, kSlip);
+  std::vector<std::vector<PlanarLoop>> found;
+  for (const int idle_searches : {1, 2, 3}) {
+    LoopSearchOptions options = Options();
+    options.idle_searches = idle_searches;
+    found.push_back(walk.Found(options));
+  }
+  ASSERT_FALSE(found[0].empty());
+  for (const std::vector<PlanarLoop>& other : found) {
+    ASSERT_EQ(other.size(), found[0].size());
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      EXPECT_EQ(other[i].first, found[0][i].first);
+      EXPECT_EQ(other[i].second, found[0][i].second);
+      EXPECT_TRUE(other[i].first_from_second == found[0][i].first_from_second);
+    }
+  }
+}
+
 TEST(LookAlikes, ACorridorThatIsAlikeForAFewMetresIsNotTakenForTheOther) {
   const Walk walk(TwoCorridors(14.0, 30.0), kOther, kSlip);
   EXPECT_TRUE(walk.Found(Options()).empty());

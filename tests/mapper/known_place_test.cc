@@ -1,0 +1,113 @@
+#include "mapper/graph/known_place.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/rng.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+const PlanarLaser kLaser{
+    .beams = 160, .field_of_view_rad = RadFromDeg(58.0), .sigma_of_range = 0.01};
+
+std::vector<MappedFrame> StraightOn(int count, ScanArchive& archive) {
+  std::vector<MappedFrame> frames;
+  for (int i = 0; i < count; ++i) {
+    MappedFrame frame;
+    frame.frame = i;
+    frame.stamp_s = i / 30.0;
+    frame.map_from_base = {1.0 + 0.02 * i, 1.0, 0.3};
+    frame.scan = archive.Keep(
+        ScanOf(FurnishedRoom(), frame.map_from_base, kLaser, 1, static_cast<std::uint32_t>(i)));
+    frame.obstacles = frame.scan;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+TEST(WallPyramid, SumsOfSquaresAreThoseOfEachSquare) {
+  ScanArchive archive;
+  const std::vector<MappedFrame> frames = StraightOn(10, archive);
+  const WallPyramid walls(DrawPlace(frames, {0, 3, 6, 9}, 5, 0.05));
+  RandomStream random(3, RandomStage::kTest);
+  std::vector<Cell> cells;
+  for (int i = 0; i < 300; ++i) {  // some of them far outside
+    const double reach = i % 4 == 0 ? 1000.0 : 100.0;
+    cells.push_back({static_cast<int>(random.Uniform(-reach, reach)),
+                     static_cast<int>(random.Uniform(-reach, reach))});
+  }
+  const int level = walls.levels() - 1;
+  int nonzero = 0;
+  for (const int count : {1, 3, 4, 6}) {
+    const Cell shift{-16 * count + 5, -16 * count - 3};
+    const std::vector<int> sums = walls.SumsOfSquares(cells, shift, count);
+    ASSERT_EQ(static_cast<int>(sums.size()), count * count);
+    for (int i = 0; i < count * count; ++i) {
+      const Cell square{shift.x + ((i % count) << level), shift.y + ((i / count) << level)};
+      EXPECT_EQ(sums[static_cast<std::size_t>(i)], walls.Sum(cells, square, level, -1));
+      nonzero += sums[static_cast<std::size_t>(i)] > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(nonzero, 20);
+}
+
+TEST(SeenPlace, OfAllIsTheSameWithAndWithoutHalves) {
+  ScanArchive archive;
+  const std::vector<MappedFrame> frames = StraightOn(40, archive);
+  const OverlapOptions options;
+  const std::vector<int> members = FramesOfPlace(frames, 20, options, 40), even{0, 10, 20, 30};
+  ASSERT_EQ(members, (std::vector<int>{0, 5, 10, 15, 20, 25, 30, 35}));
+  const SeenInHalves halves = SeenInHalvesFrom(frames, members, 20, options);
+  const SeenPlace all = SeenFrom(frames, members, 20, options);
+  EXPECT_EQ(halves.all.findings, all.findings);
+  EXPECT_EQ(halves.all.geometry, all.geometry);
+  EXPECT_EQ(halves.all.points, all.points);
+  EXPECT_EQ(halves.even.findings, SeenFrom(frames, even, 20, options).findings);
+  EXPECT_LT(halves.odd.points.size(), all.points.size());
+}
+
+// A wall counts for every cell within the tolerance and for none beyond.
+TEST(SeenPlace, WallsReachAsFarAsTheTolerance) {
+  ScanArchive archive;
+  const std::vector<MappedFrame> frames = StraightOn(1, archive);
+  OverlapOptions options;
+  options.tolerance_m = 0.0;
+  const SeenPlace thin = SeenFrom(frames, {0}, 0, options);
+  options.tolerance_m = 0.1;
+  const SeenPlace wide = SeenFrom(frames, {0}, 0, options);
+  ASSERT_EQ(wide.geometry.width_cells, thin.geometry.width_cells + 4);
+  for (std::size_t i = 0; i < wide.findings.size(); ++i) {
+    const Cell cell = wide.geometry.CellAt(i);
+    bool near = false;
+    for (int dy = -2; dy <= 2; ++dy) {
+      for (int dx = -2; dx <= 2; ++dx) {
+        const Cell other{cell.x + dx, cell.y + dy};
+        near = near || (thin.geometry.Contains(other) &&
+                        thin.findings[thin.geometry.Index(other)] == SeenPlace::kWall);
+      }
+    }
+    ASSERT_EQ(wide.findings[i] == SeenPlace::kWall, near);
+  }
+}
+
+TEST(KnownPlaces, AreMadeAgainWhereTheFramesLieOtherwise) {
+  ScanArchive archive;
+  std::vector<MappedFrame> frames = StraightOn(60, archive);
+  KnownPlaces places;
+  const auto surfels = [&](int middle) {
+    return &places.Of({frames, middle, {}, {}}).Surfels(frames);
+  };
+  const SurfelMap* const first = surfels(20);
+  const SurfelMap* const second = surfels(30);
+  EXPECT_EQ(surfels(20), first);
+  EXPECT_EQ(surfels(30), second);
+  const std::vector<Eigen::Vector2d> points = places.Of({frames, 20, {}, {}}).Points(frames);
+  for (std::size_t i = 25; i < frames.size(); ++i) frames[i].map_from_base.x_m += 0.5;
+  const std::vector<Eigen::Vector2d> moved = places.Of({frames, 20, {}, {}}).Points(frames);
+  EXPECT_NE(moved, points);
+  EXPECT_EQ(moved, KnownPlace(frames, 20, {}, {}).Points(frames));
+}
+
+}  // namespace
+}  // namespace depthgrid
