@@ -129,6 +129,16 @@ double GateOf(int round, const JointOptions& options) {
   return options.first_gate_m * std::pow(options.last_gate_m / options.first_gate_m, share);
 }
 
+SightingTrust TrustAt(const Landmarks& landmarks, const std::vector<Pose2>& map_from_group,
+                      const JointOptions& options) {
+  SightingTrust trust{options.huber_sigmas, {}};
+  if (!options.judge_misfit && !options.judge_sharing) return trust;
+  const SightingErrors errors = landmarks.ErrorsAt(map_from_group);
+  if (options.judge_misfit) trust.errors.variance_factor = errors.variance_factor;
+  if (options.judge_sharing) trust.errors.correlation = errors.correlation;
+  return trust;
+}
+
 // One Gauss-Newton step of everything: landmarks are found anew at the current poses, and what is
 // known of the prior afterwards. False when nothing could be solved.
 bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
@@ -144,8 +154,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   landmarks.ExtendEnvelope(first);
   const auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
-  const double factor = options.judge_misfit ? landmarks.VarianceFactor(map_from_group) : 1.0;
-  landmarks.AddTo(map_from_group, {options.huber_sigmas, factor}, *h, g);
+  landmarks.AddTo(map_from_group, TrustAt(landmarks, map_from_group, options), *h, g);
   const std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
   links.insert(links.end(), motions.begin(), motions.end());
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
@@ -203,6 +212,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
   v.Flag("judge_misfit", judge_misfit,
          "whether landmarks that groups see at different places are believed less");
+  v.Flag("judge_sharing", judge_sharing,
+         "whether landmarks whose neighbours in a group's view err alike are believed less");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
   v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
            "a loop farther from the adjusted poses is taken out");

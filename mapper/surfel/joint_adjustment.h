@@ -31,6 +31,8 @@ struct JointOptions {
   double huber_sigmas = 1.25;
   // Landmarks count over their Misfit between the groups that saw them.
   bool judge_misfit = true;
+  // And over what neighbours share of their SightingErrors.
+  bool judge_sharing = true;
   double loop_huber_sigmas = 2.0;
   // A loop farther than this from the adjusted poses is taken out, and all adjusted again.
   double max_loop_sigmas = 5.0;

@@ -6,15 +6,20 @@
 #include <span>
 
 #include "mapper/surfel/misfit.h"
+#include "mapper/surfel/shared_errors.h"
 
 namespace depthgrid {
 Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
-                     const std::vector<Pose2>& map_from_group, const AssociationGate& gate) {
+                     const std::vector<Pose2>& map_from_group, const AssociationGate& gate)
+    : groups_(groups) {
   std::vector<Sighting> in_time;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Motion2 motion(map_from_group[g]);
-    for (const Surfel& surfel : groups[g].surfels) {
-      in_time.push_back({store_.Merge(motion * surfel, gate), static_cast<int>(g), &surfel});
+    const std::vector<Surfel>& surfels = groups[g].surfels;
+    const std::vector<int> companies = CompaniesOf(surfels);
+    for (std::size_t i = 0; i < surfels.size(); ++i) {
+      const int landmark = store_.Merge(motion * surfels[i], gate);
+      in_time.push_back({landmark, static_cast<int>(g), companies[i], &surfels[i]});
     }
   }
   // Counting sort by landmark; within one they stay in order of time.
@@ -43,38 +48,50 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   Row row;
   row.group = sighting.group;
   row.error_m = OffsetFrom(landmark, motion * local.point_m);
-  const double information = local.information / trust.variance_factor;
+  // So that companions have the information of their mean: n of equal variance and correlation r
+  // tell as much as n / (1 + (n - 1) r) that err independently.
+  const double alike = 1.0 + (sighting.company - 1) * trust.errors.correlation;
+  const double information = local.information / (trust.errors.variance_factor * alike);
   const double sigmas = std::abs(row.error_m) * std::sqrt(information);
   row.weight = information * std::min(1.0, trust.huber_sigmas / sigmas);
   row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
   return row;
 }
 
-double Landmarks::VarianceFactor(const std::vector<Pose2>& map_from_group) const {
+SightingErrors Landmarks::ErrorsAt(const std::vector<Pose2>& map_from_group) const {
   std::vector<Motion2> motions;
   for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
-  const SightingTrust as_claimed{std::numeric_limits<double>::infinity(), 1.0};
+  const SightingTrust as_claimed{std::numeric_limits<double>::infinity(), {}};
   Misfit misfit;
+  std::vector<std::vector<double>> residuals;  // in sigmas, by group and surfel
+  for (const SurfelGroup& group : groups_) residuals.emplace_back(group.surfels.size());
   std::vector<Row> rows;
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
     if (SeenByOneGroup(landmark)) continue;
     rows.clear();
     double weights = 0.0;
     double weighted_error = 0.0;
-    for (std::size_t i = begin_[landmark]; i < begin_[landmark + 1]; ++i) {
+    const std::size_t begin = begin_[landmark];
+    for (std::size_t i = begin; i < begin_[landmark + 1]; ++i) {
       const auto group = static_cast<std::size_t>(sightings_[i].group);
       rows.push_back(RowOf(sightings_[i], motions[group], as_claimed));
       weights += rows.back().weight;
       weighted_error += rows.back().weight * rows.back().error_m;
     }
-    for (const Row& row : rows) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
       // The mean has the sighting in it, so less than the sighting's variance is left.
-      const double variance = 1.0 / row.weight - 1.0 / weights;
-      if (variance > 0.0)
-        misfit.Add((row.error_m - weighted_error / weights) / std::sqrt(variance));
+      const double variance = 1.0 / rows[k].weight - 1.0 / weights;
+      if (variance <= 0.0) continue;
+      const double sigmas = (rows[k].error_m - weighted_error / weights) / std::sqrt(variance);
+      misfit.Add(sigmas);
+      const auto group = static_cast<std::size_t>(rows[k].group);
+      const auto place = sightings_[begin + k].surfel - groups_[group].surfels.data();
+      residuals[group][static_cast<std::size_t>(place)] = sigmas;
     }
   }
-  return misfit.VarianceFactor();
+  SharedErrors shared;
+  for (std::size_t g = 0; g < groups_.size(); ++g) shared.Add(groups_[g].surfels, residuals[g]);
+  return {misfit.VarianceFactor(), shared.Correlation()};
 }
 
 void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTrust& trust,

@@ -13,27 +13,35 @@ namespace depthgrid {
 struct Sighting {
   int landmark = 0;
   int group = 0;
+  int company = 1;                 // as CompaniesOf
   const Surfel* surfel = nullptr;  // in the group's axes
 };
 
-// How sightings count: larger residuals than so many sigmas linearly, variances so many times what
-// the surfels claim.
+// How sightings err: with so many times the variance that the surfels claim, and companions (see
+// CompaniesOf) alike to this correlation.
+struct SightingErrors {
+  double variance_factor = 1.0;
+  double correlation = 0.0;
+};
+
+// How sightings count: larger residuals than so many sigmas linearly, companions together as much
+// as their mean tells.
 struct SightingTrust {
   double huber_sigmas = 2.5;
-  double variance_factor = 1.0;
+  SightingErrors errors;
 };
 
 class Landmarks {
  public:
-  // Merges what the groups saw, placed at the given poses.
+  // Merges what the groups saw, placed at the given poses. The groups are to outlive it.
   Landmarks(const std::vector<SurfelGroup>& groups, const std::vector<Pose2>& map_from_group,
             const AssociationGate& gate);
 
   const SurfelStore& store() const { return store_; }
   // Lowers first[group] to the earliest group that shares a landmark with it.
   void ExtendEnvelope(std::vector<int>& first) const;
-  // Of the offsets of sightings from their landmarks, at these poses.
-  double VarianceFactor(const std::vector<Pose2>& map_from_group) const;
+  // By the offsets of sightings from their landmarks, at these poses.
+  SightingErrors ErrorsAt(const std::vector<Pose2>& map_from_group) const;
   // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
   // offset along its normal is an unknown too; it is eliminated (Schur complement), which couples
   // all groups that saw the landmark.
@@ -52,6 +60,7 @@ class Landmarks {
   }
   Row RowOf(const Sighting& sighting, const Motion2& motion, const SightingTrust& trust) const;
 
+  const std::vector<SurfelGroup>& groups_;
   SurfelStore store_;
   std::vector<Sighting> sightings_;  // by landmark, then by group
   std::vector<std::size_t> begin_;   // of each landmark's sightings, and the end of the last

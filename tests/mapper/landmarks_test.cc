@@ -1,0 +1,62 @@
+#include "mapper/surfel/landmarks.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/surfel/skyline_matrix.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kInformation = 1e4;  // 1 cm
+
+// A wall across the view, seen by each group; groups see all of it nearer or farther, each by its
+// own error.
+std::vector<SurfelGroup> WallSeen(int groups) {
+  std::vector<SurfelGroup> seen(static_cast<std::size_t>(groups));
+  for (int g = 0; g < groups; ++g) {
+    for (int i = 0; i < 16; ++i) {
+      Surfel surfel;
+      surfel.point_m = {2.0 + (g % 2 == 0 ? 0.01 : -0.01), 0.05 * i};
+      surfel.normal = {-1.0, 0.0};
+      surfel.information = kInformation;
+      surfel.normal_information = 1e4;
+      seen[static_cast<std::size_t>(g)].surfels.push_back(surfel);
+    }
+  }
+  return seen;
+}
+
+constexpr AssociationGate kGate{0.02, 0.1, 0.7};
+
+// What two groups' sightings say of how far the first is from the wall.
+double ForwardInformation(const SightingTrust& trust) {
+  const std::vector<SurfelGroup> groups = WallSeen(2);
+  const std::vector<Pose2> poses(2);
+  const Landmarks landmarks(groups, poses, kGate);
+  SkylineMatrix h({0, 0, 0, 0, 0, 0});
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(6);
+  landmarks.AddTo(poses, trust, h, g);
+  return h.Diagonal(0);
+}
+
+TEST(Landmarks, CompanionsThatErrAlikeTellAsMuchAsOne) {
+  // The landmarks' own offsets take half of what each group tells.
+  const double alone = ForwardInformation({1e9, {}});
+  EXPECT_NEAR(alone, 16 * kInformation / 2, 1e-6 * alone);
+  EXPECT_NEAR(ForwardInformation({1e9, {1.0, 1.0}}), alone / 16, 1e-6 * alone);
+  EXPECT_NEAR(ForwardInformation({1e9, {1.0, 0.2}}), alone / 4, 1e-6 * alone);
+  EXPECT_NEAR(ForwardInformation({1e9, {4.0, 0.2}}), alone / 16, 1e-6 * alone);
+}
+
+TEST(Landmarks, ErrorsAreAsSightingsDiffer) {
+  const std::vector<SurfelGroup> groups = WallSeen(8);
+  const Landmarks landmarks(groups, std::vector<Pose2>(8), kGate);
+  const SightingErrors errors = landmarks.ErrorsAt(std::vector<Pose2>(8));
+  // Each is 1 cm from the mean of eight, one sigma and sqrt(8/7) of what is left of it; the
+  // histogram's bins are a tenth of a sigma.
+  EXPECT_NEAR(errors.variance_factor, 1.4826 * 1.4826 * 8.0 / 7.0, 0.15);
+  EXPECT_NEAR(errors.correlation, 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace depthgrid
