@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mapper/core/error.h"
 #include "mapper/grid/scan_rasterizer.h"
@@ -29,6 +30,26 @@ bool LoopsBetween(const CsvTable& frames, std::size_t first_row, std::size_t las
   return std::any_of(loops.begin() + static_cast<std::ptrdiff_t>(first_row),
                      loops.begin() + static_cast<std::ptrdiff_t>(last_row) + 1,
                      [](double accepted) { return accepted > 0.0; });
+}
+
+// How far from base a scan says anything.
+double ReachM(const Scan& scan) {
+  float reach_m = 0.0F;
+  for (const Beam& beam : scan.beams) {
+    reach_m = std::max({reach_m, beam.clear_to_m, beam.hit ? beam.range_m : 0.0F});
+  }
+  return reach_m;
+}
+
+// No cell of the one scan is among those that matching or picturing the other reads. Those are
+// around its points: a rectangle, whose corners are up to sqrt(2) as far away, and a margin.
+bool AreApart(const Scan& scan, const Pose2& pose, const Scan& shown, const Pose2& shown_pose,
+              double resolution_m) {
+  constexpr double kMarginM = 1.0;  // offsets of the match's surface and the picture's margin
+  constexpr double kMarginCells = 8.0;
+  const double surroundings_m = std::numbers::sqrt2 * (ReachM(shown) + kMarginM);
+  const double distance_m = (pose.translation() - shown_pose.translation()).norm();
+  return distance_m > ReachM(scan) + surroundings_m + kMarginCells * resolution_m;
 }
 
 }  // namespace
@@ -65,6 +86,8 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
   const bool corrected = LoopsBetween(run.frames, *first_row, *row);
   const Pose2 then_from_final = *pose_then * Inverse(run.scans[scan_index].map_from_base);
 
+  const Scan shown = *run.scans[scan_index].scan;
+
   ActiveSubmaps submaps(submap, grid);
   submaps.RestartAt(static_cast<int>(first));
   ScanRasterizer rasterizer;
@@ -72,8 +95,13 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
     const StoredScan& stored = run.scans[i];
     const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
     const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
-    const Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
-    const Scan scan = *stored.scan;
+    Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
+    Scan scan = *stored.scan;
+    // It counts as one of the submap's scans, but poses flung far apart need no grid over them all.
+    if (AreApart(scan, pose, shown, *pose_then, grid.resolution_m)) {
+      scan.beams.clear();
+      pose = *pose_then;
+    }
     submaps.Insert(rasterizer.Rasterize(scan, pose, grid.resolution_m), scan, pose);
   }
   Submap* matching = submaps.matching();

@@ -133,5 +133,24 @@ TEST(ReferenceOf, HoldsTheScansBeforeAtTheirPosesOfTheTime) {
   EXPECT_TRUE(std::isnan(third.At({40, 0})));
 }
 
+// Poses a hundred kilometres apart: the map is as small as one of a camera that stood still.
+TEST(ReferenceOf, HoldsOnlyTheSurroundings) {
+  RunFiles run;
+  run.frames = Frames();
+  run.frames.columns["loops_accepted"] = {0, 0, 0};
+  run.frames.columns["map_x_m"] = {1e5, 0.0, 0.0};
+  ScanArchive archive;
+  for (int i = 0; i < 3; ++i) run.scans.push_back({i, 0.1 * i, {}, archive.Keep(OneHit())});
+  const OccupancyMap second = ReferenceOf(run, 1, {}, {});
+  EXPECT_GT(second.geometry.size(), 0U);
+  for (const float prob : second.occupied_prob) EXPECT_TRUE(std::isnan(prob));
+  const OccupancyMap third = ReferenceOf(run, 2, {}, {});
+  EXPECT_GT(third.At({20, 0}), 0.5F);
+  EXPECT_LT(third.geometry.width_cells, 1000);
+  // The scans far away still count: a submap of two scans is over after them.
+  run.frames.columns["map_x_m"] = {0.0, 1e5, 0.0};
+  EXPECT_GT(ReferenceOf(run, 2, {}, {.scans = 2}).At({20, 0}), 0.5F);
+}
+
 }  // namespace
 }  // namespace depthgrid
