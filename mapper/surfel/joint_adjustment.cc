@@ -154,7 +154,9 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   landmarks.ExtendEnvelope(first);
   const auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
-  landmarks.AddTo(map_from_group, TrustAt(landmarks, map_from_group, options), *h, g);
+  const SightingTrust trust = TrustAt(landmarks, map_from_group, options);
+  result.correlation = trust.errors.correlation;
+  landmarks.AddTo(map_from_group, trust, *h, g);
   const std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
   links.insert(links.end(), motions.begin(), motions.end());
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);

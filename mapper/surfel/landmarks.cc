@@ -13,10 +13,11 @@ Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
                      const std::vector<Pose2>& map_from_group, const AssociationGate& gate)
     : groups_(groups) {
   std::vector<Sighting> in_time;
+  std::vector<int> companies;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const Motion2 motion(map_from_group[g]);
     const std::vector<Surfel>& surfels = groups[g].surfels;
-    const std::vector<int> companies = CompaniesOf(surfels);
+    CountCompanions(surfels, companies);
     for (std::size_t i = 0; i < surfels.size(); ++i) {
       const int landmark = store_.Merge(motion * surfels[i], gate);
       in_time.push_back({landmark, static_cast<int>(g), companies[i], &surfels[i]});

@@ -13,12 +13,12 @@ namespace depthgrid {
 struct Sighting {
   int landmark = 0;
   int group = 0;
-  int company = 1;                 // as CompaniesOf
+  int company = 1;                 // as CountCompanions
   const Surfel* surfel = nullptr;  // in the group's axes
 };
 
 // How sightings err: with so many times the variance that the surfels claim, and companions (see
-// CompaniesOf) alike to this correlation.
+// CountCompanions) alike to this correlation.
 struct SightingErrors {
   double variance_factor = 1.0;
   double correlation = 0.0;

@@ -31,13 +31,12 @@ int SignOf(double value) { return value > 0.0 ? 1 : -1; }
 
 }  // namespace
 
-std::vector<int> CompaniesOf(std::span<const Surfel> surfels) {
-  std::vector<int> companies(surfels.size(), 1);
+void CountCompanions(std::span<const Surfel> surfels, std::vector<int>& companies) {
+  companies.assign(surfels.size(), 1);
   ForCompanions(surfels, [&](std::size_t i, std::size_t j) {
     ++companies[i];
     ++companies[j];
   });
-  return companies;
 }
 
 void SharedErrors::Add(std::span<const Surfel> surfels, std::span<const double> residuals) {

@@ -10,10 +10,10 @@
 
 namespace depthgrid {
 
-// A group's surfels, in the order they were first seen, are taken in stretches of 16. Those of a
-// stretch whose walls face the same way are companions: they may err alike. By surfel, how many
-// they are, itself included.
-std::vector<int> CompaniesOf(std::span<const Surfel> surfels);
+// Surfels in the order they were first seen are taken in stretches of 16. Those of a stretch whose
+// walls face the same way are companions: they may err alike. By surfel, how many they are, itself
+// included.
+void CountCompanions(std::span<const Surfel> surfels, std::vector<int>& companies);
 
 // How much companions share of their errors, told by the signs of their residuals, which wrong
 // associations hardly move.

@@ -179,6 +179,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
   const JointResult result =
       AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
+  if (effort != AdjustEffort::kBend) matcher_.ShareErrors(result.correlation);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
   const auto group_count = static_cast<int>(groups.groups().size());

@@ -48,6 +48,8 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
   v.Flag("judge_misfit", judge_misfit,
          "whether a match whose surfels fit worse than their noise explains is believed less");
+  v.Flag("judge_sharing", judge_sharing,
+         "whether it is when neighbours err alike, as the joint adjustment found");
   v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
   v.Number("debias", debias, {0.0, 100.0},
            "a direction with less than this times the information that noisy normals feign is "
@@ -81,7 +83,7 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
   Pose2 pose = prediction.map_from_base;
   PairEvaluation evaluation;
   NormalEquations seen;
-  pairs_.Assign(pieces);
+  pairs_.Assign(pieces, options_.judge_sharing ? correlation_ : 0.0);
   while (match.iterations < options_.max_iterations) {
     evaluation = Evaluate(map, pose);
     ++match.iterations;

@@ -15,6 +15,7 @@ struct SurfelMatchOptions {
   double max_angle_deg = 45.0;     // nor with normals farther apart
   double huber_sigmas = 2.5;       // larger residuals count linearly
   bool judge_misfit = true;        // information over the Misfit of the matched surfels
+  bool judge_sharing = true;       // and over what neighbours share of their errors
   double normal_floor_rad = 0.01;  // no normal is known better
   double debias = 3.0;             // threshold of Debiased()
   int max_iterations = 10;
@@ -26,6 +27,8 @@ class SurfelMatcher {
  public:
   explicit SurfelMatcher(const SurfelMatchOptions& options) : options_(options) {}
 
+  // What companions among the pieces share of their errors (shared_errors.h), from now on.
+  void ShareErrors(double correlation) { correlation_ = correlation; }
   // Iterates towards the maximum a posteriori, which keeps directions that the scan does not see
   // where the prediction puts them. What is returned is the match alone: the pose at which the
   // debiased equations have their minimum, and their information. `parts`, if given, becomes what
@@ -39,6 +42,7 @@ class SurfelMatcher {
 
   SurfelMatchOptions options_;
   SurfelPairs pairs_;  // memory only, from one match to the next
+  double correlation_ = 0.0;
 };
 
 }  // namespace depthgrid

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "mapper/surfel/misfit.h"
+#include "mapper/surfel/shared_errors.h"
 
 namespace depthgrid {
 namespace {
@@ -50,7 +51,7 @@ struct SquareSums {
 
 }  // namespace
 
-void SurfelPairs::Assign(const std::vector<Surfel>& pieces) {
+void SurfelPairs::Assign(const std::vector<Surfel>& pieces, double correlation) {
   pieces_ = &pieces;
   associated_ = false;
   blocks_.assign((pieces.size() + kLanes - 1) / kLanes, {});
@@ -59,6 +60,12 @@ void SurfelPairs::Assign(const std::vector<Surfel>& pieces) {
     const std::size_t lane = i % kLanes;
     block.x_m[lane] = pieces[i].point_m.x();
     block.y_m[lane] = pieces[i].point_m.y();
+    block.alike[lane] = 1.0;
+  }
+  if (correlation <= 0.0) return;
+  CountCompanions(pieces, companies_);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    blocks_[i / kLanes].alike[i % kLanes] += (companies_[i] - 1) * correlation;
   }
 }
 
@@ -104,7 +111,7 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   block.surfel_y_m[lane] = surfel.point_m.y();
   block.normal_x[lane] = surfel.normal.x();
   block.normal_y[lane] = surfel.normal.y();
-  block.information[lane] = 1.0 / variance;
+  block.information[lane] = 1.0 / (variance * block.alike[lane]);
   block.per_sigma[lane] = 1.0 / std::sqrt(variance);
   block.mapped[lane] = map.FrameOf(found.index);
   block.noise_share[lane] = 1.0 / (surfel.information * variance);

@@ -30,8 +30,8 @@ struct PairEvaluation {
 class SurfelPairs {
  public:
   // Begins with other pieces, none of which belongs to a surfel yet. They are to outlive the
-  // evaluations.
-  void Assign(const std::vector<Surfel>& pieces);
+  // evaluations. Companions (shared_errors.h) among them err alike to this correlation.
+  void Assign(const std::vector<Surfel>& pieces, double correlation = 0.0);
   // Finds the surfel of each piece that could belong to another one than it did at the pose of the
   // call before. The map must not change between Assign() and the last of these calls.
   void Associate(const SurfelStore& map, const PairGates& gates, const Pose2& map_from_base);
@@ -51,6 +51,7 @@ class SurfelPairs {
     Lanes firm_m2{};                   // they may move so far from there, squared
     Lanes surfel_x_m{}, surfel_y_m{};  // their surfels, map axes
     Lanes normal_x{}, normal_y{};
+    Lanes alike{};        // its information counts over so much
     Lanes information{};  // of the offset between both
     Lanes per_sigma{};    // its square root
     Lanes normal_variance{};
@@ -61,6 +62,7 @@ class SurfelPairs {
 
   const std::vector<Surfel>* pieces_ = nullptr;
   std::vector<Block> blocks_;
+  std::vector<int> companies_;  // memory only
   bool associated_ = false;
   double associated_yaw_rad_ = 0.0;
 };

@@ -6,6 +6,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/rng.h"
+#include "mapper/surfel/surfel_matcher.h"
 
 namespace depthgrid {
 namespace {
@@ -22,7 +23,8 @@ TEST(SharedErrors, CompanionsAreOfOneStretchAndFaceTheSameWay) {
   surfels[5] = Facing(90.0);
   surfels[7] = Facing(180.0);  // the wall's other side
   surfels[9] = Facing(85.0);
-  const std::vector<int> companies = CompaniesOf(surfels);
+  std::vector<int> companies;
+  CountCompanions(surfels, companies);
   EXPECT_EQ(companies[0], 13);
   EXPECT_EQ(companies[3], 13);
   EXPECT_EQ(companies[5], 2);
@@ -71,6 +73,36 @@ TEST(SharedErrors, NothingIsToldOfFewPairsOrWhatErrsTheOtherWay) {
   SharedErrors against;
   for (int i = 0; i < 200; ++i) against.Add(two, std::vector<double>{1.0, -2.0});
   EXPECT_EQ(against.Correlation(), 0.0);
+}
+
+// Sixteen pieces of one wall that all err alike tell as much as one, in the same place.
+TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
+  std::vector<Surfel> wall;
+  SurfelStore map;
+  for (int i = 0; i < 16; ++i) {
+    Surfel piece;
+    piece.point_m = {2.0, 0.1 * i};
+    piece.normal = {-1.0, 0.0};
+    piece.information = 1e4;
+    piece.normal_information = 1e4;
+    wall.push_back(piece);
+    map.Merge(piece, {0.03, 0.05, 0.7});
+  }
+  Prediction prediction;
+  prediction.map_from_base = {0.01, 0.0, 0.0};
+  prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
+  SurfelMatcher matcher({});
+  const MatchResult alone = matcher.Match(wall, map, prediction);
+  matcher.ShareErrors(1.0);
+  const MatchResult alike = matcher.Match(wall, map, prediction);
+  EXPECT_NEAR(alone.information(0, 0), 16 * 5000.0, 1.0);
+  EXPECT_NEAR(alike.information(0, 0), 5000.0, 1.0);
+  EXPECT_NEAR(alike.map_from_base.x_m, alone.map_from_base.x_m, 1e-5);
+  SurfelMatchOptions off;
+  off.judge_sharing = false;
+  SurfelMatcher believing(off);
+  believing.ShareErrors(1.0);
+  EXPECT_EQ(believing.Match(wall, map, prediction).information, alone.information);
 }
 
 }  // namespace
