@@ -169,6 +169,7 @@ void SampleAll(const ImageBands& bands, const NoiseWindow& window,
     hn::Store(hn::Set(d, vectors.skipped_from[i]), d, skipped_from);
   }
   for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (blocks[b].GroupCount() == 0) continue;  // none of its lines is in the image
     SmallestOfGroups(found[b].band.samples.least_depth, blocks[b].GroupCount(),
                      found[b].least_depth);
   }

@@ -121,7 +121,7 @@ BearingLine LineOf(const Axes& axes, const BatchLines& lines, std::size_t k) {
   ClipBelow(horizontal, kMinHorizontal, low, high);
   ClipBelow(column, -0.5, low, high);
   ClipBelow({-column.at_zero, -column.slope}, -(axes.width_px - 0.5), low, high);
-  line.first_row = static_cast<int>(std::ceil(std::max(low, -1.0)));
+  line.first_row = static_cast<int>(std::ceil(std::clamp(low, -1.0, 1.0 * axes.height_px)));
   line.last_row = static_cast<int>(std::floor(std::max(high, -1.0)));
   line.u0 = static_cast<float>(column.at_zero);
   line.u1 = static_cast<float>(column.slope);

@@ -175,8 +175,10 @@ class SkipRule {
   HWY_INLINE Vec From(Floats d, Vec nearest_m) const {
     const Ints di;
     const Vec max_range = hn::Set(d, max_range_m_);
-    const Vec step = hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / kStepM)),
-                             hn::Set(d, static_cast<float>(kSteps - 1)));
+    // Rounding may leave a range below 0 of a camera whose centre is far off its image.
+    const Vec step = hn::Max(hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / kStepM)),
+                                     hn::Set(d, static_cast<float>(kSteps - 1))),
+                             hn::Zero(d));
     const Vec width = hn::GatherIndex(d, width_m_.data(), hn::ConvertTo(di, step));
     const Vec from = hn::Add(nearest_m, hn::Mul(hn::Set(d, 1.5F), width));
     return hn::Min(from, max_range);

@@ -344,5 +344,42 @@ TEST(DepthToScan, ContradictingOptionsAreRefused) {
   EXPECT_EQ(error_of(range), "mapper.scan.min_range_m: is 7, must be below max_range_m, 6");
 }
 
+// All rays of a long lens that looks straight down are too steep for a bearing.
+TEST(DepthToScan, SeesNothingStraightBelow) {
+  const PinholeCamera camera{
+      .width_px = 64, .height_px = 48, .fx_px = 5000, .fy_px = 5000, .cx_px = 31.5, .cy_px = 23.5};
+  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(90.0), 0.0);
+  DepthImage depth(camera.width_px, camera.height_px);
+  std::fill(depth.z_m.begin(), depth.z_m.end(), 1.0F);
+  const Scan scan = DepthToScan(camera, {}).Convert(depth, pose);
+  EXPECT_FALSE(scan.beams.empty());
+  for (const Beam& beam : scan.beams) {
+    EXPECT_FALSE(beam.hit);
+    EXPECT_LE(beam.clear_to_m, beam.clear_from_m);
+  }
+}
+
+// Nothing checks a camera's centre here. What its scans say is nothing to rely on, but they read
+// within the image: single precision no longer tells such a camera's rows apart.
+TEST(DepthToScan, ReadsWithinTheImageWhateverTheCamera) {
+  RandomStream random(7, RandomStage::kTest);
+  PinholeCamera camera{.width_px = 640, .height_px = 480};
+  DepthImage depth(camera.width_px, camera.height_px);
+  for (float& z_m : depth.z_m) z_m = static_cast<float>(0.5 + 4.0 * random.Uniform());
+  ScanMemory memory;
+  for (int i = 0; i < 1000; ++i) {
+    const auto far = [&] {
+      return (random.Uniform() - 0.5) * std::pow(10.0, 16.0 * random.Uniform());
+    };
+    camera.fx_px = camera.fy_px = std::pow(10.0, 6.0 * random.Uniform() - 2.0);
+    camera.cx_px = far();
+    camera.cy_px = far();
+    const Pose3 pose = TiltedCamera({}, kHeightM, 0.6 * random.Normal(), 0.6 * random.Normal());
+    const CameraStand stand = StandOf(pose, 0.0);
+    const ScanPair scans = DepthToScan(camera, {}).ConvertBoth(depth, stand, 0.1, memory);
+    ASSERT_FALSE(scans.obstacles.beams.empty());
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
