@@ -1,7 +1,12 @@
 #include "eval/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include <cerrno>
 
 #include "mapper/core/error.h"
 
@@ -43,23 +48,65 @@ void MoveInto(const fs::path& from, const fs::path& to) {
   }
 }
 
+void RemoveContents(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
+}
+
+// Whether the open folder is still the one of this name.
+bool IsNamed(int folder, const fs::path& name) {
+  struct stat open_one {};
+  struct stat named {};
+  return ::fstat(folder, &open_one) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         open_one.st_ino == named.st_ino && open_one.st_dev == named.st_dev;
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const std::string& path, bool force) : target_(Resolved(path)) {
   RequireUsable(target_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);
-  std::error_code error;
-  fs::create_directories(parent, error);
-  work_ = parent / fmt::format(".{}.partial-{}", target_.filename().string(), ::getpid());
-  if (!error) fs::remove_all(work_, error);
-  if (!error) fs::create_directory(work_, error);
-  if (error) throw InputError(path, "cannot be created: " + error.message());
+  work_ = parent / fmt::format(".{}.partial", target_.filename().string());
+  try {
+    fs::create_directories(parent);
+    Take(path);
+    RemoveContents(work_);  // of a program that was killed
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(path, "cannot be created: " + error.code().message());
+  }
+  try {
+    RequireUsable(target_, path, force);  // another program may have written it meanwhile
+  } catch (...) {
+    fs::remove_all(work_);
+    ::close(lock_);
+    throw;
+  }
+}
+
+// One program at a time has the folder of that name open and locked.
+void OutputFolder::Take(const std::string& shown) {
+  while (lock_ < 0) {
+    fs::create_directory(work_);
+    lock_ = ::open(work_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (lock_ < 0) {
+      if (errno == ENOENT) continue;  // its owner has just finished
+      throw fs::filesystem_error("open", work_, std::error_code(errno, std::generic_category()));
+    }
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(lock_);
+      throw InputError(shown, "is being written by another depthgrid; choose another folder");
+    }
+    if (IsNamed(lock_, work_)) return;
+    ::close(lock_);
+    lock_ = -1;
+  }
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  fs::remove_all(work_, ignored);
+  // Once it took its place, the name may be another program's.
+  if (IsNamed(lock_, work_)) fs::remove_all(work_, ignored);
+  ::close(lock_);
   if (!committed_ && !first_created_parent_.empty()) {
     // Only what is empty: another program may have put something there meanwhile.
     for (fs::path p = target_.parent_path(); fs::remove(p, ignored); p = p.parent_path()) {

@@ -9,7 +9,8 @@ namespace depthgrid {
 
 class OutputFolder {
  public:
-  // Throws InputError when `path` is a file, or a folder that is not empty unless `force`.
+  // Throws InputError when `path` is a file, a folder that is not empty unless `force`, or one that
+  // another program is about to write.
   OutputFolder(const std::string& path, bool force);
   // Removes everything again unless committed.
   ~OutputFolder();
@@ -25,9 +26,12 @@ class OutputFolder {
   void Commit();
 
  private:
+  void Take(const std::string& shown);
+
   std::filesystem::path target_;
   std::filesystem::path work_;
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
+  int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "eval/output_folder.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -16,7 +17,9 @@ class OutputFolderTest : public ::testing::Test {
  protected:
   void SetUp() override {
     root_ = fs::path(::testing::TempDir()) /
-            ::testing::UnitTest::GetInstance()->current_test_info()->name();
+            (std::string("depthgrid_output_folder_") +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+             std::to_string(::getpid()));  // two trees may run their tests at once
     fs::remove_all(root_);
     fs::create_directories(root_);
   }
@@ -105,6 +108,34 @@ TEST_F(OutputFolderTest, FollowsALinkToAFolder) {
   folder.Commit();
   EXPECT_TRUE(fs::is_symlink(Path("link")));
   EXPECT_TRUE(fs::exists(Path("real/a.txt")));
+}
+
+TEST_F(OutputFolderTest, IsOneWritersAtATime) {
+  {
+    OutputFolder first(Path("out"), false);
+    WriteFile(first.File("a.txt"), "first");
+    EXPECT_THROW(OutputFolder(Path("out"), false), InputError);
+    EXPECT_THROW(OutputFolder(Path("out/"), true), InputError);
+    OutputFolder other(Path("other"), false);
+    first.Commit();
+    // The name is free again, and what is then written under it is not the first one's to remove.
+    OutputFolder second(Path("out"), true);
+    WriteFile(second.File("b.txt"), "second");
+    { const OutputFolder gone(Path("gone"), false); }
+    second.Commit();
+  }
+  EXPECT_EQ(Everything(), (Names{"out", "out/a.txt", "out/b.txt"}));
+}
+
+TEST_F(OutputFolderTest, TakesOverWhatAKilledProgramLeft) {
+  fs::create_directories(Path(".out.partial/half"));
+  WriteFile(Path(".out.partial/half/a.txt"), "half");
+  {
+    OutputFolder folder(Path("out"), false);
+    WriteFile(folder.File("b.txt"), "1");
+    folder.Commit();
+  }
+  EXPECT_EQ(Everything(), (Names{"out", "out/b.txt"}));
 }
 
 }  // namespace
