@@ -12,15 +12,15 @@
 namespace depthgrid::internal {
 namespace {
 
-constexpr double kMaxNormError = 1e-3;
 constexpr std::size_t kCsvColumns = 14;
 constexpr std::size_t kCsvColumnsWithStamps = 17;
 
-void RequirePossible(const LoopClosure& loop, const std::string& place) {
+void RequirePossible(LoopClosure& loop, const std::string& place) {
   const double norm = loop.first_from_second.rotation.norm();
   if (!(std::abs(norm - 1.0) <= kMaxNormError)) {
     throw InputError(place, fmt::format("quaternion has norm {:.6g}, must be 1", norm));
   }
+  if (std::abs(norm - 1.0) > kExactNormError) loop.first_from_second.rotation.normalize();
   if (std::max(loop.first_frame, loop.second_frame) > loop.reported_at_frame) {
     throw InputError(place, "a loop cannot be reported before the frames it joins");
   }

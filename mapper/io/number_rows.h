@@ -30,4 +30,11 @@ std::string PlaceOfLine(const std::string& path, int line);
 // All fields of a row as numbers; throws InputError unless there are exactly `count`.
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);
 
+// How far the norm of a unit quaternion may be off. Files print four to nine digits, so norms are
+// off by up to 1e-4; a larger error is a column mistaken for another.
+constexpr double kMaxNormError = 0.05;
+// Closer than this the quaternion is kept bit for bit (nine printed digits of a float pose), so
+// that a pose that passes through the program unchanged is printed unchanged.
+constexpr double kExactNormError = 1e-6;
+
 }  // namespace depthgrid

@@ -14,13 +14,6 @@
 namespace depthgrid {
 namespace {
 
-// Files print four to nine digits, so norms are off by up to 1e-4. A larger error is a column
-// mistaken for another.
-constexpr double kMaxNormError = 0.05;
-// Closer than this the quaternion is kept bit for bit (nine printed digits of a float pose), so
-// that a pose that passes through the program unchanged is printed unchanged.
-constexpr double kExactNormError = 1e-6;
-
 std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place) {
   Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};
   const double norm = pose.rotation.norm();

@@ -65,6 +65,11 @@ TEST(LoopEvents, StampedLoopsWithAndWithoutSigmas) {
   EXPECT_EQ(events.events[0].loop->sigma_translation_m, LoopClosure{}.sigma_translation_m);
 }
 
+TEST(LoopEvents, RotationsOfFewDigitsAreRotations) {
+  const auto events = Parse("10.0 10.1 1 2 3 0 0 0.70 0.70\n");
+  EXPECT_NEAR(events.events.at(0).loop->first_from_second.rotation.norm(), 1.0, 1e-12);
+}
+
 TEST(LoopEvents, OneClearLineForEachFault) {
   EXPECT_THAT(ErrorOf("LOOP 1 10.0 0 10.1 Tcm 1 0 0\n"),
               HasSubstr("e.txt:1: a LOOP must end with"));
