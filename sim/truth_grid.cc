@@ -10,21 +10,6 @@
 namespace depthgrid {
 namespace {
 
-GridGeometry Bounds(const std::vector<Cell>& cells, double resolution_m) {
-  GridGeometry geometry;
-  geometry.resolution_m = resolution_m;
-  if (cells.empty()) return geometry;
-  Cell low = cells.front(), high = cells.front();
-  for (const Cell& cell : cells) {
-    low = {std::min(low.x, cell.x), std::min(low.y, cell.y)};
-    high = {std::max(high.x, cell.x), std::max(high.y, cell.y)};
-  }
-  geometry.min_cell = low;
-  geometry.width_cells = high.x - low.x + 1;
-  geometry.height_cells = high.y - low.y + 1;
-  return geometry;
-}
-
 // Refuses what is surely a mistake of units before memory is asked for it.
 void CheckExtent(const TriangleMesh& mesh, double resolution_m) {
   constexpr double kMaxCells = 2e8;
@@ -76,7 +61,7 @@ StateMap Drawn(const GridGeometry& geometry, const std::vector<Cell>& occupied) 
 
 StateMap SurfaceCells(const TriangleMesh& mesh, double floor_z_m, const TruthGridOptions& options) {
   const std::vector<Cell> cells = SurfaceCellList(mesh, floor_z_m, options);
-  return Drawn(Bounds(cells, options.resolution_m), cells);
+  return Drawn(BoundsOf(cells, options.resolution_m), cells);
 }
 
 void FloodFree(StateMap& map, const std::vector<Cell>& from) {
@@ -103,8 +88,9 @@ StateMap TruthMap(const TriangleMesh& mesh, double floor_z_m, const Trajectory& 
                   const TruthGridOptions& options) {
   const std::vector<Cell> occupied = SurfaceCellList(mesh, floor_z_m, options);
   const std::vector<Cell> path = PathCells(world_from_camera, options.resolution_m);
-  StateMap map = Drawn(
-      Union(Bounds(occupied, options.resolution_m), Bounds(path, options.resolution_m)), occupied);
+  StateMap map =
+      Drawn(Union(BoundsOf(occupied, options.resolution_m), BoundsOf(path, options.resolution_m)),
+            occupied);
   FloodFree(map, path);
   return map;
 }

@@ -15,17 +15,12 @@ namespace {
 class Buckets {
  public:
   Buckets(const std::vector<Eigen::Vector2d>& targets, double size_m) : size_m_(size_m) {
-    Cell low = CellOf(targets.front(), size_m);
-    Cell high = low;
-    for (const Eigen::Vector2d& t : targets) {
-      const Cell c = CellOf(t, size_m);
-      low = {std::min(low.x, c.x), std::min(low.y, c.y)};
-      high = {std::max(high.x, c.x), std::max(high.y, c.y)};
-    }
-    geometry_ = {size_m, low, high.x - low.x + 1, high.y - low.y + 1};
+    std::vector<Cell> cells;
+    for (const Eigen::Vector2d& t : targets) cells.push_back(CellOf(t, size_m));
+    geometry_ = BoundsOf(cells, size_m);
     members_.resize(geometry_.size());
-    for (const Eigen::Vector2d& t : targets) {
-      members_[geometry_.Index(CellOf(t, size_m))].push_back(t);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      members_[geometry_.Index(cells[i])].push_back(targets[i]);
     }
   }
 

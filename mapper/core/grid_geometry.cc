@@ -19,4 +19,19 @@ GridGeometry Union(const GridGeometry& a, const GridGeometry& b) {
   return both;
 }
 
+GridGeometry BoundsOf(const std::vector<Cell>& cells, double resolution_m) {
+  GridGeometry bounds;
+  bounds.resolution_m = resolution_m;
+  if (cells.empty()) return bounds;
+  Cell low = cells.front(), high = cells.front();
+  for (const Cell& cell : cells) {
+    low = {std::min(low.x, cell.x), std::min(low.y, cell.y)};
+    high = {std::max(high.x, cell.x), std::max(high.y, cell.y)};
+  }
+  bounds.min_cell = low;
+  bounds.width_cells = high.x - low.x + 1;
+  bounds.height_cells = high.y - low.y + 1;
+  return bounds;
+}
+
 }  // namespace depthgrid

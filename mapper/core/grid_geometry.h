@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace depthgrid {
 
@@ -59,5 +60,8 @@ struct GridGeometry {
 // The smallest rectangle that contains both; an empty one (zero size) counts for nothing. Same
 // resolution required.
 GridGeometry Union(const GridGeometry& a, const GridGeometry& b);
+
+// The smallest rectangle that contains all of them; of none the empty one.
+GridGeometry BoundsOf(const std::vector<Cell>& cells, double resolution_m);
 
 }  // namespace depthgrid

@@ -30,21 +30,6 @@ int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
   return i;
 }
 
-GridGeometry Around(const std::vector<Cell>& cells, double resolution_m) {
-  GridGeometry geometry;
-  geometry.resolution_m = resolution_m;
-  if (cells.empty()) return geometry;
-  Cell least = cells[0], most = cells[0];
-  for (const Cell& cell : cells) {
-    least = {std::min(least.x, cell.x), std::min(least.y, cell.y)};
-    most = {std::max(most.x, cell.x), std::max(most.y, cell.y)};
-  }
-  geometry.min_cell = least;
-  geometry.width_cells = most.x - least.x + 1;
-  geometry.height_cells = most.y - least.y + 1;
-  return geometry;
-}
-
 }  // namespace
 
 void PlaceOptions::Visit(OptionsVisitor& v) {
@@ -112,7 +97,7 @@ std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frame
   }
   // The first of each cell, so that near walls do not outweigh far ones; row by row.
   constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  const GridGeometry geometry = Around(cells, resolution_m);
+  const GridGeometry geometry = BoundsOf(cells, resolution_m);
   std::vector<std::uint32_t> first(geometry.size(), kNone);
   for (std::size_t i = cells.size(); i-- > 0;) {
     first[geometry.Index(cells[i])] = static_cast<std::uint32_t>(i);

@@ -104,8 +104,9 @@ std::string ListKeys(Options options) {
   return out;
 }
 
-// The candidate closest to `word` in edit distance (two neighbouring letters swapped are one slip),
-// or "" when none is near (more than half its letters differ).
+// The only candidate that begins with `word`, else the one closest to it in edit distance (two
+// neighbouring letters swapped are one slip), or "" when none is near (more than half its letters
+// differ).
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
 // ", did you mean 'prefixNEAREST'?" for the end of a message, or "" when no candidate is near.

@@ -48,6 +48,10 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates) {
+  const auto begins_so = [&](const std::string& candidate) { return candidate.starts_with(word); };
+  if (!word.empty() && std::ranges::count_if(candidates, begins_so) == 1) {
+    return *std::ranges::find_if(candidates, begins_so);
+  }
   std::string best;
   std::size_t best_distance = word.size() / 2 + 1;
   for (const auto& candidate : candidates) {

@@ -12,7 +12,7 @@ namespace depthgrid {
 namespace {
 
 // Stamps of both trajectories are copies of the images'.
-constexpr double kSameStampS = 0.005;
+constexpr double kSameFrameS = 0.005;
 // Measured on ORB-SLAM2 and Planar-SLAM runs: steps differ from the revised ones by up to 0.065 m
 // without an event, and by 0.15 to 0.38 m where a loop or relocalisation moved the poses.
 constexpr double kJumpM = 0.1;
@@ -44,7 +44,7 @@ std::vector<std::optional<Pose3>> FinalOf(const std::vector<SlamPose>& live,
   for (const StampedPose& pose : final) stamps_s.push_back(pose.stamp_s);
   std::vector<std::optional<Pose3>> found;
   for (const SlamPose& pose : live) {
-    const auto entry = NearestStamp(stamps_s, pose.stamp_s, kSameStampS);
+    const auto entry = NearestStamp(stamps_s, pose.stamp_s, kSameFrameS);
     found.push_back(entry ? std::optional(final[*entry].world_from_camera) : std::nullopt);
   }
   return found;

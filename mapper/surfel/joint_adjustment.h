@@ -55,7 +55,7 @@ struct JointResult {
   std::vector<Pose2> map_from_group;  // the first is unchanged
   std::vector<bool> loop_accepted;
   Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();  // of the prior, a frame, as learnt
-  double correlation = 0.0;                                // as in SightingErrors, the same
+  double correlation = 0.0;                                // of SightingErrors, as learnt
 };
 
 // `motions` has one entry a group; the first is not used. `loops` are links without an order of

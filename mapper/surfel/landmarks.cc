@@ -49,44 +49,48 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   Row row;
   row.group = sighting.group;
   row.error_m = OffsetFrom(landmark, motion * local.point_m);
-  // So that companions have the information of their mean: n of equal variance and correlation r
-  // tell as much as n / (1 + (n - 1) r) that err independently.
-  const double alike = 1.0 + (sighting.company - 1) * trust.errors.correlation;
-  const double information = local.information / (trust.errors.variance_factor * alike);
+  const double information =
+      local.information /
+      (trust.errors.variance_factor * CountedOver(sighting.company, trust.errors.correlation));
   const double sigmas = std::abs(row.error_m) * std::sqrt(information);
   row.weight = information * std::min(1.0, trust.huber_sigmas / sigmas);
   row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
   return row;
 }
 
+void Landmarks::FindRows(std::size_t landmark, const std::vector<Motion2>& motions,
+                         const SightingTrust& trust, Rows& found) const {
+  found.rows.clear();
+  found.weights = 0.0;
+  double weighted_error = 0.0;
+  for (std::size_t i = begin_[landmark]; i < begin_[landmark + 1]; ++i) {
+    const auto group = static_cast<std::size_t>(sightings_[i].group);
+    const Row& row = found.rows.emplace_back(RowOf(sightings_[i], motions[group], trust));
+    found.weights += row.weight;
+    weighted_error += row.weight * row.error_m;
+  }
+  found.offset_m = weighted_error / found.weights;
+}
+
 SightingErrors Landmarks::ErrorsAt(const std::vector<Pose2>& map_from_group) const {
-  std::vector<Motion2> motions;
-  for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
+  const std::vector<Motion2> motions(map_from_group.begin(), map_from_group.end());
   const SightingTrust as_claimed{std::numeric_limits<double>::infinity(), {}};
   Misfit misfit;
   std::vector<std::vector<double>> residuals;  // in sigmas, by group and surfel
   for (const SurfelGroup& group : groups_) residuals.emplace_back(group.surfels.size());
-  std::vector<Row> rows;
+  Rows found;
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
     if (SeenByOneGroup(landmark)) continue;
-    rows.clear();
-    double weights = 0.0;
-    double weighted_error = 0.0;
-    const std::size_t begin = begin_[landmark];
-    for (std::size_t i = begin; i < begin_[landmark + 1]; ++i) {
-      const auto group = static_cast<std::size_t>(sightings_[i].group);
-      rows.push_back(RowOf(sightings_[i], motions[group], as_claimed));
-      weights += rows.back().weight;
-      weighted_error += rows.back().weight * rows.back().error_m;
-    }
-    for (std::size_t k = 0; k < rows.size(); ++k) {
+    FindRows(landmark, motions, as_claimed, found);
+    const Sighting* sighting = &sightings_[begin_[landmark]];
+    for (const Row& row : found.rows) {
+      const auto group = static_cast<std::size_t>(row.group);
+      const auto place = (sighting++)->surfel - groups_[group].surfels.data();
       // The mean has the sighting in it, so less than the sighting's variance is left.
-      const double variance = 1.0 / rows[k].weight - 1.0 / weights;
+      const double variance = 1.0 / row.weight - 1.0 / found.weights;
       if (variance <= 0.0) continue;
-      const double sigmas = (rows[k].error_m - weighted_error / weights) / std::sqrt(variance);
+      const double sigmas = (row.error_m - found.offset_m) / std::sqrt(variance);
       misfit.Add(sigmas);
-      const auto group = static_cast<std::size_t>(rows[k].group);
-      const auto place = sightings_[begin + k].surfel - groups_[group].surfels.data();
       residuals[group][static_cast<std::size_t>(place)] = sigmas;
     }
   }
@@ -97,35 +101,23 @@ SightingErrors Landmarks::ErrorsAt(const std::vector<Pose2>& map_from_group) con
 
 void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTrust& trust,
                       PoseMatrix& h, Eigen::VectorXd& g) const {
-  std::vector<Motion2> motions;
-  for (const Pose2& pose : map_from_group) motions.emplace_back(pose);
-  std::vector<Row> rows;
+  const std::vector<Motion2> motions(map_from_group.begin(), map_from_group.end());
+  Rows found;
   std::vector<PoseShare> sums;
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
-    const std::size_t begin = begin_[landmark];
-    const std::size_t end = begin_[landmark + 1];
     if (SeenByOneGroup(landmark)) continue;  // says nothing of poses
-    rows.clear();
-    double weights = 0.0;
-    double weighted_error = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto group = static_cast<std::size_t>(sightings_[i].group);
-      rows.push_back(RowOf(sightings_[i], motions[group], trust));
-      weights += rows.back().weight;
-      weighted_error += rows.back().weight * rows.back().error_m;
-    }
-    const double offset_m = weighted_error / weights;
+    FindRows(landmark, motions, trust, found);
     // Sightings by the same group come one after the other: one sum of rows each.
     sums.clear();
-    for (const Row& row : rows) {
+    for (const Row& row : found.rows) {
       const Eigen::Vector3d weighted_row = row.weight * row.jacobian;
-      g.segment<3>(3 * row.group) -= (row.error_m - offset_m) * weighted_row;
+      g.segment<3>(3 * row.group) -= (row.error_m - found.offset_m) * weighted_row;
       h.AddBlock(row.group, row.group, weighted_row * row.jacobian.transpose());
       if (sums.empty() || sums.back().pose != row.group) sums.push_back({row.group});
       sums.back().share += weighted_row;
     }
     for (std::size_t k = 0; k < sums.size(); ++k) {
-      const Eigen::Vector3d scaled = -sums[k].share / weights;
+      const Eigen::Vector3d scaled = -sums[k].share / found.weights;
       h.AddProducts(sums[k].pose, scaled, std::span(sums).first(k));
       h.AddBlock(sums[k].pose, sums[k].pose, scaled * sums[k].share.transpose());
     }

@@ -58,7 +58,15 @@ class Landmarks {
   bool SeenByOneGroup(std::size_t landmark) const {
     return sightings_[begin_[landmark]].group == sightings_[begin_[landmark + 1] - 1].group;
   }
+  // Of one landmark's sightings.
+  struct Rows {
+    std::vector<Row> rows;
+    double weights = 0.0;
+    double offset_m = 0.0;  // weighted mean of the errors
+  };
   Row RowOf(const Sighting& sighting, const Motion2& motion, const SightingTrust& trust) const;
+  void FindRows(std::size_t landmark, const std::vector<Motion2>& motions,
+                const SightingTrust& trust, Rows& found) const;
 
   const std::vector<SurfelGroup>& groups_;
   SurfelStore store_;

@@ -15,6 +15,13 @@ namespace depthgrid {
 // included.
 void CountCompanions(std::span<const Surfel> surfels, std::vector<int>& companies);
 
+// A companion's information counts over this, so that all of them have the information of their
+// mean: n of equal variance and correlation r tell as much as n / (1 + (n - 1) r) that err
+// independently.
+inline double CountedOver(int company, double correlation) {
+  return 1.0 + (company - 1) * correlation;
+}
+
 // How much companions share of their errors, told by the signs of their residuals, which wrong
 // associations hardly move.
 class SharedErrors {

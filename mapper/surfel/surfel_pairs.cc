@@ -60,12 +60,12 @@ void SurfelPairs::Assign(const std::vector<Surfel>& pieces, double correlation) 
     const std::size_t lane = i % kLanes;
     block.x_m[lane] = pieces[i].point_m.x();
     block.y_m[lane] = pieces[i].point_m.y();
-    block.alike[lane] = 1.0;
+    block.counted_over[lane] = 1.0;
   }
   if (correlation <= 0.0) return;
   CountCompanions(pieces, companies_);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    blocks_[i / kLanes].alike[i % kLanes] += (companies_[i] - 1) * correlation;
+    blocks_[i / kLanes].counted_over[i % kLanes] = CountedOver(companies_[i], correlation);
   }
 }
 
@@ -111,7 +111,7 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   block.surfel_y_m[lane] = surfel.point_m.y();
   block.normal_x[lane] = surfel.normal.x();
   block.normal_y[lane] = surfel.normal.y();
-  block.information[lane] = 1.0 / (variance * block.alike[lane]);
+  block.information[lane] = 1.0 / (variance * block.counted_over[lane]);
   block.per_sigma[lane] = 1.0 / std::sqrt(variance);
   block.mapped[lane] = map.FrameOf(found.index);
   block.noise_share[lane] = 1.0 / (surfel.information * variance);

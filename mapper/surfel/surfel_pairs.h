@@ -51,9 +51,9 @@ class SurfelPairs {
     Lanes firm_m2{};                   // they may move so far from there, squared
     Lanes surfel_x_m{}, surfel_y_m{};  // their surfels, map axes
     Lanes normal_x{}, normal_y{};
-    Lanes alike{};        // its information counts over so much
-    Lanes information{};  // of the offset between both
-    Lanes per_sigma{};    // its square root
+    Lanes counted_over{};  // their information, as CountedOver()
+    Lanes information{};   // of the offset between both
+    Lanes per_sigma{};     // its square root
     Lanes normal_variance{};
     Lanes mapped{}, noise_share{};  // as MapPart
   };

@@ -222,6 +222,8 @@ TEST(NearestWord, FindsSmallSlipsOnly) {
   EXPECT_EQ(NearestWord("rnu", {"map", "run"}), "run");
   EXPECT_EQ(NearestWord("frams", {"frame_rate", "frames"}), "frames");
   EXPECT_EQ(NearestWord("", {"mode"}), "");
+  EXPECT_EQ(NearestWord("--out", {"--set", "--output"}), "--output");
+  EXPECT_EQ(NearestWord("--f", {"--frames", "--frame-rate"}), "");
   EXPECT_EQ(DidYouMean("gian", {"mode", "gain"}, "fusion."), ", did you mean 'fusion.gain'?");
   EXPECT_EQ(DidYouMean("zzz", {"mode", "gain"}), "");
 }
