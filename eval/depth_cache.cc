@@ -12,6 +12,7 @@
 
 #include "eval/hash.h"
 #include "mapper/core/error.h"
+#include "mapper/io/end_task.h"
 
 namespace depthgrid {
 namespace {
@@ -164,6 +165,10 @@ void DepthCache::Store(const Pose3& world_from_camera, const DepthFrame& frame) 
   const std::size_t thread = std::hash<std::thread::id>{}(std::this_thread::get_id());
   const fs::path partial =
       path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(thread);
+  const EndTask remove_half([&partial] {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+  });
   std::ofstream file(partial, std::ios::binary);
   const auto write = [&](const void* data, std::size_t size) {
     file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
@@ -174,11 +179,7 @@ void DepthCache::Store(const Pose3& world_from_camera, const DepthFrame& frame) 
   file.close();
   std::error_code error;
   if (file) fs::rename(partial, path, error);
-  if (!file || error) {
-    fs::remove(partial, error);
-    return;
-  }
-  used_bytes_ += bytes;
+  if (file && !error) used_bytes_ += bytes;
 }
 
 }  // namespace depthgrid

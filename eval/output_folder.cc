@@ -66,6 +66,7 @@ OutputFolder::OutputFolder(const std::string& path, bool force) : target_(Resolv
   RequireUsable(target_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);
+  const EndDelay whole;
   work_ = parent / fmt::format(".{}.partial", target_.filename().string());
   try {
     fs::create_directories(parent);
@@ -81,6 +82,7 @@ OutputFolder::OutputFolder(const std::string& path, bool force) : target_(Resolv
     ::close(lock_);
     throw;
   }
+  clean_.emplace([this] { Clean(); });
 }
 
 // One program at a time has the folder of that name open and locked.
@@ -103,10 +105,16 @@ void OutputFolder::Take(const std::string& shown) {
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  // Once it took its place, the name may be another program's.
-  if (IsNamed(lock_, work_)) fs::remove_all(work_, ignored);
+  clean_.reset();
   ::close(lock_);
+}
+
+void OutputFolder::Clean() const {
+  std::error_code ignored;
+  // Once it took its place, the name may be another program's. When the program ends at once, its
+  // other threads may be writing still.
+  constexpr int kMostTries = 100;
+  for (int i = 0; i < kMostTries && IsNamed(lock_, work_); ++i) fs::remove_all(work_, ignored);
   if (!committed_ && !first_created_parent_.empty()) {
     // Only what is empty: another program may have put something there meanwhile.
     for (fs::path p = target_.parent_path(); fs::remove(p, ignored); p = p.parent_path()) {
@@ -116,6 +124,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::Commit() {
+  const EndDelay whole;
   std::error_code error;
   fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
   if (error) MoveInto(work_, target_);

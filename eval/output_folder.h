@@ -3,7 +3,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "mapper/io/end_task.h"
 
 namespace depthgrid {
 
@@ -27,12 +30,14 @@ class OutputFolder {
 
  private:
   void Take(const std::string& shown);
+  void Clean() const;
 
   std::filesystem::path target_;
   std::filesystem::path work_;
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
   int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;
+  std::optional<EndTask> clean_;
 };
 
 }  // namespace depthgrid

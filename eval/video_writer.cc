@@ -116,15 +116,15 @@ VideoWriter::VideoWriter(std::string path, int width_px, int height_px, int fram
     : path_(std::move(path)),
       temporary_(fmt::format("{}.{}.tmp", path_, ::getpid())),
       width_px_(width_px),
-      height_px_(height_px) {
+      height_px_(height_px),
+      remove_temporary_([this] {
+        std::error_code ignored;
+        fs::remove(temporary_, ignored);
+      }) {
   process_ = Start(CommandFor(temporary_, width_px, height_px, frames_per_s), pipe_);
 }
 
-VideoWriter::~VideoWriter() {
-  Close();
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
+VideoWriter::~VideoWriter() { Close(); }
 
 void VideoWriter::Add(const RgbImage& frame) {
   Require(frame.width_px == width_px_ && frame.height_px == height_px_,

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mapper/core/rgb_image.h"
+#include "mapper/io/end_task.h"
 
 namespace depthgrid {
 
@@ -35,6 +36,7 @@ class VideoWriter {
   int pipe_ = -1;
   int process_ = -1;
   int status_ = -1;
+  EndTask remove_temporary_;
 };
 
 }  // namespace depthgrid

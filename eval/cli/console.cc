@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -14,42 +13,11 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "eval/cli/interrupts.h"
 #include "sim/usable_threads.h"
 
 namespace depthgrid::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-// One keystroke or one `timeout` may send a signal twice (to the program and to its group): within
-// this time it is one request. After it a further one ends the program at once.
-constexpr long long kSameRequestNs = 1'000'000'000;
-volatile long long first_signal_ns = 0;  // written by the handler alone
-bool on_terminal = false;                // standard error, known before any signal
-
-long long MonotonicNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
-}
-
-// Only what POSIX allows in a handler.
-void Remember(int signal) {
-  const int saved_errno = errno;
-  const long long now_ns = MonotonicNs();
-  if (interrupted == 0) {
-    first_signal_ns = now_ns;
-    interrupted = 1;
-    constexpr std::string_view kStopping = "\ndepthgrid: stopping; again to end at once\n";
-    if (on_terminal) {
-      [[maybe_unused]] const auto shown = write(STDERR_FILENO, kStopping.data(), kStopping.size());
-    }
-  } else if (now_ns - first_signal_ns > kSameRequestNs) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-  errno = saved_errno;
-}
 
 std::string TimeText(double seconds) {
   const auto whole = static_cast<int>(seconds + 0.5);
@@ -139,18 +107,6 @@ void FinishOutput() {
     throw std::runtime_error(std::string("standard output: cannot be written: ") +
                              std::strerror(flushed ? EIO : error));
   }
-}
-
-void CatchInterrupts() {
-  on_terminal = isatty(STDERR_FILENO) == 1;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What the caller had ignored (nohup, a shell's background jobs) stays ignored.
-    if (std::signal(signal, &Remember) == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-}
-
-void ThrowIfInterrupted() {
-  if (interrupted != 0) throw std::runtime_error("interrupted");
 }
 
 std::string Table(const std::vector<std::vector<std::string>>& rows) {

@@ -55,11 +55,6 @@ void OpenStandardStreams();
 // disk), so that half a table is not taken for a whole one.
 void FinishOutput();
 
-// Ctrl-C, `kill` and a closed terminal make the next progress report throw, so that half-written
-// output is removed.
-void CatchInterrupts();
-void ThrowIfInterrupted();
-
 // Columns as wide as their widest cell; the first is left-aligned, the others right-aligned.
 std::string Table(const std::vector<std::vector<std::string>>& rows);
 

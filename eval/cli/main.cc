@@ -7,6 +7,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/interrupts.h"
 #include "eval/cli/usage.h"
 #include "mapper/core/error.h"
 
@@ -22,7 +23,8 @@ constexpr const char* kFirstSteps =
     "  depthgrid scenes                     what is shipped\n"
     "  depthgrid run living_room -o out     a minute; then open out/report.html\n"
     "  depthgrid COMMAND --help             options and examples of a command\n"
-    "Exit codes: 0 done, 1 failed while running, 2 bad usage or input.";
+    "Exit codes: 0 done, 1 failed while running, 2 bad usage or input, 130 ended by Ctrl-C,\n"
+    "143 by kill.";
 
 void AddSet(CLI::App& app, CommonArguments& common) {
   app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
@@ -383,10 +385,11 @@ int Main(int argc, char** argv) {
     }
     FinishOutput();
     return kDone;
-  } catch (const InputError& error) {
-    return Complain(error.what(), kBadInput);
   } catch (const std::exception& error) {
-    return Complain(error.what(), kFailed);
+    // Whatever came of being stopped, that is what happened.
+    if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
+    const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
+    return Complain(error.what(), bad_input ? kBadInput : kFailed);
   }
 }
 

@@ -8,12 +8,14 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/cli/interrupts.h"
 #include "eval/shipped.h"
 #include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_folder.h"
 #include "eval/sweep/sweep_progress.h"
 #include "eval/sweep_report.h"
 #include "mapper/core/error.h"
+#include "mapper/io/end_task.h"
 #include "mapper/io/file.h"
 
 namespace depthgrid::cli {
@@ -52,10 +54,6 @@ class SweepFolder {
     created_ = fs::create_directories(path, error);
     if (error) throw InputError(path, "cannot be created: " + error.message());
   }
-  ~SweepFolder() {
-    std::error_code ignored;
-    if (created_ && !SweepDatabase::Exists(path_)) fs::remove_all(path_, ignored);
-  }
   SweepFolder(const SweepFolder&) = delete;
   SweepFolder& operator=(const SweepFolder&) = delete;
 
@@ -65,6 +63,10 @@ class SweepFolder {
 
   std::string path_;
   bool created_ = false;
+  EndTask clean_{[this] {
+    std::error_code ignored;
+    if (created_ && !SweepDatabase::Exists(path_)) fs::remove_all(path_, ignored);
+  }};
 };
 
 std::string DurationText(double seconds) {
@@ -115,6 +117,14 @@ void Merge(const SweepArguments& arguments) {
   Summarise(ReadSweep(output));
 }
 
+// What is known so far is worth a table. Read anew, for a thread of its own may do it.
+void TabulateKnown(const std::string& folder) {
+  try {
+    WriteResultsCsv(SweepDatabase::Open(folder), folder);
+  } catch (const std::exception&) {  // the next start writes it
+  }
+}
+
 // Rendered depth and scans outlive a kill beside the results when nobody named another place.
 std::string SweepCache(const CommonArguments& arguments) {
   const std::string named = CacheFolder(arguments);
@@ -138,11 +148,11 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
     bar.Show(done, total);
     file.Note({done, total});
   };
-  try {
+  {
+    const EndTask write_table([&output] {
+      if (InterruptExitCode()) TabulateKnown(output);
+    });
     DoRuns(plan, database, context);
-  } catch (...) {  // interrupted: what is known so far is worth a table
-    WriteResultsCsv(database, output);
-    throw;
   }
   WriteResultsCsv(database, output);
   const auto runs = static_cast<int>(database.PlannedRuns().size());

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "eval/sweep/sweep_progress.h"
+#include "mapper/io/end_task.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 
@@ -75,6 +76,7 @@ class Submission {
   }
 
   void Submit(const std::set<int>& parts) {
+    const EndDelay whole;  // a job that is in no list would be submitted again
     const CommandOutput sbatch = OutputOf(fmt::format("sbatch --parsable --array={} {} '{}'",
                                                       ArrayText(parts), job_.options, Script()));
     const std::string id = sbatch.text.substr(0, sbatch.text.find_first_of(";\n"));

@@ -1,6 +1,7 @@
 #include "eval/sweep/sweep_engine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -82,6 +83,17 @@ class Engine {
     if (context_.progress) context_.progress(done_, total_);
   }
 
+  // A run that is stopped has not failed.
+  void TickInRun() {
+    const std::lock_guard lock(mutex_);
+    try {
+      Tick();
+    } catch (...) {
+      stopped_ = true;
+      throw;
+    }
+  }
+
   // The set without its scans; what is wrong with it is the failure of each of its runs.
   void Prepare(Group& group) {
     try {
@@ -122,9 +134,11 @@ class Engine {
         const ExperimentOptions options = Completed(plan_.OptionsOf(run), scans.world->scene);
         const auto truth = inputs_.TruthOf(options);
         ScannedSource source(scans);
-        mapping = MapExperiment(source, options, *scans.world, scans.slam, {});
+        mapping = MapExperiment(source, options, *scans.world, scans.slam,
+                                [this](int, int) { TickInRun(); });
         outcome.metrics = SweepMetrics(Score(mapping, *truth, options.metrics));
       } catch (const std::exception& error) {
+        if (stopped_) throw;
         outcome.failure = error.what();
       }
     }
@@ -137,6 +151,7 @@ class Engine {
   const SweepContext& context_;
   SweepInputs inputs_;
   std::mutex mutex_;
+  std::atomic<bool> stopped_ = false;
   int done_ = 0;
   int total_ = 0;
 };

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "mapper/core/error.h"
+#include "mapper/io/end_task.h"
 
 namespace depthgrid {
 namespace {
@@ -23,9 +24,7 @@ std::string TemporaryName(const std::string& path) {
   return fmt::format("{}.{}.{}.tmp", path, ::getpid(), counter.fetch_add(1));
 }
 
-[[noreturn]] void FailWriting(const std::string& path, const std::string& temporary, int error) {
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
+[[noreturn]] void FailWriting(const std::string& path, int error) {
   throw std::runtime_error(
       fmt::format("{}: cannot be written: {}", path, error == 0 ? "failed" : std::strerror(error)));
 }
@@ -58,16 +57,20 @@ std::string ReadFile(const std::string& path, std::size_t max_bytes) {
 
 void WriteFile(const std::string& path, std::string_view content) {
   const std::string temporary = TemporaryName(path);
+  const EndTask remove_half([&temporary] {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+  });
   errno = 0;
   {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
     stream.write(content.data(), static_cast<std::streamsize>(content.size()));
     stream.close();
-    if (!stream) FailWriting(path, temporary, errno);
+    if (!stream) FailWriting(path, errno);
   }
   std::error_code error;
   fs::rename(temporary, path, error);
-  if (error) FailWriting(path, temporary, error.value());
+  if (error) FailWriting(path, error.value());
 }
 
 }  // namespace depthgrid

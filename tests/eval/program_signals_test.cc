@@ -1,4 +1,5 @@
 // Ctrl-C, `kill` and a closed terminal: nothing half-written stays.
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -12,16 +13,17 @@ namespace {
 class ProgramSignals : public ProgramTest {
  protected:
   // Starts a run; no shell in between, whose background jobs ignore Ctrl-C.
-  pid_t Start(const char* frames, bool ignores_hangup) const {
+  pid_t Start(const char* frames, bool ignores_hangup, const char* video = nullptr) const {
     const pid_t child = ::fork();
     if (child != 0) return child;
     if (ignores_hangup) std::signal(SIGHUP, SIG_IGN);
+    if (video != nullptr) ::setenv("PATH", (root_.string() + ":/usr/bin:/bin").c_str(), 1);
     const bool ready = ::chdir(root_.c_str()) == 0 &&
                        std::freopen("/dev/null", "w", stdout) != nullptr &&
                        std::freopen("err.txt", "w", stderr) != nullptr;
     if (ready) {
       ::execl(kProgramFile, kProgramFile, "run", "./small.yaml", "--set", frames, "-o", "out",
-              nullptr);
+              video == nullptr ? nullptr : "--video", video, nullptr);
     }
     ::_exit(99);
   }
@@ -48,11 +50,31 @@ TEST_F(ProgramSignals, LeaveNothing) {
   const std::vector<std::vector<int>> requests = {
       {SIGINT}, {SIGTERM, SIGTERM}, {SIGHUP}, {SIGINT, SIGHUP}};
   for (const std::vector<int>& signals : requests) {
-    EXPECT_EQ(ExitCodeAfter(signals, "frames=3000"), 1) << signals.front();
+    EXPECT_EQ(ExitCodeAfter(signals, "frames=3000"), 128 + signals.front());
     EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
     EXPECT_FALSE(HasUnfinishedFolder());
     EXPECT_FALSE(std::filesystem::exists(Path("out")));
   }
+}
+
+// A step that reports nothing and does not end: ffmpeg takes no pictures.
+TEST_F(ProgramSignals, EndAStepThatDoesNotEnd) {
+  Write("ffmpeg", "#!/bin/sh\necho $$ > started.part\nmv started.part started\nexec sleep 600\n");
+  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  const pid_t child = Start("frames=12", false, "map.mp4");
+  int status = 0;
+  while (!std::filesystem::exists(Path("started")) && ::waitpid(child, &status, WNOHANG) == 0) {
+    ::usleep(1000);
+  }
+  ::kill(child, SIGTERM);
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+  EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
+  EXPECT_FALSE(HasUnfinishedFolder());
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  // It was not what ended.
+  EXPECT_EQ(::kill(std::stoi(ReadFile(Path("started"))), SIGKILL), 0);
 }
 
 TEST_F(ProgramSignals, WhatTheCallerIgnoresStaysIgnored) {

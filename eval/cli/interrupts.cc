@@ -1,0 +1,91 @@
+#include "eval/cli/interrupts.h"
+
+#include <semaphore.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "mapper/io/end_task.h"
+
+namespace depthgrid::cli {
+namespace {
+
+constexpr int kSignalled = 128;
+volatile std::sig_atomic_t interrupted_by = 0;  // the signal
+
+// One keystroke or one `timeout` may send a signal twice (to the program and to its group): within
+// this time it is one request. After it a further one ends the program at once.
+constexpr long long kSameRequestNs = 1'000'000'000;
+// For an end by the next progress report. What a person at a terminal does not yet call waiting.
+constexpr std::chrono::milliseconds kOrderlyEnd{500};
+volatile long long first_signal_ns = 0;  // written by the handler alone
+bool on_terminal = false;                // standard error, known before any signal
+sem_t signalled;                         // what a handler may wake a thread with
+
+long long MonotonicNs() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+void WriteError(std::string_view text) {
+  [[maybe_unused]] const auto shown = write(STDERR_FILENO, text.data(), text.size());
+}
+
+// Only what POSIX allows in a handler.
+void Remember(int signal) {
+  const int saved_errno = errno;
+  const long long now_ns = MonotonicNs();
+  if (interrupted_by == 0) {
+    first_signal_ns = now_ns;
+    interrupted_by = signal;
+    if (on_terminal) WriteError("\ndepthgrid: stopping; again to end at once\n");
+    sem_post(&signalled);
+  } else if (now_ns - first_signal_ns > kSameRequestNs) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  errno = saved_errno;
+}
+
+// Whatever the other threads are doing: _exit() asks none of them.
+[[noreturn]] void EndWhenSignalled() {
+  while (sem_wait(&signalled) != 0) {
+  }
+  std::this_thread::sleep_for(kOrderlyEnd);
+  DoEndTasks();
+  WriteError(on_terminal ? "\r\033[Kdepthgrid: interrupted\n" : "depthgrid: interrupted\n");
+  _exit(kSignalled + interrupted_by);
+}
+
+}  // namespace
+
+void CatchInterrupts() {
+  on_terminal = isatty(STDERR_FILENO) == 1;
+  sem_init(&signalled, 0, 0);
+  try {
+    std::thread(EndWhenSignalled).detach();
+  } catch (const std::system_error&) {  // no thread to be had: progress reports remain
+  }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What the caller had ignored (nohup, a shell's background jobs) stays ignored.
+    if (std::signal(signal, &Remember) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
+void ThrowIfInterrupted() {
+  if (interrupted_by != 0) throw std::runtime_error("interrupted");
+}
+
+std::optional<int> InterruptExitCode() {
+  return interrupted_by == 0 ? std::nullopt : std::optional(kSignalled + interrupted_by);
+}
+
+}  // namespace depthgrid::cli
