@@ -96,8 +96,8 @@ StripeVectors VectorsOf(std::span<const BearingBlock> blocks, int width) {
     const std::size_t k = std::min(i, vectors.count - 1);
     const std::size_t of = k * lanes / kBlockBearings, lane = k * lanes % kBlockBearings;
     const BearingBlock& block = blocks[of];
-    const ChordBounds height = BoundLinear(block, &block.g0[lane], &block.g1[lane]);
-    const ChordBounds range = BoundLinear(block, &block.h0[lane], &block.h1[lane]);
+    const ChordBounds height = BoundLinear(block, &block.lines->g0[lane], &block.lines->g1[lane]);
+    const ChordBounds range = BoundLinear(block, &block.lines->h0[lane], &block.lines->h1[lane]);
     vectors.of[i] = of;
     vectors.lane[i] = lane;
     vectors.rows_first[i] = static_cast<float>(block.rows.first);
@@ -105,8 +105,8 @@ StripeVectors VectorsOf(std::span<const BearingBlock> blocks, int width) {
     vectors.shared_first[i] = static_cast<float>(block.shared_rows.first);
     vectors.shared_last[i] = static_cast<float>(block.shared_rows.last);
     vectors.is_known[i] = is_wide && block.all_ahead ? 1.0F : 0.0F;
-    vectors.left.Put(i, {block.u0[lane], block.u1[lane]});
-    vectors.right.Put(i, {block.u0[lane + lanes - 1], block.u1[lane + lanes - 1]});
+    vectors.left.Put(i, {block.lines->u0[lane], block.lines->u1[lane]});
+    vectors.right.Put(i, {block.lines->u0[lane + lanes - 1], block.lines->u1[lane + lanes - 1]});
     vectors.lowest.Put(i, height.least);
     vectors.highest.Put(i, height.most);
     vectors.shortest.Put(i, range.least);
@@ -151,11 +151,11 @@ void SampleGroup(const StripeJob& job, std::size_t group, StripeVectors& vectors
   }
 }
 
-void SampleAll(const ImageBands& bands, const NoiseWindow& window,
+void SampleAll(const ImageBands& bands, const SkipWidths& widths,
                std::span<const BearingBlock> blocks, std::vector<float>& memory,
                std::span<BlockSamples> found) {
   const Floats d;
-  const SkipRule rule(window, bands.limits.max_range_m);
+  const SkipRule rule(widths, bands.limits.max_range_m);
   StripeVectors vectors = VectorsOf(blocks, bands.image.width_px);
   vectors.skip_from.fill(std::numeric_limits<float>::infinity());
   vectors.skipped_from.fill(std::numeric_limits<float>::infinity());
@@ -197,7 +197,7 @@ namespace depthgrid::internal {
 HWY_EXPORT(SampleAll);
 HWY_EXPORT(SampleRest);
 
-void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
+void SampleBlocks(const ImageBands& bands, const SkipWidths& widths,
                   std::span<const BearingBlock> blocks, std::vector<float>& survey,
                   std::span<BlockSamples> found) {
   for (BlockSamples& block : found) {
@@ -205,7 +205,7 @@ void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
     block.slice.nearest.fill(kPassing);
     block.slice.skipped_from.fill(std::numeric_limits<float>::infinity());
   }
-  HWY_DYNAMIC_DISPATCH(SampleAll)(bands, window, blocks, survey, found);
+  HWY_DYNAMIC_DISPATCH(SampleAll)(bands, widths, blocks, survey, found);
 }
 
 void SampleSkipped(const ImageBands& bands, const BearingBlock& block, std::size_t lane,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,6 @@
 
 namespace depthgrid::internal {
 
-// Bearings that are laid out together.
-constexpr std::size_t kBlockBearings = 64;
 // Blocks that are sampled together at most: 128 columns of the image are lines of memory enough for
 // the processor to foresee the next ones, and their samples stay in the second-level cache.
 constexpr std::size_t kMostStripeBlocks = 4;
@@ -24,19 +23,15 @@ constexpr std::size_t StripeBlocks(std::size_t bearings, int width_px) {
   return std::clamp(in_columns / kBlockBearings, kLeast, kMostStripeBlocks);
 }
 
-struct alignas(64) BlockLane : std::array<float, kBlockBearings> {};
-
 // Rows are sampled in groups of so many, the same for all blocks. The smallest sample of each is
 // kept: whoever looks for near ones passes over the others.
 constexpr std::size_t kGroupRows = 16;
 
 struct BearingBlock {
-  std::size_t bearings = 0;     // lanes after these repeat the last one
-  RowRange rows;                // in which any lane takes part, and those before in the first group
-  std::size_t first_group = 0;  // of the image's, the one that begins at rows.first
-  RowRange shared_rows;         // in which all of them do
-  bool all_ahead = true;        // no ray of these rows points backwards
-  BlockLane u0, u1, h0, h1, g0, g1;
+  const BearingLineBlock* lines = nullptr;
+  RowRange rows;          // in which any lane takes part, and those before in the first group
+  RowRange shared_rows;   // in which all of them do
+  bool all_ahead = true;  // no ray of these rows points backwards
   BlockLane first, last;  // rows of each lane
 
   std::size_t RowCount() const {
@@ -53,8 +48,7 @@ struct BearingBlock {
   }
 };
 
-BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
-                              const ReturnLimits& limits);
+BearingBlock MakeBearingBlock(const BearingLineBlock& lines, const ReturnLimits& limits);
 
 // A block's samples of one band: samples[row - rows.first][lane], and nearest[group][lane], the
 // smallest of each group of rows. Of groups whose smallest is no range the samples may be missing.
@@ -90,10 +84,18 @@ struct ImageBands {
   SliceBand slice;
 };
 
+// The noise window's width at the end of each of so many steps.
+struct SkipWidths {
+  static constexpr std::size_t kSteps = 32;
+  static constexpr float kStepM = 0.25F;
+  std::array<float, kSteps> width_m;
+};
+SkipWidths SkipWidthsOf(const NoiseWindow& window);
+
 // Samples blocks group by group from the lowest rows up, where the nearest things are seen, and
 // skips what lies so far behind them that it hardly matters. `found` has room for each block;
 // `survey` is memory.
-void SampleBlocks(const ImageBands& bands, const NoiseWindow& window,
+void SampleBlocks(const ImageBands& bands, const SkipWidths& widths,
                   std::span<const BearingBlock> blocks, std::vector<float>& survey,
                   std::span<BlockSamples> found);
 // Samples what was skipped of a lane, and others beside it, after all.
@@ -128,23 +130,16 @@ void SurveyColumns(const DepthImage& image, const RowRange& rows, int first, int
 // Finds the last two, unless they are found.
 void SurveyHoles(const DepthImage& image, const RowRange& rows, Survey& survey);
 
-// Mean of the samples in [low, high] of each lane, high below kPassing; `otherwise` where there is
-// none. `count`: their number.
-struct BlockMean {
-  BlockLane mean, count;
-};
-BlockMean MeanWithin(const BandSamples& band, std::size_t rows, const BlockLane& low,
-                     const BlockLane& high, const BlockLane& otherwise);
-// The same of all samples up to `high`.
-BlockMean MeanUpTo(const BandSamples& band, std::size_t rows, const BlockLane& high,
-                   const BlockLane& otherwise);
-
 // Which rows are usable, and the longest gaps between them.
-struct BlockViews {
-  BlockLane first, last;                                 // usable rows; first > last when none
-  BlockLane below_from, below_to, above_from, above_to;  // from == to when none
+void FindViews(const BearingBlock& block, const BlockLane& least_depth, const BandSamples& band,
+               float min_depth_m, BlockViews& views);
+
+// FindNearest of the lanes whose smallest sample is supported by others. Of each lane whose bit is
+// set: `alone`, the smallest sample is not; `doubtful`, what was skipped could matter.
+struct NearestOfBlock {
+  std::uint64_t alone = 0, doubtful = 0;
 };
-BlockViews FindViews(const BearingBlock& block, const BlockLane& least_depth,
-                     const BandSamples& band, float min_depth_m);
+NearestOfBlock FindSupported(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
+                             const NoiseWindow& window, BlockHits& hits);
 
 }  // namespace depthgrid::internal

@@ -1,43 +1,98 @@
-// The lines of a block's bearings, one a lane.
-#include <algorithm>
-#include <cmath>
-
+// The rows of a block's bearings, one a vector lane (bearing_block.h).
 #include "mapper/scan/bearing_block.h"
 
+// x86-64-v3 has AVX2 without AES, which nothing here needs.
+#define HWY_DISABLE_PCLMUL_AES
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mapper/scan/bearing_block_setup.cc"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace depthgrid::internal {
-BearingBlock MakeBearingBlock(const std::vector<BearingLine>& lines, std::size_t begin,
-                              const ReturnLimits& limits) {
-  BearingBlock block;
-  block.bearings = std::min(kBlockBearings, lines.size() - begin);
-  block.rows = {limits.last_row + 1, limits.first_row - 1};
-  block.shared_rows = {limits.first_row, limits.last_row};
-  for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    const BearingLine& line = lines[begin + std::min(i, block.bearings - 1)];
-    const RowRange rows = RowsOf(line, limits);
-    block.u0[i] = line.u0;
-    block.u1[i] = line.u1;
-    block.h0[i] = line.h0;
-    block.h1[i] = line.h1;
-    block.g0[i] = line.g0;
-    block.g1[i] = line.g1;
-    block.first[i] = static_cast<float>(rows.first);
-    block.last[i] = static_cast<float>(rows.last);
-    block.shared_rows.first = std::max(block.shared_rows.first, rows.first);
-    block.shared_rows.last = std::min(block.shared_rows.last, rows.last);
-    if (rows.first > rows.last) continue;
-    block.rows.first = std::min(block.rows.first, rows.first);
-    block.rows.last = std::max(block.rows.last, rows.last);
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::CappedTag<float, kBlockBearings>;
+using Vec = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+
+HWY_INLINE int Least(Vec rows) {
+  return static_cast<int>(hn::GetLane(hn::MinOfLanes(Floats(), rows)));
+}
+HWY_INLINE int Most(Vec rows) {
+  return static_cast<int>(hn::GetLane(hn::MaxOfLanes(Floats(), rows)));
+}
+
+// `rows`: where any takes part; `shared_rows`: where all do.
+void ChooseRows(const BearingLineBlock& lines, const ReturnLimits& limits, BearingBlock& block) {
+  const Floats d;
+  const Vec first_row = hn::Set(d, static_cast<float>(limits.first_row));
+  const Vec last_row = hn::Set(d, static_cast<float>(limits.last_row));
+  const Vec one = hn::Set(d, 1.0F);
+  Vec first_of_any = hn::Add(last_row, one), last_of_any = hn::Sub(first_row, one);
+  Vec first_of_all = first_row, last_of_all = last_row;
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    const Vec first = hn::Max(hn::Load(d, &lines.first_row[i]), first_row);
+    const Vec last = hn::Min(hn::Load(d, &lines.last_row[i]), last_row);
+    const Mask any = hn::Le(first, last);
+    hn::Store(first, d, &block.first[i]);
+    hn::Store(last, d, &block.last[i]);
+    first_of_any = hn::IfThenElse(any, hn::Min(first_of_any, first), first_of_any);
+    last_of_any = hn::IfThenElse(any, hn::Max(last_of_any, last), last_of_any);
+    first_of_all = hn::Max(first_of_all, first);
+    last_of_all = hn::Min(last_of_all, last);
   }
-  if (block.RowCount() > 0) {
-    block.first_group = static_cast<std::size_t>(block.rows.first - limits.first_row) / kGroupRows;
-    block.rows.first = limits.first_row + static_cast<int>(block.first_group * kGroupRows);
-  }
-  for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    for (const int v : {block.rows.first, block.rows.last}) {
-      block.all_ahead = block.all_ahead && block.h0[i] + block.h1[i] * static_cast<float>(v) > 0.0F;
+  block.rows = {Least(first_of_any), Most(last_of_any)};
+  block.shared_rows = {Most(first_of_all), Least(last_of_all)};
+}
+
+bool AreAllAhead(const BearingLineBlock& lines, const RowRange& rows) {
+  const Floats d;
+  const Vec first = hn::Set(d, static_cast<float>(rows.first));
+  const Vec last = hn::Set(d, static_cast<float>(rows.last));
+  Mask ahead = hn::FirstN(d, hn::Lanes(d));
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    const Vec h0 = hn::Load(d, &lines.h0[i]), h1 = hn::Load(d, &lines.h1[i]);
+    for (const Vec row : {first, last}) {
+      ahead = hn::And(ahead, hn::Gt(hn::Add(h0, hn::Mul(h1, row)), hn::Zero(d)));
     }
   }
+  return hn::AllTrue(d, ahead);
+}
+
+void SetUp(const BearingLineBlock& lines, const ReturnLimits& limits, BearingBlock& block) {
+  block.lines = &lines;
+  ChooseRows(lines, limits, block);
+  if (block.RowCount() > 0) {
+    const int before = block.rows.first - limits.first_row;
+    block.rows.first -= before % static_cast<int>(kGroupRows);
+  }
+  block.all_ahead = AreAllAhead(lines, block.rows);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace depthgrid::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace depthgrid::internal {
+
+HWY_EXPORT(SetUp);
+
+BearingBlock MakeBearingBlock(const BearingLineBlock& lines, const ReturnLimits& limits) {
+  BearingBlock block;
+  HWY_DYNAMIC_DISPATCH(SetUp)(lines, limits, block);
   return block;
 }
 
+SkipWidths SkipWidthsOf(const NoiseWindow& window) {
+  SkipWidths widths;
+  for (std::size_t k = 0; k < SkipWidths::kSteps; ++k) {
+    widths.width_m[k] = window.At(SkipWidths::kStepM * static_cast<float>(k + 1));
+  }
+  return widths;
+}
+
 }  // namespace depthgrid::internal
+#endif  // HWY_ONCE

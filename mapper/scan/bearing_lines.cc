@@ -8,48 +8,18 @@
 namespace depthgrid {
 namespace {
 
-// Rays closer than this to vertical have no useful bearing (sine of 3 degrees).
-constexpr double kMinHorizontal = 0.05;
+using internal::BlockDirections;
+using internal::ImageAxes;
 
-// value = at_zero + slope * v.
-struct Linear {
-  double at_zero = 0.0;
-  double slope = 0.0;
-  double operator()(double v) const { return at_zero + slope * v; }
-};
-
-// Rows of [low, high] where `function` >= limit.
-void ClipBelow(const Linear& function, double limit, double& low, double& high) {
-  if (function(low) >= limit && function(high) >= limit) return;  // most: no division
-  if (function.slope == 0.0) {
-    if (function.at_zero < limit) high = low - 1.0;
-    return;
-  }
-  const double root = (limit - function.at_zero) / function.slope;
-  if (function.slope > 0.0) {
-    low = std::max(low, root);
-  } else {
-    high = std::min(high, root);
-  }
-}
-
-// The camera as the (possibly transposed) image has it: rows of the matrix are forward, left and up
-// of a ray (a, b, 1), a along the image's columns and b along its rows.
-struct Axes {
-  Eigen::Matrix3d level_from_ray;
-  double fx_px, fy_px, cx_px, cy_px;
-  int width_px, height_px;
-};
-
-Axes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_camera,
-            bool transposed) {
-  Axes axes{level_from_camera.toRotationMatrix(),
-            camera.fx_px,
-            camera.fy_px,
-            camera.cx_px,
-            camera.cy_px,
-            camera.width_px,
-            camera.height_px};
+ImageAxes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_camera,
+                 bool transposed) {
+  ImageAxes axes{level_from_camera.toRotationMatrix(),
+                 camera.fx_px,
+                 camera.fy_px,
+                 camera.cx_px,
+                 camera.cy_px,
+                 camera.width_px,
+                 camera.height_px};
   if (transposed) {
     axes.level_from_ray.col(0).swap(axes.level_from_ray.col(1));
     std::swap(axes.fx_px, axes.fy_px);
@@ -57,79 +27,6 @@ Axes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_ca
     std::swap(axes.width_px, axes.height_px);
   }
   return axes;
-}
-
-// Bearings that are worked out together, so that the compiler can vectorise each step.
-constexpr std::size_t kBatch = 32;
-using Numbers = std::array<double, kBatch>;
-struct Linears {
-  Numbers at_zero, slope;
-  Linear operator[](std::size_t k) const { return {at_zero[k], slope[k]}; }
-};
-
-// The lines of some bearings, before rows are chosen.
-struct BatchLines {
-  Numbers across;  // how much faster than rows a column leaves the bearing
-  Linears horizontal, height, column;
-};
-
-// Of a function of rays, f . (a, b, 1), along rows; a is linear in b = (v - cy) / fy.
-struct Slopes {
-  double a_at_b0, a_slope, b_per_row, cy_px;
-};
-inline Linear AlongRows(double fx, double fy, double f1, const Slopes& s) {
-  const double slope = (fx * s.a_slope + fy) * s.b_per_row;
-  return {fx * s.a_at_b0 + f1 - slope * s.cy_px, slope};
-}
-
-void FindLines(const Axes& axes, const Bearing* bearings, std::size_t count, BatchLines& lines) {
-  const Eigen::Matrix3d& m = axes.level_from_ray;
-  const Eigen::RowVector3d ahead = m.row(0), left = m.row(1), up = m.row(2);
-  const double b_per_row = 1.0 / axes.fy_px;
-  Numbers cosine, sine;
-  for (std::size_t k = 0; k < kBatch; ++k) {
-    cosine[k] = bearings[std::min(k, count - 1)].cosine;
-    sine[k] = bearings[std::min(k, count - 1)].sine;
-  }
-  for (std::size_t k = 0; k < kBatch; ++k) {
-    const double c = cosine[k], s = sine[k];
-    const auto off_plane = [&](int i) { return -s * ahead[i] + c * left[i]; };
-    const auto along = [&](int i) { return c * ahead[i] + s * left[i]; };
-    // off_plane . (a, b, 1) = 0, so a is linear in b and all else with it.
-    const double inverse = -1.0 / off_plane(0);
-    const Slopes slopes{off_plane(2) * inverse, off_plane(1) * inverse, b_per_row, axes.cy_px};
-    const Linear horizontal = AlongRows(along(0), along(1), along(2), slopes);
-    const Linear height = AlongRows(up[0], up[1], up[2], slopes);
-    const double u_slope = axes.fx_px * slopes.a_slope * b_per_row;
-    lines.across[k] = off_plane(0);
-    lines.horizontal.at_zero[k] = horizontal.at_zero;
-    lines.horizontal.slope[k] = horizontal.slope;
-    lines.height.at_zero[k] = height.at_zero;
-    lines.height.slope[k] = height.slope;
-    lines.column.at_zero[k] = axes.cx_px + axes.fx_px * slopes.a_at_b0 - u_slope * axes.cy_px;
-    lines.column.slope[k] = u_slope;
-  }
-}
-
-BearingLine LineOf(const Axes& axes, const BatchLines& lines, std::size_t k) {
-  BearingLine line;
-  constexpr double kParallel = 1e-9;
-  if (std::abs(lines.across[k]) < kParallel) return line;
-  const Linear horizontal = lines.horizontal[k], height = lines.height[k], column = lines.column[k];
-  double low = 0.0;
-  double high = axes.height_px - 1.0;
-  ClipBelow(horizontal, kMinHorizontal, low, high);
-  ClipBelow(column, -0.5, low, high);
-  ClipBelow({-column.at_zero, -column.slope}, -(axes.width_px - 0.5), low, high);
-  line.first_row = static_cast<int>(std::ceil(std::clamp(low, -1.0, 1.0 * axes.height_px)));
-  line.last_row = static_cast<int>(std::floor(std::max(high, -1.0)));
-  line.u0 = static_cast<float>(column.at_zero);
-  line.u1 = static_cast<float>(column.slope);
-  line.h0 = static_cast<float>(horizontal.at_zero);
-  line.h1 = static_cast<float>(horizontal.slope);
-  line.g0 = static_cast<float>(height.at_zero);
-  line.g1 = static_cast<float>(height.slope);
-  return line;
 }
 
 }  // namespace
@@ -144,7 +41,7 @@ const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
                                          const Eigen::Quaterniond& level_from_camera, int beams,
                                          BearingFan& fan) {
   const bool transposed = LinesRunAlongRows(camera, level_from_camera);
-  const Axes axes = AxesOf(camera, level_from_camera, transposed);
+  const ImageAxes axes = AxesOf(camera, level_from_camera, transposed);
   // The image's borders are half a pixel beyond the outer pixels' centres; left is positive, and
   // to the left columns decrease unless the camera is upside down.
   const double left_per_a = axes.level_from_ray(1, 0) < 0.0 ? -1.0 : 1.0;
@@ -174,18 +71,34 @@ const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
   return fan.bearings;
 }
 
-std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
-                                      const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<Bearing>& bearings, bool transposed,
-                                      std::vector<BearingLine> memory) {
-  const Axes axes = AxesOf(camera, level_from_camera, transposed);
-  std::vector<BearingLine> lines = std::move(memory);
-  lines.resize(bearings.size());
-  BatchLines batch;
-  for (std::size_t begin = 0; begin < bearings.size(); begin += kBatch) {
-    const std::size_t count = std::min(kBatch, bearings.size() - begin);
-    FindLines(axes, &bearings[begin], count, batch);
-    for (std::size_t k = 0; k < count; ++k) lines[begin + k] = LineOf(axes, batch, k);
+BearingLine BearingLineTable::operator[](std::size_t k) const {
+  const BearingLineBlock& block = blocks[k / kBlockBearings];
+  const std::size_t i = k % kBlockBearings;
+  return {block.u0[i],
+          block.u1[i],
+          block.h0[i],
+          block.h1[i],
+          block.g0[i],
+          block.g1[i],
+          static_cast<int>(block.first_row[i]),
+          static_cast<int>(block.last_row[i])};
+}
+
+BearingLineTable BearingLines(const PinholeCamera& camera,
+                              const Eigen::Quaterniond& level_from_camera,
+                              const std::vector<Bearing>& bearings, bool transposed,
+                              BearingLineTable memory) {
+  const ImageAxes axes = AxesOf(camera, level_from_camera, transposed);
+  BearingLineTable lines = std::move(memory);
+  lines.Resize(bearings.size());
+  BlockDirections directions;
+  for (std::size_t b = 0; b < lines.blocks.size(); ++b) {
+    for (std::size_t i = 0; i < kBlockBearings; ++i) {
+      const Bearing& bearing = bearings[std::min(b * kBlockBearings + i, bearings.size() - 1)];
+      directions.cosine[i] = bearing.cosine;
+      directions.sine[i] = bearing.sine;
+    }
+    internal::FindLines(axes, directions, lines.blocks[b]);
   }
   return lines;
 }

@@ -5,6 +5,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "mapper/core/camera.h"
@@ -20,6 +23,29 @@ struct BearingLine {
   // Rows at which the line is inside the image and ahead of the camera; first > last when none.
   int first_row = 0;
   int last_row = -1;
+};
+
+// Lines are kept in blocks of so many, each number of theirs side by side for vectors.
+constexpr std::size_t kBlockBearings = 64;
+struct alignas(64) BlockLane : std::array<float, kBlockBearings> {};
+struct BearingLineBlock {
+  BlockLane u0, u1, h0, h1, g0, g1, first_row, last_row;
+};
+
+class BearingLineTable {
+ public:
+  std::size_t size() const { return size_; }
+  // Lanes after the last line repeat it.
+  std::vector<BearingLineBlock> blocks;
+
+  BearingLine operator[](std::size_t k) const;
+  void Resize(std::size_t size) {
+    size_ = size;
+    blocks.resize((size + kBlockBearings - 1) / kBlockBearings);
+  }
+
+ private:
+  std::size_t size_ = 0;
 };
 
 // Whether lines run along image rows rather than columns (roll beyond 45 degrees): such an image is
@@ -46,9 +72,24 @@ const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
                                          BearingFan& fan);
 
 // `transposed`: rows and columns of the image are exchanged; `camera` is still the original one.
-std::vector<BearingLine> BearingLines(const PinholeCamera& camera,
-                                      const Eigen::Quaterniond& level_from_camera,
-                                      const std::vector<Bearing>& bearings, bool transposed,
-                                      std::vector<BearingLine> memory = {});
+BearingLineTable BearingLines(const PinholeCamera& camera,
+                              const Eigen::Quaterniond& level_from_camera,
+                              const std::vector<Bearing>& bearings, bool transposed,
+                              BearingLineTable memory = {});
+
+namespace internal {
+// The camera as the (possibly transposed) image has it: rows of the matrix are forward, left and up
+// of a ray (a, b, 1), a along the image's columns and b along its rows.
+struct ImageAxes {
+  Eigen::Matrix3d level_from_ray;
+  double fx_px, fy_px, cx_px, cy_px;
+  int width_px, height_px;
+};
+struct BlockDirections {
+  alignas(64) std::array<double, kBlockBearings> cosine, sine;
+};
+// The lines of a block, one bearing a vector lane.
+void FindLines(const ImageAxes& axes, const BlockDirections& directions, BearingLineBlock& lines);
+}  // namespace internal
 
 }  // namespace depthgrid

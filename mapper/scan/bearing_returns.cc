@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <new>
@@ -15,12 +17,8 @@ namespace {
 using internal::BandFound;
 using internal::BandSamples;
 using internal::BearingBlock;
-using internal::BlockLane;
-using internal::BlockMean;
 using internal::BlockSamples;
-using internal::BlockViews;
 using internal::ImageBands;
-using internal::kBlockBearings;
 using internal::kGroupRows;
 using internal::kSkipped;
 
@@ -62,64 +60,74 @@ RowRange RangeOf(float first, float last) {
 
 RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, to) : RowRange{}; }
 
-// FindNearest for a block. Lanes whose smallest sample is not supported by others (a stray pixel)
-// are done one by one. A lane of which what was skipped could matter, or none.
-std::optional<std::size_t> FindNearestOfBlock(const BearingBlock& block, const BandFound& found,
-                                              const ReturnLimits& limits, const NoiseWindow& window,
-                                              ReturnsMemory& memory, BearingReturns* returns) {
-  const std::size_t rows = block.RowCount();
-  const BandSamples& band = found.samples;
-  const BlockLane& nearest = found.nearest;
-  BlockLane width, high;
-  window.At(nearest, width.data());
-  for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    high[i] = std::min(nearest[i] + width[i], limits.max_range_m);
+struct ReturnsJob {
+  ImageBands bands;
+  const NoiseWindow& window;
+  ReturnsMemory& memory;
+};
+
+// FindNearest for a block of so many bearings. Lanes whose smallest sample is not supported by
+// others (a stray pixel) are done one by one. A lane of which what was skipped could matter, or
+// none.
+std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BandFound& found,
+                                              std::size_t rows, std::size_t bearings,
+                                              BlockHits& hits) {
+  const ReturnLimits& limits = job.bands.limits;
+  auto [alone, doubtful] = internal::FindSupported(found, rows, limits, job.window, hits);
+  if (bearings < kBlockBearings) {
+    const std::uint64_t taken = (std::uint64_t{1} << bearings) - 1;
+    alone &= taken;
+    doubtful &= taken;
   }
-  const BlockMean first = internal::MeanUpTo(band, rows, high, nearest);
-  BlockLane low, farthest = high;
-  for (std::size_t i = 0; i < kBlockBearings; ++i) {
-    const float half_m = 0.5F * width[i];
-    low[i] = first.mean[i] - half_m;
-    high[i] = std::min(first.mean[i] + half_m, limits.max_range_m);
-    farthest[i] = std::max(farthest[i], high[i]);
-  }
-  const BlockMean second = internal::MeanWithin(band, rows, low, high, first.mean);
-  for (std::size_t i = 0; i < block.bearings; ++i) {
-    if (nearest[i] > limits.max_range_m) continue;
-    float mattered_m = farthest[i];
-    if (first.count[i] >= static_cast<float>(limits.min_returns)) {
-      returns[i].hit = true;
-      returns[i].range_m = second.mean[i];
-    } else {
-      returns[i].hit = false;
-      mattered_m = FindNearest(RangesOf(band, rows, i, limits, memory.column), limits, window,
-                               memory.sorted, returns[i]);
-    }
+  for (; alone != 0 && doubtful == 0; alone &= alone - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(alone));
+    BearingReturns returns;
+    const float mattered_m = FindNearest(RangesOf(found.samples, rows, i, limits, memory.column),
+                                         limits, window, memory.sorted, returns);
+    hits.is_hit[i] = returns.hit ? 1.0F : 0.0F;
+    hits.range_m[i] = returns.range_m;
     if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return i;
   }
-  return std::nullopt;
+  if (doubtful == 0) return std::nullopt;
+  return static_cast<std::size_t>(std::countr_zero(doubtful));
 }
 
-void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, const BandSamples& band,
-                      float min_depth_m, BearingReturns* returns) {
+void FindViewsOfBlock(const BearingBlock& block, const BlockSamples& found, float min_depth_m,
+                      BlockViews& views) {
   const bool all_usable =
       *std::min_element(found.least_depth.begin(), found.least_depth.end()) >= min_depth_m;
-  if (all_usable) {
-    for (std::size_t i = 0; i < block.bearings; ++i) {
-      if (block.first[i] <= block.last[i]) {
-        returns[i].seen = RangeOf(block.first[i], block.last[i]);
-      }
-    }
+  if (!all_usable) {
+    return internal::FindViews(block, found.least_depth, found.band.samples, min_depth_m, views);
+  }
+  views.first = block.first;
+  views.last = block.last;
+  views.has_gaps = false;
+}
+
+BlockViews NoViews() {
+  BlockViews views;
+  views.first.fill(0.0F);
+  views.last.fill(-1.0F);
+  return views;
+}
+
+// The block `at` of the image's, of so many bearings.
+void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::size_t bearings,
+                        std::size_t at, BlockSamples& found) {
+  ImageReturns& all = job.memory.returns;
+  const std::size_t rows = block.RowCount();
+  const bool has_slice = !all.slice.empty();
+  if (rows == 0) {
+    all.views[at] = NoViews();
+    all.obstacles[at] = {};
+    if (has_slice) all.slice[at] = {};
     return;
   }
-  const BlockViews views = internal::FindViews(block, found.least_depth, band, min_depth_m);
-  for (std::size_t i = 0; i < block.bearings; ++i) {
-    if (views.first[i] <= views.last[i]) {
-      returns[i].seen = RangeOf(views.first[i], views.last[i]);
-    }
-    returns[i].gap_below = GapOf(views.below_from[i], views.below_to[i]);
-    returns[i].gap_above = GapOf(views.above_from[i], views.above_to[i]);
+  FindViewsOfBlock(block, found, job.bands.limits.min_depth_m, all.views[at]);
+  while (const auto lane = FindNearestOfBlock(job, found.band, rows, bearings, all.obstacles[at])) {
+    internal::SampleSkipped(job.bands, block, *lane, found);
   }
+  if (has_slice) FindNearestOfBlock(job, found.slice, rows, bearings, all.slice[at]);
 }
 
 // Some neighbouring blocks.
@@ -129,13 +137,13 @@ struct Stripe {
   std::size_t size = 0;
 };
 
-void LayOut(const std::vector<BearingLine>& lines, std::size_t begin, const ReturnLimits& limits,
-            std::size_t blocks, std::vector<Lanes>& memory, Stripe& stripe) {
+void LayOut(std::span<const BearingLineBlock> lines, const ReturnLimits& limits,
+            std::vector<Lanes>& memory, Stripe& stripe) {
   std::size_t lanes = 0;
-  stripe.size = 0;
-  for (; stripe.size < blocks && begin < lines.size(); begin += kBlockBearings) {
-    stripe.blocks[stripe.size] = internal::MakeBearingBlock(lines, begin, limits);
-    lanes += 2 * LanesOf(stripe.blocks[stripe.size++]);
+  stripe.size = lines.size();
+  for (std::size_t b = 0; b < stripe.size; ++b) {
+    stripe.blocks[b] = internal::MakeBearingBlock(lines[b], limits);
+    lanes += 2 * LanesOf(stripe.blocks[b]);
   }
   if (memory.size() < lanes) memory.resize(lanes);
   Lanes* room = memory.data();
@@ -149,32 +157,40 @@ void LayOut(const std::vector<BearingLine>& lines, std::size_t begin, const Retu
 
 }  // namespace
 
-const ImageReturns& FindReturns(const DepthImage& image, const std::vector<BearingLine>& lines,
+BearingReturns ImageReturns::At(std::size_t k, const std::vector<BlockHits>& hits) const {
+  const BlockViews& block = views[k / kBlockBearings];
+  const std::size_t i = k % kBlockBearings;
+  BearingReturns returns;
+  returns.hit = hits[k / kBlockBearings].is_hit[i] > 0.0F;
+  returns.range_m = hits[k / kBlockBearings].range_m[i];
+  if (block.first[i] <= block.last[i]) returns.seen = RangeOf(block.first[i], block.last[i]);
+  if (!block.has_gaps) return returns;
+  returns.gap_below = GapOf(block.below_from[i], block.below_to[i]);
+  returns.gap_above = GapOf(block.above_from[i], block.above_to[i]);
+  return returns;
+}
+
+const ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
                                 const ReturnLimits& limits, const std::optional<SliceBand>& slice,
                                 const NoiseWindow& window, ReturnsMemory& memory) {
   ImageReturns& all = memory.returns;
-  all.obstacles.assign(lines.size(), {});
-  all.slice.assign(slice ? lines.size() : 0, {});
-  const ImageBands bands{image, limits, slice.value_or(kNoSlice)};
+  all.size = lines.size();
+  all.views.resize(lines.blocks.size());
+  all.obstacles.resize(lines.blocks.size());
+  all.slice.resize(slice ? lines.blocks.size() : 0);
+  const ReturnsJob job{{image, limits, slice.value_or(kNoSlice)}, window, memory};
+  const internal::SkipWidths widths = internal::SkipWidthsOf(window);
   Stripe stripe;
-  const std::size_t blocks = internal::StripeBlocks(lines.size(), image.width_px);
-  for (std::size_t begin = 0; begin < lines.size(); begin += stripe.size * kBlockBearings) {
-    LayOut(lines, begin, limits, blocks, memory.samples, stripe);
-    internal::SampleBlocks(bands, window, std::span(stripe.blocks).first(stripe.size),
-                           memory.survey, std::span(stripe.found).first(stripe.size));
-    for (std::size_t b = 0; b < stripe.size; ++b) {
-      const BearingBlock& block = stripe.blocks[b];
-      BlockSamples& found = stripe.found[b];
-      if (block.RowCount() == 0) continue;
-      const std::size_t at = begin + b * kBlockBearings;
-      BearingReturns* const obstacles = &all.obstacles[at];
-      FindViewsOfBlock(block, found, found.band.samples, limits.min_depth_m, obstacles);
-      if (slice) std::copy_n(obstacles, block.bearings, &all.slice[at]);
-      while (const auto lane =
-                 FindNearestOfBlock(block, found.band, limits, window, memory, obstacles)) {
-        internal::SampleSkipped(bands, block, *lane, found);
-      }
-      if (slice) FindNearestOfBlock(block, found.slice, limits, window, memory, &all.slice[at]);
+  const std::size_t most = internal::StripeBlocks(lines.size(), image.width_px);
+  for (std::size_t begin = 0; begin < lines.blocks.size(); begin += stripe.size) {
+    const std::size_t count = std::min(most, lines.blocks.size() - begin);
+    LayOut(std::span(lines.blocks).subspan(begin, count), limits, memory.samples, stripe);
+    internal::SampleBlocks(job.bands, widths, std::span(stripe.blocks).first(count), memory.survey,
+                           std::span(stripe.found).first(count));
+    for (std::size_t b = 0; b < count; ++b) {
+      const std::size_t at = begin + b;
+      const std::size_t bearings = std::min(kBlockBearings, lines.size() - at * kBlockBearings);
+      FindReturnsOfBlock(job, stripe.blocks[b], bearings, at, stripe.found[b]);
     }
   }
   return all;

@@ -80,11 +80,27 @@ RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                   const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns);
 
+// Of a block of lines: which rows are usable, and the rows around the longest gaps between them
+// below and above the horizon.
+struct BlockViews {
+  BlockLane first, last;  // first > last when none
+  // No gap where they are no more than one apart.
+  BlockLane below_from, below_to, above_from, above_to;
+  bool has_gaps = false;
+};
+struct BlockHits {
+  BlockLane is_hit;  // 1 or 0
+  BlockLane range_m;
+};
+
 // What an image says of every line. The slice's lines are seen as the others are: only the nearest
 // surface differs.
 struct ImageReturns {
-  std::vector<BearingReturns> obstacles;
-  std::vector<BearingReturns> slice;  // empty when not asked for
+  std::size_t size = 0;  // lines; lanes after them do not count
+  std::vector<BlockViews> views;
+  std::vector<BlockHits> obstacles, slice;  // `slice` is empty when not asked for
+
+  BearingReturns At(std::size_t k, const std::vector<BlockHits>& hits) const;
 };
 
 // Memory for FindReturns, kept from frame to frame.
@@ -100,7 +116,7 @@ struct ReturnsMemory {
 
 // All of the above for every line at once, vectorised; the same values bit for bit. The result is
 // good until the memory is used again.
-const ImageReturns& FindReturns(const DepthImage& image, const std::vector<BearingLine>& lines,
+const ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
                                 const ReturnLimits& limits, const std::optional<SliceBand>& slice,
                                 const NoiseWindow& window, ReturnsMemory& memory);
 

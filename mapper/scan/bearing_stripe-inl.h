@@ -162,32 +162,27 @@ struct Larger {
   HWY_INLINE Vec operator()(Vec a, Vec b) const { return hn::Max(a, b); }
 };
 
-// Widths of the noise window by range. Whether what is skipped was far enough is seen afterwards.
+// By the noise window. Whether what is skipped was far enough is seen afterwards.
 class SkipRule {
  public:
-  SkipRule(const NoiseWindow& window, float max_range_m) : max_range_m_(max_range_m) {
-    for (std::size_t k = 0; k < kSteps; ++k) {
-      width_m_[k] = window.At(kStepM * static_cast<float>(k + 1));
-    }
-  }
+  SkipRule(const SkipWidths& widths, float max_range_m)
+      : widths_(widths), max_range_m_(max_range_m) {}
   // From where on samples do not matter once each lane of a vector has one as near as this: the
   // second mean looks half a window beyond the first.
   HWY_INLINE Vec From(Floats d, Vec nearest_m) const {
     const Ints di;
     const Vec max_range = hn::Set(d, max_range_m_);
     // Rounding may leave a range below 0 of a camera whose centre is far off its image.
-    const Vec step = hn::Max(hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / kStepM)),
-                                     hn::Set(d, static_cast<float>(kSteps - 1))),
+    const Vec step = hn::Max(hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / SkipWidths::kStepM)),
+                                     hn::Set(d, static_cast<float>(SkipWidths::kSteps - 1))),
                              hn::Zero(d));
-    const Vec width = hn::GatherIndex(d, width_m_.data(), hn::ConvertTo(di, step));
+    const Vec width = hn::GatherIndex(d, widths_.width_m.data(), hn::ConvertTo(di, step));
     const Vec from = hn::Add(nearest_m, hn::Mul(hn::Set(d, 1.5F), width));
     return hn::Min(from, max_range);
   }
 
  private:
-  static constexpr std::size_t kSteps = 32;
-  static constexpr float kStepM = 0.25F;
-  std::array<float, kSteps> width_m_{};
+  const SkipWidths& widths_;
   float max_range_m_;
 };
 

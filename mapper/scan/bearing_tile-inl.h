@@ -166,9 +166,9 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   const Floats d;
   const BearingBlock& block = *tile.block;
   const std::size_t i = tile.lane;
-  const Vec u0 = hn::Load(d, &block.u0[i]), u1 = hn::Load(d, &block.u1[i]);
-  const Vec h0 = hn::Load(d, &block.h0[i]), h1 = hn::Load(d, &block.h1[i]);
-  const Vec g0 = hn::Load(d, &block.g0[i]), g1 = hn::Load(d, &block.g1[i]);
+  const Vec u0 = hn::Load(d, &block.lines->u0[i]), u1 = hn::Load(d, &block.lines->u1[i]);
+  const Vec h0 = hn::Load(d, &block.lines->h0[i]), h1 = hn::Load(d, &block.lines->h1[i]);
+  const Vec g0 = hn::Load(d, &block.lines->g0[i]), g1 = hn::Load(d, &block.lines->g1[i]);
   const Vec first = hn::Load(d, &block.first[i]), last = hn::Load(d, &block.last[i]);
   const Vec min_depth = hn::Set(d, tile.bands->limits.min_depth_m);
   const Vec low = hn::Set(d, tile.bands->limits.low_m),

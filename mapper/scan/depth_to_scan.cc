@@ -62,9 +62,9 @@ ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, b
   return limits;
 }
 
-Scan ScanOf(ScanMemory& memory, const std::vector<BearingReturns>& returns, double camera_height_m,
+Scan ScanOf(ScanMemory& memory, const std::vector<BlockHits>& hits, double camera_height_m,
             const ScanOptions& options, Scan scan = {}) {
-  return ScanOf(memory.fan.bearings, memory.views, returns, camera_height_m, options, memory.beams,
+  return ScanOf(memory.fan.bearings, memory.views, hits, camera_height_m, options, memory.beams,
                 std::move(scan));
 }
 
@@ -98,7 +98,7 @@ Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) con
   const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  FindViews(memory.lines, returns.obstacles, memory.views);
+  FindViews(memory.lines, returns.views, memory.views);
   return ScanOf(memory, returns.obstacles, stand.height_m, options_);
 }
 
@@ -113,7 +113,7 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
   const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                             SliceBand{slice_limits.low_m, slice_limits.high_m},
                                             NoiseWindow(depth, memory.noise), memory.returns);
-  FindViews(memory.lines, returns.obstacles, memory.views);
+  FindViews(memory.lines, returns.views, memory.views);
   return {
       ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
       ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice))};
@@ -129,7 +129,7 @@ std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
   std::vector<Eigen::Vector2d> pixels(scan.beams.size(), {-1.0, -1.0});
   for (std::size_t k = 0; k < scan.beams.size(); ++k) {
     if (!scan.beams[k].hit) continue;
-    const BearingLine& line = memory.lines[k];
+    const BearingLine line = memory.lines[k];
     const RowRange rows = RowsOf(line, limits);
     double nearest_m = std::numeric_limits<double>::infinity();
     for (int v = rows.first; v <= rows.last; ++v) {

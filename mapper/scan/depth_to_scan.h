@@ -25,7 +25,7 @@ struct ScanPair {
 struct ScanMemory {
   DepthImage transposed;
   BearingFan fan;
-  std::vector<BearingLine> lines;
+  BearingLineTable lines;
   NoiseWindow::Memory noise;
   ReturnsMemory returns;
   BearingViews views;

@@ -16,34 +16,35 @@ struct Slopes {
   std::vector<float> low, high;
 };
 
-// What the rays of each bearing say, besides the hit; bearings without rays fill up the last batch.
+// What the rays of each bearing say, besides the hit; bearings without rays fill up the last block.
 // Memory is kept from frame to frame.
 struct BearingViews {
   Slopes seen;  // where no ray was seen, low is infinite and high its negative
   // The largest unseen gaps between them below and above the horizon; nothing from 0 to 0.
   Slopes below, above;
-  std::vector<char> has_gap;  // of so many bearings each
-  static constexpr std::size_t kBatch = 32;
+  std::vector<char> has_gap;  // of each block
 };
 
-void FindViews(const std::vector<BearingLine>& lines, const std::vector<BearingReturns>& returns,
+void FindViews(const BearingLineTable& lines, const std::vector<BlockViews>& rows,
                BearingViews& views);
 
-// Memory for ScanOf, a number a beam and more to fill up the last batch.
+// Memory for ScanOf, a number a beam and more to fill up the last block.
 struct BeamNumbers {
-  std::vector<double> limit_m;
   std::vector<float> clear_from_m, clear_to_m;
 };
 
 namespace internal {
-// ClearInterval of every bearing, for the beams' limits.
-void FindClear(const BearingViews& views, double camera_height_m, const ScanOptions& options,
-               BeamNumbers& beams);
+// Slopes of the rays of a block.
+void FindSlopes(const BearingLineBlock& lines, const BlockViews& rows, std::size_t block,
+                BearingViews& views);
+// ClearInterval of every bearing, up to its hit.
+void FindClear(const BearingViews& views, const std::vector<BlockHits>& hits,
+               double camera_height_m, const ScanOptions& options, BeamNumbers& beams);
 }  // namespace internal
 
-// `returns` may differ from those that `views` are of in hits and ranges. `scan` is used again.
+// `hits` may be others than those that were found with `views`. `scan` is used again.
 Scan ScanOf(const std::vector<Bearing>& bearings, const BearingViews& views,
-            const std::vector<BearingReturns>& returns, double camera_height_m,
-            const ScanOptions& options, BeamNumbers& memory, Scan scan);
+            const std::vector<BlockHits>& hits, double camera_height_m, const ScanOptions& options,
+            BeamNumbers& memory, Scan scan);
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// ClearInterval (clear_interval.h) of many bearings at once, one a vector lane; each lane computes
-// the same operation by operation, so the values are the same bit for bit.
+// Slopes of rays and ClearInterval (clear_interval.h) of many bearings at once, one a vector lane;
+// each lane computes the same operation by operation, so the values are the same bit for bit.
 #include <limits>
 
 #include "mapper/scan/scan_beams.h"
@@ -20,7 +20,7 @@ using Doubles = hn::CappedTag<double, 8>;
 using Floats = hn::Rebind<float, Doubles>;
 using Vec = hn::Vec<Doubles>;
 using Mask = hn::Mask<Doubles>;
-static_assert(BearingViews::kBatch % hn::MaxLanes(Doubles()) == 0);
+static_assert(kBlockBearings % hn::MaxLanes(Doubles()) == 0);
 
 // Edges of the band above the camera, and what may hide in a gap.
 struct Band {
@@ -70,14 +70,19 @@ HWY_INLINE Interval Without(const Interval& clear, const Slopes& gaps, std::size
 }
 
 template <bool kLooksDown>
-void FindBatch(const BearingViews& views, std::size_t begin, const Band& band, BeamNumbers& beams) {
+void FindBlock(const BearingViews& views, const BlockHits& hits, std::size_t block,
+               const Band& band, double max_range_m, BeamNumbers& beams) {
   const Doubles d;
-  const bool has_gap = views.has_gap[begin / BearingViews::kBatch] != 0;
-  for (std::size_t k = begin; k < begin + BearingViews::kBatch; k += hn::Lanes(d)) {
+  const Vec max_range = hn::Set(d, max_range_m);
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    const std::size_t k = block * kBlockBearings + i;
+    const Vec is_hit = hn::PromoteTo(d, hn::Load(Floats(), &hits.is_hit[i]));
+    const Vec range = hn::PromoteTo(d, hn::Load(Floats(), &hits.range_m[i]));
     Mask any;
     Interval clear = WhereEdgeIsSeen<kLooksDown>(views.seen, k, hn::Set(d, band.low_m), any);
-    clear.to = hn::Min(clear.to, hn::LoadU(d, &beams.limit_m[k]));
-    if (has_gap) {
+    const Vec limit = hn::IfThenElse(hn::Gt(is_hit, hn::Zero(d)), range, max_range);
+    clear.to = hn::Min(clear.to, limit);
+    if (views.has_gap[block] != 0) {
       clear = Without(clear, views.below, k, band);
       clear = Without(clear, views.above, k, band);
     }
@@ -90,14 +95,57 @@ void FindBatch(const BearingViews& views, std::size_t begin, const Band& band, B
   }
 }
 
-void FindClearLanes(const BearingViews& views, double camera_height_m, const ScanOptions& options,
-                    BeamNumbers& beams) {
+void FindClearLanes(const BearingViews& views, const std::vector<BlockHits>& hits,
+                    double camera_height_m, const ScanOptions& options, BeamNumbers& beams) {
   const Band band{options.band_low_m - camera_height_m, options.band_high_m - camera_height_m,
                   options.max_gap_m};
-  for (std::size_t k = 0; k < beams.limit_m.size(); k += BearingViews::kBatch) {
-    band.low_m < 0.0 ? FindBatch<true>(views, k, band, beams)
-                     : FindBatch<false>(views, k, band, beams);
+  const auto find = band.low_m < 0.0 ? &FindBlock<true> : &FindBlock<false>;
+  for (std::size_t b = 0; b < hits.size(); ++b) {
+    find(views, hits[b], b, band, options.max_range_m, beams);
   }
+}
+
+// Of the rays of these rows of each bearing, some rows apart at least; `none` and its negative
+// where there are no such rows.
+struct RaysOfBlock {
+  const BearingLineBlock* lines;
+  const BlockLane *first, *last;
+  float least_apart, none;
+};
+void FindSlopesOf(const RaysOfBlock& rays, float* HWY_RESTRICT low, float* HWY_RESTRICT high) {
+  const hn::CappedTag<float, kBlockBearings> d;
+  const BearingLineBlock& lines = *rays.lines;
+  for (std::size_t i = 0; i < kBlockBearings; i += hn::Lanes(d)) {
+    const auto first = hn::Load(d, &(*rays.first)[i]), last = hn::Load(d, &(*rays.last)[i]);
+    const auto slope_at = [&](auto row) HWY_ATTR {
+      const auto g = hn::Add(hn::Load(d, &lines.g0[i]), hn::Mul(hn::Load(d, &lines.g1[i]), row));
+      const auto h = hn::Add(hn::Load(d, &lines.h0[i]), hn::Mul(hn::Load(d, &lines.h1[i]), row));
+      return hn::Div(g, h);
+    };
+    const auto a = slope_at(first), b = slope_at(last);
+    const auto any = hn::Ge(hn::Sub(last, first), hn::Set(d, rays.least_apart));
+    const auto lower = hn::IfThenElse(hn::Lt(b, a), b, a);
+    const auto higher = hn::IfThenElse(hn::Lt(a, b), b, a);
+    hn::StoreU(hn::IfThenElse(any, lower, hn::Set(d, rays.none)), d, low + i);
+    hn::StoreU(hn::IfThenElse(any, higher, hn::Set(d, -rays.none)), d, high + i);
+  }
+}
+
+void FindSlopeLanes(const BearingLineBlock& lines, const BlockViews& rows, std::size_t block,
+                    BearingViews& views) {
+  const std::size_t at = block * kBlockBearings;
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  FindSlopesOf({&lines, &rows.first, &rows.last, 0.0F, kNever}, &views.seen.low[at],
+               &views.seen.high[at]);
+  views.has_gap[block] = rows.has_gaps ? 1 : 0;
+  if (!rows.has_gaps) {  // nobody looks for any
+    return;
+  }
+  constexpr float kGapRows = 2.0F;
+  FindSlopesOf({&lines, &rows.below_from, &rows.below_to, kGapRows, 0.0F}, &views.below.low[at],
+               &views.below.high[at]);
+  FindSlopesOf({&lines, &rows.above_from, &rows.above_to, kGapRows, 0.0F}, &views.above.low[at],
+               &views.above.high[at]);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -108,10 +156,16 @@ HWY_AFTER_NAMESPACE();
 namespace depthgrid::internal {
 
 HWY_EXPORT(FindClearLanes);
+HWY_EXPORT(FindSlopeLanes);
 
-void FindClear(const BearingViews& views, double camera_height_m, const ScanOptions& options,
-               BeamNumbers& beams) {
-  HWY_DYNAMIC_DISPATCH(FindClearLanes)(views, camera_height_m, options, beams);
+void FindClear(const BearingViews& views, const std::vector<BlockHits>& hits,
+               double camera_height_m, const ScanOptions& options, BeamNumbers& beams) {
+  HWY_DYNAMIC_DISPATCH(FindClearLanes)(views, hits, camera_height_m, options, beams);
+}
+
+void FindSlopes(const BearingLineBlock& lines, const BlockViews& rows, std::size_t block,
+                BearingViews& views) {
+  HWY_DYNAMIC_DISPATCH(FindSlopeLanes)(lines, rows, block, views);
 }
 
 }  // namespace depthgrid::internal

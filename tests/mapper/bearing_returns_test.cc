@@ -114,19 +114,20 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       slice_limits.low_m = band.low_m;
       slice_limits.high_m = band.high_m;
       const ImageReturns both = FindReturns(image, lines, limits, band, window, memory);
-      const std::vector<BearingReturns>& returns = both.obstacles;
-      ASSERT_EQ(returns.size(), lines.size());
-      ASSERT_EQ(both.slice.size(), lines.size());
-      ASSERT_EQ(FindReturns(image, lines, limits, {}, window, memory).obstacles, returns);
+      ASSERT_EQ(both.size, lines.size());
+      const ImageReturns& one = FindReturns(image, lines, limits, {}, window, memory);
+      ASSERT_TRUE(one.slice.empty());
       for (std::size_t k = 0; k < lines.size(); ++k) {
         const BearingReturns plain = PlainReturns(image, lines[k], limits, window);
-        ASSERT_EQ(returns[k].hit, plain.hit) << i << " " << k;
-        ASSERT_EQ(returns[k].range_m, plain.range_m) << i << " " << k;
-        ASSERT_EQ(returns[k].seen, plain.seen) << i << " " << k;
-        ASSERT_EQ(returns[k].gap_below, plain.gap_below) << i << " " << k;
-        ASSERT_EQ(returns[k].gap_above, plain.gap_above) << i << " " << k;
+        const BearingReturns returns = both.At(k, both.obstacles);
+        ASSERT_EQ(returns.hit, plain.hit) << i << " " << k;
+        ASSERT_EQ(returns.range_m, plain.range_m) << i << " " << k;
+        ASSERT_EQ(returns.seen, plain.seen) << i << " " << k;
+        ASSERT_EQ(returns.gap_below, plain.gap_below) << i << " " << k;
+        ASSERT_EQ(returns.gap_above, plain.gap_above) << i << " " << k;
+        ASSERT_EQ(one.At(k, one.obstacles), returns) << i << " " << k;
         const BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window);
-        ASSERT_EQ(both.slice[k], plain_slice) << i << " " << k;
+        ASSERT_EQ(both.At(k, both.slice), plain_slice) << i << " " << k;
         slice_hits += plain_slice.hit ? 1 : 0;
         ++cases;
         hits += plain.hit ? 1 : 0;
@@ -160,11 +161,12 @@ TEST_F(InstructionSets, AWallFarBehindCountsWhereNearSamplesAreAlone) {
   const ReturnLimits limits{0.4F, 6.0F, -1.05F, 2.0F, 3, 0, 119};
   const NoiseWindow window(image);
   ReturnsMemory memory;
-  const auto& returns = FindReturns(image, lines, limits, {}, window, memory).obstacles;
+  const ImageReturns& all = FindReturns(image, lines, limits, {}, window, memory);
   int near = 0, far = 0;
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    ASSERT_EQ(returns[k], PlainReturns(image, lines[k], limits, window)) << k;
-    (returns[k].range_m < 2.0F ? near : far) += returns[k].hit ? 1 : 0;
+    const BearingReturns returns = all.At(k, all.obstacles);
+    ASSERT_EQ(returns, PlainReturns(image, lines[k], limits, window)) << k;
+    (returns.range_m < 2.0F ? near : far) += returns.hit ? 1 : 0;
   }
   EXPECT_GE(near, 150);
   EXPECT_GE(far, 3);

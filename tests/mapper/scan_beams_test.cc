@@ -27,29 +27,42 @@ RowRange RowsBetween(int low, int high, RandomStream& random) {
 
 struct Image {
   std::vector<Bearing> bearings;
-  std::vector<BearingLine> lines;
-  std::vector<BearingReturns> returns;
+  BearingLineTable lines;
+  ImageReturns returns;
 };
+
+void PutRows(BlockLane& from, BlockLane& to, std::size_t lane, const RowRange& rows) {
+  from[lane] = static_cast<float>(rows.first);
+  to[lane] = static_cast<float>(rows.last);
+}
 
 // Lines of a camera of 480 rows that looks a little up or down.
 Image RandomImage(std::size_t beams, bool gaps, RandomStream& random) {
   Image image;
+  image.lines.Resize(beams);
+  image.returns.views.resize(image.lines.blocks.size());
+  image.returns.obstacles.resize(image.lines.blocks.size());
   for (std::size_t k = 0; k < beams; ++k) {
     image.bearings.push_back({0.001 * static_cast<double>(k), 1.0, 0.0});
     const auto pitch = static_cast<float>(random.Uniform(-0.6, 0.6));
-    BearingLine line;
-    line.g0 = 0.45F + pitch;
-    line.g1 = -0.9F / 480.0F;
-    line.h0 = 1.0F - 0.3F * pitch;
-    line.h1 = 0.0005F * pitch;
-    image.lines.push_back(line);
-    BearingReturns returns;
-    returns.hit = random.Uniform() < 0.7;
-    if (returns.hit) returns.range_m = static_cast<float>(random.Uniform(0.4, 6.0));
-    if (random.Uniform() < 0.95) returns.seen = RowsBetween(0, 400, random);
-    if (gaps && random.Uniform() < 0.5) returns.gap_below = RowsBetween(240, 440, random);
-    if (gaps && random.Uniform() < 0.5) returns.gap_above = RowsBetween(0, 200, random);
-    image.returns.push_back(returns);
+    const std::size_t block = k / kBlockBearings, lane = k % kBlockBearings;
+    BearingLineBlock& lines = image.lines.blocks[block];
+    lines.g0[lane] = 0.45F + pitch;
+    lines.g1[lane] = -0.9F / 480.0F;
+    lines.h0[lane] = 1.0F - 0.3F * pitch;
+    lines.h1[lane] = 0.0005F * pitch;
+    BlockViews& views = image.returns.views[block];
+    BlockHits& hits = image.returns.obstacles[block];
+    const bool is_hit = random.Uniform() < 0.7;
+    hits.is_hit[lane] = is_hit ? 1.0F : 0.0F;
+    hits.range_m[lane] = is_hit ? static_cast<float>(random.Uniform(0.4, 6.0)) : 0.0F;
+    const auto maybe = [&](double share, int low, int high) {
+      return random.Uniform() < share ? RowsBetween(low, high, random) : RowRange{};
+    };
+    PutRows(views.first, views.last, lane, maybe(0.95, 0, 400));
+    PutRows(views.below_from, views.below_to, lane, maybe(gaps ? 0.5 : 0.0, 240, 440));
+    PutRows(views.above_from, views.above_to, lane, maybe(gaps ? 0.5 : 0.0, 0, 200));
+    views.has_gaps = gaps;
   }
   return image;
 }
@@ -65,14 +78,14 @@ TEST(ScanBeams, AreClearWhereClearIntervalSaysBitForBit) {
     const Image image = RandomImage(1 + 37 * static_cast<std::size_t>(i % 7), i % 3 > 0, random);
     BearingViews views;
     BeamNumbers memory;
-    FindViews(image.lines, image.returns, views);
+    FindViews(image.lines, image.returns.views, views);
     const Scan scan =
-        ScanOf(image.bearings, views, image.returns, height_m, options, memory, Scan{});
+        ScanOf(image.bearings, views, image.returns.obstacles, height_m, options, memory, Scan{});
     ASSERT_EQ(scan.beams.size(), image.lines.size());
     ASSERT_EQ(scan.max_range_m, options.max_range_m);
     for (std::size_t k = 0; k < scan.beams.size(); ++k) {
-      const BearingLine& line = image.lines[k];
-      const BearingReturns& returns = image.returns[k];
+      const BearingLine line = image.lines[k];
+      const BearingReturns returns = image.returns.At(k, image.returns.obstacles);
       const BearingView view{SlopesOf(line, returns.seen), SlopesOf(line, returns.gap_below),
                              SlopesOf(line, returns.gap_above)};
       const double limit_m = returns.hit ? returns.range_m : options.max_range_m;

@@ -1,0 +1,162 @@
+// The nearest surfaces of many bearings at once, one a vector lane (bearing_block.h).
+#include "mapper/scan/bearing_block.h"
+
+// x86-64-v3 has AVX2 without AES, which nothing here needs.
+#define HWY_DISABLE_PCLMUL_AES
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "mapper/scan/bearing_supported.cc"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::internal {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::CappedTag<float, kBlockBearings>;
+using Vec = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+
+// Sum and number of a lane's samples in [from, to], or of all up to `to`.
+template <bool kFromLeast>
+struct Running {
+  Vec from, to, sum, count;
+
+  HWY_INLINE void Add(Floats d, Vec sample) {
+#if HWY_TARGET <= HWY_AVX3
+    if constexpr (hn::MaxLanes(Floats()) == 16) {  // masks are half of the operations otherwise
+      const __mmask16 near = _mm512_cmp_ps_mask(sample.raw, to.raw, _CMP_LE_OQ);
+      const __mmask16 inside =
+          kFromLeast ? near : _mm512_mask_cmp_ps_mask(near, sample.raw, from.raw, _CMP_GE_OQ);
+      sum = Vec{_mm512_mask_add_ps(sum.raw, inside, sum.raw, sample.raw)};
+      count = Vec{_mm512_mask_add_ps(count.raw, inside, count.raw, hn::Set(d, 1.0F).raw)};
+      return;
+    }
+#endif
+    Mask inside = hn::Le(sample, to);
+    if constexpr (!kFromLeast) inside = hn::And(inside, hn::Ge(sample, from));
+    sum = hn::Add(sum, hn::IfThenElseZero(inside, sample));
+    count = hn::Add(count, hn::IfThenElseZero(inside, hn::Set(d, 1.0F)));
+  }
+  HWY_INLINE Vec MeanOr(Floats d, Vec otherwise) const {
+    const Mask any = hn::Gt(count, hn::Zero(d));
+    return hn::IfThenElse(any, hn::Div(sum, hn::Max(count, hn::Set(d, 1.0F))), otherwise);
+  }
+};
+
+// Two vectors of a block from lane `at` on: the additions of one wait for each other, those of the
+// other fill in.
+template <bool kFromLeast>
+HWY_INLINE void AddAll(const BandSamples& band, std::size_t rows, std::size_t at,
+                       Running<kFromLeast>& left, Running<kFromLeast>& right) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  Running<kFromLeast> a = left, b = right;
+  for (std::size_t first = 0; first < rows; first += kGroupRows) {
+    const float* HWY_RESTRICT nearest = band.nearest + first / kGroupRows * kBlockBearings + at;
+    const bool near_a = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest), a.to));
+    const bool near_b = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest + lanes), b.to));
+    if (!near_a && !near_b) continue;
+    const float* HWY_RESTRICT row = band.samples + first * kBlockBearings + at;
+    const float* const end = row + std::min(kGroupRows, rows - first) * kBlockBearings;
+    if (near_a && near_b) {
+      for (; row != end; row += kBlockBearings) {
+        a.Add(d, hn::Load(d, row));
+        b.Add(d, hn::Load(d, row + lanes));
+      }
+    } else if (near_a) {
+      for (; row != end; row += kBlockBearings) a.Add(d, hn::Load(d, row));
+    } else {
+      for (; row != end; row += kBlockBearings) b.Add(d, hn::Load(d, row + lanes));
+    }
+  }
+  left = a;
+  right = b;
+}
+
+// What FindNearest finds of a vector.
+class NearestLanes {
+ public:
+  NearestLanes(const BandFound& found, const ReturnLimits& limits, const float* width_m,
+               std::size_t at)
+      : found_(found), limits_(limits), at_(at) {
+    const Floats d;
+    nearest_ = hn::Load(d, &found.nearest[at]);
+    width_ = hn::Load(d, width_m + at);
+    max_range_ = hn::Set(d, limits.max_range_m);
+  }
+  HWY_INLINE Running<true> First() const {
+    const Floats d;
+    const Vec high = hn::Min(hn::Add(nearest_, width_), max_range_);
+    return {high, high, hn::Zero(d), hn::Zero(d)};
+  }
+  HWY_INLINE Running<false> Second(const Running<true>& first) {
+    const Floats d;
+    const Vec half = hn::Mul(hn::Set(d, 0.5F), width_);
+    centre_ = first.MeanOr(d, nearest_);
+    const Vec high = hn::Min(hn::Add(centre_, half), max_range_);
+    mattered_ = hn::Max(first.to, high);
+    count_ = first.count;
+    return {hn::Sub(centre_, half), high, hn::Zero(d), hn::Zero(d)};
+  }
+  HWY_INLINE void Take(const Running<false>& second, BlockHits& hits, NearestOfBlock& of) const {
+    const Floats d;
+    const Mask any = hn::Le(nearest_, max_range_);
+    const auto enough = hn::Set(d, static_cast<float>(limits_.min_returns));
+    const Mask is_hit = hn::And(any, hn::Ge(count_, enough));
+    hn::Store(hn::IfThenElseZero(is_hit, hn::Set(d, 1.0F)), d, &hits.is_hit[at_]);
+    hn::Store(hn::IfThenElseZero(is_hit, second.MeanOr(d, centre_)), d, &hits.range_m[at_]);
+    const Vec skipped_from = hn::Load(d, &found_.skipped_from[at_]);
+    of.doubtful |= BitsOf(hn::And(is_hit, hn::Ge(mattered_, skipped_from)));
+    of.alone |= BitsOf(hn::AndNot(is_hit, any));
+  }
+
+ private:
+  HWY_INLINE std::uint64_t BitsOf(Mask mask) const {
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(Floats(), mask, reinterpret_cast<std::uint8_t*>(&bits));
+    return bits << at_;
+  }
+
+  const BandFound& found_;
+  const ReturnLimits& limits_;
+  std::size_t at_;
+  Vec nearest_, width_, max_range_, centre_, mattered_, count_;
+};
+
+void FindLanes(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
+               const BlockLane& width_m, BlockHits& hits, NearestOfBlock& of) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
+  for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
+    NearestLanes a(found, limits, width_m.data(), i), b(found, limits, width_m.data(), i + lanes);
+    Running<true> first_a = a.First(), first_b = b.First();
+    AddAll(found.samples, rows, i, first_a, first_b);
+    Running<false> second_a = a.Second(first_a), second_b = b.Second(first_b);
+    AddAll(found.samples, rows, i, second_a, second_b);
+    a.Take(second_a, hits, of);
+    b.Take(second_b, hits, of);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace depthgrid::internal
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace depthgrid::internal {
+
+HWY_EXPORT(FindLanes);
+
+NearestOfBlock FindSupported(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
+                             const NoiseWindow& window, BlockHits& hits) {
+  BlockLane width_m;
+  window.At(found.nearest, width_m.data());
+  NearestOfBlock nearest;
+  HWY_DYNAMIC_DISPATCH(FindLanes)(found, rows, limits, width_m, hits, nearest);
+  return nearest;
+}
+
+}  // namespace depthgrid::internal
+#endif  // HWY_ONCE
