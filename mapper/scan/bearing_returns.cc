@@ -82,8 +82,9 @@ std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BandF
   for (; alone != 0 && doubtful == 0; alone &= alone - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(alone));
     BearingReturns returns;
-    const float mattered_m = FindNearest(RangesOf(found.samples, rows, i, limits, memory.column),
-                                         limits, window, memory.sorted, returns);
+    const float mattered_m =
+        FindNearest(RangesOf(found.samples, rows, i, limits, job.memory.column), limits, job.window,
+                    job.memory.sorted, returns);
     hits.is_hit[i] = returns.hit ? 1.0F : 0.0F;
     hits.range_m[i] = returns.range_m;
     if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return i;
