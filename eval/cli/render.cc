@@ -61,6 +61,10 @@ void Render(const RenderArguments& arguments) {
   WriteTruthMaps(folder.work().string(), MakeTruth(world, options.mapper, threads));
   WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(world.scene_hash));
   folder.Commit();
+  const std::string& output = arguments.common.output;
+  fmt::print("rendered {} frames in {}; the true map is {}/truth_map.yaml\n", sensor.FrameCount(),
+             output, output);
+  fmt::print("go on with: depthgrid slam {} -o POSES\n", ShellWord(output));
 }
 
 }  // namespace depthgrid::cli

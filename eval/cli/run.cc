@@ -115,7 +115,9 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   ProgressBar bar("mapping");
   const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
   folder.Commit();
+  bar.Clear();
   PrintCases(results);
+  SayReport(arguments.common.output);
 }
 
 }  // namespace

@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/output_folder.h"
@@ -39,6 +43,17 @@ struct SlamSettings {
   void Visit(OptionsVisitor& v) { v.Group("slam", slam, "how SLAM errs"); }
 };
 
+void SayNext(const SlamArguments& arguments, const SlamOutput& slam) {
+  const std::string& output = arguments.common.output;
+  const auto posed = std::count_if(slam.live.begin(), slam.live.end(),
+                                   [](const SlamPose& pose) { return pose.slam_from_camera; });
+  fmt::print("SLAM gives {} of {} frames a pose and closes {} loops: {}/slam.txt\n", posed,
+             slam.live.size(), slam.loops.size(), output);
+  fmt::print("go on with: depthgrid map {} --poses {} --loops {} -o OUT\n",
+             ShellWord(arguments.sequence), ShellWord(output + "/slam.txt"),
+             ShellWord(output + "/loops.csv"));
+}
+
 }  // namespace
 
 void Slam(const SlamArguments& arguments) {
@@ -49,9 +64,11 @@ void Slam(const SlamArguments& arguments) {
   config.Read(settings);
   const Trajectory truth = TrueFrames(arguments.sequence);
   OutputFolder folder(arguments.common.output, arguments.common.force);
-  WriteSlamFiles(folder.work().string(), DisturbTrajectory(truth, settings.slam, arguments.seed));
+  const SlamOutput slam = DisturbTrajectory(truth, settings.slam, arguments.seed);
+  WriteSlamFiles(folder.work().string(), slam);
   WriteFile(folder.File("slam.yaml"), ToYaml(settings));
   folder.Commit();
+  SayNext(arguments, slam);
 }
 
 }  // namespace depthgrid::cli

@@ -162,13 +162,6 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   Summarise(database.Results());
 }
 
-// A word that a shell takes as it is.
-std::string ShellWord(const std::string& text) {
-  std::string word(1, '\'');
-  for (const char c : text) word.append(c == '\'' ? "'\\''" : std::string(1, c));
-  return word + "'";
-}
-
 // The command of one part; the shell of its task knows which.
 std::string PartCommand(const SweepArguments& arguments, const std::string& sweep_file,
                         const std::string& folder, int parts) {

@@ -103,6 +103,28 @@ TEST_F(ProgramRun, RenderSlamAndMapGiveWhatRunGives) {
   EXPECT_TRUE(SameFile("seq/observable.pgm", "run/observable.pgm"));
 }
 
+TEST_F(ProgramRun, RenderAndSlamSayTheNextCommand) {
+  const auto next = [&](const std::string& command, const std::string& says) {
+    const Outcome outcome = Program(command);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    const std::string start = "go on with: depthgrid ";
+    const std::size_t at = outcome.out.find(start);
+    EXPECT_EQ(outcome.out.substr(0, outcome.out.find('\n')), says);
+    return at == std::string::npos ? "" : outcome.out.substr(at + start.size());
+  };
+  const auto without_line_end = [](std::string text) { return text.substr(0, text.size() - 1); };
+  const std::string slam =
+      next("render ./small.yaml -o 'a room'",
+           "rendered 12 frames in a room; the true map is a room/truth_map.yaml");
+  EXPECT_EQ(slam, "slam 'a room' -o POSES\n");
+  const std::string map = next(without_line_end(slam) + " --set slam.loops.scenario=none",
+                               "SLAM gives 12 of 12 frames a pose and closes 0 loops: "
+                               "POSES/slam.txt");
+  EXPECT_EQ(map, "map 'a room' --poses POSES/slam.txt --loops POSES/loops.csv -o OUT\n");
+  EXPECT_THAT(Program(without_line_end(map)).out, testing::HasSubstr("mapped 12 of 12 frames"));
+}
+
 // A planar sensor's poses are the log's own: x, y and the yaw about z, at height 0.
 TEST_F(ProgramRun, ALaserLogsTrajectoriesAreInTheLogsConvention) {
   Write("robot.log",

@@ -61,6 +61,7 @@ TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
   EXPECT_FALSE(SameFile("out/orb/input_map.pgm", "out/truth/input_map.pgm"));
   const Outcome again = Program("run ./study.yaml -o again --threads 1");
   EXPECT_THAT(again.out, HasSubstr("other_seed"));
+  EXPECT_THAT(again.out, HasSubstr("look at again/report.html"));
   EXPECT_EQ(again.err, "");
   ExpectSameBytes("out", "again");
 }
