@@ -9,6 +9,7 @@
 #include "eval/web_assets.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -50,9 +51,7 @@ class CsvTest : public ::testing::Test {
     return ReadCsv(path_);
   }
   void TearDown() override { std::remove(path_.c_str()); }
-  std::string path_ = ::testing::TempDir() +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-                      "_csv_test.csv";
+  std::string path_ = ScratchPath() + ".csv";
 };
 
 TEST_F(CsvTest, ReadsColumnsByName) {

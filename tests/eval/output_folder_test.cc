@@ -7,6 +7,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -16,10 +17,7 @@ namespace fs = std::filesystem;
 class OutputFolderTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    root_ = fs::path(::testing::TempDir()) /
-            (std::string("depthgrid_output_folder_") +
-             ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-             std::to_string(::getpid()));  // two trees may run their tests at once
+    root_ = ScratchPath();
     fs::remove_all(root_);
     fs::create_directories(root_);
   }

@@ -13,6 +13,7 @@
 
 #include "mapper/io/file.h"
 #include "tests/paths.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 
@@ -26,10 +27,7 @@ struct Outcome {
 class ProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    root_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string("depthgrid_") + info->test_suite_name() + "_" + info->name() + "_" +
-             std::to_string(::getpid()));  // two trees may run their tests at once
+    root_ = ScratchPath();
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
     Write("room.yaml", kRoom);
@@ -70,6 +68,17 @@ class ProgramTest : public ::testing::Test {
     std::sort(files.begin(), files.end());
     return files;
   }
+  // Where two long texts part, with a little of both; nothing when they are the same.
+  static std::string Difference(const std::string& a, const std::string& b) {
+    if (a == b) return "";
+    const auto at = static_cast<std::size_t>(
+        std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+    constexpr std::size_t kShown = 80;
+    const std::size_t from = at < kShown ? 0 : at - kShown;
+    return "of " + std::to_string(a.size()) + " and " + std::to_string(b.size()) +
+           " bytes, they part at " + std::to_string(at) + ":\n" + a.substr(from, 2 * kShown) +
+           "\n" + b.substr(std::min(from, b.size()), 2 * kShown);
+  }
   // Not EXPECT_EQ of the contents: a failure would print them.
   bool SameFile(const std::string& a, const std::string& b) const {
     return ReadFile(Path(a)) == ReadFile(Path(b));
@@ -80,7 +89,8 @@ class ProgramTest : public ::testing::Test {
     int compared = 0;
     for (const std::string& file : FilesIn(a)) {
       if (std::filesystem::path(file).filename().string().starts_with("timing")) continue;
-      EXPECT_TRUE(SameFile(a + "/" + file, b + "/" + file)) << file;
+      EXPECT_EQ(Difference(ReadFile(Path(a + "/" + file)), ReadFile(Path(b + "/" + file))), "")
+          << file;
       ++compared;
     }
     EXPECT_GT(compared, 10);

@@ -80,7 +80,7 @@ TEST_F(StudyRun, ReportWritesTheSamePageAgain) {
   const std::string page = ReadFile(Path("out/report.html"));
   std::filesystem::remove(Path("out/report.html"));
   Succeed("report out");
-  EXPECT_TRUE(ReadFile(Path("out/report.html")) == page);
+  EXPECT_EQ(Difference(ReadFile(Path("out/report.html")), page), "");
 }
 
 TEST_F(StudyRun, RefusesWhatMakesNoSense) {

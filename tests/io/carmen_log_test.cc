@@ -10,6 +10,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -21,9 +22,7 @@ constexpr char kFlaser[] = "FLASER 3 1.0 81.83 2.0 1 2 0.5 0.9 2 0.5 11.5 host 0
 
 class TextFile {
  public:
-  explicit TextFile(const std::string& text)
-      : path_(testing::TempDir() + "carmen_" +
-              testing::UnitTest::GetInstance()->current_test_info()->name() + ".log") {
+  explicit TextFile(const std::string& text) : path_(ScratchPath() + ".log") {
     std::ofstream(path_, std::ios::binary) << text;
   }
   ~TextFile() { std::filesystem::remove(path_); }

@@ -49,7 +49,6 @@ TEST_F(EndTaskTest, IsDoneBeforeTheProgramEndsAtOnce) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     ::_exit(kEndedAtOnce);
   };
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(kEndedAtOnce), "");
   EXPECT_TRUE(Noted("of_the_thread"));
   EXPECT_TRUE(Noted("of_the_end"));
@@ -70,7 +69,6 @@ TEST_F(EndTaskTest, ADelayIsWaitedFor) {
     DoEndTasks();
     ::_exit(kEndedAtOnce);
   };
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(kEndedAtOnce), "");
   EXPECT_TRUE(Noted("whole"));
 }

@@ -8,6 +8,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -113,7 +114,7 @@ TEST(ColourPng, RoundTrip) {
 }
 
 TEST(DepthPng, Files) {
-  const std::string path = testing::TempDir() + "depthgrid_png_test.png";
+  const std::string path = ScratchPath() + ".png";
   WriteDepthPng(path, Ramp());
   EXPECT_EQ(ReadDepthPng(path).z_m, QuantiseDepth(Ramp()).z_m);
   std::filesystem::remove(path);

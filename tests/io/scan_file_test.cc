@@ -5,6 +5,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -33,9 +34,7 @@ std::vector<StoredScan> SomeScans() {
 
 class ScanFileTest : public ::testing::Test {
  protected:
-  std::string path_ = ::testing::TempDir() +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-                      "_scan_file_test.bin";
+  std::string path_ = ScratchPath() + ".bin";
   void TearDown() override { std::remove(path_.c_str()); }
 };
 

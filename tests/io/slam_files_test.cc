@@ -10,6 +10,7 @@
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -61,8 +62,7 @@ std::vector<std::string> Lines(const std::string& text) {
 class SlamFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = ::testing::TempDir() + "slam_files_" +
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = ScratchPath();
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

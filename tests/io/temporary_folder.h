@@ -7,14 +7,14 @@
 #include <string>
 
 #include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 
 class TemporaryFolderTest : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = testing::TempDir() + "depthgrid_" + test->test_suite_name() + "_" + test->name();
+    folder_ = ScratchPath();
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

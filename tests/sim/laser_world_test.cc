@@ -9,6 +9,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "sim/odometry_noise.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -109,7 +110,7 @@ TEST(LaserWorld, TooNearIsZeroAndTooFarTheMaximum) {
 }
 
 TEST(LaserWorld, ReadsSegmentsAndRefusesOthers) {
-  const std::string path = testing::TempDir() + "laser_world_test.txt";
+  const std::string path = ScratchPath() + ".txt";
   std::ofstream(path) << "# walls\n0 0 1 0\n\n1 0 1 2.5 # east\n";
   const LaserWorld world = ReadLaserWorld(path);
   ASSERT_EQ(world.walls.size(), 2U);

@@ -9,6 +9,7 @@
 #include "sim/slam_surrogate.h"
 #include "sim/trajectory.h"
 #include "tests/paths.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -83,7 +84,7 @@ TEST(SlamFiles, CarryTheVerySameOutput) {
   const Trajectory truth = HandHeld("living_room");
   std::vector<double> stamps_s;
   for (const StampedPose& pose : truth) stamps_s.push_back(pose.stamp_s);
-  const std::string folder = ::testing::TempDir() + "slam_rooms_files";
+  const std::string folder = ScratchPath();
   std::filesystem::create_directories(folder);
   SlamOptions options = ProfileOptions(SlamProfile::kOrbSlam2Measured);
   options.lost_rate_hz = 0.3;
