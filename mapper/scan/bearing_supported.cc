@@ -1,4 +1,7 @@
 // The nearest surfaces of many bearings at once, one a vector lane (bearing_block.h).
+#include <array>
+#include <limits>
+
 #include "mapper/scan/bearing_block.h"
 
 // x86-64-v3 has AVX2 without AES, which nothing here needs.
@@ -44,34 +47,42 @@ struct Running {
   }
 };
 
-// Two vectors of a block from lane `at` on: the additions of one wait for each other, those of the
-// other fill in.
+// Vectors that are summed together: the additions of one wait for each other, those of the others
+// fill in.
+constexpr std::size_t kTogether = 4;
+
+// Those of a block from lane `at` on.
 template <bool kFromLeast>
 HWY_INLINE void AddAll(const BandSamples& band, std::size_t rows, std::size_t at,
-                       Running<kFromLeast>& left, Running<kFromLeast>& right) {
+                       std::array<Running<kFromLeast>, kTogether>& running) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
-  Running<kFromLeast> a = left, b = right;
+  const Vec none = hn::Set(d, -std::numeric_limits<float>::infinity());
+  auto [r0, r1, r2, r3] = running;
+  const Vec to0 = r0.to, to1 = r1.to, to2 = r2.to, to3 = r3.to;
   for (std::size_t first = 0; first < rows; first += kGroupRows) {
+    // Samples of lanes with nothing near may be missing: none of them counts.
     const float* HWY_RESTRICT nearest = band.nearest + first / kGroupRows * kBlockBearings + at;
-    const bool near_a = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest), a.to));
-    const bool near_b = !hn::AllFalse(d, hn::Le(hn::Load(d, nearest + lanes), b.to));
-    if (!near_a && !near_b) continue;
+    const auto limit = [&](std::size_t k, Vec to) HWY_ATTR {
+      return hn::IfThenElse(hn::Le(hn::Load(d, nearest + k * lanes), to), to, none);
+    };
+    r0.to = limit(0, to0);
+    r1.to = limit(1, to1);
+    r2.to = limit(2, to2);
+    r3.to = limit(3, to3);
+    const Vec any = hn::Max(hn::Max(r0.to, r1.to), hn::Max(r2.to, r3.to));
+    if (hn::AllTrue(d, hn::Le(any, none))) continue;
     const float* HWY_RESTRICT row = band.samples + first * kBlockBearings + at;
     const float* const end = row + std::min(kGroupRows, rows - first) * kBlockBearings;
-    if (near_a && near_b) {
-      for (; row != end; row += kBlockBearings) {
-        a.Add(d, hn::Load(d, row));
-        b.Add(d, hn::Load(d, row + lanes));
-      }
-    } else if (near_a) {
-      for (; row != end; row += kBlockBearings) a.Add(d, hn::Load(d, row));
-    } else {
-      for (; row != end; row += kBlockBearings) b.Add(d, hn::Load(d, row + lanes));
+    for (; row != end; row += kBlockBearings) {
+      r0.Add(d, hn::Load(d, row));
+      r1.Add(d, hn::Load(d, row + lanes));
+      r2.Add(d, hn::Load(d, row + 2 * lanes));
+      r3.Add(d, hn::Load(d, row + 3 * lanes));
     }
   }
-  left = a;
-  right = b;
+  r0.to = to0, r1.to = to1, r2.to = to2, r3.to = to3;
+  running = {r0, r1, r2, r3};
 }
 
 // What FindNearest finds of a vector.
@@ -128,15 +139,19 @@ void FindLanes(const BandFound& found, std::size_t rows, const ReturnLimits& lim
                const BlockLane& width_m, BlockHits& hits, NearestOfBlock& of) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
-  static_assert(kBlockBearings % (2 * hn::MaxLanes(Floats())) == 0);
-  for (std::size_t i = 0; i < kBlockBearings; i += 2 * lanes) {
-    NearestLanes a(found, limits, width_m.data(), i), b(found, limits, width_m.data(), i + lanes);
-    Running<true> first_a = a.First(), first_b = b.First();
-    AddAll(found.samples, rows, i, first_a, first_b);
-    Running<false> second_a = a.Second(first_a), second_b = b.Second(first_b);
-    AddAll(found.samples, rows, i, second_a, second_b);
-    a.Take(second_a, hits, of);
-    b.Take(second_b, hits, of);
+  static_assert(kBlockBearings % (kTogether * hn::MaxLanes(Floats())) == 0);
+  for (std::size_t i = 0; i < kBlockBearings; i += kTogether * lanes) {
+    const auto at = [&](std::size_t k) {
+      return NearestLanes(found, limits, width_m.data(), i + k * lanes);
+    };
+    std::array<NearestLanes, kTogether> nearest{at(0), at(1), at(2), at(3)};
+    std::array<Running<true>, kTogether> first;
+    for (std::size_t k = 0; k < kTogether; ++k) first[k] = nearest[k].First();
+    AddAll(found.samples, rows, i, first);
+    std::array<Running<false>, kTogether> second;
+    for (std::size_t k = 0; k < kTogether; ++k) second[k] = nearest[k].Second(first[k]);
+    AddAll(found.samples, rows, i, second);
+    for (std::size_t k = 0; k < kTogether; ++k) nearest[k].Take(second[k], hits, of);
   }
 }
 

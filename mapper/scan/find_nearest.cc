@@ -21,14 +21,14 @@ float MeanWithin(std::span<const float> samples, float low, float high, float ot
   return count > 0.0F ? sum / count : otherwise;
 }
 
-// Ranges are not negative, so their bits order as they do; and integers vectorise without ado.
+// Ranges are not negative, so their bits order as they do; and integers vectorise without ado. The
+// differences of smaller ones wrap round and are larger than any other.
 std::uint32_t SmallestFrom(std::span<const float> samples, std::uint32_t from) {
-  std::uint32_t smallest = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t least = std::numeric_limits<std::uint32_t>::max() - from;
   for (const float sample : samples) {
-    const auto bits = std::bit_cast<std::uint32_t>(sample);
-    smallest = std::min(smallest, bits >= from ? bits : std::numeric_limits<std::uint32_t>::max());
+    least = std::min(least, std::bit_cast<std::uint32_t>(sample) - from);
   }
-  return smallest;
+  return from + least;
 }
 
 std::size_t CountOf(std::span<const float> samples, float wanted) {
