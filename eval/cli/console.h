@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eval/mapping_run.h"
@@ -42,6 +43,9 @@ class ProgressBar {
 
 // `text` as one word of a shell, in quotes if need be.
 std::string ShellWord(const std::string& text);
+
+// "1 run", "2 runs".
+std::string Counted(std::size_t count, std::string_view thing);
 
 // Where the page of what was done lies.
 void SayReport(const std::string& folder);

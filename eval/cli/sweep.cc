@@ -79,14 +79,15 @@ std::string DurationText(double seconds) {
 
 void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t planned,
               const SweepContext& context) {
-  fmt::print("{}: {} runs, {}", plan.title, plan.runs.size(), plan.size_text);
+  fmt::print("{}: {}, {}", plan.title, Counted(plan.runs.size(), "run"), plan.size_text);
   if (planned < plan.runs.size()) fmt::print("; {} of them here", planned);
   if (runs.size() < planned) fmt::print("; {} done already", planned - runs.size());
   fmt::print("\n");
   if (runs.empty()) return;
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
-  fmt::print("about {} with {} at a time, {} different sets of scans\n",
-             DurationText(estimate.cpu_s / context.threads), context.threads, estimate.scan_sets);
+  fmt::print("about {} with {} at a time, {} of scans\n",
+             DurationText(estimate.cpu_s / context.threads), context.threads,
+             Counted(static_cast<std::size_t>(estimate.scan_sets), "different set"));
   std::fflush(stdout);
 }
 
@@ -97,12 +98,16 @@ void Summarise(const SweepResults& results) {
     if (failure.empty()) continue;
     if (failed++ == 0) reason = failure;
   }
-  fmt::print("{} runs in {}/results.csv\n", results.rows(), results.folder);
+  fmt::print("{} in {}/results.csv\n", Counted(results.rows(), "run"), results.folder);
   if (results.rows() > 0) {
     WriteSweepReport(results.folder);
     SayReport(results.folder);
   }
-  if (failed > 0) Warn({fmt::format("{} runs failed, the first: {}", failed, reason)});
+  if (failed == 0) return;
+  const std::string message =
+      fmt::format("{} of {} failed, the first: {}", failed, Counted(results.rows(), "run"), reason);
+  if (failed == results.rows()) throw std::runtime_error(message);
+  Warn({message});
 }
 
 void Merge(const SweepArguments& arguments) {
@@ -223,8 +228,8 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
     return PartsFor(arguments, plan, EstimateSweep(plan, runs, context).cpu_s);
   });
   job.command = PartCommand(arguments, sweep_file, output, job.parts);
-  fmt::print("{}: {} runs, {}; {} tasks\n", plan.title, plan.runs.size(), plan.size_text,
-             job.parts);
+  fmt::print("{}: {}, {}; {}\n", plan.title, Counted(plan.runs.size(), "run"), plan.size_text,
+             Counted(static_cast<std::size_t>(job.parts), "task"));
   std::fflush(stdout);
   ProgressBar bar("runs");
   job.progress = [&](int done, int) { bar.Show(done, static_cast<int>(plan.runs.size())); };

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -42,6 +43,17 @@ std::string Quoted(const std::string& name) {
 
 std::string DatabasePath(const std::string& folder) {
   return (fs::path(folder) / kSweepDatabaseName).string();
+}
+
+// A full disk, a folder that may not be written: no bad input, and the file is named.
+template <typename Work>
+void Writing(const std::string& folder, const Work& work) {
+  try {
+    work();
+  } catch (const SQLite::Exception& error) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written: {}", DatabasePath(folder), error.what()));
+  }
 }
 
 // What is the shortest text of a number goes in as that number, so that SQL and pandas see it as
@@ -196,7 +208,7 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
   // Under another name until it is whole: a kill in between leaves no half plan.
   const std::string partial = DatabasePath(folder) + ".partial";
   fs::remove(partial);
-  {
+  Writing(folder, [&] {
     Impl impl(folder, partial, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     SQLite::Database& database = *impl.database;
     SQLite::Transaction transaction(database);
@@ -230,7 +242,7 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
     }
     for (const RunOutcome& outcome : outcomes) impl.Insert(outcome);
     transaction.commit();
-  }
+  });
   fs::rename(partial, DatabasePath(folder));
   return Open(folder);
 }
@@ -246,7 +258,9 @@ SweepDatabase SweepDatabase::Open(const std::string& folder) {
     schema = opened.Environment()["schema"];
     if (schema == kSchema) {
       // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
-      opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+      Writing(folder, [&] {
+        opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+      });
       return opened;
     }
   } catch (const SQLite::Exception& error) {
@@ -278,9 +292,11 @@ std::vector<int> SweepDatabase::PlannedRuns() const { return impl_->RunsWhere(""
 void SweepDatabase::Record(const RunOutcome& outcome) { Record(std::vector{outcome}); }
 
 void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
-  SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
-  transaction.commit();
+  Writing(impl_->folder, [&] {
+    SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
+    transaction.commit();
+  });
 }
 
 void SweepDatabase::Drop(const std::vector<int>& runs) {

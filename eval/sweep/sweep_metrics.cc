@@ -9,4 +9,22 @@ NamedValues SweepMetrics(const RunScores& scores) {
   return MetricColumns(MetricsOf(scores), "metrics.json");
 }
 
+std::vector<std::string> SweepMetricNames() {
+  RunScores scores;  // with everything that a run may lack
+  scores.slam.emplace();
+  scores.online.emplace();
+  scores.est.emplace();
+  scores.map.observable.emplace();
+  MapQuality& quality = scores.map.quality.emplace();
+  quality.registration.emplace();
+  quality.registered.emplace();
+  quality.thickness.emplace();
+  quality.true_thickness.emplace();
+  quality.calibration.emplace();
+  quality.navigability.emplace();
+  std::vector<std::string> names;
+  for (const auto& [name, value] : SweepMetrics(scores)) names.push_back(name);
+  return names;
+}
+
 }  // namespace depthgrid

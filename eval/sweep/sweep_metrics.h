@@ -1,6 +1,9 @@
 // The scores of a run as columns of a sweep's table.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "eval/experiment.h"
 #include "eval/sweep/sweep_database.h"
 
@@ -9,5 +12,8 @@ namespace depthgrid {
 // The figures of metrics.json under their paths there, less what only breaks a figure down: full
 // statistics of an error, other tolerances, confusion and counts. A run gives all of them.
 NamedValues SweepMetrics(const RunScores& scores);
+
+// Their names.
+std::vector<std::string> SweepMetricNames();
 
 }  // namespace depthgrid

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "eval/shipped.h"
+#include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 
@@ -102,7 +103,8 @@ std::vector<Combination> Points(const std::vector<const SweepAxis*>& axes,
     return Samples(axes, file.samples, file.sample_seed);
   }
   for (const SweepAxis* axis : axes) {
-    if (axis->range) throw InputError(axis->place, "a range needs 'count', but in mode random");
+    if (axis->range)
+      throw InputError(axis->place, "a range needs 'count': only mode random draws without it");
   }
   return file.mode == SweepMode::kZip ? Zip(axes) : Grid(axes);
 }
@@ -151,7 +153,9 @@ void EnumerateRuns(const SweepFileOptions& file, const std::string& place, Sweep
       plan.runs.push_back(std::move(run));
     }
   }
-  plan.size_text = fmt::format("{} points x {} seeds", points.size(), seeds.size());
+  plan.size_text =
+      fmt::format("{} point{} x {} seed{}", points.size(), points.size() == 1 ? "" : "s",
+                  seeds.size(), seeds.size() == 1 ? "" : "s");
 }
 
 // Each value alone, so that a slip is found before the first run and named with its line.
@@ -165,9 +169,18 @@ void CheckValues(const SweepPlan& plan) {
       Config config = Config::FromText(plan.base.ToYaml(), axis.place);
       for (std::size_t i = 0; i < axis.keys.size(); ++i)
         config.Set(axis.keys[i], value[i], axis.place);
-      ReadExperiment(std::move(config), plan.base_folder);
+      const ExperimentOptions options = ReadExperiment(std::move(config), plan.base_folder);
+      ResolveName(options.scene, ShippedKind::kScene);
     }
   }
+}
+
+void CheckStop(const StopOptions& stop, const std::string& place) {
+  if (!stop.Enabled()) return;
+  const std::vector<std::string> names = SweepMetricNames();
+  if (std::find(names.begin(), names.end(), stop.metric) != names.end()) return;
+  throw InputError(place, fmt::format("stop.metric is '{}', must be a metric of results.csv{}",
+                                      stop.metric, DidYouMean(stop.metric, names)));
 }
 
 std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
@@ -225,6 +238,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   for (const std::string& assignment : set) plan.base.Set(assignment);
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
   CheckValues(plan);
+  CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "eval/sweep/sweep_database.h"
+#include "eval/sweep/sweep_metrics.h"
 #include "tests/eval/program.h"
 
 namespace depthgrid {
@@ -98,7 +99,9 @@ TEST_F(ProgramSweep, GivesTheScoresOfSingleRuns) {
   ASSERT_LT(row, results.rows());
   const auto metrics = nlohmann::json::parse(ReadFile(Path("run/metrics.json")));
   int compared = 0;
+  const std::vector<std::string> names = SweepMetricNames();
   for (const SweepColumn& column : results.metrics) {
+    EXPECT_THAT(names, ::testing::Contains(column.name));
     std::string pointer = "/" + column.name;
     std::replace(pointer.begin(), pointer.end(), '.', '/');
     const auto& value = metrics[nlohmann::json::json_pointer(pointer)];
@@ -169,7 +172,7 @@ axes:
 )");
   const Outcome outcome = Program("sweep ./failing.yaml -o out");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("1 runs failed, the first: mapper.scan.band_low_m"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 runs failed, the first: mapper.scan.band_low_m"));
   const SweepResults results = ReadSweep(Path("out"));
   ASSERT_EQ(results.rows(), 3U);
   EXPECT_THAT(results.failures[1], HasSubstr("mapper.scan.band_low_m"));
@@ -177,6 +180,14 @@ axes:
   const auto& error = results.Metric("trajectory.est.mean_euclidean_m");
   EXPECT_TRUE(std::isnan(error[1]));
   EXPECT_TRUE(std::isfinite(error[0]) && std::isfinite(error[2]));
+}
+
+TEST_F(ProgramSweep, FailsWhenAllRunsDo) {
+  Write("failing.yaml", "experiment: ./small.yaml\naxes: {mapper.scan.band_low_m: [1.8, 1.9]}\n");
+  const Outcome outcome = Program("sweep ./failing.yaml -o out");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("depthgrid: 2 of 2 runs failed, the first: "));
+  EXPECT_EQ(ReadSweep(Path("out")).rows(), 2U);
 }
 
 TEST_F(ProgramSweep, APointStopsWhenItIsSure) {
@@ -229,6 +240,9 @@ TEST_F(ProgramSweep, ErrorsAreOneLineAndLeaveNothing) {
   expect("seeds: 3\n", "key 'axes' is missing");
   expect("axes: {seed: [1, 1]}\n", "has the value 1 twice");
   expect("axes: {seed: [1], 'seed, frames': [[1, 2]]}\n", "is on two axes");
+  expect("axes: {scene: [./room.yaml, living_roo]}\n", "did you mean 'living_room'?");
+  expect("axes: {seed: [1, 2]}\nstop: {metric: trajectory.est.mean_euclidean, width: 1}\n",
+         "did you mean 'trajectory.est.mean_euclidean_m'?");
   expect("axes: {seed: [1]}\nmod: zip\n", "did you mean 'mode'?");
   expect("mode: zip\naxes: {frames: [1, 2], mapper.fusion.gain: [0]}\n", "the same number");
   expect("mode: random\naxes: {frames: [1, 2]}\n", "needs 'samples'");
