@@ -9,6 +9,7 @@
 #endif
 
 #include <bit>
+#include <type_traits>
 
 #include "mapper/scan/bearing_tile-inl.h"
 
@@ -118,19 +119,39 @@ void LayOut(const StripeVectors& vectors, int width, const RowRange& rows, Group
   tiles.end_column = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, end_of_all)));
 }
 
-// The smallest or largest lane of each of `count` vectors, a power of two of them, in their order.
-template <class Choose>
-HWY_INLINE Vec OfEach(Floats d, Vec* vectors, std::size_t count, const Choose& choose) {
-  for (std::size_t lanes = hn::Lanes(d); lanes > 1; lanes /= 2) {
-    const std::size_t half = std::max<std::size_t>(count / 2, 1);
-    for (std::size_t i = 0; i < half; ++i) {
-      const Vec a = vectors[std::min(2 * i, count - 1)],
-                b = vectors[std::min(2 * i + 1, count - 1)];
-      vectors[i] = choose(hn::ConcatEven(d, b, a), hn::ConcatOdd(d, b, a));
+// The smallest or largest lane of each of some vectors, a power of two of them, in their order.
+template <std::size_t kLanes, std::size_t kCount, class Choose>
+HWY_INLINE Vec OfEach(Floats d, std::array<Vec, kCount> vectors, const Choose& choose) {
+  if constexpr (kLanes == 1) {
+    return vectors[0];
+  } else {
+    constexpr std::size_t kHalf = std::max<std::size_t>(kCount / 2, 1);
+    std::array<Vec, kHalf> halves;
+    for (std::size_t i = 0; i < kHalf; ++i) {
+      const Vec a = vectors[std::min(2 * i, kCount - 1)],
+                b = vectors[std::min(2 * i + 1, kCount - 1)];
+      halves[i] = choose(hn::ConcatEven(d, b, a), hn::ConcatOdd(d, b, a));
     }
-    count = half;
+    return OfEach<kLanes / 2>(d, halves, choose);
   }
-  return vectors[0];
+}
+
+// What `vector_of` makes of each of `count` tiles, a power of two of them: the smallest or largest
+// lane of each.
+template <class VectorOf, class Choose>
+HWY_INLINE Vec OfTiles(Floats d, std::size_t count, const VectorOf& vector_of,
+                       const Choose& choose) {
+  constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+  const auto of = [&](auto size) HWY_ATTR {
+    std::array<Vec, size()> vectors;
+    for (std::size_t k = 0; k < size(); ++k) vectors[k] = vector_of(k);
+    return OfEach<kLanes>(d, vectors, choose);
+  };
+  if constexpr (kLanes >= 16) {
+    if (count > 8) return of(std::integral_constant<std::size_t, 16>());
+  }
+  if (count > 4) return of(std::integral_constant<std::size_t, 8>());
+  return of(std::integral_constant<std::size_t, 4>());
 }
 
 // Of the tiles from `at` on, one a lane: the smallest or largest of what was surveyed of their
@@ -139,20 +160,17 @@ template <class Choose>
 HWY_INLINE Vec OverColumns(Floats d, const GroupTiles& tiles, std::size_t at, std::size_t count,
                            const float* HWY_RESTRICT survey, float unknown, const Choose& choose) {
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  std::array<Vec, hn::MaxLanes(Floats())> found;
-  for (std::size_t k = 0; k < count; ++k) {
+  const auto of_tile = [&](std::size_t k) HWY_ATTR {
     const float* HWY_RESTRICT from = survey + tiles.start[at + k];
     const int columns = tiles.columns[at + k];
-    if (HWY_UNLIKELY(columns == 0)) {
-      found[k] = hn::Set(d, unknown);
-      continue;
-    }
-    found[k] = choose(hn::LoadU(d, from), hn::LoadU(d, from + (columns - lanes)));
+    if (HWY_UNLIKELY(columns == 0)) return hn::Set(d, unknown);
+    Vec found = choose(hn::LoadU(d, from), hn::LoadU(d, from + (columns - lanes)));
     for (int column = lanes; column + lanes < columns; column += lanes) {
-      found[k] = choose(found[k], hn::LoadU(d, from + column));
+      found = choose(found, hn::LoadU(d, from + column));
     }
-  }
-  return OfEach(d, found.data(), count, choose);
+    return found;
+  };
+  return OfTiles(d, count, of_tile, choose);
 }
 
 struct Smaller {
@@ -192,11 +210,10 @@ void FindSkipFrom(const SkipRule& rule, std::span<const BlockSamples> found,
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t i = 0; i < vectors.count; i += lanes) {
     const std::size_t count = std::min(lanes, std::bit_ceil(vectors.count - i));
-    std::array<Vec, hn::MaxLanes(Floats())> nearest;
-    for (std::size_t k = 0; k < count; ++k) {
-      nearest[k] = hn::Load(d, &found[vectors.of[i + k]].band.nearest[vectors.lane[i + k]]);
-    }
-    const Vec farthest = OfEach(d, nearest.data(), count, Larger());
+    const auto nearest = [&](std::size_t k) HWY_ATTR {
+      return hn::Load(d, &found[vectors.of[i + k]].band.nearest[vectors.lane[i + k]]);
+    };
+    const Vec farthest = OfTiles(d, count, nearest, Larger());
     hn::Store(rule.From(d, farthest), d, &vectors.skip_from[i]);
   }
 }
