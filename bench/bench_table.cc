@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -52,10 +51,7 @@ std::string TimeText(double seconds) {
 }
 
 // Three digits are more than the measurement holds.
-double Rounded(double ratio) {
-  const double unit = std::pow(10.0, std::floor(std::log10(ratio)) - 2.0);
-  return std::round(ratio / unit) * unit;
-}
+double Rounded(double ratio) { return std::stod(fmt::format("{:.3g}", ratio)); }
 
 // The part of a floor's name that says what it is; behind '@' stands for which case.
 std::string LabelOf(const std::string& floor) { return floor.substr(0, floor.find(" @")); }
@@ -103,10 +99,14 @@ Ratios ReadRatios(const std::string& path) {
   return file ? nlohmann::json::parse(file).get<Ratios>() : Ratios();
 }
 
+// Cases that were not run keep theirs; those that are no more go.
 void WriteRatios(const std::string& path, const Ratios& ratios) {
-  Ratios all = ReadRatios(path);
-  for (const auto& [stage, sizes] : ratios) {
-    for (const auto& [size, ratio] : sizes) all[stage][size] = ratio;
+  const Ratios before = ReadRatios(path);
+  Ratios all;
+  for (const Case& row : Cases()) {
+    const auto now = Find(ratios, row);
+    const auto kept = now ? now : Find(before, row);
+    if (kept) all[row.stage][row.size] = Rounded(*kept);
   }
   std::ofstream(path) << nlohmann::json(all).dump(2) << "\n";
 }

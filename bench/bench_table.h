@@ -38,7 +38,7 @@ using Ratios = std::map<std::string, std::map<std::string, double>>;
 Ratios RatiosOf(const Times& times);
 // Empty when there is no such file.
 Ratios ReadRatios(const std::string& path);
-// Ratios in the file that are not given stay.
+// Ratios in the file that are not given stay, but those of cases that are no more.
 void WriteRatios(const std::string& path, const Ratios& ratios);
 
 // The tables as Markdown, and below them what changed by more than `band` (0.25: by a quarter).
