@@ -26,11 +26,11 @@ const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m
 const metricLabel = (m = metric) => (m.unit ? `${m.name} (${m.unit})` : m.name);
 const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : a < b);
 
-// The axis a reader comes for: the gain if it was swept, else the numeric one of the most values.
+// The axis a reader comes for: the numeric one of the most values, the gain before others of as many.
 function mainAxis() {
   const numeric = AXES.map((axis, i) => i).filter((i) => AXES[i].numeric && AXES[i].texts.length > 1);
-  const gain = numeric.find((i) => AXES[i].key === "mapper.fusion.gain");
-  return gain ?? numeric.sort((a, b) => AXES[b].texts.length - AXES[a].texts.length)[0] ?? 0;
+  const isGain = (i) => (AXES[i].key === "mapper.fusion.gain" ? 1 : 0);
+  return numeric.sort((a, b) => AXES[b].texts.length - AXES[a].texts.length || isGain(b) - isGain(a))[0] ?? 0;
 }
 const shortKey = (key) => key.split(".").at(-1);
 

@@ -98,6 +98,8 @@ function drawBest() {
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.name} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
     "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
+  // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
+  const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
   const rows = lines.map((line) => {
     const p = POINTS[line.points[line.best]];
@@ -105,10 +107,11 @@ function drawBest() {
     return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
       percent(line.share_best[line.best]),
       `${compact(metric.mean[line.points[line.best]])} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
-      asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
-      withUnit(line.regret_of_seed[line.best] * metric.factor), String(p.runs)];
+      !canTell(line, p.runs) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
+      compact(Number((line.regret_of_seed[line.best] * metric.factor).toPrecision(3))), String(p.runs)];
   });
-  const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${metric.unit ? `, ${metric.unit}` : ""} (95 %)`, "as good", "regret", "seeds"], rows);
+  const inUnit = metric.unit ? `, ${metric.unit}` : "";
+  const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
   table.id = "best";
   byId("best").replaceWith(table);
   const longest = lines.reduce((a, b) => (b.points.length > a.points.length ? b : a));
