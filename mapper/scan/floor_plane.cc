@@ -16,6 +16,8 @@ constexpr int kSamplesAcross = 80;
 // floor is rough by 7 mm.
 constexpr int kSlopeSamples = 2;
 constexpr float kSteepestSlope = 0.4F;
+// Rows are fetched so long before they are read: the processor does not foresee steps of some rows.
+constexpr int kRowsAhead = 2;
 // Camera heights considered: hand-held and robot-mounted.
 constexpr float kMinHeightM = 0.1F;
 constexpr float kMaxHeightM = 3.0F;
@@ -38,11 +40,6 @@ constexpr double kSigmaM = 0.02;  // of a point's height
 constexpr double kPointsPerWitness = 10.0;
 // A plane turned by more from what is known is something else than the floor.
 constexpr double kMostTilt = 0.15;
-
-bool IsLevel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  const Eigen::Vector3f d = b - a;
-  return d.z() * d.z() <= kSteepestSlope * kSteepestSlope * d.head<2>().squaredNorm();
-}
 
 // Weighted sums over the points near a plane.
 struct Sums {
@@ -92,43 +89,36 @@ Eigen::Vector3d Solved(const Sums& sums, const FloorPrior& prior) {
 
 }  // namespace
 
+void PointGrid::Resize(int row_count, int column_count) {
+  constexpr std::size_t kLanes = 16;
+  rows = row_count;
+  columns = column_count;
+  stride = (static_cast<std::size_t>(columns + kSlopeSamples) + kLanes - 1) / kLanes * kLanes;
+  // The last row too is read from beyond its first column on.
+  const std::size_t size = static_cast<std::size_t>(rows) * stride + kLanes;
+  for (std::vector<float>* numbers : {&x, &y, &z}) numbers->resize(size);
+}
+
 LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
                           const Eigen::Quaterniond& level_from_camera, LevelPoints memory) {
   const int step = std::max(1, std::max(image.width_px, image.height_px) / kSamplesAcross);
   const int columns = image.width_px / step;
   const int rows = image.height_px / step;
   const Eigen::Matrix3f rotation = level_from_camera.toRotationMatrix().cast<float>();
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  memory.grid.resize(static_cast<std::size_t>(rows * columns));
-  Eigen::Vector3f* point_at = memory.grid.data();
   const Eigen::Vector3f ray_step = rotation.col(0) * static_cast<float>(step / camera.fx_px);
+  memory.grid.Resize(rows, columns);
   for (int row = 0; row < rows; ++row) {
     const Eigen::Vector3f first_ray =
         rotation * Unproject(camera, 0.0, row * step, 1.0).cast<float>();
-    const float* const pixels = image.Row(row * step);
-    for (int column = 0; column < columns; ++column) {
-      const float z_m = pixels[column * step];
-      const Eigen::Vector3f ray = first_ray + static_cast<float>(column) * ray_step;
-      *point_at++ = (z_m > 0.0F ? z_m : kNone) * ray;
-    }
+    const int coming = std::min(row + kRowsAhead, rows - 1);
+    internal::PutPoints(image.Row(row * step), image.Row(coming * step), step, first_ray, ray_step,
+                        row, memory.grid);
   }
-  memory.points.clear();
   memory.samples = rows * columns;
-  const auto at = [&](int row, int column) -> const Eigen::Vector3f& {
-    return memory.grid[static_cast<std::size_t>(row * columns + column)];
-  };
-  for (int row = 0; row + kSlopeSamples < rows; ++row) {
-    for (int column = 0; column + kSlopeSamples < columns; ++column) {
-      const Eigen::Vector3f& point = at(row, column);
-      // Comparisons with what is not a number are false.
-      if (point.z() <= -kMinHeightM && point.z() > -kMaxHeightM &&
-          point.head<2>().squaredNorm() <= kMaxDistanceM * kMaxDistanceM &&
-          IsLevel(point, at(row, column + kSlopeSamples)) &&
-          IsLevel(point, at(row + kSlopeSamples, column))) {
-        memory.points.push_back(point);
-      }
-    }
-  }
+  memory.points.clear();
+  internal::FindLevel(memory.grid,
+                      {kMinHeightM, kMaxHeightM, kMaxDistanceM, kSteepestSlope, kSlopeSamples},
+                      memory.points);
   return memory;
 }
 

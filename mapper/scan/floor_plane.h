@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -11,18 +12,43 @@
 
 namespace depthgrid {
 
+// The points of the pixels looked at, each number of theirs side by side for vectors; not numbers
+// where there is none, as behind the last column.
+struct PointGrid {
+  int rows = 0, columns = 0;
+  std::size_t stride = 0;  // numbers of a row: whole vectors, and some columns to spare
+  std::vector<float> x, y, z;
+
+  void Resize(int row_count, int column_count);
+};
+
 // A part of the image's pixels as points from the camera, ahead, to the left and up, that lie on
 // surfaces which are level to within some 20 degrees.
 struct LevelPoints {
   std::vector<Eigen::Vector3f> points;
   int samples = 0;  // pixels looked at
 
-  // Memory: the points of the pixels looked at, not finite where there is none.
-  std::vector<Eigen::Vector3f> grid;
+  PointGrid grid;  // memory
 };
 
 LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
                           const Eigen::Quaterniond& level_from_camera, LevelPoints memory);
+
+namespace internal {
+// Surfaces that are looked at: their height below the camera, how far they are and how steep.
+struct LevelLimits {
+  float min_height_m, max_height_m, max_distance_m, steepest;
+  int over;  // points between which the slope is looked at
+};
+// A row of pixels as a row of the grid: every `step`th pixel, on the ray first + column *
+// per_column. `coming_pixels` are fetched meanwhile.
+void PutPoints(const float* pixels, const float* coming_pixels, int step,
+               const Eigen::Vector3f& first, const Eigen::Vector3f& per_column, int row,
+               PointGrid& grid);
+// Appends those that lie on a level surface, row by row.
+void FindLevel(const PointGrid& grid, const LevelLimits& limits,
+               std::vector<Eigen::Vector3f>& points);
+}  // namespace internal
 
 // How far below the camera the lowest level surface lies that fills 1 % of the image and a quarter
 // of what the largest one fills; nothing when there is none. A table top that hides the floor is

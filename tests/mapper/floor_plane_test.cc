@@ -1,0 +1,79 @@
+#include "mapper/scan/floor_plane.h"
+
+#include <gtest/gtest.h>
+
+#define HWY_DISABLE_PCLMUL_AES
+#include <hwy/highway.h>
+
+#include "mapper/core/rng.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+bool IsLevel(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  const Eigen::Vector3f d = b - a;
+  return d.z() * d.z() <= 0.4F * 0.4F * (d.x() * d.x() + d.y() * d.y());
+}
+
+// One by one: every so many pixels, 0.1 to 3 m below the camera, up to 5 m away, level to the
+// second point to the right and below.
+std::vector<Eigen::Vector3f> PlainPoints(const DepthImage& image, const PinholeCamera& camera,
+                                         const Eigen::Quaterniond& level) {
+  const int step = std::max(1, std::max(image.width_px, image.height_px) / 80);
+  const Eigen::Matrix3f rotation = level.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f ray_step = rotation.col(0) * static_cast<float>(step / camera.fx_px);
+  const auto at = [&](int row, int column) -> Eigen::Vector3f {
+    const Eigen::Vector3f first = rotation * Unproject(camera, 0.0, row * step, 1.0).cast<float>();
+    const float z_m = image.Row(row * step)[column * step];
+    return (z_m > 0.0F ? z_m : std::nanf("")) * (first + static_cast<float>(column) * ray_step);
+  };
+  std::vector<Eigen::Vector3f> points;
+  for (int row = 0; row + 2 < image.height_px / step; ++row) {
+    for (int column = 0; column + 2 < image.width_px / step; ++column) {
+      const Eigen::Vector3f point = at(row, column);
+      if (point.z() <= -0.1F && point.z() > -3.0F && point.head<2>().squaredNorm() <= 25.0F &&
+          IsLevel(point, at(row, column + 2)) && IsLevel(point, at(row + 2, column))) {
+        points.push_back(point);
+      }
+    }
+  }
+  return points;
+}
+
+TEST(LevelPoints, AreThoseOfThePlainLoopBitForBit) {
+  AnalyticRoom room;
+  room.boxes.push_back({{0.9, -1.0, 0.0}, {1.5, -0.3, 0.5}});
+  const std::vector<PinholeCamera> cameras = {{640, 480, 525.0, 525.0, 319.5, 239.5, {}},
+                                              {170, 120, 120.3, 120.0, 79.5, 59.5, {}},
+                                              {37, 23, 30.0, 30.0, 18.0, 11.0, {}},
+                                              {2, 480, 400.0, 400.0, 0.5, 239.5, {}}};
+  RandomStream random(7, RandomStage::kTest);
+  std::size_t points = 0;
+  LevelPoints memory;
+  for (int i = 0; i < 24; ++i) {
+    const PinholeCamera& camera = cameras[static_cast<std::size_t>(i) % cameras.size()];
+    const Pose3 pose = TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15,
+                                    random.Uniform(-0.2, 0.6), random.Uniform(-0.3, 0.3));
+    DepthImage image = room.Render(camera, pose);
+    for (float& z_m : image.z_m) {
+      z_m *= static_cast<float>(1.0 + 0.01 * random.Normal());
+      if (random.Uniform() < 0.05) z_m = kInvalidDepth;
+    }
+    const Eigen::Quaterniond level = LevelFromCamera(pose);
+    const std::vector<Eigen::Vector3f> plain = PlainPoints(image, camera, level);
+    for (const std::int64_t target : {std::int64_t{0}, std::int64_t{HWY_AVX2}}) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      memory = LevelPointsOf(image, camera, level, std::move(memory));
+      ASSERT_EQ(memory.points, plain) << i;
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    points += plain.size();
+  }
+  EXPECT_GE(points, 3000U);
+}
+
+}  // namespace
+}  // namespace depthgrid
