@@ -1,14 +1,11 @@
 #include "sim/depth_camera.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "mapper/core/error.h"
+#include "sim/parallel_calls.h"
 #include "sim/ray_scene_impl.h"
-#include "sim/usable_threads.h"
 
 namespace depthgrid {
 namespace {
@@ -101,16 +98,9 @@ template <int kWidth>
 void RenderImage(RTCScene scene, const View& view, int threads, const Output& output) {
   constexpr int kTileHeight = kWidth / kTileWidth;
   const int tile_rows = (view.camera.height_px + kTileHeight - 1) / kTileHeight;
-  const auto render_row = [&](int tile_row) {
-    RenderTileRow<kWidth>(scene, view, tile_row * kTileHeight, output);
-  };
-  if (threads == 1) {
-    for (int tile_row = 0; tile_row < tile_rows; ++tile_row) render_row(tile_row);
-  } else {
-    tbb::task_arena(UsableThreads(threads)).execute([&] {
-      tbb::parallel_for(0, tile_rows, render_row);
-    });
-  }
+  CallInParallel(static_cast<std::size_t>(tile_rows), threads, [&](std::size_t tile_row) {
+    RenderTileRow<kWidth>(scene, view, static_cast<int>(tile_row) * kTileHeight, output);
+  });
 }
 
 // (k - centre) / focal for k in [0, size), padded so that the last tile reads defined values.

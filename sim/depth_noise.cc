@@ -1,8 +1,5 @@
 #include "sim/depth_noise.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,8 +8,8 @@
 #include "mapper/core/error.h"
 #include "sim/depth_noise_models.h"
 #include "sim/depth_samples.h"
+#include "sim/parallel_calls.h"
 #include "sim/sensor_artifacts.h"
-#include "sim/usable_threads.h"
 
 namespace depthgrid {
 namespace {
@@ -79,18 +76,6 @@ std::vector<float> InverseOf(const DepthImage& depth) {
     inverse[i] = noise::Select(depth.z_m[i] > 0.0F, 1.0F / depth.z_m[i], 0.0F);
   }
   return inverse;
-}
-
-// Calls f(k) for k in [0, count); the calls must not depend on each other.
-template <typename F>
-void ForEach(std::size_t count, int threads, const F& f) {
-  if (threads == 1) {
-    for (std::size_t k = 0; k < count; ++k) f(k);
-  } else {
-    tbb::task_arena(UsableThreads(threads)).execute([&] {
-      tbb::parallel_for(std::size_t{0}, count, f);
-    });
-  }
 }
 
 }  // namespace
@@ -163,7 +148,7 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
     }
     std::copy_n(measured.data(), count, noisy.z_m.data() + first);
   };
-  ForEach((pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, add_to_block);
+  CallInParallel((pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, add_to_block);
   return noisy;
 }
 

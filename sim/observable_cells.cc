@@ -1,8 +1,5 @@
 #include "sim/observable_cells.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,8 +9,8 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "sim/band_outline.h"
+#include "sim/parallel_calls.h"
 #include "sim/ray_scene.h"
-#include "sim/usable_threads.h"
 #include "sim/view_pyramid.h"
 
 namespace depthgrid {
@@ -151,18 +148,11 @@ CellSet ObservableCells(const TriangleMesh& mesh, double floor_z_m, const StateM
   const auto threads = static_cast<std::size_t>(options.threads);
   std::vector<Observer> observers(threads,
                                   Observer(fences, outline.height_m, band, truth, camera, options));
-  const auto observe = [&](std::size_t k) {
+  CallInParallel(threads, options.threads, [&](std::size_t k) {
     for (std::size_t i = k; i < world_from_camera.size(); i += threads) {
       observers[k].LookFrom(world_from_camera[i].world_from_camera);
     }
-  };
-  if (threads == 1) {
-    observe(0);
-  } else {
-    tbb::task_arena(UsableThreads(options.threads)).execute([&] {
-      tbb::parallel_for(std::size_t{0}, threads, observe);
-    });
-  }
+  });
   // A union: no order to depend on.
   CellSet seen = observers[0].seen();
   for (const Observer& observer : observers) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "eval/statistics/log_gamma.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -22,7 +23,7 @@ double ChiSquareCdf(double value, double degrees) {
   const double x = 0.5 * value;
   constexpr double kClose = 1e-12;
   constexpr int kMostTerms = 100000;
-  const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
+  const double scale = std::exp(a * std::log(x) - x - LogGamma(a));
   if (x < a + 1.0) {
     double term = 1.0 / a;
     double sum = term;

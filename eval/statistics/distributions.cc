@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/statistics/log_gamma.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -11,7 +12,7 @@ namespace {
 // Logarithm of the density of S, S^2 a chi-square over its degrees.
 double LogDensity(double s, double degrees) {
   const double half = 0.5 * degrees;
-  return std::log(2.0) + half * std::log(half) - std::lgamma(half) + (degrees - 1.0) * std::log(s) -
+  return std::log(2.0) + half * std::log(half) - LogGamma(half) + (degrees - 1.0) * std::log(s) -
          half * s * s;
 }
 

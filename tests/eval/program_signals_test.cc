@@ -1,4 +1,5 @@
 // Ctrl-C, `kill` and a closed terminal: nothing half-written stays.
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -50,7 +51,10 @@ TEST_F(ProgramSignals, LeaveNothing) {
   const std::vector<std::vector<int>> requests = {
       {SIGINT}, {SIGTERM, SIGTERM}, {SIGHUP}, {SIGINT, SIGHUP}};
   for (const std::vector<int>& signals : requests) {
-    EXPECT_EQ(ExitCodeAfter(signals, "frames=3000"), 128 + signals.front());
+    // Of two at once the system chooses which comes first.
+    std::vector<int> codes;
+    for (const int signal : signals) codes.push_back(128 + signal);
+    EXPECT_THAT(codes, testing::Contains(ExitCodeAfter(signals, "frames=3000")));
     EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
     EXPECT_FALSE(HasUnfinishedFolder());
     EXPECT_FALSE(std::filesystem::exists(Path("out")));

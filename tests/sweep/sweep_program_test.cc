@@ -208,7 +208,8 @@ stop: {metric: trajectory.slam.mean_euclidean_m, width: 0.01, min_seeds: 3}
   ExpectSameTable("one", "joined");
   int calm = 0;
   int wild = 0;
-  for (const double scale : ReadSweep(Path("one")).Parameter("slam.drift_scale").numbers) {
+  const SweepResults one = ReadSweep(Path("one"));
+  for (const double scale : one.Parameter("slam.drift_scale").numbers) {
     ++(scale < 1.0 ? calm : wild);
   }
   EXPECT_EQ(calm, 3);
