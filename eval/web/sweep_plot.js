@@ -104,9 +104,11 @@ function drawBest() {
   const rows = lines.map((line) => {
     const p = POINTS[line.points[line.best]];
     const asGood = line.p.map((value, k) => [value, k]).filter(([value, k]) => k === line.best || (isNumber(value) && value >= 0.05)).map(([, k]) => at(line, k));
+    const mean = compact(metric.mean[line.points[line.best]]);
+    if (p.runs < 2) return [heldText(line), at(line, line.best), "–", "–", mean, "one seed tells nothing", "–", String(p.runs)];
     return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
       percent(line.share_best[line.best]),
-      `${compact(metric.mean[line.points[line.best]])} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
+      `${mean} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
       !canTell(line, p.runs) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
       compact(Number((line.regret_of_seed[line.best] * metric.factor).toPrecision(3))), String(p.runs)];
   });
