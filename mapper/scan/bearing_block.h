@@ -142,4 +142,8 @@ struct NearestOfBlock {
 NearestOfBlock FindSupported(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
                              const NoiseWindow& window, BlockHits& hits);
 
+// SteadyRange of all lanes with a hit. `found` is the slice's.
+void SteadySlice(const ImageBands& bands, const NoiseWindow& window, const BearingBlock& block,
+                 const BandFound& found, BlockHits& hits);
+
 }  // namespace depthgrid::internal

@@ -128,7 +128,11 @@ void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::s
   while (const auto lane = FindNearestOfBlock(job, found.band, rows, bearings, all.obstacles[at])) {
     internal::SampleSkipped(job.bands, block, *lane, found);
   }
-  if (has_slice) FindNearestOfBlock(job, found.slice, rows, bearings, all.slice[at]);
+  if (!has_slice) return;
+  FindNearestOfBlock(job, found.slice, rows, bearings, all.slice[at]);
+  if (job.bands.slice.agree_sigmas > 0.0F) {
+    internal::SteadySlice(job.bands, job.window, block, found.slice, all.slice[at]);
+  }
 }
 
 // Some neighbouring blocks.

@@ -110,9 +110,11 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
   const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
   const ReturnLimits slice_limits =
       LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m);
-  const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
-                                            SliceBand{slice_limits.low_m, slice_limits.high_m},
-                                            NoiseWindow(depth, memory.noise), memory.returns);
+  const ImageReturns& returns =
+      FindReturns(*reading.image, memory.lines, limits,
+                  SliceBand{slice_limits.low_m, slice_limits.high_m,
+                            static_cast<float>(options_.slice_agree_sigmas)},
+                  NoiseWindow(depth, memory.noise), memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
   return {
       ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),

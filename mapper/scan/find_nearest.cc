@@ -9,16 +9,35 @@
 namespace depthgrid {
 namespace {
 
-float MeanWithin(std::span<const float> samples, float low, float high, float otherwise) {
+struct Sum {
   float sum = 0.0F;
   float count = 0.0F;
-  for (const float sample : samples) {
-    if (sample >= low && sample <= high) {
-      sum += sample;
-      count += 1.0F;
-    }
+
+  void Add(float sample) {
+    sum += sample;
+    count += 1.0F;
   }
-  return count > 0.0F ? sum / count : otherwise;
+  float Mean() const { return sum / count; }
+};
+
+float MeanWithin(std::span<const float> samples, float low, float high, float otherwise) {
+  Sum within;
+  for (const float sample : samples) {
+    if (sample >= low && sample <= high) within.Add(sample);
+  }
+  return within.count > 0.0F ? within.Mean() : otherwise;
+}
+
+// The row at which rays have this slope, height over range.
+float RowAtSlope(const BearingLine& line, float slope) {
+  return (slope * line.h0 - line.g0) / (line.g1 - slope * line.h1);
+}
+
+bool Agree(const Sum& part, const Sum& core, float limit_m) {
+  if (part.count == 0.0F) return true;
+  const float difference_m = part.Mean() - core.Mean();
+  return difference_m * difference_m * (part.count * core.count) <=
+         limit_m * limit_m * (part.count + core.count);
 }
 
 // Ranges are not negative, so their bits order as they do; and integers vectorise without ado. The
@@ -81,6 +100,44 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
       return std::max(smallest + width_m, centre_m + half_m);
     }
   }
+}
+
+CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range_m) {
+  const float a = RowAtSlope(line, 0.5F * slice.high_m / range_m);
+  const float b = RowAtSlope(line, 0.5F * slice.low_m / range_m);
+  return a < b ? CoreRows{a, b} : CoreRows{b, a};
+}
+
+float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,
+                  const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
+                  float range_m) {
+  if (slice.agree_sigmas <= 0.0F) return range_m;
+  const CoreRows rows = CoreRowsAt(line, slice, range_m);
+  const float width_m = window.At(range_m);
+  const float half_m = 0.5F * width_m;
+  const auto up_to = [&](float centre_m) {
+    return std::min(centre_m + half_m, limits.max_range_m);
+  };
+  Sum before, core, after;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!(samples[i] >= range_m - half_m && samples[i] <= up_to(range_m))) continue;
+    const auto row = static_cast<float>(first_row + static_cast<int>(i));
+    if (row < rows.first) before.Add(samples[i]);
+    if (row >= rows.first && row <= rows.last) core.Add(samples[i]);
+    if (row > rows.last) after.Add(samples[i]);
+  }
+  const auto needed = static_cast<float>(limits.min_returns);
+  if (core.count < needed) return range_m;
+  const float limit_m = slice.agree_sigmas * NoiseWindow::kSigmaShare * width_m;
+  if (Agree(before, core, limit_m) && Agree(after, core, limit_m)) return range_m;
+  const float centre_m = core.Mean();
+  Sum steady;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto row = static_cast<float>(first_row + static_cast<int>(i));
+    if (row < rows.first || row > rows.last) continue;
+    if (samples[i] >= centre_m - half_m && samples[i] <= up_to(centre_m)) steady.Add(samples[i]);
+  }
+  return steady.count < needed ? range_m : steady.Mean();
 }
 
 }  // namespace depthgrid

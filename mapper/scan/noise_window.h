@@ -26,6 +26,10 @@ class NoiseWindow {
   using Memory = std::array<std::vector<float>, kClasses>;
   NoiseWindow(const DepthImage& image, Memory& differences);
 
+  static constexpr double kWindowSigmas = 6.0;
+  // A standard deviation as a share of the width.
+  static constexpr float kSigmaShare = static_cast<float>(1.0 / kWindowSigmas);
+
   // Width of the window at a range.
   float At(float range_m) const {
     return static_cast<float>(
@@ -47,7 +51,6 @@ class NoiseWindow {
 
  private:
   static constexpr double kClassM = 0.5;  // classes of depth are this wide, from 0
-  static constexpr double kWindowSigmas = 6.0;
   static constexpr double kMinWindowM = 0.01;
   // Wider than this, the window would join a chair with the wall behind it.
   static constexpr double kMaxWindowM = 0.4;

@@ -19,6 +19,9 @@ void ScanOptions::Visit(OptionsVisitor& v) {
   v.Number("slice_half_height_m", slice_half_height_m, {0.0, 1.0},
            "half the height of the level slice around the camera that is matched; 0 matches the "
            "obstacle scan");
+  v.Number("slice_agree_sigmas", slice_agree_sigmas, {0.0, 1000.0},
+           "where the slice's upper or lower part stands farther from its inner half than this "
+           "many sigmas, the inner half alone is matched; 0 takes all for one surface");
   v.Choice(
       "floor", floor, {{FloorSource::kPose, "pose"}, {FloorSource::kImage, "image"}},
       "camera height and tilt over the floor: from the pose or from the floor seen in the image");

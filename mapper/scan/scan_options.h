@@ -40,6 +40,9 @@ struct ScanOptions {
   // matches the obstacle scan. 0.1 m keeps three rows or more of the image up to 6 m with a tilted
   // camera and is thin against furniture.
   double slice_half_height_m = 0.1;
+  // Beyond so many sigmas of noise, what lies above and below the slice's inner half is another
+  // surface (SteadyRange); 0 takes all for one. Of pure noise 2.5 drops one bearing in forty.
+  double slice_agree_sigmas = 2.5;
   // SLAM drifts in height, roll and pitch too: with its poses the floor turns into walls
   // (docs/results.md, "Heights and tilts").
   FloorSource floor = FloorSource::kImage;

@@ -36,10 +36,26 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
   return returns;
 }
 
+float PlainSteadyRange(const DepthImage& image, const BearingLine& line, const SliceBand& slice,
+                       const ReturnLimits& limits, const NoiseWindow& window, float range_m) {
+  const RowRange rows = RowsOf(line, limits);
+  std::vector<float> samples;
+  for (int v = rows.first; v <= rows.last; ++v) {
+    samples.push_back(SampleAt(image, line, limits, v));
+  }
+  return SteadyRange(samples, rows.first, line, slice, limits, window, range_m);
+}
+
 // Single pixels that are too near: nearest, but not supported.
 void AddStrays(DepthImage& image, double share, RandomStream& random) {
   for (float& z_m : image.z_m) {
     if (random.Uniform() < share) z_m *= 0.7F;
+  }
+}
+
+void AddNoise(DepthImage& image, double sigma_m, RandomStream& random) {
+  for (float& z_m : image.z_m) {
+    if (z_m > 0.0F) z_m += static_cast<float>(sigma_m * random.Normal());
   }
 }
 
@@ -76,6 +92,9 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   AnalyticRoom room;
   room.boxes.push_back({{0.9, -1.0, 0.0}, {1.5, -0.3, 0.5}});
   room.cylinders.push_back({{1.4, 0.5}, 0.04, 0.0, 2.5});
+  // A step of 2 cm a little above the camera.
+  room.boxes.push_back({{0.9, -0.3, 0.0}, {1.5, 0.4, 1.2}});
+  room.boxes.push_back({{0.92, -0.3, 1.2}, {1.5, 0.4, 1.4}});
   const std::vector<PinholeCamera> cameras = {
       {160, 120, 120.3, 120.0, 79.5, 59.5, {}},  // columns within two vectors
       {160, 120, 400.0, 400.0, 70.0, 50.0, {}},  // a narrow view
@@ -84,7 +103,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   RandomStream random(11, RandomStage::kTest);
   ReturnsMemory memory;
   BearingFan fan;
-  int cases = 0, hits = 0, slice_hits = 0, gaps = 0;
+  int cases = 0, hits = 0, slice_hits = 0, gaps = 0, unsteady = 0;
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     Choose(target);
@@ -95,6 +114,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       const Pose3 pose =
           TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15, pitch_rad, roll_rad);
       DepthImage image = room.Render(camera, pose);
+      if (i % 4 != 3) AddNoise(image, 0.004, random);
       if (i % 4 == 1) AddStrays(image, 0.001, random);
       if (i % 4 > 1) Damage(image, random);
       const Eigen::Quaterniond level = LevelFromCamera(pose);
@@ -109,7 +129,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       limits.first_row = i % 6 == 0 ? camera.height_px / 3 : 0;
       limits.last_row = camera.height_px - 1;
       const NoiseWindow window(image);
-      const SliceBand band{-0.1F, static_cast<float>(0.2 - 0.1)};
+      const SliceBand band{-0.1F, static_cast<float>(0.2 - 0.1), i % 2 == 0 ? 2.5F : 0.0F};
       ReturnLimits slice_limits = limits;
       slice_limits.low_m = band.low_m;
       slice_limits.high_m = band.high_m;
@@ -126,7 +146,13 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         ASSERT_EQ(returns.gap_below, plain.gap_below) << i << " " << k;
         ASSERT_EQ(returns.gap_above, plain.gap_above) << i << " " << k;
         ASSERT_EQ(one.At(k, one.obstacles), returns) << i << " " << k;
-        const BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window);
+        BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window);
+        if (plain_slice.hit) {
+          const float whole_m = plain_slice.range_m;
+          plain_slice.range_m =
+              PlainSteadyRange(image, lines[k], band, slice_limits, window, whole_m);
+          unsteady += plain_slice.range_m != whole_m ? 1 : 0;
+        }
         ASSERT_EQ(both.At(k, both.slice), plain_slice) << i << " " << k;
         slice_hits += plain_slice.hit ? 1 : 0;
         ++cases;
@@ -138,6 +164,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   EXPECT_GE(cases, 4000);
   EXPECT_GE(hits, 2000);
   EXPECT_GE(slice_hits, 2000);
+  EXPECT_GE(unsteady, 50);
   EXPECT_GE(gaps, 600);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mapper/core/level.h"
+#include "mapper/core/rng.h"
 #include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
@@ -55,6 +56,7 @@ TEST(FrameScanner, ObstaclesAreTheNearestSurfaceAndTheSliceIsLevelWithTheCamera)
 
 TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
   ScanOptions options;
+  options.slice_agree_sigmas = 0.0;  // which no scan of obstacles knows
   ScanOptions slice = options;
   slice.band_low_m = 0.0;
   slice.band_high_m = 2.0 * options.slice_half_height_m;
@@ -70,6 +72,60 @@ TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
     EXPECT_EQ(*scans.obstacles, DepthToScan(camera, options).Convert(*frame.depth, *scans.stand));
     EXPECT_EQ(*scans.matched, DepthToScan(camera, slice).Convert(*frame.depth, at_camera));
   }
+}
+
+// Depth as a function of the height above the camera, with noise of 6 mm.
+template <typename DepthAt>
+Frame NoisyFrame(const DepthAt& depth_at, std::uint64_t seed) {
+  constexpr double kSigmaM = 0.006;
+  const PinholeCamera camera;
+  RandomStream random(seed, RandomStage::kTest);
+  auto image = std::make_shared<DepthImage>(camera.width_px, camera.height_px);
+  for (int v = 0; v < camera.height_px; ++v) {
+    const double rise = (camera.cy_px - v) / camera.fy_px;
+    const double z_m = depth_at(rise);
+    for (int u = 0; u < camera.width_px; ++u) {
+      image->Row(v)[u] = static_cast<float>(z_m + kSigmaM * random.Normal());
+    }
+  }
+  Frame frame;
+  frame.depth = image;
+  frame.slam_from_camera = CameraOf(Pose2{}, kCameraHeightM);
+  return frame;
+}
+
+Scan MatchedScan(const Frame& frame, double agree_sigmas) {
+  ScanOptions options;
+  options.floor = FloorSource::kPose;
+  options.slice_agree_sigmas = agree_sigmas;
+  return *FrameScanner(PinholeCamera{}, options).ScansOf(frame).matched;
+}
+
+constexpr double kAgreeSigmas = ScanOptions{}.slice_agree_sigmas;
+
+TEST(FrameScanner, AStepAboveTheCameraDoesNotMoveTheSlice) {
+  for (const double wall_m : {2.0, 3.0, 4.0}) {
+    const Frame frame =
+        NoisyFrame([&](double rise) { return rise * wall_m > 0.055 ? wall_m + 0.02 : wall_m; }, 1);
+    EXPECT_NEAR(MeanForwardM(MatchedScan(frame, kAgreeSigmas)), wall_m, 1e-3);
+    EXPECT_GT(MeanForwardM(MatchedScan(frame, 0.0)), wall_m + 2.5e-3);
+  }
+}
+
+TEST(FrameScanner, ALeaningWallIsMetAtTheCamerasHeight) {
+  const Frame frame = NoisyFrame([](double rise) { return 3.0 / (1.0 - 0.2 * rise); }, 2);
+  EXPECT_NEAR(MeanForwardM(MatchedScan(frame, kAgreeSigmas)), 3.0, 1e-3);
+}
+
+TEST(FrameScanner, OfAFlatWallNearlyAllBearingsTakeTheWholeSlice) {
+  const Frame frame = NoisyFrame([](double) { return 3.0; }, 3);
+  const Scan some = MatchedScan(frame, kAgreeSigmas), all = MatchedScan(frame, 0.0);
+  int inner = 0;
+  for (std::size_t k = 0; k < all.beams.size(); ++k) {
+    inner += some.beams[k].range_m != all.beams[k].range_m ? 1 : 0;
+  }
+  EXPECT_GT(inner, 0);
+  EXPECT_LT(inner, 0.05 * static_cast<double>(all.beams.size()));
 }
 
 TEST(FrameScanner, WithoutASliceTheObstaclesAreMatched) {
