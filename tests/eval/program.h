@@ -32,8 +32,14 @@ class ProgramTest : public ::testing::Test {
     std::filesystem::create_directories(root_);
     Write("room.yaml", kRoom);
     Write("small.yaml", kExperiment);
+    built_ = BuildTime();
   }
-  void TearDown() override { std::filesystem::remove_all(root_); }
+  void TearDown() override {
+    std::filesystem::remove_all(root_);
+    if (HasFailure() && BuildTime() != built_) {
+      ADD_FAILURE() << "the program was built anew meanwhile: build first, then test";
+    }
+  }
 
   std::string Path(const std::string& name) const { return (root_ / name).string(); }
   void Write(const std::string& name, const std::string& text) const {
@@ -124,6 +130,14 @@ mapper: {fusion: {mode: fixed, gain: 0.5}}
 )";
 
   std::filesystem::path root_;
+
+ private:
+  // Nothing while it is being linked.
+  static std::filesystem::file_time_type BuildTime() {
+    std::error_code missing;
+    return std::filesystem::last_write_time(kProgramFile, missing);
+  }
+  std::filesystem::file_time_type built_;
 };
 
 }  // namespace depthgrid
