@@ -8,7 +8,7 @@ namespace depthgrid {
 struct RoundOptions {
   // After so many mapped frames, and then each time there are `growth` times as many as the last
   // time; 0: never. What the first frames draw crookedly is what later ones are matched against.
-  // Geometric, so that all rounds together cost less than one of everything (docs/results.md).
+  // Geometric, so that all rounds together cost less than one of everything (docs/tried.md).
   int first_frames = 60;
   double growth = 3.0;
   // None with more frames than this: where places are seen again and again its cost grows faster

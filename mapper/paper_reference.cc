@@ -8,7 +8,7 @@ namespace depthgrid {
 namespace {
 
 // Of a match's variance, what stays the same while the submap's walls are in view; measured
-// (docs/results.md, "Consistency").
+// (docs/tried.md, "Laser logs").
 constexpr double kNoiseShare = 0.3;
 
 }  // namespace

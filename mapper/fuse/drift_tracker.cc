@@ -12,18 +12,18 @@ namespace {
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
-// (docs/results.md, "Laser logs").
+// (docs/tried.md, "Settings on laser logs").
 constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
 // What is learnt from the matches is kept between these many times what the adjustments find. While
 // the prior is believed the map follows it, and the matches, made against that map, agree with it;
-// while the matches are believed the map wanders with them (docs/results.md, "Consistency").
+// while the matches are believed the map wanders with them (docs/tried.md, "Laser logs").
 constexpr double kBoundSigmas = 2.0;
 constexpr double kLeastSigmas = 1.0;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
-// was the most, with one that drifts by 4 cm it is above 1,000 (docs/results.md).
+// was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
 
 }  // namespace

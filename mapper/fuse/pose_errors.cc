@@ -13,7 +13,7 @@ namespace {
 // Frames newer than this are remembered as densely as those of this age.
 constexpr double kNewestAge = 8.0;
 // The noise of the map in view stays the same for so much of the map's age; measured
-// (docs/results.md, "Consistency").
+// (docs/tried.md, "Laser logs").
 constexpr double kNoiseAge = 0.4;
 
 Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& adjoint) {

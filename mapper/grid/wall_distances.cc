@@ -16,7 +16,7 @@ constexpr double kNormalReachCells = 2.0;
 // Where the parabola that distances become probabilities by meets free space. Catmull-Rom
 // interpolation is exact for parabolas, so that a wall's ridge lies where the wall does. The four
 // cells around a wall lie within two of it, but 1.75 did better than 1.5, 2 and 2.25
-// (docs/results.md, "The paper's experiment").
+// (docs/tried.md, "The paper's experiment").
 constexpr double kFreeFromCells = 1.75;
 // The rectangle grows by at least this much at a time.
 constexpr int kGrowthCells = 32;

@@ -24,7 +24,7 @@ struct ScanMatcherOptions {
   double min_score = 0.2;
   // A direction that the match knows worse than this counts as not determined: a fixed gain would
   // take a guess of 5 cm at a corner that only just came into view. 3 cm loses 7 %, 2 cm 16 % of
-  // the accuracy with poses that drift (docs/results.md).
+  // the accuracy with poses that drift (docs/tried.md).
   double max_sigma_m = 0.04;
   CorrelativeOptions search;
   LeastSquaresOptions least_squares;

@@ -27,7 +27,7 @@ struct JointOptions {
   double landmark_m = 0.05;  // length of a landmark along its wall
   double max_angle_deg = 40.0;
   // Little more than the 95 % efficiency of 1.345: sightings have many wrong associations (measured
-  // in docs/results.md).
+  // in docs/tried.md).
   double huber_sigmas = 1.25;
   // Landmarks count over their Misfit between the groups that saw them.
   bool judge_misfit = true;

@@ -14,7 +14,7 @@ const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
 // errs lengthways, and a direction's sigma may fall to the least. Radians a metre for the yaw.
 const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
 // With a smaller share the prior's errors are hardly told from those of what is seen: it is taken
-// for a little better each time, down to the least if it is perfect (measured in docs/results.md).
+// for a little better each time, down to the least if it is perfect (measured in docs/math.md).
 constexpr double kLeastShare = 0.3;
 // Links that are probed together are so many apart: what is left of their errors is nearly
 // independent.

@@ -89,7 +89,7 @@ std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
 const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 
 // Fewer groups do not tell how the prior errs: from the seven of the first 60 frames a prior that
-// drifts 0.375 m was called nearly perfect (docs/results.md).
+// drifts 0.375 m was called nearly perfect (docs/tried.md).
 constexpr int kMinGroupsForSpread = 20;
 
 }  // namespace
