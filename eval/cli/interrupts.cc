@@ -3,6 +3,7 @@
 #include <semaphore.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -18,16 +19,18 @@ namespace depthgrid::cli {
 namespace {
 
 constexpr int kSignalled = 128;
-volatile std::sig_atomic_t interrupted_by = 0;  // the signal
+// Written in a handler, which may run on two threads at once.
+std::atomic<int> interrupted_by = 0;         // the first signal
+std::atomic<long long> first_signal_ns = 0;  // when it came
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long long>::is_always_lock_free);
 
 // One keystroke or one `timeout` may send a signal twice (to the program and to its group): within
 // this time it is one request. After it a further one ends the program at once.
 constexpr long long kSameRequestNs = 1'000'000'000;
 // For an end by the next progress report. What a person at a terminal does not yet call waiting.
 constexpr std::chrono::milliseconds kOrderlyEnd{500};
-volatile long long first_signal_ns = 0;  // written by the handler alone
-bool on_terminal = false;                // standard error, known before any signal
-sem_t signalled;                         // what a handler may wake a thread with
+bool on_terminal = false;  // standard error, known before any signal
+sem_t signalled;           // what a handler may wake a thread with
 
 long long MonotonicNs() {
   timespec now{};
@@ -43,12 +46,12 @@ void WriteError(std::string_view text) {
 void Remember(int signal) {
   const int saved_errno = errno;
   const long long now_ns = MonotonicNs();
-  if (interrupted_by == 0) {
+  int none = 0;
+  if (interrupted_by.compare_exchange_strong(none, signal)) {
     first_signal_ns = now_ns;
-    interrupted_by = signal;
     if (on_terminal) WriteError("\ndepthgrid: stopping; again to end at once\n");
     sem_post(&signalled);
-  } else if (now_ns - first_signal_ns > kSameRequestNs) {
+  } else if (first_signal_ns != 0 && now_ns - first_signal_ns > kSameRequestNs) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
@@ -85,7 +88,7 @@ void ThrowIfInterrupted() {
 }
 
 std::optional<int> InterruptExitCode() {
-  return interrupted_by == 0 ? std::nullopt : std::optional(kSignalled + interrupted_by);
+  return interrupted_by == 0 ? std::nullopt : std::optional<int>(kSignalled + interrupted_by);
 }
 
 }  // namespace depthgrid::cli
