@@ -81,10 +81,24 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   }
 }
 
-void NoiseWindow::At(std::span<const float> ranges_m, float* widths_m) const {
-  internal::FindWidths(
-      {inverse_sigma_.data(), kClasses, kClassM, kWindowSigmas, kMinWindowM, kMaxWindowM}, ranges_m,
-      widths_m);
+// At, without branches that keep the compiler from vectorising it.
+void NoiseWindow::At(std::span<const float> ranges_m, float* __restrict widths_m) const {
+  const auto clamped = [](double value, double low, double high) {
+    const double raised = value < low ? low : value;
+    return raised > high ? high : raised;
+  };
+  const float* const ranges = ranges_m.data();
+  for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+    const double z_m = ranges[i];
+    const double position = clamped(z_m / kClassM - 0.5, 0.0, kClasses - 1.0);
+    const int whole = static_cast<int>(position);
+    const int below = whole > kClasses - 2 ? kClasses - 2 : whole;
+    const double share = position - below;
+    const auto at = static_cast<std::size_t>(below);
+    const double sigma_m =
+        z_m * z_m * ((1.0 - share) * inverse_sigma_[at] + share * inverse_sigma_[at + 1]);
+    widths_m[i] = static_cast<float>(clamped(kWindowSigmas * sigma_m, kMinWindowM, kMaxWindowM));
+  }
 }
 
 }  // namespace depthgrid

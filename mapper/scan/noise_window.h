@@ -36,7 +36,7 @@ class NoiseWindow {
         std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
   }
 
-  // The same of many ranges, a multiple of 16.
+  // The same of many ranges.
   void At(std::span<const float> ranges_m, float* widths_m) const;
 
   // Standard deviation of depth as estimated for a class of depth.
@@ -57,16 +57,5 @@ class NoiseWindow {
 
   std::array<double, kClasses> inverse_sigma_{};  // of 1/z, 1/m
 };
-
-namespace internal {
-// What NoiseWindow::At needs.
-struct WidthRule {
-  const double* inverse_sigma;
-  int classes;
-  double class_m, sigmas, min_m, max_m;
-};
-// Many at once, one a vector lane; a number of ranges that whole vectors of 16 make up.
-void FindWidths(const WidthRule& rule, std::span<const float> ranges_m, float* widths_m);
-}  // namespace internal
 
 }  // namespace depthgrid
