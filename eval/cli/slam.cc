@@ -47,8 +47,8 @@ void SayNext(const SlamArguments& arguments, const SlamOutput& slam) {
   const std::string& output = arguments.common.output;
   const auto posed = std::count_if(slam.live.begin(), slam.live.end(),
                                    [](const SlamPose& pose) { return pose.slam_from_camera; });
-  fmt::print("SLAM gives {} of {} frames a pose and closes {} loops: {}/slam.txt\n", posed,
-             slam.live.size(), slam.loops.size(), output);
+  fmt::print("SLAM gives {} of {} frames a pose and closes {}: {}/slam.txt\n", posed,
+             slam.live.size(), Counted(slam.loops.size(), "loop"), output);
   fmt::print("go on with: depthgrid map {} --poses {} --loops {} -o OUT\n",
              ShellWord(arguments.sequence), ShellWord(output + "/slam.txt"),
              ShellWord(output + "/loops.csv"));
