@@ -82,19 +82,13 @@ RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                   const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns);
 
-// The slice's core, the inner half of its heights, as rows of a line at a range.
-struct CoreRows {
-  float first = 0.0F, last = 0.0F;
-};
-CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range_m);
-
 // What stands a little farther back above or below the camera's height (the lid of a printer, the
 // upper edge of a desk) lies within the noise window far away and not nearby: the mean of both
-// would move towards the camera as it comes near. So what is seen above and below the core counts
-// only if neither mean is farther from the core's than `agree_sigmas` of their noise; else the
-// range is the core's mean alone. Both or none, so that a slanted surface is met at the camera's
-// height. `samples` are the line's of the slice, one a row from `first_row` on; `range_m` is
-// FindNearest's.
+// would move towards the camera as it comes near. So what is seen above and below the core, the
+// inner half of the slice's heights, counts only if neither mean is farther from the core's than
+// `agree_sigmas` of their noise; else the range is the core's mean alone. Both or none, so that a
+// slanted surface is met at the camera's height. `samples` are the line's of the slice, one a row
+// from `first_row` on; `range_m` is FindNearest's.
 float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,
                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                   float range_m);

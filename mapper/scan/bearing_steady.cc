@@ -31,6 +31,8 @@ struct Sum {
 
 struct Rows {
   Vec first, last;
+
+  HWY_INLINE Mask Contain(Vec row) const { return hn::And(hn::Ge(row, first), hn::Le(row, last)); }
 };
 
 struct Window {
@@ -102,8 +104,7 @@ void SteadyLanes(const ImageBands& bands, const BlockLane& width_m, const Bearin
       const Mask is_before = hn::Lt(row, rows.first), is_after = hn::Gt(row, rows.last);
       before.Add(hn::And(inside, is_before), sample);
       after.Add(hn::And(inside, is_after), sample);
-      const Mask is_core = hn::And(hn::Ge(row, rows.first), hn::Le(row, rows.last));
-      core.Add(hn::And(inside, is_core), sample);
+      core.Add(hn::And(inside, rows.Contain(row)), sample);
     });
     const Vec limit = hn::Mul(sigmas, width);
     const Mask steady = hn::And(Agree(before, core, limit), Agree(after, core, limit));
@@ -112,8 +113,7 @@ void SteadyLanes(const ImageBands& bands, const BlockLane& width_m, const Bearin
     if (hn::AllFalse(d, alone)) continue;
     Sum inner{zero, zero};
     ForSamples(block, band, i, around(core.Mean()), [&](Vec row, Mask inside, Vec sample) HWY_ATTR {
-      const Mask is_core = hn::And(hn::Ge(row, rows.first), hn::Le(row, rows.last));
-      inner.Add(hn::And(inside, is_core), sample);
+      inner.Add(hn::And(inside, rows.Contain(row)), sample);
     });
     const Mask found = hn::And(alone, hn::Ge(inner.count, needed));
     hn::Store(hn::IfThenElse(found, inner.Mean(), range), d, &hits.range_m[i]);

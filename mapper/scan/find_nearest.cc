@@ -33,6 +33,19 @@ float RowAtSlope(const BearingLine& line, float slope) {
   return (slope * line.h0 - line.g0) / (line.g1 - slope * line.h1);
 }
 
+// The slice's core as rows of a line.
+struct CoreRows {
+  float first = 0.0F, last = 0.0F;
+
+  bool Contains(float row) const { return row >= first && row <= last; }
+};
+
+CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range_m) {
+  const float a = RowAtSlope(line, 0.5F * slice.high_m / range_m);
+  const float b = RowAtSlope(line, 0.5F * slice.low_m / range_m);
+  return a < b ? CoreRows{a, b} : CoreRows{b, a};
+}
+
 bool Agree(const Sum& part, const Sum& core, float limit_m) {
   if (part.count == 0.0F) return true;
   const float difference_m = part.Mean() - core.Mean();
@@ -102,12 +115,6 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
   }
 }
 
-CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range_m) {
-  const float a = RowAtSlope(line, 0.5F * slice.high_m / range_m);
-  const float b = RowAtSlope(line, 0.5F * slice.low_m / range_m);
-  return a < b ? CoreRows{a, b} : CoreRows{b, a};
-}
-
 float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,
                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                   float range_m) {
@@ -123,7 +130,7 @@ float SteadyRange(std::span<const float> samples, int first_row, const BearingLi
     if (!(samples[i] >= range_m - half_m && samples[i] <= up_to(range_m))) continue;
     const auto row = static_cast<float>(first_row + static_cast<int>(i));
     if (row < rows.first) before.Add(samples[i]);
-    if (row >= rows.first && row <= rows.last) core.Add(samples[i]);
+    if (rows.Contains(row)) core.Add(samples[i]);
     if (row > rows.last) after.Add(samples[i]);
   }
   const auto needed = static_cast<float>(limits.min_returns);
@@ -134,7 +141,7 @@ float SteadyRange(std::span<const float> samples, int first_row, const BearingLi
   Sum steady;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto row = static_cast<float>(first_row + static_cast<int>(i));
-    if (row < rows.first || row > rows.last) continue;
+    if (!rows.Contains(row)) continue;
     if (samples[i] >= centre_m - half_m && samples[i] <= up_to(centre_m)) steady.Add(samples[i]);
   }
   return steady.count < needed ? range_m : steady.Mean();
