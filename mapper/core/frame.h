@@ -22,7 +22,9 @@ struct Frame {
   std::shared_ptr<const Scan> scan;
   // With `scan`: what is matched where that is another one (mapper/scan/frame_scans.h).
   std::shared_ptr<const Scan> matched_scan;
-  std::optional<Pose3> slam_from_camera;  // empty while SLAM is lost
+  // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
+  // metres (docs/conventions.md). Empty while SLAM is lost.
+  std::optional<Pose3> slam_from_camera;
   int slam_epoch = 0;
   std::vector<LoopClosure>
       loops;  // reported with this frame, to be applied before its pose is used
