@@ -13,6 +13,7 @@
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -163,7 +164,9 @@ class CarmenLogSource : public FrameSource {
 
   std::optional<CarmenScan> NextScan() {
     while (ReadLine()) {
-      CarmenLine line = ParseCarmenLine({line_.data(), line_size_});
+      std::string_view text{line_.data(), line_size_};
+      if (line_number_ == 1) text = WithoutByteOrderMark(text);
+      CarmenLine line = ParseCarmenLine(text);
       if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
         Note(damage->reason);
         lines_of_scans_ += damage->is_scan ? 1 : 0;

@@ -25,8 +25,12 @@ std::vector<std::string_view> Split(std::string_view line) {
 
 }  // namespace
 
+std::string_view WithoutByteOrderMark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
 std::vector<TextRow> SplitRows(std::string_view text) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = WithoutByteOrderMark(text);
   std::vector<TextRow> rows;
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -59,7 +63,19 @@ std::string PlaceOfLine(const std::string& path, int line) {
   return fmt::format("{}:{}", path, line);
 }
 
+std::string_view RestOf(const TextRow& row, std::size_t field) {
+  const char* begin = row.fields[field].data();
+  return {begin,
+          static_cast<std::size_t>(row.fields.back().data() + row.fields.back().size() - begin)};
+}
+
+void RequireText(const TextRow& row, const std::string& path) {
+  if (RestOf(row, 0).find('\0') == std::string_view::npos) return;
+  throw InputError(PlaceOfLine(path, row.line), "has zero bytes (UTF-16?), must be UTF-8 text");
+}
+
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path) {
+  RequireText(row, path);
   if (row.fields.size() != count) {
     throw InputError(PlaceOfLine(path, row.line),
                      fmt::format("has {} columns, must have {}", row.fields.size(), count));

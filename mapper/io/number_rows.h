@@ -13,6 +13,9 @@ struct TextRow {
   std::vector<std::string_view> fields;
 };
 
+// Windows programs begin UTF-8 text with a mark.
+std::string_view WithoutByteOrderMark(std::string_view text);
+
 // The lines of `text` that are neither empty nor `#` comments, split at spaces, tabs and commas.
 // Windows line ends and a byte order mark are ignored. The views point into `text`.
 std::vector<TextRow> SplitRows(std::string_view text);
@@ -26,6 +29,14 @@ std::optional<double> ParseNumber(std::string_view field);
 
 // "file:12", the place of a row in errors.
 std::string PlaceOfLine(const std::string& path, int line);
+
+// From the row's field of this number (from 0) to its last, as the line has it: a file's name with
+// spaces.
+std::string_view RestOf(const TextRow& row, std::size_t field);
+
+// Throws InputError when the row is no UTF-8 text: UTF-16, as a Windows shell redirects, is full of
+// zero bytes.
+void RequireText(const TextRow& row, const std::string& path);
 
 // All fields of a row as numbers; throws InputError unless there are exactly `count`.
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);

@@ -121,11 +121,12 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   for (const TextRow& row : SplitRows(text)) {
     const auto stamp_s = ParseNumber(row.fields.front());
     const bool good = damage.Try([&] {
-      if (row.fields.size() != 2 || !stamp_s || !std::isfinite(*stamp_s)) {
+      RequireText(row, place);
+      if (row.fields.size() < 2 || !stamp_s || !std::isfinite(*stamp_s)) {
         throw InputError(PlaceOfLine(place, row.line), "must be a stamp and a file name");
       }
       if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
-      list.files.push_back({*stamp_s, std::string(row.fields[1])});
+      list.files.push_back({*stamp_s, std::string(RestOf(row, 1))});
     });
     // It keeps its place behind the row before, for the numbers of those that follow.
     if (!good)

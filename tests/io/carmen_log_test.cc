@@ -151,6 +151,13 @@ TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
   EXPECT_THAT(warnings, Contains(HasSubstr(":9: a line longer than")));
 }
 
+TEST(CarmenLog, AByteOrderMarkHidesNoScan) {
+  const TextFile file("\xEF\xBB\xBF" + std::string(kRobotLaser));
+  const auto source = OpenCarmenLog(file.path());
+  EXPECT_EQ(source->FrameCount(), 1);
+  EXPECT_TRUE(source->Warnings().empty());
+}
+
 // Events name scans by their lines: damaged ones count, doubled ones do not.
 TEST(CarmenLog, ScansKeepTheirNumbers) {
   const auto at = [](int stamp_s) {

@@ -77,6 +77,11 @@ TEST(TrajectoryFile, NamesTheBadLine) {
   EXPECT_EQ(ErrorOf("# c\n1 2 3\n"), "t.txt:2: has 3 columns, must have 8");
   EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 1\n1 0 x 0 0 0 0 1\n"), "t.txt:2: 'x' is not a number");
   EXPECT_EQ(ErrorOf("nan 0 0 0 0 0 0 1\n"), "t.txt:1: the stamp must be finite");
+  EXPECT_EQ(ErrorOf(std::string("\xFF\xFE"
+                                "1\0 \0"
+                                "0\0\n",
+                                9)),
+            "t.txt:1: has zero bytes (UTF-16?), must be UTF-8 text");
   EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 2\n"), "t.txt:1: quaternion qx qy qz qw has norm 2, must be 1");
 }
 

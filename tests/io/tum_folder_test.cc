@@ -166,6 +166,15 @@ TEST_F(TumFolderTest, UnsortedAndRepeatedRowsAreCounted) {
                                          "depth.txt: 1 rows with a stamp already given, ignored"));
 }
 
+TEST_F(TumFolderTest, NamesMayHaveSpaces) {
+  const StampedFileList list =
+      ParseFileList("1 depth images/a 1.png \r\n2,depth images/b,2.png\n", "depth.txt");
+  ASSERT_EQ(list.files.size(), 2U);
+  EXPECT_EQ(list.files[0].path, "depth images/a 1.png");
+  EXPECT_EQ(list.files[1].path, "depth images/b,2.png");
+  EXPECT_TRUE(list.warnings.empty());
+}
+
 // Damaged rows and images beside a nearer one keep their numbers, doubled rows have none.
 TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
   const StampedFileList list = ParseFileList(
@@ -210,7 +219,7 @@ TEST_F(TumFolderTest, OneClearLineForEachFault) {
   WriteCameraFile(Path("camera.yaml"), SmallCamera());
   std::filesystem::remove_all(Path("depth"));
   EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: no such file");
-  Write("depth.txt", "0.1 a b\n");
+  Write("depth.txt", "0.1\n");
   EXPECT_EQ(OpenError(truth), "~/depth.txt:1: must be a stamp and a file name");
   Write("depth.txt", "# nothing\n");
   EXPECT_EQ(OpenError(truth), "~: holds no depth image");
