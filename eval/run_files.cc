@@ -19,6 +19,7 @@ RunFiles ReadRunFolder(const std::string& folder) {
   run.folder = folder;
   run.settings = ReadFile(path("run.yaml"));
   if (exists("metrics.json")) run.metrics_json = ReadFile(path("metrics.json"));
+  if (exists("warnings.txt")) run.warnings = ReadFile(path("warnings.txt"));
   run.map = ReadStates(path("map.yaml"));
   if (exists("input_map.yaml")) run.input_map = ReadStates(path("input_map.yaml"));
   if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));

@@ -18,6 +18,7 @@ struct RunFiles {
   std::string folder;
   std::string settings;      // run.yaml
   std::string metrics_json;  // empty for recorded data
+  std::string warnings;      // a line each
   StateMap map;
   std::optional<StateMap> input_map;  // in the folders of a study: SLAM's poses alone
   std::optional<StateMap> truth_map;

@@ -58,6 +58,12 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 
+std::string Lines(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
 // matched.bin only where what is matched is not what the map is drawn from.
 void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
   std::vector<StoredScan> drawn;
@@ -89,6 +95,7 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
   RunRecord record;
   record.settings = ToYaml(options);
   record.scene_hash = world.scene_hash;
+  record.warnings = mapping.warnings;
   record.mapping = &mapping;
   record.slam = &slam;
   record.truth = &truth;
@@ -110,6 +117,7 @@ std::string Provenance(const std::string& scene_hash) {
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
   WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.scene_hash));
+  WriteFile(folder.File("warnings.txt"), Lines(record.warnings));
   WriteMap(folder.File("map.yaml"), MapOf(*record.mapping), record.map_mode);
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);

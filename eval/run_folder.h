@@ -11,9 +11,10 @@
 namespace depthgrid {
 
 struct RunRecord {
-  std::string title;       // what was run, for people
-  std::string settings;    // YAML of every effective key
-  std::string scene_hash;  // empty for recorded data
+  std::string title;                  // what was run, for people
+  std::string settings;               // YAML of every effective key
+  std::string scene_hash;             // empty for recorded data
+  std::vector<std::string> warnings;  // what was wrong with the input and survived
   const MappingRun* mapping = nullptr;
   const SlamOutput* slam = nullptr;    // nothing for recorded data without events
   const TruthRecord* truth = nullptr;  // nothing for recorded data

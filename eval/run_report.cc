@@ -199,6 +199,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   Json json;
   json["subtitle"] = SubtitleOf(settings, run.frames.rows);
   json["settings"] = run.settings;
+  json["warnings"] = run.warnings;
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);
   const bool planar = !run.slam.empty() && IsPlanar(run.slam.front().world_from_camera);
   json["input_poses"] = planar ? "Odometry" : "SLAM";
@@ -252,7 +253,9 @@ void WriteRunReport(const std::string& folder) {
     throw InputError(folder + "/metrics.json", "is not valid JSON");
   }
   WriteTimesScript(folder);
-  WriteFile(folder + "/report.html", FillPage("run.html", TitleOf(settings), json.dump()));
+  // A warning may quote a file that is no UTF-8.
+  const std::string data = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  WriteFile(folder + "/report.html", FillPage("run.html", TitleOf(settings), data));
 }
 
 }  // namespace depthgrid

@@ -12,6 +12,7 @@
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
 #include "eval/video_writer.h"
+#include "eval/way_check.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
@@ -140,6 +141,19 @@ void FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& se
   }
 }
 
+// Only one of the two can be right; which one, the mapper cannot know.
+void CheckScale(const MapArguments& arguments, const MappingRun& run,
+                std::vector<std::string>& warnings) {
+  const auto ways = ScaleDoubt(run);
+  if (!ways) return;
+  const char* fault = run.camera
+                          ? "the depth images' scale (depth_scale of the camera file) or SLAM's"
+                          : "the odometry's scale or the laser's";
+  warnings.push_back(fmt::format(
+      "{}: over the same stretches the given poses go {:.1f} m, the map's {:.1f} m: {} is wrong",
+      arguments.input, ways->slam_m, ways->map_m, fault));
+}
+
 // What was only localised in stays as it is, byte for byte.
 void KeepMap(const std::string& from, const OutputFolder& folder) {
   namespace fs = std::filesystem;
@@ -204,7 +218,10 @@ void Map(const MapArguments& arguments) {
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
+  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+  CheckScale(arguments, run, warnings);
   RunRecord record;
+  for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   record.title = arguments.input;
   record.settings = ToYaml(settings);
   record.mapping = &run;
@@ -223,7 +240,6 @@ void Map(const MapArguments& arguments) {
   SayResult(run, arguments.localise);
   SayReport(arguments.common.output);
   std::fflush(stdout);
-  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   Warn(warnings);
 }
 

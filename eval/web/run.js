@@ -2,6 +2,30 @@
 "use strict";
 
 // ---- headline ----
+// How far a path goes, in steps of a quarter of a metre: the poses' scatter does not add up.
+function wayOf(path) {
+  let way = 0, last = null;
+  for (let i = 0; i < path.x.length; i++) {
+    if (path.x[i] === null) continue;
+    const step = last === null ? 0 : Math.hypot(path.x[i] - path.x[last], path.y[i] - path.y[last]);
+    if (last !== null && step < 0.25) continue;
+    way += step;
+    last = i;
+  }
+  return way;
+}
+
+function largestCorrection() {
+  const { slam, est } = RUN.paths;
+  const movedBy = (i) => (est.x[i] === null || slam.x[i] === null ? 0 : Math.hypot(est.x[i] - slam.x[i], est.y[i] - slam.y[i]));
+  return est.x.reduce((most, _, i) => Math.max(most, movedBy(i)), 0);
+}
+
+function median(values) {
+  const known = values.filter(isNumber).sort((a, b) => a - b);
+  return known.length ? known[Math.floor(known.length / 2)] : null;
+}
+
 function headline() {
   const cards = [];
   const add = (value, text) => cards.push(make("div", { class: "card" }, make("b", {}, value), make("span", {}, text)));
@@ -18,13 +42,22 @@ function headline() {
   } else {
     add(String(frameCount), "frames");
     add(String(RUN.mapped_frames), "frames mapped");
+    add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
+    add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved`);
+    add(fixed(median(frames.match_score), 2), "share of the beams that the map explains, median");
     add(`${fixed(RUN.map.width * RUN.map.resolution, 1)} x ${fixed(RUN.map.height * RUN.map.resolution, 1)} m`, "extent");
   }
   byId("headline").append(...cards);
   byId("subtitle").textContent = RUN.subtitle;
 }
 
-// ---- samples, numbers, settings ----
+// ---- warnings, samples, numbers, settings ----
+function initWarnings() {
+  const lines = RUN.warnings.split("\n").filter((line) => line);
+  if (lines.length) byId("warnings").append(...lines.map((line) => make("li", {}, line)));
+  else byId("warnings-section").remove();
+}
+
 function initSamples() {
   if (!RUN.samples.length) { byId("samples-section").remove(); return; }
   for (const sample of RUN.samples) {
@@ -113,6 +146,7 @@ function initNumbers() {
 
 initTheme();
 headline();
+initWarnings();
 initMap();
 initPlots();
 initTimes();

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ProgramFormats : public ProgramTest {
  protected:
@@ -137,8 +138,8 @@ TEST_F(ProgramFormats, ALaserLog) {
   EXPECT_EQ(Program("map robot.log --poses seq/groundtruth.txt -o out2").exit_code, 2);
 }
 
-// There and back along a room of 6 x 4 m whose odometry is right, then told loops.
-TEST_F(ProgramFormats, ALaserLogWithLoops) {
+// There and back along a room of 6 x 4 m, its odometry in units of `odometry_scale` metres.
+std::string ThereAndBack(double odometry_scale) {
   const auto range_m = [](double x_m, double y_m, double angle_rad) {
     const double c = std::cos(angle_rad);
     const double s = std::sin(angle_rad);
@@ -151,9 +152,26 @@ TEST_F(ProgramFormats, ALaserLogWithLoops) {
     log += "FLASER 181";
     for (int k = 0; k <= 180; ++k)
       log += fmt::format(" {:.3f}", range_m(x_m, 1.0, (k - 90) * kPi / 180.0));
-    log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", x_m, i);
+    log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", odometry_scale * x_m, i);
   }
-  Write("robot.log", log);
+  return log;
+}
+
+TEST_F(ProgramFormats, OdometryOfAnotherScaleIsSaid) {
+  Write("robot.log", ThereAndBack(1.5));
+  const Outcome outcome = Program("map robot.log -o out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(
+      outcome.err,
+      HasSubstr("robot.log: over the same stretches the given poses go 6.0 m, the map's 4."));
+  EXPECT_THAT(outcome.err, HasSubstr("the odometry's scale or the laser's is wrong"));
+  Write("right.log", ThereAndBack(1.0));
+  EXPECT_EQ(Program("map right.log -o out2").err, "");
+}
+
+// Its odometry is right; then told loops.
+TEST_F(ProgramFormats, ALaserLogWithLoops) {
+  Write("robot.log", ThereAndBack(1.0));
   Write("loops.txt", "0 40 0 0 0 0 0 0 1\n2 38 0.8 0 0 0 0 0 1\n3 99 0 0 0 0 0 0 1\n");
   const Outcome outcome = Program("map robot.log --loops loops.txt -o out");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -195,6 +213,14 @@ TEST_F(ProgramFormats, DamageIsCountedAtTheEnd) {
                     HasSubstr("1 rows with a stamp already given"),
                     HasSubstr("2 depth images missing or damaged"),
                     HasSubstr("1 of 12 frames have no pose")));
+  // The folder keeps what was said, and its page shows it.
+  const std::string kept = ReadFile(Path("out/warnings.txt"));
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'),
+            std::count(outcome.err.begin(), outcome.err.end(), '\n'));
+  EXPECT_THAT(kept, HasSubstr("seq: 1 of 12 frames have no pose\n"));
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr("seq: 1 of 12 frames have no pose"));
+  Mapped("seq");
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), Not(HasSubstr("have no pose")));
 }
 
 // Rows of lists and poses; what is cut, empty or mostly damaged.

@@ -18,12 +18,12 @@ class ProgramRun : public ProgramTest {};
 
 TEST_F(ProgramRun, WritesTheWholeFolder) {
   Succeed("run ./small.yaml -o out");
-  EXPECT_THAT(
-      FilesIn("out"),
-      IsSupersetOf({"run.yaml", "map.pgm", "map.yaml", "map.png", "truth_map.pgm", "truth_map.yaml",
-                    "observable.pgm", "trajectory_truth.txt", "trajectory_slam.txt",
-                    "trajectory_est.txt", "trajectory_online.txt", "loops.csv", "frames.csv",
-                    "metrics.json", "timing.json", "timing.csv", "timing.js", "report.html"}));
+  EXPECT_THAT(FilesIn("out"),
+              IsSupersetOf({"run.yaml", "map.pgm", "map.yaml", "map.png", "truth_map.pgm",
+                            "truth_map.yaml", "observable.pgm", "trajectory_truth.txt",
+                            "trajectory_slam.txt", "trajectory_est.txt", "trajectory_online.txt",
+                            "loops.csv", "frames.csv", "warnings.txt", "metrics.json",
+                            "timing.json", "timing.csv", "timing.js", "report.html"}));
   EXPECT_EQ(ReadTrajectory(Path("out/trajectory_est.txt")).size(), 12U);
   const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
   for (const char* which : {"slam", "est"}) {

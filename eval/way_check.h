@@ -1,0 +1,24 @@
+// Whether SLAM and the scans agree on how far the camera went.
+#pragma once
+
+#include <optional>
+
+#include "eval/mapping_run.h"
+
+namespace depthgrid {
+
+// How far SLAM's poses and the final estimates go over the same stretches.
+struct Ways {
+  double slam_m = 0.0;
+  double map_m = 0.0;
+};
+
+// Summed over stretches of at least half a metre of either, none across a correction of SLAM or
+// where a pose is missing.
+Ways WaysOf(const MappingRun& run);
+
+// The ways, where they differ so much that one of the two scales is wrong: depth images read in
+// other units than they have, a monocular SLAM, wheels of another size. Nothing for short ways.
+std::optional<Ways> ScaleDoubt(const MappingRun& run);
+
+}  // namespace depthgrid
