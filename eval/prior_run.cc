@@ -23,6 +23,10 @@ constexpr double kNextViewRad = RadFromDeg(12.0);
 // SLAM's drift over the scans that are laid over the map together.
 constexpr double kStartPathM = 3.0;
 
+// And over those that say it more exactly; how far SLAM may have drifted in between.
+constexpr double kFirstPathM = 1.0;
+constexpr double kMostShiftM = 0.7;
+
 bool IsNextView(const Pose2& last, const Pose2& now) {
   const Pose2 moved = Between(last, now);
   return std::hypot(moved.x_m, moved.y_m) > kNextViewM || std::abs(moved.yaw_rad) > kNextViewRad;
@@ -48,6 +52,27 @@ std::vector<PlacedScan> FirstScans(FrameSource& source, const MapperOptions& opt
     if (static_cast<int>(scans.size()) == kStartScans) break;
   }
   return scans;
+}
+
+// The same place by the first views alone, over which SLAM has hardly drifted. Few views fit in
+// more places than many: one that is not near the place found says nothing.
+FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
+                  const std::vector<PlacedScan>& scans) {
+  std::vector<PlacedScan> first;
+  for (const PlacedScan& scan : scans) {
+    const Pose2 moved = Between(scans.front().slam_from_base, scan.slam_from_base);
+    if (std::hypot(moved.x_m, moved.y_m) > kFirstPathM) break;
+    first.push_back(scan);
+  }
+  if (first.size() == scans.size()) return found;
+  const auto again = FindPlace(map, first, found.map_from_slam);
+  if (!again || again->score < found.score) return found;
+  const Pose2& first_base = scans.front().slam_from_base;
+  const Pose2 shift = Between(found.map_from_slam * first_base, again->map_from_slam * first_base);
+  if (std::hypot(shift.x_m, shift.y_m) > kMostShiftM) return found;
+  FoundPlace nearer = found;
+  nearer.map_from_slam = again->map_from_slam;
+  return nearer;
 }
 
 }  // namespace
@@ -82,7 +107,10 @@ std::optional<FoundPlace> FindStart(const PriorMap& prior, FrameSource& source,
                                     const MapperOptions& options) {
   MapDrawing drawing(options.grid);
   for (const MappedFrame& frame : prior.frames) drawing.Add(*frame.obstacles, frame.map_from_base);
-  return FindPlace(drawing.Map(), FirstScans(source, options), Pose2{});
+  const OccupancyMap map = drawing.Map();
+  const std::vector<PlacedScan> scans = FirstScans(source, options);
+  const auto found = FindPlace(map, scans, Pose2{});
+  return found ? Nearer(*found, map, scans) : found;
 }
 
 }  // namespace depthgrid
