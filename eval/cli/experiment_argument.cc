@@ -1,5 +1,7 @@
 #include "eval/cli/experiment_argument.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -38,7 +40,28 @@ Config ExperimentFile(const std::string& path) {
   if (config.Has("shapes") && !config.Has("scene")) {
     throw InputError(path, "is a scene; an experiment is a YAML file that names it as its scene");
   }
+  if (config.Has("axes") && !config.Has("scene")) {
+    throw InputError(path, "is a sweep; `depthgrid sweep` takes it");
+  }
   return config;
+}
+
+std::optional<std::string> KeptBesideProfile(const std::string& name,
+                                             const std::vector<std::string>& set) {
+  Config given;
+  for (const std::string& assignment : set) given.Set(assignment);
+  const Config file = ExperimentFile(ResolveName(name, ShippedKind::kExperiment));
+  if (!given.Has("slam.profile") || !file.Has("slam.profile")) return {};
+  const std::string profile = given.List("slam.profile").front();
+  if (profile == file.List("slam.profile").front() || profile == "ground_truth") return {};
+  std::string kept;
+  Config rest = file;
+  for (const std::string& key : rest.Take("slam").Keys()) {
+    const std::string path = "slam." + key;
+    if (key != "profile" && !given.Has(path)) kept += (kept.empty() ? "" : ", ") + path;
+  }
+  if (kept.empty()) return {};
+  return fmt::format("{}: its own values of {} stay with slam.profile={}", name, kept, profile);
 }
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set) {

@@ -1,6 +1,7 @@
 // An experiment as named on the command line, with its overrides.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,14 @@
 
 namespace depthgrid::cli {
 
-// The file's settings; throws InputError for a scene or a mesh, which an experiment only names.
+// The file's settings; throws InputError for a scene or a mesh, which an experiment only names, and
+// for a sweep.
 Config ExperimentFile(const std::string& path);
+
+// What an experiment sets beside slam.profile, such as the drift calibrated for it, when `set`
+// chooses another profile: one line.
+std::optional<std::string> KeptBesideProfile(const std::string& name,
+                                             const std::vector<std::string>& set);
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
 

@@ -87,6 +87,9 @@ void RunOne(const RunArguments& arguments) {
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   record.title = arguments.experiment;
+  if (const auto kept = KeptBesideProfile(arguments.experiment, arguments.common.set)) {
+    record.warnings.push_back(*kept);
+  }
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -98,7 +101,7 @@ void RunOne(const RunArguments& arguments) {
   }
   folder.Commit();
   bar.Clear();
-  Warn(run.mapping.warnings);
+  Warn(record.warnings);
   PrintScores(run.scores);
   SayReport(arguments.common.output);
 }

@@ -145,6 +145,8 @@ TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
   ExpectRefusal("run ./room.yaml -o out", {"room.yaml", "is a scene"});
   ExpectRefusal("run ./cube.ply -o out", {"cube.ply", "is a mesh"});
   ExpectRefusal("ablate ./room.yaml -o out", {"room.yaml", "is a scene"});
+  Write("many.yaml", "experiment: ./small.yaml\naxes: {seed: [1, 2]}\n");
+  ExpectRefusal("run ./many.yaml -o out", {"many.yaml", "is a sweep", "depthgrid sweep"});
 }
 
 TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {

@@ -189,6 +189,22 @@ TEST_F(ProgramRun, ReportOfALaserLogHasItsHeadings) {
   EXPECT_EQ(data["paths"]["slam"]["yaw"], (std::vector<double>{0.5, 0.5, 0.5}));
 }
 
+// Drift calibrated for one SLAM is another one's by mistake only.
+TEST_F(ProgramRun, WhatStaysBesideAnotherProfileIsSaid) {
+  Write("drifts.yaml", std::string("scene: ./room.yaml\nframes: 3\n") +
+                           "sensor: {width: 80, height: 60}\n"
+                           "slam: {profile: orb_slam2, drift_scale: 20, pivot_m: 1}\n");
+  const auto said = [&](const std::string& set) {
+    return Program("run ./drifts.yaml -o out --force" + set).err;
+  };
+  EXPECT_EQ(said(" --set slam.profile=planar_slam --set slam.pivot_m=1.5"),
+            "depthgrid: warning: ./drifts.yaml: its own values of slam.drift_scale stay with "
+            "slam.profile=planar_slam\n");
+  EXPECT_EQ(said(" --set slam.profile=orb_slam2"), "");
+  EXPECT_EQ(said(" --set slam.profile=ground_truth"), "");
+  EXPECT_EQ(said(" --set slam.drift_scale=2"), "");
+}
+
 TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
   std::filesystem::create_directory(Path("out"));
   Write("out/notes.txt", "mine");
