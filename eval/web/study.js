@@ -48,7 +48,7 @@ function initMaps() {
     byId("maps").append(make("h3", {}, nameOf(room.scene)),
       row(figure(room.truth, `${room.scene}: true map`, "Truth"),
         cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${nameOf(c.pose_source)}, input: ${f1(c.metrics.input_map)}`))),
-      row(make("figure", {}), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${nameOf(c.pose_source)}, output`), `: ${f1(c.metrics.map)}`)))));
+      row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${nameOf(c.pose_source)}, output`), `: ${f1(c.metrics.map)}`)))));
   }
 }
 
@@ -72,6 +72,7 @@ function pathPicture(room, c) {
   if (room.truth) picture.append(svg("image", { href: room.truth, width, height, opacity: 0.55, preserveAspectRatio: "none" }));
   if (room.path) picture.append(line(room.path, PATH_COLOURS.truth));
   picture.append(line(c.input_path, PATH_COLOURS.input), line(c.output_path, PATH_COLOURS.output),
+    svg("rect", { class: "bar-back", x: 0.1, y: height - 0.66, width: 1.2, height: 0.56 }),
     svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: height - 0.2, y2: height - 0.2 }),
     svg("text", { class: "bar-text", x: 0.2, y: height - 0.32 }, "1 m"));
   return picture;
