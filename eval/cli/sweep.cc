@@ -85,8 +85,10 @@ void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t p
   fmt::print("\n");
   if (runs.empty()) return;
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
-  fmt::print("about {} with {} at a time, {} of scans\n",
-             DurationText(estimate.cpu_s / context.threads), context.threads,
+  const std::string time = estimate.cpu_s > 0.0
+                               ? "about " + DurationText(estimate.cpu_s / context.threads)
+                               : "the first points fail: nobody knows how long";
+  fmt::print("{} with {} at a time, {} of scans\n", time, context.threads,
              Counted(static_cast<std::size_t>(estimate.scan_sets), "different set"));
   std::fflush(stdout);
 }

@@ -24,7 +24,7 @@ void DoRuns(const SweepPlan& plan, SweepDatabase& database, const SweepContext& 
 
 // How long the runs will take, from a few frames of the first of them; about.
 struct SweepEstimate {
-  double cpu_s = 0.0;
+  double cpu_s = 0.0;  // 0 when each run that was tried failed
   int scan_sets = 0;
 };
 SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ctime>
+#include <optional>
 #include <set>
 
 #include "eval/sweep/scan_set.h"
@@ -14,6 +15,8 @@ namespace {
 // to make.
 constexpr std::size_t kShortFrames = 24;
 constexpr std::size_t kLongFrames = 60;
+// A sweep whose first points all fail is not worth more.
+constexpr std::size_t kMostTries = 8;
 
 double CpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -68,6 +71,23 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   return times;
 }
 
+// Of the first run that does not fail: what is wrong with those before they will say themselves.
+std::optional<PilotTimes> TimesOfARun(const SweepPlan& plan, const std::vector<int>& runs,
+                                      const SweepContext& context) {
+  std::set<int> tried;  // points
+  for (const int run : runs) {
+    const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
+    if (!tried.insert(planned.point).second) continue;
+    if (tried.size() > kMostTries) break;
+    try {
+      return TimesOfFirstFrames(plan.OptionsOf(planned), context);
+    } catch (const std::exception&) {
+      continue;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
@@ -78,14 +98,10 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
   std::set<int> used;
   for (const int run : runs) used.insert(groups[static_cast<std::size_t>(run)]);
   estimate.scan_sets = static_cast<int>(used.size());
-  try {
-    const PlannedRun& first = plan.runs[static_cast<std::size_t>(runs.front())];
-    const PilotTimes times = TimesOfFirstFrames(plan.OptionsOf(first), context);
-    const auto frames = static_cast<double>(times.frames);
-    estimate.cpu_s =
-        estimate.scan_sets * frames * times.scan_s + static_cast<double>(runs.size()) * times.run_s;
-  } catch (const std::exception&) {
-    // The run itself will say what is wrong with it.
+  if (const auto times = TimesOfARun(plan, runs, context)) {
+    const auto frames = static_cast<double>(times->frames);
+    estimate.cpu_s = estimate.scan_sets * frames * times->scan_s +
+                     static_cast<double>(runs.size()) * times->run_s;
   }
   return estimate;
 }

@@ -66,10 +66,16 @@ function freeAxes(used) {
 // drawn at random, or change together, there is nothing to hold and no line to follow.
 const repeats = (i) => AXES[i].texts.length > 1 && POINTS.length >= 1.5 * AXES[i].texts.length;
 
+// The first value of an axis that any point has the metric at: runs of those before may have failed.
+function firstKnown(axis) {
+  const known = POINTS.filter((point, i) => isNumber(metric.mean[i])).map((point) => point.values[axis]);
+  return known.length ? Math.min(...known) : 0;
+}
+
 // Held values of the free axes, one a part of the page: {axis: index into its texts, or -1 for any}.
 function holders(prefix, held, free, redraw) {
   return free.map((i) => {
-    held[i] ??= 0;
+    held[i] ??= firstKnown(i);
     const options = [...AXES[i].labels.map((text, k) => [k, text]), [-1, "any"]];
     return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
   });

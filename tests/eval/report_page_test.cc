@@ -190,5 +190,34 @@ TEST_F(ReportPage, OfASweep) {
   ExpectFits();
 }
 
+// What is held at first is a value at which there is something to see.
+TEST_F(ReportPage, OfASweepWhoseFirstValueFails) {
+  std::vector<PlannedRun> plan;
+  for (const char* gain : {"0", "0.5", "1"}) {
+    for (const char* scale : {"1", "2"}) {
+      for (const char* range_m : {"0.3", "6"}) {
+        const int run = static_cast<int>(plan.size());
+        plan.push_back({run, run, {gain, scale, range_m}});
+      }
+    }
+  }
+  std::filesystem::create_directory(Path("sweep"));
+  SweepDatabase database = SweepDatabase::Create(
+      Path("sweep"), {{"title", "ranges"}, {"experiment", "scene: living_room\n"}},
+      {"mapper.fusion.gain", "slam.drift_scale", "mapper.scan.max_range_m"}, plan);
+  for (const PlannedRun& run : plan) {
+    if (run.values[2] == "0.3") {
+      database.Record({run.run, "too near", {}, {}});
+    } else {
+      database.Record({run.run, "", {{"trajectory.est.mean_euclidean_m", 0.01 * run.run}}, {}});
+    }
+  }
+  Succeed("report sweep");
+  browser_->Open(Path("sweep/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  ExpectEveryPlotIsDrawn();
+  EXPECT_GT(ColoursOf("#heat canvas"), 3);
+}
+
 }  // namespace
 }  // namespace depthgrid

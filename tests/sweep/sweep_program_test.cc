@@ -190,6 +190,22 @@ axes:
   EXPECT_TRUE(std::isfinite(error[0]) && std::isfinite(error[2]));
 }
 
+// The first point fails: the time is that of the next one, the page begins where there is
+// something.
+TEST_F(ProgramSweep, TheFirstPointMayFail) {
+  Write("failing.yaml", R"(
+experiment: ./small.yaml
+axes:
+  mapper.scan.band_low_m: [1.8, 0.1]
+  mapper.fusion.gain: [0, 0.5]
+)");
+  const Outcome dry = Program("sweep ./failing.yaml --dry-run -o out");
+  EXPECT_THAT(dry.out, HasSubstr("about "));
+  Write("hopeless.yaml", "experiment: ./small.yaml\naxes: {mapper.scan.band_low_m: [1.8, 1.9]}\n");
+  const Outcome hopeless = Program("sweep ./hopeless.yaml --dry-run -o out");
+  EXPECT_THAT(hopeless.out, HasSubstr("the first points fail: nobody knows how long"));
+}
+
 TEST_F(ProgramSweep, FailsWhenAllRunsDo) {
   Write("failing.yaml", "experiment: ./small.yaml\naxes: {mapper.scan.band_low_m: [1.8, 1.9]}\n");
   const Outcome outcome = Program("sweep ./failing.yaml -o out");
