@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
+#include <vector>
 
 #include "mapper/core/error.h"
 
@@ -123,11 +125,33 @@ void OutputFolder::Clean() const {
   }
 }
 
+void OutputFolder::Supersede(const std::string& mark,
+                             std::function<bool(const fs::path& relative)> is_part) {
+  if (fs::exists(target_ / mark)) is_part_ = std::move(is_part);
+}
+
+void OutputFolder::RemoveSuperseded() const {
+  if (!is_part_) return;
+  std::vector<fs::path> superseded;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (const auto& entry : fs::recursive_directory_iterator(target_, options)) {
+    const fs::path relative = entry.path().lexically_relative(target_);
+    const bool is_file = entry.is_regular_file() && !entry.is_symlink();
+    if (is_file && is_part_(relative) && !fs::exists(work_ / relative)) {
+      superseded.push_back(entry.path());
+    }
+  }
+  for (const fs::path& file : superseded) fs::remove(file);
+}
+
 void OutputFolder::Commit() {
   const EndDelay whole;
   std::error_code error;
   fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
-  if (error) MoveInto(work_, target_);
+  if (error) {
+    RemoveSuperseded();
+    MoveInto(work_, target_);
+  }
   committed_ = true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -24,19 +25,27 @@ class OutputFolder {
   const std::filesystem::path& work() const { return work_; }
   std::string File(const std::string& name) const { return (work_ / name).string(); }
 
+  // Which files below the folder, by their relative paths, are parts of a result of this kind. Of
+  // an earlier one, which has the file `mark`, those go that are not written again, so that no two
+  // results are mixed.
+  void Supersede(const std::string& mark,
+                 std::function<bool(const std::filesystem::path& relative)> is_part);
   // Puts the written files in place. In a folder that has files already (`force`), files of the
-  // same name are replaced and all others stay: what a user put there is never deleted.
+  // same name are replaced, superseded ones go and all others stay: what a user put there is never
+  // deleted.
   void Commit();
 
  private:
   void Take(const std::string& shown);
   void Clean() const;
+  void RemoveSuperseded() const;
 
   std::filesystem::path target_;
   std::filesystem::path work_;
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
   int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;
+  std::function<bool(const std::filesystem::path&)> is_part_;
   std::optional<EndTask> clean_;
 };
 

@@ -35,7 +35,7 @@ void AddSet(CLI::App& app, CommonArguments& common) {
 void AddOutput(CLI::App& app, CommonArguments& common) {
   app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
   app.add_flag("--force", common.force,
-               "Write into a folder that is not empty; files of other names stay");
+               "Write into a folder that is not empty: an earlier run's files go, all others stay");
 }
 
 void AddThreads(CLI::App& app, CommonArguments& common) {

@@ -230,6 +230,7 @@ void Map(const MapArguments& arguments) {
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
+  folder.Supersede("run.yaml", IsRunFile);
   WriteRunFolder(folder, record);
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run, settings.mapper.grid);

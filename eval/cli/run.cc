@@ -95,6 +95,7 @@ void RunOne(const RunArguments& arguments) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
   bar.Say("writing the folder and the report");
+  folder.Supersede("run.yaml", IsRunFile);
   WriteRunFolder(folder, record);
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run.mapping, run.options.mapper.grid);

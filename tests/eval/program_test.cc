@@ -214,6 +214,23 @@ TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
   EXPECT_NE(ReadFile(Path("out/map.pgm")), "old");
 }
 
+// Scores and pictures of another run would be taken for this one's.
+TEST_F(ProgramRun, ForceLeavesNothingOfAnEarlierRun) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Succeed("map seq -o once");
+  Succeed("run ./small.yaml --set frames=7 -o out");
+  std::filesystem::create_directories(Path("out/mine"));
+  for (const char* name : {"out/notes.txt", "out/mine/metrics.json", "out/map_edited.pgm",
+                           "out/frames/best_depth.png"}) {
+    Write(name, "mine");
+  }
+  Succeed("map seq -o out --force");
+  std::vector<std::string> expected = FilesIn("once");
+  expected.insert(expected.end(),
+                  {"notes.txt", "mine/metrics.json", "map_edited.pgm", "frames/best_depth.png"});
+  EXPECT_THAT(FilesIn("out"), testing::UnorderedElementsAreArray(expected));
+}
+
 TEST_F(ProgramRun, IsQuietInAPipe) { EXPECT_EQ(Program("run ./small.yaml -o out").err, ""); }
 
 TEST_F(ProgramRun, EveryCommandHasHelpWithAnExample) {
