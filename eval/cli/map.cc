@@ -154,6 +154,16 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
       arguments.input, ways->slam_m, ways->map_m, fault));
 }
 
+// A map of poses that nothing checked looks like any other.
+void CheckMatches(const MapArguments& arguments, const FusionOptions& fusion, const MappingRun& run,
+                  std::vector<std::string>& warnings) {
+  const auto& reports = run.reports;
+  const bool any = std::any_of(reports.begin(), reports.end(),
+                               [](const FrameReport& report) { return report.match.found; });
+  if (any || reports.size() < 2 || fusion.TrustsSlamAlone()) return;
+  warnings.push_back(arguments.input + ": no scan could be matched, the poses are those given");
+}
+
 // What was only localised in stays as it is, byte for byte.
 void KeepMap(const std::string& from, const OutputFolder& folder) {
   namespace fs = std::filesystem;
@@ -220,6 +230,7 @@ void Map(const MapArguments& arguments) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckScale(arguments, run, warnings);
+  CheckMatches(arguments, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   record.title = arguments.input;

@@ -169,6 +169,18 @@ TEST_F(ProgramFormats, OdometryOfAnotherScaleIsSaid) {
   EXPECT_EQ(Program("map right.log -o out2").err, "");
 }
 
+TEST_F(ProgramFormats, ThatNothingWasMatchedIsSaid) {
+  std::string log;
+  for (int i = 0; i < 5; ++i) {
+    log += fmt::format("FLASER 5 81 81 81 81 81 {0} 0 0 {0} 0 0 {0} host 0\n", i);
+  }
+  Write("open.log", log);
+  const char* said = "open.log: no scan could be matched, the poses are those given";
+  EXPECT_THAT(Program("map open.log -o out").err, HasSubstr(said));
+  const std::string trusting = std::string("map open.log -o out2") + kTrustPoses;
+  EXPECT_THAT(Program(trusting).err, Not(HasSubstr(said)));
+}
+
 // Its odometry is right; then told loops.
 TEST_F(ProgramFormats, ALaserLogWithLoops) {
   Write("robot.log", ThereAndBack(1.0));
