@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mapper/core/error.h"
+#include "mapper/io/config.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -147,7 +148,14 @@ CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& 
   const std::string path = Joined(folder, "camera.yaml");
   if (fs::exists(path)) {
     WarnOfCut(path, ReadFile(path), warnings);
-    return ReadCameraFile(path);
+    CameraFile file = ReadCameraFile(path);
+    if (!Config::FromFile(path).Has("depth_scale")) {
+      warnings.push_back(
+          fmt::format("{}: states no depth_scale; it is {} a metre unless "
+                      "sequence.recording.depth_scale is set",
+                      path, file.depth_scale_per_m));
+    }
+    return file;
   }
   const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
   if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");

@@ -205,6 +205,15 @@ TEST_F(TumFolderTest, ACutCameraFileIsSaid) {
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("camera.yaml: the last line has no line end")));
 }
 
+// Millimetres read as TUM's units give a room of a fifth of its size.
+TEST_F(TumFolderTest, AScaleThatIsTakenForGrantedIsSaid) {
+  WriteSequence();
+  Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\n");
+  std::vector<std::string> warnings;
+  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 5000.0);
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("states no depth_scale; it is 5000 a metre unless")));
+}
+
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError({PoseAt(0, 0)}), "~/depth.txt: no such file");
   const Trajectory truth = WriteSequence();
