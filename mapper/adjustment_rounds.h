@@ -23,8 +23,9 @@ class AdjustmentRounds {
   explicit AdjustmentRounds(const RoundOptions& options)
       : options_(options), next_(options.first_frames) {}
 
-  // Whether it is time with so many mapped frames; asked once a frame.
-  bool IsDue(int frames);
+  // Whether it is time with so many mapped frames of this run, and so many with a prior map's;
+  // asked once a frame. A prior map was adjusted already, but is adjusted along, and costs.
+  bool IsDue(int frames, int with_prior_map);
 
  private:
   RoundOptions options_;

@@ -39,8 +39,8 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
   Require(state_->history.records().empty(), "a prior map comes before the first frame");
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     MappedFrame& frame = prior.frames[i];
-    Require(frame.frame < 0, "frames of a prior map have numbers below 0");
-    // Its poses are all that is known of how it moved.
+    Require(frame.of_prior_map(), "frames of a prior map have numbers below 0");
+    // Its poses are all that is known of how it moved: no more of SLAM's errors is in them.
     if (i > 0) {
       frame.slam_motion = Between(prior.frames[i - 1].map_from_base, frame.map_from_base);
     }
@@ -49,8 +49,10 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
                                 Eigen::Matrix3d::Zero());
     }
   }
+  // How its last frame and the first to come lie to each other is for the match to say.
+  if (state_->reference) state_->reference->BeginPart();
+  state_->prior_frames = static_cast<int>(prior.frames.size());
   state_->mapped.StartFrom(std::move(prior.frames));
-  state_->has_prior = true;
   state_->fixed_map = prior.fixed;
   state_->prior_start = prior.map_from_slam;
 }
@@ -97,9 +99,9 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
 void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
   const StageTimer timer(clock, report.times.loops_us);
-  if (!reference || mapped.empty() || mapped.back().frame < 0) return;
+  if (!reference || mapped.empty() || mapped.back().of_prior_map()) return;
   if (frame.loops.empty()) {
-    if (rounds.IsDue(mapped.size())) AdjustBetweenFrames();
+    if (rounds.IsDue(mapped.size() - prior_frames, mapped.size())) AdjustBetweenFrames();
     return;
   }
   std::vector<MappedFrame> frames = mapped.all();
@@ -309,7 +311,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
   frame.map_from_base = map_from_base;
-  if (!mapped.empty() && mapped.back().frame >= 0) {
+  if (!mapped.empty() && !mapped.back().of_prior_map()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
     if (before.epoch == record.epoch) {
       frame.slam_motion =

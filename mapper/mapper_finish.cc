@@ -15,7 +15,7 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
   for (const MappedFrame& frame : state_->mapped.all()) {
     map_from_base.push_back(frame.map_from_base);
   }
-  if (state_->fixed_map || (state_->has_prior && !state_->reference)) {
+  if (state_->fixed_map || (state_->prior_frames > 0 && !state_->reference)) {
     result.map_from_camera = FinalPoses(state_->history, map_from_base);
   } else if (state_->reference) {
     map_from_base = state_->FinishByAdjusting(result);

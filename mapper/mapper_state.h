@@ -37,7 +37,7 @@ struct IncrementalMapper::State {
   Relocation relocation;
   AdjustmentRounds rounds;
   MappedFrames mapped;
-  bool has_prior = false;
+  int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
   bool fixed_map = false;            // of a prior map that is only localised in
   std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
 

@@ -15,6 +15,8 @@ namespace {
 // How well the online estimate joins neighbouring groups, before loops have bent it: what keeps the
 // chain together in the first step, which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
+// And how well a prior map's adjustment has: it had all that was seen, and loops.
+const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
 constexpr int kLoopIterations = 5;
 // Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where
 // they were and are known to be wrong.
@@ -76,13 +78,18 @@ void Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
   }
 }
 
-// What ties groups to earlier ones than the one before.
-std::vector<GroupLink> TiesOf(const Problem& problem) {
-  std::vector<GroupLink> ties;
-  for (const GroupMotion& motion : problem.motions) {
-    if (motion.tie) ties.push_back(*motion.tie);
+// What is known of groups apart from SLAM's motion: ties to earlier ones than the one before, and
+// how the groups of a prior map lie.
+std::vector<GroupLink> SettledLinks(const Problem& problem) {
+  std::vector<GroupLink> links;
+  for (std::size_t g = 1; g < problem.groups.size(); ++g) {
+    const GroupMotion& motion = problem.motions[g];
+    const int second = static_cast<int>(g);
+    if (motion.tie) links.push_back(*motion.tie);
+    if (!motion.of_prior_map) continue;
+    links.push_back({second - 1, second, motion.before_from_group, kPriorMapSigma, 0.0});
   }
-  return ties;
+  return links;
 }
 
 // Bends the chain of groups as the loops want it, without looking at surfels.
@@ -95,7 +102,7 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     const int first = tie ? tie->first : second - 1;
     links.push_back({first, second,
                      Between(map_from_group[static_cast<std::size_t>(first)], map_from_group[g]),
-                     kOnlineSigma, 0.0});
+                     problem.motions[g].of_prior_map ? kPriorMapSigma : kOnlineSigma, 0.0});
   }
   for (int i = 0; i < kLoopIterations; ++i) {
     const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), links));
@@ -107,12 +114,12 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
 }
 
 // The prior's error is mostly a slowly varying bias: over n frames it grows like n, not like its
-// root. `sigma` is that of one frame.
+// root. `sigma` is that of one frame. A prior map's motions say nothing of how SLAM errs.
 std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d& sigma) {
   std::vector<GroupLink> links;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
     const GroupMotion& motion = problem.motions[g];
-    if (!motion.known) continue;
+    if (!motion.known || motion.of_prior_map) continue;
     const int second = static_cast<int>(g);
     links.push_back({second - 1, second, motion.before_from_group, motion.frames * sigma, 0.0});
   }
@@ -148,7 +155,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const AssociationGate gate{0.6 * options.landmark_m, gate_m,
                              std::cos(RadFromDeg(options.max_angle_deg))};
   const Landmarks landmarks(problem.groups, map_from_group, gate);
-  std::vector<GroupLink> links = TiesOf(problem);
+  std::vector<GroupLink> links = SettledLinks(problem);
   links.insert(links.end(), loops.begin(), loops.end());
   std::vector<int> first = ChainEnvelope(problem.groups.size(), links);
   landmarks.ExtendEnvelope(first);

@@ -46,6 +46,8 @@ struct GroupMotion {
   bool known = false;
   Pose2 before_from_group;
   int frames = 0;
+  // Between groups of a prior map: as it came out there, not as SLAM had it.
+  bool of_prior_map = false;
   // The frame before the group's first was tied to an earlier group: where it was matched there,
   // and the motion from it.
   std::optional<GroupLink> tie = {};

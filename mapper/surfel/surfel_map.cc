@@ -37,6 +37,7 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
     GroupMotion& motion = motions[g];
     motion.known = true;
     motion.frames = groups[g].first_frame - groups[g - 1].first_frame;
+    motion.of_prior_map = frames[static_cast<std::size_t>(groups[g].first_frame)].of_prior_map();
     for (int i = groups[g - 1].first_frame + 1; i <= groups[g].first_frame; ++i) {
       const std::optional<Pose2>& step = frames[static_cast<std::size_t>(i)].slam_motion;
       motion.known = motion.known && step;
@@ -50,6 +51,13 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
     }
   }
   return motions;
+}
+
+// The position of the first frame that is not a prior map's.
+int FirstNew(const std::vector<MappedFrame>& frames) {
+  const auto first = std::find_if(frames.begin(), frames.end(),
+                                  [](const MappedFrame& frame) { return !frame.of_prior_map(); });
+  return static_cast<int>(first - frames.begin());
 }
 
 // Whether SLAM jumped, or began anew, between each group and the one before, or frames between were
@@ -182,10 +190,15 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   if (effort != AdjustEffort::kBend) matcher_.ShareErrors(result.correlation);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
-  const auto group_count = static_cast<int>(groups.groups().size());
-  if (group_count >= kMinGroupsForSpread) {
-    adjustment.motion_spread = {result.motion_sigma,
-                                static_cast<double>(frames.size()) / group_count};
+  const int first_new = FirstNew(frames);
+  const auto new_groups =
+      std::count_if(groups.groups().begin(), groups.groups().end(),
+                    [&](const SurfelGroup& group) { return group.first_frame >= first_new; });
+  if (new_groups >= kMinGroupsForSpread) {
+    adjustment.motion_spread = {
+        result.motion_sigma,
+        static_cast<double>(frames.size() - static_cast<std::size_t>(first_new)) /
+            static_cast<double>(new_groups)};
   }
   adjustment.map_from_base = effort == AdjustEffort::kFinish
                                  ? SmoothedOver(frames, groups, result.map_from_group)
@@ -224,7 +237,8 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups)
 }
 
 // Each frame against the adjusted map, then all of them with SLAM's motion. Tied ones have their
-// match of the time, moved with the frame they are tied to.
+// match of the time, moved with the frame they are tied to. A prior map's frames went through this
+// when it was made, and stay where they are in their groups.
 std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
                                            const SurfelGroups& groups,
                                            const std::vector<Pose2>& map_from_group) {
@@ -233,9 +247,10 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     InsertInto(map, groups.groups()[g].surfels, map_from_group[g], 0.0);
   }
   const Eigen::Matrix3d covariance = kAdjustedSigma.cwiseProduct(kAdjustedSigma).asDiagonal();
-  const std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
+  std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
   std::vector<SmootherFrame> smoother;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
+  const auto first_new = static_cast<std::size_t>(FirstNew(frames));
+  for (std::size_t i = first_new; i < frames.size(); ++i) {
     MatchResult match = frames[i].match;
     if (frames[i].kept()) {
       const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
@@ -245,7 +260,9 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     }
     smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
-  return Smoothed(smoother, NoiseOf(smoother));
+  const std::vector<Pose2> smoothed = Smoothed(smoother, NoiseOf(smoother));
+  std::copy(smoothed.begin(), smoothed.end(), poses.begin() + FirstNew(frames));
+  return poses;
 }
 
 void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {

@@ -1,0 +1,148 @@
+// Going on in a finished map with poses that drift.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+#include "tests/mapper/match_world.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kRound = 300;
+constexpr PlanarLaser kLaser{
+    .beams = 160, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
+// SLAM's motions are off by this, a frame: over a round by 0.3 m.
+const Pose2 kDrift{1.6e-3, 1e-3, 1.2e-3};
+// The new frames' place when they begin, off by so much.
+const Pose2 kStartOff{0.03, -0.02, 0.01};
+
+// Once round a furnished room.
+Pose2 TruthAt(int i) {
+  const double turn_rad = 2.0 * kPi * i / kRound;
+  return {3.0 + 0.8 * std::cos(turn_rad), 1.5 + 0.8 * std::sin(turn_rad),
+          WrapAngle(turn_rad + 0.5 * kPi)};
+}
+
+Scan ScanAt(int i, std::uint64_t seed) {
+  return ScanOf(FurnishedRoom(), TruthAt(i), kLaser, seed, static_cast<std::uint32_t>(i));
+}
+
+// A round's map, as good as it can be.
+PriorMap FinishedRound() {
+  ScanArchive archive;
+  PriorMap prior;
+  for (int i = 0; i < kRound; ++i) {
+    MappedFrame frame;
+    frame.frame = i - kRound;
+    frame.stamp_s = i / 30.0;
+    frame.scan = frame.obstacles = archive.Keep(ScanAt(i, 1));
+    frame.map_from_base = TruthAt(i);
+    prior.frames.push_back(frame);
+  }
+  prior.map_from_slam = kStartOff;
+  return prior;
+}
+
+double ErrorM(const Pose2& pose, const Pose2& truth) {
+  return Between(truth, pose).translation().norm();
+}
+
+// SLAM's pose of each frame of another round.
+std::vector<Pose2> DriftingRound() {
+  std::vector<Pose2> slam_from_base = {TruthAt(0)};
+  for (int i = 1; i < kRound; ++i) {
+    slam_from_base.push_back(slam_from_base.back() * Between(TruthAt(i - 1), TruthAt(i)) * kDrift);
+  }
+  return slam_from_base;
+}
+
+Frame FrameAt(int i, const Pose2& slam_from_base) {
+  Frame frame;
+  frame.index = i;
+  frame.stamp_s = i / 30.0;
+  frame.slam_from_camera = CameraOf(slam_from_base, 0.0);
+  frame.scan = std::make_shared<Scan>(ScanAt(i, 2));
+  return frame;
+}
+
+struct Errors {
+  double worst_online_m = 0.0;
+  double worst_m = 0.0;
+  double prior_m = 0.0;  // the worst of the prior map's frames
+};
+
+// Begun where the first round ended.
+Errors ErrorsOfASecondRound(const MapperOptions& options) {
+  IncrementalMapper mapper(options, std::nullopt);
+  mapper.StartFrom(FinishedRound());
+  Errors errors;
+  const std::vector<Pose2> slam_from_base = DriftingRound();
+  EXPECT_GT(ErrorM(slam_from_base.back(), TruthAt(kRound - 1)), 0.2);
+  for (int i = 0; i < kRound; ++i) {
+    const FrameReport report =
+        mapper.AddFrame(FrameAt(i, slam_from_base[static_cast<std::size_t>(i)]));
+    const double online_m = ErrorM(BaseOf(*report.map_from_camera), TruthAt(i));
+    errors.worst_online_m = std::max(errors.worst_online_m, online_m);
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = 0; i < kRound; ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    const double error_m = ErrorM(BaseOf(*result.map_from_camera[place]), TruthAt(i));
+    errors.worst_m = std::max(errors.worst_m, error_m);
+    const double prior_m = ErrorM(result.mapped[place].map_from_base, TruthAt(i));
+    errors.prior_m = std::max(errors.prior_m, prior_m);
+  }
+  return errors;
+}
+
+TEST(PriorMap, ASecondRunThatDriftsIsPlacedInItAndHardlyMovesIt) {
+  const Errors errors = ErrorsOfASecondRound({});
+  EXPECT_LT(errors.worst_online_m, 0.04);
+  EXPECT_LT(errors.worst_m, 0.015);
+  EXPECT_LT(errors.prior_m, 0.005);
+}
+
+TEST(PriorMap, SoIsOneWhoseScansAreNotAllKept) {
+  MapperOptions options;
+  options.keep.first_frames = 100;
+  options.keep.scans_per_place = 10;
+  const Errors errors = ErrorsOfASecondRound(options);
+  EXPECT_LT(errors.worst_m, 0.03);
+}
+
+// With a prior map of more frames than that.
+TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
+  constexpr int kFirst = 20;
+  const std::vector<Pose2> slam_from_base = DriftingRound();
+  std::vector<FrameReport> reports[2];
+  for (const bool with_rounds : {false, true}) {
+    MapperOptions options;
+    options.rounds.first_frames = with_rounds ? kFirst : 0;
+    IncrementalMapper mapper(options, std::nullopt);
+    mapper.StartFrom(FinishedRound());
+    for (int i = 0; i <= kFirst; ++i) {
+      reports[with_rounds].push_back(
+          mapper.AddFrame(FrameAt(i, slam_from_base[static_cast<std::size_t>(i)])));
+    }
+  }
+  for (std::size_t i = 0; i < kFirst; ++i) {
+    EXPECT_EQ(reports[0][i].map_from_camera, reports[1][i].map_from_camera) << i;
+  }
+  EXPECT_NE(reports[0][kFirst].map_from_camera, reports[1][kFirst].map_from_camera);
+}
+
+TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
+  IncrementalMapper mapper({}, std::nullopt);
+  mapper.StartFrom(FinishedRound());
+  const MapperResult result = mapper.Finish();
+  ASSERT_EQ(result.mapped.size(), static_cast<std::size_t>(kRound));
+  for (int i = 0; i < kRound; ++i) {
+    EXPECT_LT(ErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, TruthAt(i)), 0.005);
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
