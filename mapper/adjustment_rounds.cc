@@ -10,8 +10,8 @@ void RoundOptions::Visit(OptionsVisitor& v) {
   v.Number("last_frames", last_frames, {0, 1e9}, "mapped frames after which there are no rounds");
 }
 
-bool AdjustmentRounds::IsDue(int frames, int with_prior_map) {
-  if (next_ == 0 || frames < next_ || with_prior_map > options_.last_frames) return false;
+bool AdjustmentRounds::IsDue(int frames) {
+  if (next_ == 0 || frames < next_ || frames > options_.last_frames) return false;
   next_ = static_cast<int>(std::ceil(options_.growth * frames));
   return true;
 }

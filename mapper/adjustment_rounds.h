@@ -23,9 +23,9 @@ class AdjustmentRounds {
   explicit AdjustmentRounds(const RoundOptions& options)
       : options_(options), next_(options.first_frames) {}
 
-  // Whether it is time with so many mapped frames of this run, and so many with a prior map's;
-  // asked once a frame. A prior map was adjusted already, but is adjusted along, and costs.
-  bool IsDue(int frames, int with_prior_map);
+  // Whether it is time with so many mapped frames of this run; asked once a frame. A prior map's do
+  // not count: where this run began in it is put right by the first round.
+  bool IsDue(int frames);
 
  private:
   RoundOptions options_;

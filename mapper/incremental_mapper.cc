@@ -101,7 +101,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const StageTimer timer(clock, report.times.loops_us);
   if (!reference || mapped.empty() || mapped.back().of_prior_map()) return;
   if (frame.loops.empty()) {
-    if (rounds.IsDue(mapped.size() - prior_frames, mapped.size())) AdjustBetweenFrames();
+    if (rounds.IsDue(mapped.size() - prior_frames)) AdjustBetweenFrames();
     return;
   }
   std::vector<MappedFrame> frames = mapped.all();

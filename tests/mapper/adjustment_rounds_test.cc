@@ -9,11 +9,11 @@
 namespace depthgrid {
 namespace {
 
-std::vector<int> RoundsOf(const RoundOptions& options, int frames, int prior_frames = 0) {
+std::vector<int> RoundsOf(const RoundOptions& options, int frames) {
   AdjustmentRounds rounds(options);
   std::vector<int> due;
   for (int i = 1; i <= frames; ++i) {
-    if (rounds.IsDue(i, prior_frames + i)) due.push_back(i);
+    if (rounds.IsDue(i)) due.push_back(i);
   }
   return due;
 }
@@ -24,13 +24,6 @@ TEST(AdjustmentRounds, ComeAfterTheFirstFramesAndThenRarer) {
   EXPECT_TRUE(RoundsOf({.first_frames = 0}, 300).empty());
   EXPECT_EQ(RoundsOf({.first_frames = 10, .growth = 3.0, .last_frames = 90}, 300),
             (std::vector<int>{10, 30, 90}));
-}
-
-TEST(AdjustmentRounds, CountThisRunsFramesAndCostAsMuchAsAPriorMapsToo) {
-  EXPECT_EQ(RoundsOf({.first_frames = 10, .growth = 3.0}, 100, 900),
-            (std::vector<int>{10, 30, 90}));
-  EXPECT_EQ(RoundsOf({.first_frames = 10, .growth = 3.0, .last_frames = 90}, 100, 50),
-            (std::vector<int>{10, 30}));
 }
 
 // To and fro before a wall with a niche: a perfect prior and noisy scans.

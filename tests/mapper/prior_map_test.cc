@@ -130,7 +130,7 @@ TEST(PriorMap, ItsLastFramesAreNotOneGroupWithTheFirstNewOnes) {
   EXPECT_LT(errors.prior_m, 0.0025);
 }
 
-// With a prior map of more frames than that.
+// With a prior map of more frames than that, and than the last round has.
 TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
   constexpr int kFirst = 20;
   const std::vector<Pose2> slam_from_base = DriftingRound();
@@ -138,6 +138,7 @@ TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
   for (const bool with_rounds : {false, true}) {
     MapperOptions options;
     options.rounds.first_frames = with_rounds ? kFirst : 0;
+    options.rounds.last_frames = kFirst;
     IncrementalMapper mapper(options, std::nullopt);
     mapper.StartFrom(FinishedRound());
     for (int i = 0; i <= kFirst; ++i) {
