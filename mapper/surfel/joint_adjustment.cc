@@ -86,7 +86,7 @@ std::vector<GroupLink> SettledLinks(const Problem& problem) {
     const GroupMotion& motion = problem.motions[g];
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
-    if (!motion.of_prior_map) continue;
+    if (!motion.known || !motion.of_prior_map) continue;
     links.push_back({second - 1, second, motion.before_from_group, kPriorMapSigma, 0.0});
   }
   return links;
