@@ -139,10 +139,12 @@ double GateOf(int round, const JointOptions& options) {
 SightingTrust TrustAt(const Landmarks& landmarks, const std::vector<Pose2>& map_from_group,
                       const JointOptions& options) {
   SightingTrust trust{options.huber_sigmas, {}};
-  if (!options.judge_misfit && !options.judge_sharing) return trust;
-  const SightingErrors errors = landmarks.ErrorsAt(map_from_group);
-  if (options.judge_misfit) trust.errors.variance_factor = errors.variance_factor;
-  if (options.judge_sharing) trust.errors.correlation = errors.correlation;
+  if (options.judge_misfit || options.judge_sharing) {
+    const SightingErrors errors = landmarks.ErrorsAt(map_from_group);
+    if (options.judge_misfit) trust.errors.variance_factor = errors.variance_factor;
+    if (options.judge_sharing) trust.errors.correlation = errors.correlation;
+  }
+  if (options.judge_landmarks) trust.landmark_factor = landmarks.FactorsAt(map_from_group, trust);
   return trust;
 }
 
@@ -223,6 +225,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
          "whether landmarks that groups see at different places are believed less");
   v.Flag("judge_sharing", judge_sharing,
          "whether landmarks whose neighbours in a group's view err alike are believed less");
+  v.Flag("judge_landmarks", judge_landmarks,
+         "whether a landmark whose sightings fit worse than most is believed less");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
   v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
            "a loop farther from the adjusted poses is taken out");

@@ -33,6 +33,9 @@ struct JointOptions {
   bool judge_misfit = true;
   // And over what neighbours share of their SightingErrors.
   bool judge_sharing = true;
+  // And each one over how much worse its sightings fit than most landmarks' do: what has no surface
+  // of its own, such as a plant, looks different from everywhere.
+  bool judge_landmarks = true;
   double loop_huber_sigmas = 2.0;
   // A loop farther than this from the adjusted poses is taken out, and all adjusted again.
   double max_loop_sigmas = 5.0;

@@ -4,11 +4,22 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
+#include "mapper/core/median.h"
 #include "mapper/surfel/misfit.h"
 #include "mapper/surfel/shared_errors.h"
 
 namespace depthgrid {
+namespace {
+
+// A landmark errs like most until more sightings than this tell (1 to 12 make no difference).
+constexpr double kSightingsLikeMost = 4.0;
+// One that belongs elsewhere does not speak for the others.
+constexpr double kMostChi2 = 100.0;
+
+}  // namespace
+
 Landmarks::Landmarks(const std::vector<SurfelGroup>& groups,
                      const std::vector<Pose2>& map_from_group, const AssociationGate& gate)
     : groups_(groups) {
@@ -49,11 +60,15 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   Row row;
   row.group = sighting.group;
   row.error_m = OffsetFrom(landmark, motion * local.point_m);
-  const double information =
-      local.information /
-      (trust.errors.variance_factor * CountedOver(sighting.company, trust.errors.correlation));
-  const double sigmas = std::abs(row.error_m) * std::sqrt(information);
-  row.weight = information * std::min(1.0, trust.huber_sigmas / sigmas);
+  const double shared = CountedOver(sighting.company, trust.errors.correlation);
+  row.information = local.information / (trust.errors.variance_factor * shared);
+  const double sigmas = std::abs(row.error_m) * std::sqrt(row.information);
+  row.weight = row.information * std::min(1.0, trust.huber_sigmas / sigmas);
+  // After Huber's rule: a landmark that fits badly everywhere counts less than its residuals alone
+  // would let it.
+  if (!trust.landmark_factor.empty()) {
+    row.weight /= trust.landmark_factor[static_cast<std::size_t>(sighting.landmark)];
+  }
   row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
   return row;
 }
@@ -97,6 +112,30 @@ SightingErrors Landmarks::ErrorsAt(const std::vector<Pose2>& map_from_group) con
   SharedErrors shared;
   for (std::size_t g = 0; g < groups_.size(); ++g) shared.Add(groups_[g].surfels, residuals[g]);
   return {misfit.VarianceFactor(), shared.Correlation()};
+}
+
+std::vector<double> Landmarks::FactorsAt(const std::vector<Pose2>& map_from_group,
+                                         const SightingTrust& trust) const {
+  const std::vector<Motion2> motions(map_from_group.begin(), map_from_group.end());
+  std::vector<double> factors(begin_.size() - 1, 1.0);
+  std::vector<double> seen;
+  Rows found;
+  for (std::size_t landmark = 0; landmark < factors.size(); ++landmark) {
+    if (SeenByOneGroup(landmark)) continue;
+    FindRows(landmark, motions, trust, found);
+    double chi2 = kSightingsLikeMost;
+    for (const Row& row : found.rows) {
+      const double off_m = row.error_m - found.offset_m;
+      chi2 += std::min(off_m * off_m * row.information, kMostChi2);
+    }
+    // The offset is taken from them.
+    factors[landmark] = chi2 / (kSightingsLikeMost + static_cast<double>(found.rows.size()) - 1.0);
+    seen.push_back(factors[landmark]);
+  }
+  if (seen.empty()) return factors;
+  const double most = std::max(1.0, UpperMedian(std::move(seen)));
+  for (double& factor : factors) factor = std::max(1.0, factor / most);
+  return factors;
 }
 
 void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTrust& trust,

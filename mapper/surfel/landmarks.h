@@ -25,10 +25,11 @@ struct SightingErrors {
 };
 
 // How sightings count: larger residuals than so many sigmas linearly, companions together as much
-// as their mean tells.
+// as their mean tells, those of each landmark over its factor (FactorsAt; empty: 1).
 struct SightingTrust {
   double huber_sigmas = 2.5;
   SightingErrors errors;
+  std::vector<double> landmark_factor = {};
 };
 
 class Landmarks {
@@ -42,6 +43,10 @@ class Landmarks {
   void ExtendEnvelope(std::vector<int>& first) const;
   // By the offsets of sightings from their landmarks, at these poses.
   SightingErrors ErrorsAt(const std::vector<Pose2>& map_from_group) const;
+  // How much worse the sightings of each landmark fit than those of most: their variance over what
+  // is trusted and over that of the median landmark, at least 1.
+  std::vector<double> FactorsAt(const std::vector<Pose2>& map_from_group,
+                                const SightingTrust& trust) const;
   // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
   // offset along its normal is an unknown too; it is eliminated (Schur complement), which couples
   // all groups that saw the landmark.
@@ -51,7 +56,8 @@ class Landmarks {
  private:
   struct Row {
     int group = 0;
-    double weight = 0.0;
+    double information = 0.0;
+    double weight = 0.0;  // the same, of a larger residual less
     double error_m = 0.0;
     Eigen::Vector3d jacobian;
   };

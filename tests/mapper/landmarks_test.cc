@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "mapper/surfel/skyline_matrix.h"
 
 namespace depthgrid {
@@ -56,6 +58,41 @@ TEST(Landmarks, ErrorsAreAsSightingsDiffer) {
   // histogram's bins are a tenth of a sigma.
   EXPECT_NEAR(errors.variance_factor, 1.4826 * 1.4826 * 8.0 / 7.0, 0.15);
   EXPECT_NEAR(errors.correlation, 1.0, 1e-9);
+}
+
+// Eight groups see 16 pieces of a wall, a sigma before and behind it in turns; one piece three.
+TEST(Landmarks, OneThatFitsWorseThanMostIsBelievedLess) {
+  std::vector<SurfelGroup> groups = WallSeen(8);
+  const std::vector<Pose2> poses(8);
+  const SightingTrust trust{1e9, {}};
+  const auto factors = [&] { return Landmarks(groups, poses, kGate).FactorsAt(poses, trust); };
+  EXPECT_EQ(factors(), std::vector<double>(16, 1.0));
+  for (SurfelGroup& group : groups) {
+    double& x_m = group.surfels[5].point_m.x();
+    x_m = 2.0 + 3.0 * (x_m - 2.0);
+  }
+  std::vector<double> expected(16, 1.0);
+  // Chi-squares of 72 and 8, each beside four sightings like most, over 4 + 8 - 1; most: 12 / 11.
+  expected[5] = (4.0 + 72.0) / (4.0 + 8.0);
+  const std::vector<double> found = factors();
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-9) << i;
+}
+
+TEST(Landmarks, ALandmarksFactorTakesFromItsSightings) {
+  const std::vector<SurfelGroup> groups = WallSeen(2);
+  const std::vector<Pose2> poses(2);
+  const Landmarks landmarks(groups, poses, kGate);
+  const auto information = [&](const SightingTrust& trust) {
+    SkylineMatrix h({0, 0, 0, 0, 0, 0});
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(6);
+    landmarks.AddTo(poses, trust, h, g);
+    return h.Diagonal(0);
+  };
+  const double all = information({1e9, {}});
+  SightingTrust half{1e9, {}, std::vector<double>(16, 1.0)};
+  for (std::size_t i = 0; i < 8; ++i) half.landmark_factor[i] = 1e9;
+  EXPECT_NEAR(information(half), all / 2, 1e-6 * all);
 }
 
 }  // namespace
