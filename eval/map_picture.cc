@@ -64,6 +64,15 @@ RgbImage Enlarged(const RgbImage& image, int factor) {
   return large;
 }
 
+// Wide enough to look at, unless that makes it too tall.
+int Enlargement(const RgbImage& cells) {
+  constexpr int kLeastWidthPx = 900;
+  constexpr int kMostHeightPx = 4000;
+  const int width = std::max(cells.width_px, 1);
+  const int wanted = (kLeastWidthPx + width - 1) / width;
+  return std::max(1, std::min(wanted, kMostHeightPx / std::max(cells.height_px, 1)));
+}
+
 // 1, 2 or 5 times a power of ten: the largest such length below a third of the width.
 double ScaleBarLength(double width_m) {
   double length_m = std::pow(10.0, std::floor(std::log10(width_m / 3.0)));
@@ -116,22 +125,29 @@ RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
 
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
                       const std::vector<Path>& paths) {
-  constexpr int kWantedWidthPx = 900;
   constexpr int kMarginPx = 12;
   constexpr int kTextScale = 2;
   constexpr double kPathWidthPx = 2.5;
-  const int factor = std::max(1, kWantedWidthPx / std::max(cells.width_px, 1));
+  const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
+  const double px_per_m = factor / geometry.resolution_m;
+  const double bar_m = ScaleBarLength(geometry.width_cells * geometry.resolution_m);
+  const int bar_px = static_cast<int>(std::lround(bar_m * px_per_m));
+  int legend_px = 4 * kMarginPx + bar_px + Canvas::TextWidth(LengthText(bar_m), kTextScale);
+  for (const Path& path : paths) {
+    legend_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
+  }
   const int line_px = Canvas::TextHeight(kTextScale) + kMarginPx;
   const int footer_px = kMarginPx + line_px;
-  Canvas canvas(large.width_px, large.height_px + footer_px, kPaper);
+  Canvas canvas(std::max(large.width_px, legend_px), large.height_px + footer_px, kPaper);
   RgbImage image = canvas.image();
-  std::copy(large.rgb.begin(), large.rgb.end(), image.rgb.begin());
+  for (int row = 0; row < large.height_px; ++row) {
+    std::copy_n(large.At(0, row), 3 * large.width_px, image.At(0, row));
+  }
   canvas = Canvas(std::move(image));
 
   // The centre of cell (i, j)'s picture is that of its enlarged square.
   const Eigen::Vector2d origin_m = geometry.OriginM();
-  const double px_per_m = factor / geometry.resolution_m;
   for (const Path& path : paths) {
     std::vector<Eigen::Vector2d> points;
     for (const StampedPose& pose : path.poses) {
@@ -143,8 +159,6 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
     if (!points.empty()) canvas.Disc(points.front(), 2.0 * kPathWidthPx, path.colour);
   }
 
-  const double bar_m = ScaleBarLength(geometry.width_cells * geometry.resolution_m);
-  const int bar_px = static_cast<int>(std::lround(bar_m * px_per_m));
   const int text_top = large.height_px + kMarginPx;
   const int middle = text_top + Canvas::TextHeight(kTextScale) / 2;
   canvas.Fill(kMarginPx, middle - 1, bar_px, 3, kInk);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "eval/map_picture.h"
 
 namespace depthgrid {
@@ -83,6 +86,32 @@ TEST(MapPicture, PathsLieWhereTheirCellsAre) {
   ASSERT_EQ(image.width_px, factor * geometry.width_cells);
   // Cell (0, 0) is the tenth from the left and, rows counted from the top, the tenth.
   EXPECT_EQ(At(image, 10 * factor, 9 * factor + factor / 2), (Colour{255, 0, 0}));
+}
+
+TEST(MapPicture, TheLegendIsNotCut) {
+  const std::vector<Path> paths = {
+      {"truth", {255, 0, 0}, {}}, {"odometry", {0, 255, 0}, {}}, {"estimate", {0, 0, 255}, {}}};
+  int pictures = 0;
+  for (const auto& [width, height] : {std::pair{617, 300}, {5, 2000}, {899, 10}, {1000, 20}}) {
+    const GridGeometry geometry{0.05, {0, 0}, width, height};
+    const RgbImage image = AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, paths);
+    // After the last stroke of colour there is text, which ends before the picture does.
+    const int row = image.height_px - 12 - Canvas::TextHeight(2) / 2;
+    int stroke = 0;
+    int ink = 0;
+    for (int column = 0; column < image.width_px; ++column) {
+      for (int v = row - 8; v < row + 8; ++v) {
+        if (At(image, column, v) == paths.back().colour) stroke = column;
+        if (At(image, column, v) == (Colour{30, 30, 30})) ink = column;
+      }
+    }
+    EXPECT_GT(stroke, 0) << width;
+    EXPECT_GE(ink - stroke, Canvas::TextWidth(paths.back().name, 2) - 8) << width;
+    EXPECT_LT(ink, image.width_px - 1) << width;
+    EXPECT_LT(image.height_px, 4100);
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 4);
 }
 
 TEST(MapPicture, KnownPartHasAMargin) {
