@@ -13,6 +13,10 @@ constexpr int kMinPieces = 3;
 // Steps smaller than this change nothing any more: a tenth of the best map's accuracy.
 constexpr double kConvergedM = 2e-5;
 constexpr double kConvergedRad = 4e-6;
+// Away from the minimum residuals are large because the prediction is wrong. Judged there, the
+// match would be believed less and stay with it; so many steps are taken before the misfit is
+// asked.
+constexpr int kStepsBeforeJudging = 2;
 // The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
 constexpr double kLeastVariance = 1e-10;
 // The linearised equations are not followed farther than this from where they were evaluated; what
@@ -62,11 +66,12 @@ PairGates SurfelMatcher::Gates() const {
           options_.huber_sigmas, options_.normal_floor_rad};
 }
 
-PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base) {
+PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base,
+                                       bool judged) {
   const PairGates gates = Gates();
   pairs_.Associate(map, gates, map_from_base);
   PairEvaluation evaluation = pairs_.Evaluate(gates, map_from_base);
-  if (options_.judge_misfit) {
+  if (judged && options_.judge_misfit) {
     evaluation.equations.h /= evaluation.variance_factor;
     evaluation.equations.g /= evaluation.variance_factor;
     evaluation.equations.false_h /= evaluation.variance_factor;
@@ -84,8 +89,11 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
   PairEvaluation evaluation;
   NormalEquations seen;
   pairs_.Assign(pieces, options_.judge_sharing ? correlation_ : 0.0);
+  const int unjudged =
+      options_.judge_misfit ? std::min(kStepsBeforeJudging, options_.max_iterations - 1) : 0;
   while (match.iterations < options_.max_iterations) {
-    evaluation = Evaluate(map, pose);
+    const bool judged = match.iterations >= unjudged;
+    evaluation = Evaluate(map, pose, judged);
     ++match.iterations;
     if (evaluation.used < kMinPieces) return match;
     seen = Debiased(evaluation.equations, options_.debias);
@@ -93,7 +101,9 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
     const Eigen::Vector3d step = (seen.h + prior_h).ldlt().solve(seen.g + prior_h * back);
     pose = pose * Pose2::FromVector(step);
     seen.g -= seen.h * step;  // as it is after the step
-    if (step.head<2>().norm() < kConvergedM && std::abs(step.z()) < kConvergedRad) break;
+    const bool converged =
+        step.head<2>().norm() < kConvergedM && std::abs(step.z()) < kConvergedRad;
+    if (judged && converged) break;
   }
   if (parts != nullptr) pairs_.PartsOf(Gates(), pose, *parts);
   match.found = true;

@@ -38,7 +38,7 @@ class SurfelMatcher {
 
  private:
   PairGates Gates() const;
-  PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base);
+  PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base, bool judged);
 
   SurfelMatchOptions options_;
   SurfelPairs pairs_;  // memory only, from one match to the next

@@ -105,5 +105,34 @@ TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
   EXPECT_EQ(believing.Match(wall, map, prediction).information, alone.information);
 }
 
+// Far from the minimum all residuals are large, and none of that is misfit.
+TEST(SurfelMatcher, AWrongPredictionIsNoMisfit) {
+  std::vector<Surfel> wall;
+  SurfelStore map;
+  for (int i = 0; i < 16; ++i) {
+    Surfel piece;
+    piece.point_m = {2.0, 0.1 * i};
+    piece.normal = {-1.0, 0.0};
+    piece.information = 1e4;
+    piece.normal_information = 1e4;
+    wall.push_back(piece);
+    map.Merge(piece, {0.03, 0.05, 0.7});
+  }
+  Prediction prediction;
+  prediction.map_from_base = {0.05, 0.0, 0.0};  // five sigmas off
+  prediction.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal();
+  for (const int iterations : {1, 2, 3, 10}) {
+    SurfelMatchOptions options;
+    options.max_iterations = iterations;
+    const MatchResult match = SurfelMatcher(options).Match(wall, map, prediction);
+    ASSERT_TRUE(match.found);
+    EXPECT_NEAR(match.map_from_base.x_m, 0.0, 5e-4) << iterations;
+    // Judged where it began, it would be a ninth of this.
+    if (iterations >= 3) {
+      EXPECT_NEAR(match.information(0, 0), 16 * 5000.0, 800.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
