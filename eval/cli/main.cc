@@ -184,7 +184,8 @@ void AddSweep(Program& program) {
       "depthgrid sweep kalman_gain -o /tmp/gains", &Sweep);
   app->add_option("sweep", arguments->sweep, "Shipped sweep or a YAML file");
   app->add_option("-j,--jobs", arguments->jobs, "Runs at a time; 0 is one a core")
-      ->check(CLI::Range(0, 1024));
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""));
   app->add_option("--shard", arguments->shard, "Do part I of N only, from 1")->type_name("I/N");
   app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
       ->type_name("DIR");

@@ -200,8 +200,10 @@ void SayResult(const MappingRun& run, bool localised) {
   };
   const auto taken = std::count_if(run.result.loops.begin(), run.result.loops.end(), is_given);
   const auto found = static_cast<std::ptrdiff_t>(run.result.loops.size()) - taken;
-  if (!run.loops.empty()) fmt::print("; {} of {} loop closures taken", taken, run.loops.size());
-  if (found > 0) fmt::print("; {} loop closures found", found);
+  if (!run.loops.empty()) {
+    fmt::print("; {} of {} taken", taken, Counted(run.loops.size(), "loop closure"));
+  }
+  if (found > 0) fmt::print("; {} found", Counted(static_cast<std::size_t>(found), "loop closure"));
   fmt::print("\n");
 }
 
