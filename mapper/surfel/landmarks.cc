@@ -13,9 +13,10 @@
 namespace depthgrid {
 namespace {
 
-// A landmark errs like most until more sightings than this tell (1 to 12 make no difference).
+// A landmark errs like most until more sightings than this tell (1 to 12 make no difference:
+// docs/tried.md, "Real SLAM's poses").
 constexpr double kSightingsLikeMost = 4.0;
-// One that belongs elsewhere does not speak for the others.
+// Ten sigmas: one that belongs elsewhere does not speak for the others.
 constexpr double kMostChi2 = 100.0;
 
 }  // namespace

@@ -249,8 +249,8 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
   const Eigen::Matrix3d covariance = kAdjustedSigma.cwiseProduct(kAdjustedSigma).asDiagonal();
   std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
   std::vector<SmootherFrame> smoother;
-  const auto first_new = static_cast<std::size_t>(FirstNew(frames));
-  for (std::size_t i = first_new; i < frames.size(); ++i) {
+  const int first_new = FirstNew(frames);
+  for (auto i = static_cast<std::size_t>(first_new); i < frames.size(); ++i) {
     MatchResult match = frames[i].match;
     if (frames[i].kept()) {
       const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
@@ -261,7 +261,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
   const std::vector<Pose2> smoothed = Smoothed(smoother, NoiseOf(smoother));
-  std::copy(smoothed.begin(), smoothed.end(), poses.begin() + FirstNew(frames));
+  std::copy(smoothed.begin(), smoothed.end(), poses.begin() + first_new);
   return poses;
 }
 

@@ -15,7 +15,7 @@ constexpr double kConvergedM = 2e-5;
 constexpr double kConvergedRad = 4e-6;
 // Away from the minimum residuals are large because the prediction is wrong. Judged there, the
 // match would be believed less and stay with it; so many steps are taken before the misfit is
-// asked.
+// asked (1 is too few, 3 no better: docs/tried.md, "When a match is judged").
 constexpr int kStepsBeforeJudging = 2;
 // The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
 constexpr double kLeastVariance = 1e-10;

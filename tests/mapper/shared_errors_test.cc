@@ -75,19 +75,28 @@ TEST(SharedErrors, NothingIsToldOfFewPairsOrWhatErrsTheOtherWay) {
   EXPECT_EQ(against.Correlation(), 0.0);
 }
 
+// Sixteen pieces across the view, known to 1 cm.
+std::vector<Surfel> Wall() {
+  std::vector<Surfel> wall(16);
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    wall[i].point_m = {2.0, 0.1 * static_cast<double>(i)};
+    wall[i].normal = {-1.0, 0.0};
+    wall[i].information = 1e4;
+    wall[i].normal_information = 1e4;
+  }
+  return wall;
+}
+
+SurfelStore MapOf(const std::vector<Surfel>& pieces) {
+  SurfelStore map;
+  for (const Surfel& piece : pieces) map.Merge(piece, {0.03, 0.05, 0.7});
+  return map;
+}
+
 // Sixteen pieces of one wall that all err alike tell as much as one, in the same place.
 TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
-  std::vector<Surfel> wall;
-  SurfelStore map;
-  for (int i = 0; i < 16; ++i) {
-    Surfel piece;
-    piece.point_m = {2.0, 0.1 * i};
-    piece.normal = {-1.0, 0.0};
-    piece.information = 1e4;
-    piece.normal_information = 1e4;
-    wall.push_back(piece);
-    map.Merge(piece, {0.03, 0.05, 0.7});
-  }
+  const std::vector<Surfel> wall = Wall();
+  const SurfelStore map = MapOf(wall);
   Prediction prediction;
   prediction.map_from_base = {0.01, 0.0, 0.0};
   prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
@@ -107,17 +116,8 @@ TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
 
 // Far from the minimum all residuals are large, and none of that is misfit.
 TEST(SurfelMatcher, AWrongPredictionIsNoMisfit) {
-  std::vector<Surfel> wall;
-  SurfelStore map;
-  for (int i = 0; i < 16; ++i) {
-    Surfel piece;
-    piece.point_m = {2.0, 0.1 * i};
-    piece.normal = {-1.0, 0.0};
-    piece.information = 1e4;
-    piece.normal_information = 1e4;
-    wall.push_back(piece);
-    map.Merge(piece, {0.03, 0.05, 0.7});
-  }
+  const std::vector<Surfel> wall = Wall();
+  const SurfelStore map = MapOf(wall);
   Prediction prediction;
   prediction.map_from_base = {0.05, 0.0, 0.0};  // five sigmas off
   prediction.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal();
