@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "mapper/surfel/landmarks.h"
+#include "mapper/surfel/motion_persistence.h"
 #include "mapper/surfel/motion_sigma.h"
 #include "mapper/surfel/skyline_matrix.h"
 #include "mapper/surfel/sparse_pose_matrix.h"
@@ -32,10 +33,13 @@ struct Problem {
   const JointOptions& options;
 };
 
-// The factor of a chain of groups that are linked to their predecessors and by `links`.
-std::vector<int> ChainEnvelope(std::size_t groups, const std::vector<GroupLink>& links) {
+// The factor of a chain of groups that are linked to so many predecessors and by `links`.
+std::vector<int> ChainEnvelope(std::size_t groups, int predecessors,
+                               const std::vector<GroupLink>& links) {
   std::vector<int> first(groups);
-  for (std::size_t g = 0; g < groups; ++g) first[g] = std::max(static_cast<int>(g) - 1, 0);
+  for (std::size_t g = 0; g < groups; ++g) {
+    first[g] = std::max(static_cast<int>(g) - predecessors, 0);
+  }
   for (const GroupLink& link : links) {
     int& place = first[static_cast<std::size_t>(link.second)];
     place = std::min(place, link.first);
@@ -105,7 +109,7 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
                      problem.motions[g].of_prior_map ? kPriorMapSigma : kOnlineSigma, 0.0});
   }
   for (int i = 0; i < kLoopIterations; ++i) {
-    const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), links));
+    const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), 1, links));
     Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
     for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
     if (!Factor(*h)) return;
@@ -159,7 +163,8 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const Landmarks landmarks(problem.groups, map_from_group, gate);
   std::vector<GroupLink> links = SettledLinks(problem);
   links.insert(links.end(), loops.begin(), loops.end());
-  std::vector<int> first = ChainEnvelope(problem.groups.size(), links);
+  std::vector<int> first =
+      ChainEnvelope(problem.groups.size(), options.learn_persistence ? 2 : 1, links);
   landmarks.ExtendEnvelope(first);
   const auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
@@ -167,12 +172,16 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   result.correlation = trust.errors.correlation;
   landmarks.AddTo(map_from_group, trust, *h, g);
   const std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
-  links.insert(links.end(), motions.begin(), motions.end());
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
+  AddMotions(motions, result.motion_persistence, map_from_group, *h, g);
   if (!Factor(*h)) return false;
   const Eigen::Vector3d share = ShareSeen(motions, map_from_group, *h);
   Step(*h, g, map_from_group);
-  result.motion_sigma = MotionSigma(UnitMotionLinks(problem), map_from_group, share);
+  const std::vector<GroupLink> unit = UnitMotionLinks(problem);
+  result.motion_sigma = MotionSigma(unit, map_from_group, share);
+  if (options.learn_persistence) {
+    result.motion_persistence = MotionPersistence(unit, map_from_group, share);
+  }
   return true;
 }
 
@@ -227,6 +236,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
          "whether landmarks whose neighbours in a group's view err alike are believed less");
   v.Flag("judge_landmarks", judge_landmarks,
          "whether a landmark whose sightings fit worse than most is believed less");
+  v.Flag("learn_persistence", learn_persistence,
+         "whether SLAM's errors go on from group to group as much as they are seen to");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
   v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
            "a loop farther from the adjusted poses is taken out");

@@ -36,6 +36,8 @@ struct JointOptions {
   // And each one over how much worse its sightings fit than most landmarks' do: what has no surface
   // of its own, such as a plant, looks different from everywhere.
   bool judge_landmarks = true;
+  // SLAM's errors go on from group to group as much as they are seen to (MotionPersistence).
+  bool learn_persistence = true;
   double loop_huber_sigmas = 2.0;
   // A loop farther than this from the adjusted poses is taken out, and all adjusted again.
   double max_loop_sigmas = 5.0;
@@ -59,8 +61,9 @@ struct GroupMotion {
 struct JointResult {
   std::vector<Pose2> map_from_group;  // the first is unchanged
   std::vector<bool> loop_accepted;
-  Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();  // of the prior, a frame, as learnt
-  double correlation = 0.0;                                // of SightingErrors, as learnt
+  Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();        // of the prior, a frame, as learnt
+  Eigen::Vector3d motion_persistence = Eigen::Vector3d::Zero();  // of its errors, as learnt
+  double correlation = 0.0;                                      // of SightingErrors, as learnt
 };
 
 // `motions` has one entry a group; the first is not used. `loops` are links without an order of

@@ -13,9 +13,6 @@ const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
 // Nor is it in one direction so much better than in another: in a corridor nothing tells how it
 // errs lengthways, and a direction's sigma may fall to the least. Radians a metre for the yaw.
 const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
-// With a smaller share the prior's errors are hardly told from those of what is seen: it is taken
-// for a little better each time, down to the least if it is perfect (measured in docs/math.md).
-constexpr double kLeastShare = 0.3;
 // Links that are probed together are so many apart: what is left of their errors is nearly
 // independent.
 constexpr std::size_t kProbes = 12;
@@ -60,7 +57,10 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
     }
     const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
     std::nth_element(errors.begin(), middle, errors.end());
-    sigma[axis] = kSigmaOfMedian * *middle / std::sqrt(std::max(share_seen[axis], kLeastShare));
+    // Below the least share the prior is taken for a little better each time, down to the least
+    // sigma if it is perfect (measured in docs/math.md).
+    const double share = std::max(share_seen[axis], kLeastShareSeen);
+    sigma[axis] = kSigmaOfMedian * *middle / std::sqrt(share);
   }
   const double most = sigma.head<2>().maxCoeff();
   return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);

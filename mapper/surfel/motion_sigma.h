@@ -11,6 +11,9 @@
 
 namespace depthgrid {
 
+// With a smaller share seen the prior's errors are hardly told from those of what is seen.
+constexpr double kLeastShareSeen = 0.3;
+
 // By axis (forward, left, yaw), the mean share of what is known of these motions that was seen and
 // not given by the links themselves: 1 - P / sigma^2, where P is the variance that is left of a
 // link's error (MacKay 1992, "Bayesian interpolation": the well-determined parameters). `factored`

@@ -15,6 +15,12 @@ constexpr int kSplitStride = 4;
 // beam's error (nearer looks more precise) would bias the fit.
 constexpr int kWeightWindow = 8;
 
+// A line fits as noise lets it until more returns than this tell (4 and 16 do the same:
+// docs/tried.md, "Lines that do not fit").
+constexpr double kReturnsLikeNoise = 4.0;
+// Of a line.
+constexpr double kFitted = 2.0;
+
 }  // namespace
 
 const std::vector<ScanLine>& ScanLineFinder::Find(const ScanReturns& returns) {
@@ -127,7 +133,9 @@ ScanLine ScanLineFinder::Fit(Span span, const ScanReturns& returns) const {
   // The variance of atan2(b, a), from the inverse of (aa ab; ab bb).
   const double length2 = a * a + b * b;
   const double variance = (b * b * bb + 2.0 * a * b * ab + a * a * aa) / determinant;
-  return {span, a * ahead + b * left, std::sqrt(variance) / length2};
+  const double misfit =
+      (Chi2(span) + kReturnsLikeNoise) / (span.size() - kFitted + kReturnsLikeNoise);
+  return {span, a * ahead + b * left, std::sqrt(variance) / length2, std::max(misfit, 1.0)};
 }
 
 }  // namespace depthgrid

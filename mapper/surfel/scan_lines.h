@@ -13,6 +13,9 @@ struct ScanLine {
   Span span;
   Eigen::Vector2d coefficients;   // 1/r = coefficients . direction
   double sigma_normal_rad = 0.0;  // of the direction of `coefficients`
+  // How much farther from the line its returns lie than their noise explains, at least 1: of what
+  // is bent or an edge, and too short to be split.
+  double variance_factor = 1.0;
 };
 
 class ScanLineFinder {

@@ -13,6 +13,8 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
            "a difference of neighbouring ranges this unlikely is an edge");
   v.Number("split_chi2", split_chi2, {1.0, 1e6}, "a gain of fit this large makes two lines of one");
   v.Number("min_line_beams", min_line_beams, {3, 1000}, "shorter pieces are left out");
+  v.Flag("judge_fit", judge_fit,
+         "whether a line that fits its beams worse than their noise explains is believed less");
 }
 
 std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise,
@@ -62,7 +64,8 @@ Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   }
   const double count = span.size();
   share /= count;
-  variance /= count * count;
+  const double factor = options_.judge_fit ? line.variance_factor : 1.0;
+  variance *= factor / (count * count);
   direction.normalize();
   // Grazing beams are not believed to be exact across the wall.
   constexpr double kMinCosine = 0.05;
@@ -74,7 +77,7 @@ Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   surfel.normal = -line.coefficients.normalized();
   const double sigma_m = std::sqrt(variance) * cosine / inverse_range;
   surfel.information = 1.0 / (sigma_m * sigma_m);
-  surfel.normal_information = 1.0 / (line.sigma_normal_rad * line.sigma_normal_rad);
+  surfel.normal_information = 1.0 / (factor * line.sigma_normal_rad * line.sigma_normal_rad);
   return surfel;
 }
 

@@ -17,6 +17,8 @@ struct ScanSurfelOptions {
   double jump_sigmas = 5.0;
   double split_chi2 = 20.0;
   int min_line_beams = 4;
+  // Surfels of a line that fits its beams badly are believed less.
+  bool judge_fit = true;
 
   void Visit(OptionsVisitor& v);
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "mapper/core/level.h"
+#include "mapper/core/median.h"
 #include "mapper/fuse/motion_noise.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/surfel/debias.h"
@@ -80,6 +81,36 @@ TEST(ScanSurfels, ErrHasTheDeclaredSigma) {
   }
   EXPECT_GT(count, 20000.0);
   EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.1);
+}
+
+// Before a wall a post with an edge towards the laser, hit by too few beams to be cut in two.
+TEST(ScanSurfels, OfWhatIsNoLineAreBelievedLess) {
+  PlanarWorld world = {{{2.0, -4.0}, {2.0, 4.0}}};
+  world.push_back({{1.04, -0.006}, {1.0, 0.0}});
+  world.push_back({{1.0, 0.0}, {1.04, 0.006}});
+  RangeNoise noise;
+  ScanSurfelOptions blind_options;
+  blind_options.judge_fit = false;
+  ScanSurfelMaker judging({});
+  ScanSurfelMaker blind(blind_options);
+  std::vector<double> on_wall;
+  std::vector<double> on_post;
+  for (std::uint32_t frame = 0; frame < 40; ++frame) {
+    const Scan scan = ScanOf(world, {}, Noisy(0.0005), 5, frame);
+    noise.Add(scan);
+    const std::vector<Surfel> judged = judging.Make(scan, noise);
+    const std::vector<Surfel> claimed = blind.Make(scan, noise);
+    ASSERT_EQ(judged.size(), claimed.size());
+    for (std::size_t i = 0; i < judged.size(); ++i) {
+      const double factor = claimed[i].information / judged[i].information;
+      EXPECT_GE(factor, 1.0 - 1e-12);
+      EXPECT_NEAR(claimed[i].normal_information / judged[i].normal_information, factor, 1e-9);
+      (judged[i].point_m.x() < 1.5 ? on_post : on_wall).push_back(factor);
+    }
+  }
+  ASSERT_GT(on_post.size(), 10U);
+  EXPECT_GT(UpperMedian(on_post), 20.0);
+  EXPECT_LT(UpperMedian(on_wall), 1.2);
 }
 
 Surfel DrawSurfel(RandomStream& random) {

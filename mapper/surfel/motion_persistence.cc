@@ -1,0 +1,96 @@
+#include "mapper/surfel/motion_persistence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "mapper/surfel/motion_sigma.h"
+
+namespace depthgrid {
+namespace {
+
+// Neighbouring errors share the pose between them, with opposite signs; links so far apart share
+// none.
+constexpr std::size_t kLag = 4;
+constexpr int kMinPairs = 20;
+// Errors that never end would be a slope that nothing bounds.
+constexpr double kMostPersistence = 0.97;
+
+bool Follows(const GroupLink& link, const GroupLink& before) { return link.first == before.second; }
+
+// Whether the links up to `last` follow each other from `kLag` before it.
+bool IsUnbroken(const std::vector<GroupLink>& links, std::size_t last) {
+  for (std::size_t i = last - kLag + 1; i <= last; ++i) {
+    if (!Follows(links[i], links[i - 1])) return false;
+  }
+  return true;
+}
+
+// The error of `link` less what is left of that of `before`, and how it changes with the three
+// poses.
+void AddFollowing(const GroupLink& before, const GroupLink& link,
+                  const Eigen::Vector3d& persistence, const std::vector<Pose2>& map_from_group,
+                  PoseMatrix& h, Eigen::VectorXd& g) {
+  const Eigen::Vector3d renewed = (1.0 - persistence.array().square()).sqrt().matrix();
+  const Eigen::Vector3d by_link = renewed.cwiseProduct(link.sigma).cwiseInverse();
+  const Eigen::Vector3d by_before = -persistence.cwiseQuotient(renewed.cwiseProduct(before.sigma));
+  const Eigen::Vector3d error = by_link.cwiseProduct(LinkError(link, map_from_group)) +
+                                by_before.cwiseProduct(LinkError(before, map_from_group));
+  const std::array<int, 3> poses = {before.first, link.first, link.second};
+  std::array<Eigen::Matrix3d, 3> jacobian;
+  jacobian[0] = by_before.asDiagonal() * ErrorByFirst(before, map_from_group);
+  jacobian[1] = by_link.asDiagonal() * ErrorByFirst(link, map_from_group);
+  jacobian[1].diagonal() += by_before;
+  jacobian[2] = by_link.asDiagonal();
+  for (std::size_t row = 0; row < poses.size(); ++row) {
+    g.segment<3>(3 * poses[row]) -= jacobian[row].transpose() * error;
+    for (std::size_t column = 0; column <= row; ++column) {
+      h.AddBlock(poses[row], poses[column], jacobian[row].transpose() * jacobian[column]);
+    }
+  }
+}
+
+}  // namespace
+
+Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
+                                  const std::vector<Pose2>& map_from_group,
+                                  const Eigen::Vector3d& share_seen) {
+  std::vector<Eigen::Vector3d> errors;
+  for (const GroupLink& link : unit) errors.push_back(LinkError(link, map_from_group));
+  int pairs = 0;
+  Eigen::Vector3d agreement = Eigen::Vector3d::Zero();
+  for (std::size_t i = kLag; i < unit.size(); ++i) {
+    if (!IsUnbroken(unit, i)) continue;
+    ++pairs;
+    agreement += (errors[i].array() * errors[i - kLag].array()).sign().matrix();
+  }
+  Eigen::Vector3d persistence = Eigen::Vector3d::Zero();
+  if (pairs < kMinPairs) return persistence;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Less a standard error: the fourth root makes much of what independent errors feign.
+    const double surely = agreement[axis] / pairs - 1.0 / std::sqrt(pairs);
+    if (share_seen[axis] < kLeastShareSeen || surely <= 0.0) continue;
+    // Of normal variables whose signs agree so often (Sheppard 1899).
+    const double correlation = std::sin(0.5 * std::numbers::pi * surely);
+    persistence[axis] =
+        std::min(std::pow(correlation, 1.0 / static_cast<double>(kLag)), kMostPersistence);
+  }
+  return persistence;
+}
+
+void AddMotions(const std::vector<GroupLink>& motions, const Eigen::Vector3d& persistence,
+                const std::vector<Pose2>& map_from_group, PoseMatrix& h, Eigen::VectorXd& g) {
+  const GroupLink* before = nullptr;
+  for (const GroupLink& link : motions) {
+    if (before != nullptr && Follows(link, *before) && !persistence.isZero(0.0)) {
+      AddFollowing(*before, link, persistence, map_from_group, h, g);
+    } else {
+      AddLink(link, map_from_group, h, g);
+    }
+    before = &link;
+  }
+}
+
+}  // namespace depthgrid
