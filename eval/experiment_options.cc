@@ -1,5 +1,6 @@
 #include "eval/experiment_options.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "eval/shipped.h"
@@ -51,6 +52,43 @@ ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) 
     throw InputError(config.Place(), "holds several experiments; only `depthgrid run` takes it");
   }
   return ReadExperiment({&config}, base_folder);
+}
+
+std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
+                                           const std::vector<std::string>& profiles) {
+  if (!file.Has("slam.profile")) return {};
+  const std::string own = file.List("slam.profile").front();
+  const bool another = std::any_of(
+      profiles.begin(), profiles.end(),
+      [&](const std::string& profile) { return profile != own && profile != "ground_truth"; });
+  if (!another) return {};
+  std::vector<std::string> kept;
+  for (const std::string& key : file.Take("slam").Keys()) {
+    const std::string path = "slam." + key;
+    if (key != "profile" && !changes.Has(path)) kept.push_back(path);
+  }
+  return kept;
+}
+
+ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
+  const SlamOptions usual_slam = ProfileOptions(SlamProfile::kGroundTruth);
+  SlamOptions& slam = options.slam;
+  slam.profile = usual_slam.profile;  // its values are all there
+  const bool drifts = slam.walk_translation_m > 0.0 || slam.walk_rotation_deg > 0.0 ||
+                      slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
+  if (!drifts) slam.drift_scale = usual_slam.drift_scale;
+  const std::uint64_t depth_seed = options.DepthSeed();
+  options.slam_seed = ToYaml(slam) == ToYaml(usual_slam) ? 0 : options.SlamSeed();
+  SensorOptions& sensor = options.sensor;
+  const bool noisy = sensor.noise != DepthNoiseModel::kNone;
+  if (!noisy) sensor.noise_scale = SensorOptions{}.noise_scale;
+  options.depth_seed = noisy || sensor.flying_pixels > 0.0 ? depth_seed : 0;
+  options.seed = 0;  // the two are all it is for
+  FusionOptions& fusion = options.mapper.fusion;
+  const bool gain_is_set =
+      fusion.mode == FusionMode::kFixed || fusion.mode == FusionMode::kAdaptive;
+  if (!gain_is_set) fusion.gain = FusionOptions{}.gain;
+  return options;
 }
 
 }  // namespace depthgrid

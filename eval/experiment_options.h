@@ -43,4 +43,14 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
                                  const std::string& base_folder);
 ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);
 
+// The keys that an experiment's file sets beside slam.profile, such as the drift calibrated for it,
+// and that stay when one of `profiles` is chosen in place of its own: those that `changes` does not
+// set. Empty where nothing is amiss.
+std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
+                                           const std::vector<std::string>& profiles);
+
+// The same experiment for the same result: what has no effect beside the rest (a gain that is
+// learnt, the drift scale of SLAM without drift, the seed of what does not err) is at its default.
+ExperimentOptions WithoutIdleSettings(ExperimentOptions options);
+
 }  // namespace depthgrid

@@ -1,7 +1,10 @@
 #include "eval/study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <map>
 
 #include "mapper/core/error.h"
 
@@ -60,6 +63,17 @@ StudyCase CaseOf(const Config& entry) {
   return study_case;
 }
 
+void WarnOfRepeats(Study& study) {
+  std::map<std::string, std::string> known;
+  for (std::size_t i = 0; i < study.experiments.size(); ++i) {
+    const std::string& name = study.outline.cases[i].name;
+    const auto [entry, is_new] =
+        known.emplace(ToYaml(WithoutIdleSettings(study.experiments[i])), name);
+    if (is_new) continue;
+    study.warnings.push_back(fmt::format("case {}: is the same as case {}", name, entry->second));
+  }
+}
+
 }  // namespace
 
 bool IsStudy(const Config& config) { return config.Has("cases"); }
@@ -97,6 +111,7 @@ Study ReadStudy(Config config, const Config& overrides, const std::string& base_
     const Config own = Without(entry, kCaseHeadKeys);
     study.experiments.push_back(ReadExperiment({&shared, &own, &overrides}, base_folder));
   }
+  WarnOfRepeats(study);
   return study;
 }
 

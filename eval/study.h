@@ -31,6 +31,7 @@ struct StudyOutline {
 struct Study {
   StudyOutline outline;
   std::vector<ExperimentOptions> experiments;  // one a case
+  std::vector<std::string> warnings;           // what is likely not meant, a line each
 };
 
 bool IsStudy(const Config& config);

@@ -45,8 +45,7 @@ void PrintLegend(std::size_t seeds) {
 void Ablate(const AblateArguments& arguments) {
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
-  if (const auto kept = KeptBesideProfile(arguments.experiment, arguments.common.set))
-    Warn({*kept});
+  if (const auto kept = DoubtOfProfile(arguments.experiment, arguments.common.set)) Warn({*kept});
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
   OutputFolder folder(arguments.common.output, arguments.common.force);

@@ -46,22 +46,17 @@ Config ExperimentFile(const std::string& path) {
   return config;
 }
 
-std::optional<std::string> KeptBesideProfile(const std::string& name,
-                                             const std::vector<std::string>& set) {
+std::optional<std::string> DoubtOfProfile(const std::string& name,
+                                          const std::vector<std::string>& set) {
   Config given;
   for (const std::string& assignment : set) given.Set(assignment);
-  const Config file = ExperimentFile(ResolveName(name, ShippedKind::kExperiment));
-  if (!given.Has("slam.profile") || !file.Has("slam.profile")) return {};
-  const std::string profile = given.List("slam.profile").front();
-  if (profile == file.List("slam.profile").front() || profile == "ground_truth") return {};
-  std::string kept;
-  Config rest = file;
-  for (const std::string& key : rest.Take("slam").Keys()) {
-    const std::string path = "slam." + key;
-    if (key != "profile" && !given.Has(path)) kept += (kept.empty() ? "" : ", ") + path;
-  }
+  if (!given.Has("slam.profile")) return {};
+  const std::vector<std::string> profile = given.List("slam.profile");
+  const std::vector<std::string> kept = KeptBesideProfile(
+      ExperimentFile(ResolveName(name, ShippedKind::kExperiment)), given, profile);
   if (kept.empty()) return {};
-  return fmt::format("{}: its own values of {} stay with slam.profile={}", name, kept, profile);
+  return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
+                     fmt::join(kept, ", "), profile.front());
 }
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set) {

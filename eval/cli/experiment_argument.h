@@ -17,8 +17,8 @@ Config ExperimentFile(const std::string& path);
 
 // What an experiment sets beside slam.profile, such as the drift calibrated for it, when `set`
 // chooses another profile: one line.
-std::optional<std::string> KeptBesideProfile(const std::string& name,
-                                             const std::vector<std::string>& set);
+std::optional<std::string> DoubtOfProfile(const std::string& name,
+                                          const std::vector<std::string>& set);
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
 

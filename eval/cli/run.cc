@@ -87,7 +87,7 @@ void RunOne(const RunArguments& arguments) {
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   record.title = arguments.experiment;
-  if (const auto kept = KeptBesideProfile(arguments.experiment, arguments.common.set)) {
+  if (const auto kept = DoubtOfProfile(arguments.experiment, arguments.common.set)) {
     record.warnings.push_back(*kept);
   }
   record.map_mode = arguments.output.map_mode;
@@ -120,6 +120,7 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
   folder.Commit();
   bar.Clear();
+  Warn(study.warnings);
   PrintCases(results);
   SayReport(arguments.common.output);
 }

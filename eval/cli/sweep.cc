@@ -253,6 +253,7 @@ void Sweep(const SweepArguments& arguments) {
   if (arguments.sweep.empty()) throw InputError("sweep", "name a shipped sweep or a YAML file");
   const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
   const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
+  Warn(plan.warnings);
   if (arguments.dry_run) {
     SweepContext context;
     context.threads = ThreadsOr(arguments.jobs);

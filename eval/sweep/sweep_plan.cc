@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "eval/shipped.h"
+#include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
@@ -230,16 +231,23 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   const std::string experiment =
       ResolveName(file.experiment, ShippedKind::kExperiment, fs::path(path).parent_path().string());
   plan.base_folder = fs::path(experiment).parent_path().string();
-  plan.base = Config::FromFile(experiment);
-  ReadExperiment(plan.base, plan.base_folder);  // so that its own errors name its own file
-  plan.base = Config::FromText(plan.base.ToYaml(), path + ", set");
-  for (const ConfigEntry& entry : fixed.Entries())
-    plan.base.Set(entry.key, entry.text, entry.place);
-  for (const std::string& assignment : set) plan.base.Set(assignment);
+  const Config own = Config::FromFile(experiment);
+  ReadExperiment(own, plan.base_folder);  // so that its own errors name its own file
+  plan.base = Config::FromText(own.ToYaml(), path + ", set");
+  Config changes;
+  for (Config* target : {&plan.base, &changes}) {
+    for (const ConfigEntry& entry : fixed.Entries())
+      target->Set(entry.key, entry.text, entry.place);
+    for (const std::string& assignment : set) target->Set(assignment);
+  }
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
   CheckValues(plan);
   CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);
+  for (const auto& doubt :
+       {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
+    if (doubt) plan.warnings.push_back(*doubt);
+  }
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);

@@ -47,6 +47,7 @@ struct SweepPlan {
   std::string size_text;  // for people: "50 mapper.fusion.gain x 20 seed"
   std::vector<PlannedRun> runs;
   int point_count = 0;
+  std::vector<std::string> warnings;  // what is likely not meant, a line each
 
   // What one run is; throws InputError for values that contradict each other.
   ExperimentOptions OptionsOf(const PlannedRun& run) const;

@@ -67,12 +67,18 @@ TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
 }
 
 TEST_F(StudyRun, OverridesHoldForEveryCase) {
-  Succeed("run ./study.yaml -o out --set frames=5 --set mapper.fusion.gain=0.25");
+  const std::string more = " --set frames=5 --set mapper.fusion.gain=0.25";
+  EXPECT_EQ(Program("run ./study.yaml -o out" + more).err, "");
   for (const char* name : {"orb", "other_seed", "truth"}) {
     const std::string settings = ReadFile(Path(std::string("out/") + name + "/run.yaml"));
     EXPECT_THAT(settings, HasSubstr("frames: 5"));
     EXPECT_THAT(settings, HasSubstr("gain: 0.25"));
   }
+}
+
+TEST_F(StudyRun, CasesThatBecameTheSameAreSaid) {
+  EXPECT_EQ(Program("run ./study.yaml -o out --set slam.profile=ground_truth").err,
+            "depthgrid: warning: case truth: is the same as case orb\n");
 }
 
 TEST_F(StudyRun, ReportWritesTheSamePageAgain) {

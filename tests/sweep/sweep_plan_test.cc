@@ -122,11 +122,57 @@ TEST_F(SweepPlanTest, TheSameSweepSaysTheSameOfItself) {
             PlanOf("axes: {mapper.fusion.gain: [0, 0.5, 1], seed: [1, 3]}\n").sweep_text);
 }
 
+TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
+  const auto doubts = [&](const std::string& text) { return PlanOf(text).warnings; };
+  EXPECT_THAT(
+      doubts("axes:\n  slam.profile: [ground_truth, orb_slam2]\n"
+             "  slam.drift_scale: [1, 3, 10]\n"),
+      ElementsAre("sweep: 2 of 6 runs repeat another: there slam.drift_scale has no effect"));
+  EXPECT_THAT(doubts("axes: {slam_seed: {seeds: 3}, mapper.fusion.gain: [0.1, 0.2]}\n"
+                     "set: {mapper.fusion.mode: learned}\n"),
+              ElementsAre("sweep: 5 of 6 runs repeat another: there mapper.fusion.gain, slam_seed "
+                          "have no effect"));
+  EXPECT_THAT(
+      doubts("axes: {sensor.noise: [none, handa], sensor.noise_scale: [1, 2]}\n"),
+      ElementsAre("sweep: 1 of 4 runs repeat another: there sensor.noise_scale has no effect"));
+  EXPECT_THAT(doubts("axes: {slam.drift_scale: [1, 2], slam.drift_speed_mps: [0.1]}\n"),
+              ElementsAre());
+  EXPECT_THAT(doubts("axes: {seed: {seeds: 3}, mapper.fusion.mode: [fixed, learned]}\n"
+                     "set: {sensor.noise: handa}\n"),
+              ElementsAre());
+}
+
+TEST_F(SweepPlanTest, WhatStaysBesideAnotherProfileIsSaid) {
+  Write("drifts.yaml",
+        "scene: living_room\nslam: {profile: orb_slam2, drift_scale: 20}\n"
+        "mapper: {fusion: {mode: fixed}}\n");
+  const auto doubts = [&](const std::string& text, const std::vector<std::string>& set = {}) {
+    Write("drifts_sweep.yaml", "experiment: ./drifts.yaml\n" + text);
+    return ReadSweepPlan(Path("drifts_sweep.yaml"), set).warnings;
+  };
+  const std::string kept = "./drifts.yaml: its own values of slam.drift_scale stay with ";
+  EXPECT_THAT(doubts("axes: {slam.profile: [orb_slam2, planar_slam]}\n"),
+              ElementsAre(kept + "slam.profile=orb_slam2, planar_slam"));
+  const std::string gains = "axes: {mapper.fusion.gain: [0, 1]}\n";
+  EXPECT_THAT(doubts(gains + "set: {slam.profile: planar_slam}\n"),
+              ElementsAre(kept + "slam.profile=planar_slam"));
+  EXPECT_THAT(doubts(gains, {"slam.profile=planar_slam"}),
+              ElementsAre(kept + "slam.profile=planar_slam"));
+  EXPECT_THAT(doubts(gains, {"slam.profile=planar_slam", "slam.drift_scale=37.5"}), ElementsAre());
+  EXPECT_THAT(
+      doubts("axes: {'slam.profile, slam.drift_scale': [[orb_slam2, 20], [planar_slam, 9]]}\n"),
+      ElementsAre());
+  EXPECT_THAT(doubts("axes: {slam.profile: [orb_slam2, ground_truth]}\n"), ElementsAre());
+  EXPECT_THAT(doubts(gains), ElementsAre());
+}
+
 TEST_F(SweepPlanTest, EveryShippedSweepIsSound) {
   int sweeps = 0;
   for (const auto& entry : std::filesystem::directory_iterator(
            std::filesystem::path(kSourceFolder) / "scenes/sweeps")) {
-    EXPECT_GE(ReadSweepPlan(entry.path().string(), {}).runs.size(), 50U) << entry.path();
+    const SweepPlan plan = ReadSweepPlan(entry.path().string(), {});
+    EXPECT_GE(plan.runs.size(), 50U) << entry.path();
+    EXPECT_THAT(plan.warnings, ElementsAre()) << entry.path();
     ++sweeps;
   }
   EXPECT_GE(sweeps, 7);

@@ -1,0 +1,59 @@
+#include "eval/sweep/sweep_doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+namespace depthgrid {
+namespace {
+
+// Reading the settings of a run takes a tenth of a millisecond.
+constexpr std::size_t kMostRuns = 5000;
+
+}  // namespace
+
+std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
+  std::unordered_map<std::string, const PlannedRun*> known;
+  std::set<std::string> idle_keys;
+  std::size_t repeats = 0;
+  const std::size_t count = std::min(kMostRuns, plan.runs.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlannedRun& run = plan.runs[i];
+    const auto [entry, is_new] =
+        known.try_emplace(ToYaml(WithoutIdleSettings(plan.OptionsOf(run))), &run);
+    if (is_new) continue;
+    ++repeats;
+    for (std::size_t k = 0; k < run.values.size(); ++k) {
+      if (run.values[k] != entry->second->values[k]) idle_keys.insert(plan.parameter_keys[k]);
+    }
+  }
+  if (repeats == 0) return {};
+  return fmt::format("{}: {} of {} runs repeat another: there {} {} no effect", plan.title, repeats,
+                     count, fmt::join(idle_keys, ", "), idle_keys.size() == 1 ? "has" : "have");
+}
+
+std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config& experiment,
+                                           const Config& fixed,
+                                           const std::vector<SweepAxis>& axes) {
+  Config changes = fixed;
+  std::vector<std::string> profiles;
+  if (changes.Has("slam.profile")) profiles = changes.List("slam.profile");
+  for (const SweepAxis& axis : axes) {
+    for (std::size_t i = 0; i < axis.keys.size(); ++i) {
+      const bool is_profile = axis.keys[i] == "slam.profile";
+      if (is_profile) profiles.clear();
+      for (const auto& value : axis.values) {
+        if (is_profile) profiles.push_back(value[i]);
+      }
+      changes.Set(axis.keys[i], axis.values.empty() ? "0" : axis.values.front()[i], axis.place);
+    }
+  }
+  const std::vector<std::string> kept = KeptBesideProfile(experiment, changes, profiles);
+  if (kept.empty()) return {};
+  return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
+                     fmt::join(kept, ", "), fmt::join(profiles, ", "));
+}
+
+}  // namespace depthgrid
