@@ -141,6 +141,38 @@ void FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& se
   }
 }
 
+// What is to be done about it: the poses are mapped as they were read.
+std::string RemedyOf(const PoseDoubt& doubt) {
+  switch (doubt.reading) {
+    case PoseReading::kWFirst:
+      return "with quaternions that begin with w; rows must be t x y z qx qy qz qw";
+    case PoseReading::kInverse:
+      return "with each pose inverted; poses must take the camera to the world";
+    case PoseReading::kBodyAxes:
+      return "with poses of axes x forward, y left, z up; they must be the camera's x right, y "
+             "down, z forward";
+    case PoseReading::kGlAxes:
+      return "with poses of axes x right, y up, z backward; they must be the camera's x right, y "
+             "down, z forward";
+    case PoseReading::kShifted:
+      break;
+  }
+  return fmt::format("with other stamps: --set sequence.recording.time_offset_s={:.2f}",
+                     doubt.time_offset_s);
+}
+
+void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
+                std::vector<std::string>& warnings) {
+  const auto& doubt = sequence.pose_doubt;
+  if (!doubt) return;
+  constexpr double kPercent = 100.0;
+  warnings.push_back(fmt::format(
+      "{}: the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their "
+      "depth apart; they would, at {:.1f} %, {}",
+      arguments.poses.empty() ? arguments.input : arguments.poses, kPercent * doubt->misfit,
+      kPercent * doubt->better_misfit, RemedyOf(*doubt)));
+}
+
 // Only one of the two can be right; which one, the mapper cannot know.
 void CheckScale(const MapArguments& arguments, const MappingRun& run,
                 std::vector<std::string>& warnings) {
@@ -231,6 +263,7 @@ void Map(const MapArguments& arguments) {
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+  CheckPoses(arguments, input, warnings);
   CheckScale(arguments, run, warnings);
   CheckMatches(arguments, settings.mapper.fusion, run, warnings);
   RunRecord record;

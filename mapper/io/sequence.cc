@@ -22,6 +22,10 @@ namespace fs = std::filesystem;
 
 // Images looked at for gravity.
 constexpr int kGravityViews = 24;
+// Pairs of images that poses are checked by, and how far apart: much of what they show is the same,
+// and the camera has turned by more than SLAM errs.
+constexpr std::size_t kCheckedPairs = 24;
+constexpr double kPairApartS = 0.5;
 // A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
 constexpr double kFloorIsZeroM = 0.02;
 
@@ -31,6 +35,7 @@ struct DepthSequence {
   DepthReader reader;
   SlamOutput slam;
   WorldUp usual_up = WorldUp::kZ;
+  bool y_up = false;  // the poses were turned by FlipY
 };
 
 DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
@@ -54,7 +59,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
     CameraDescription camera = ReadCameraDescription(options.camera, sequence.recording.warnings);
     CompleteSize(sequence.recording, camera);
     sequence.recording.camera = camera.file;
-    if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+    sequence.y_up = camera.y_up;
   }
   sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
   return sequence;
@@ -68,7 +73,7 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
   const CameraDescription camera =
       options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
                              : ReadCameraDescription(options.camera, sequence.recording.warnings);
-  if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  sequence.y_up = camera.y_up;
   sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
   sequence.recording.camera = camera.file;
   sequence.reader = IclDepthReader(camera.file, options.recording);
@@ -84,7 +89,7 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
   sequence.recording = std::move(listed.recording);
   sequence.recording.camera = camera.file;
   sequence.slam = slam ? *slam : std::move(listed.poses);
-  if (camera.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  sequence.y_up = camera.y_up;
   sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
   return sequence;
 }
@@ -121,6 +126,43 @@ std::optional<Gravity> FindGravity(const DepthSequence& sequence, const Recordin
     return {};  // what is wrong with the recording is said when the whole of it is opened
   }
   return finder.Find();
+}
+
+// Spread over the recording; the chosen images, two a pair.
+std::vector<RecordedImage> PairsAmong(const std::vector<RecordedImage>& images) {
+  std::vector<RecordedImage> pairs;
+  const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
+  std::size_t second = 0;
+  for (std::size_t first = 0; first < images.size(); first += every) {
+    const double apart_s = images[first].stamp_s + kPairApartS;
+    while (second < images.size() && images[second].stamp_s < apart_s) ++second;
+    if (second == images.size()) break;
+    pairs.push_back(images[first]);
+    pairs.push_back(images[second]);
+  }
+  return pairs;
+}
+
+// Whether its poses are what they were read as.
+std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
+                                    const RecordingOptions& options) {
+  Recording chosen = sequence.recording;
+  chosen.images = PairsAmong(sequence.recording.images);
+  std::vector<ImagePair> pairs;
+  try {
+    const auto source = OpenRecording(std::move(chosen), sequence.slam, options, sequence.reader);
+    while (const auto first = source->Next()) {
+      const auto second = source->Next();
+      if (!first->depth || !second->depth) continue;
+      pairs.push_back({first->stamp_s, second->stamp_s, first->depth, second->depth});
+    }
+    const PoseChange as_written = sequence.y_up
+                                      ? PoseChange([](const Pose3& pose) { return FlipY(pose); })
+                                      : PoseChange([](const Pose3& pose) { return pose; });
+    return DoubtOfPoses(pairs, *source->Camera(), sequence.slam.live, options, as_written);
+  } catch (const InputError&) {
+    return {};  // what is wrong with the recording is said when the whole of it is opened
+  }
 }
 
 // Which way is up, and what is to be said about it.
@@ -227,7 +269,9 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                                ? TumSequence(path, options, slam, result.notes)
                            : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
                                                             : FrameSequence(path, options, slam);
+  if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   if (!slam) FindCorrections(path, sequence, result.notes);
+  result.pose_doubt = CheckPoses(sequence, options.recording);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(sequence, options.recording, result)
                                  : AxisOf(options.world_up);

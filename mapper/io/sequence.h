@@ -10,6 +10,7 @@
 #include "mapper/core/frame.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/frame_names.h"
+#include "mapper/io/pose_check.h"
 #include "mapper/io/recording_options.h"
 #include "mapper/io/world_up.h"
 
@@ -37,6 +38,8 @@ struct Sequence {
   std::optional<double> floor_z_m;
   // SLAM's own, in the level world and by the clock of the frames; empty when unknown.
   Trajectory final_poses;
+  // Where the images fit the poses only if these are read otherwise.
+  std::optional<PoseDoubt> pose_doubt;
 };
 
 // The kind a path looks like. Throws InputError when it is none that is known.

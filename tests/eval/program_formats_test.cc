@@ -169,6 +169,33 @@ TEST_F(ProgramFormats, OdometryOfAnotherScaleIsSaid) {
   EXPECT_EQ(Program("map right.log -o out2").err, "");
 }
 
+TEST_F(ProgramFormats, PosesThatMeanSomethingElseAreNamed) {
+  Succeed("render ./small.yaml --no-colour --set frames=150 -o long");
+  const Trajectory truth = ReadTrajectory(Path("long/groundtruth.txt"));
+  Trajectory inverse = truth, late = truth;
+  for (StampedPose& pose : inverse) pose.world_from_camera = Inverse(pose.world_from_camera);
+  for (StampedPose& pose : late) pose.stamp_s += 0.5;
+  WriteTrajectory(Path("inverse.txt"), inverse);
+  WriteTrajectory(Path("late.txt"), late);
+  const auto said = [&](const std::string& arguments) {
+    const Outcome outcome = Program("map long -o out --force " + arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(said("--poses inverse.txt"),
+              AllOf(HasSubstr("inverse.txt: the depth images do not fit the poses"),
+                    HasSubstr("with each pose inverted; poses must take the camera to the world")));
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), HasSubstr("with each pose inverted"));
+  // The remedy as it is said helps.
+  const std::string late_said = said("--poses late.txt");
+  const auto at = late_said.find("--set sequence.recording.time_offset_s=0.");
+  ASSERT_NE(at, std::string::npos) << late_said;
+  const std::string remedy = late_said.substr(at, late_said.find('\n', at) - at);
+  EXPECT_NEAR(std::stod(remedy.substr(remedy.find('=') + 1)), 0.5, 0.05);
+  EXPECT_THAT(said("--poses late.txt " + remedy), Not(HasSubstr("do not fit")));
+  EXPECT_EQ(said("--poses long/groundtruth.txt"), "");
+}
+
 TEST_F(ProgramFormats, ThatNothingWasMatchedIsSaid) {
   std::string log;
   for (int i = 0; i < 5; ++i) {

@@ -1,0 +1,56 @@
+// Whether the depth images of a recording fit the poses given for them; and if not, how the poses
+// would have to be read so that they do (docs/formats.md, "Poses that do not fit their images").
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
+#include "mapper/core/slam_output.h"
+#include "mapper/io/recording_options.h"
+
+namespace depthgrid {
+
+// Two images that show much of the same, by their stamps.
+struct ImagePair {
+  double first_s = 0.0;
+  double second_s = 0.0;
+  std::shared_ptr<const DepthImage> first;
+  std::shared_ptr<const DepthImage> second;
+};
+
+// Other ways to mean poses than they are read.
+enum class PoseReading {
+  kWFirst,    // rows are t x y z qw qx qy qz
+  kInverse,   // they map the world to the camera
+  kBodyAxes,  // of a robot's axes at the camera: x forward, y left, z up
+  kGlAxes,    // of a camera with x right, y up, z backward
+  kShifted,   // their clock is another than the images'
+};
+
+struct PoseDoubt {
+  PoseReading reading = PoseReading::kWFirst;  // with which the images fit
+  double time_offset_s = 0.0;                  // RecordingOptions' own, with which they fit
+  // Means of MisfitOf over the pairs, with the poses as given and as they would fit.
+  double misfit = 0.0;
+  double better_misfit = 0.0;
+};
+
+// How far the surfaces of one image lie from where the other one has them, as a share of their
+// depth: the median over what both show, 1 where that is next to nothing.
+double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first);
+
+using PoseChange = std::function<Pose3(const Pose3&)>;
+
+// Nothing where the poses fit, where no other reading of them fits clearly better, or where there
+// are too few pairs to tell. `live` is not levelled yet; `as_written` takes a pose of it back to
+// what the file said, and is its own inverse (FlipY).
+std::optional<PoseDoubt> DoubtOfPoses(
+    const std::vector<ImagePair>& pairs, const PinholeCamera& camera,
+    const std::vector<SlamPose>& live, const RecordingOptions& options,
+    const PoseChange& as_written = [](const Pose3& pose) { return pose; });
+
+}  // namespace depthgrid

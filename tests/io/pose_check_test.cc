@@ -1,0 +1,147 @@
+#include "mapper/io/pose_check.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/rng.h"
+#include "mapper/io/camera_formats.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kFrameS = 0.1;
+constexpr int kFrames = 120;
+const PinholeCamera kCamera{80, 60, 60.2, 60.0, 39.5, 29.5, {}};
+
+Pose3 TruePose(double time_s) {
+  const double yaw_rad = 0.4 * time_s + 0.5 * std::sin(1.1 * time_s);
+  return TiltedCamera({0.8 * std::cos(0.5 * time_s), 0.6 * std::sin(0.7 * time_s), yaw_rad}, 1.2,
+                      0.3 + 0.1 * std::sin(0.9 * time_s), 0.1 * std::cos(1.3 * time_s));
+}
+
+// Half a second apart, `noise` of the depth.
+std::vector<ImagePair> Pairs(double noise) {
+  AnalyticRoom room;
+  room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.75}}, {{-2.6, 0.8, 0.0}, {-1.4, 2.2, 1.1}}};
+  RandomStream random(4, RandomStage::kTest);
+  const auto image_at = [&](double time_s) {
+    auto image = std::make_shared<DepthImage>(room.Render(kCamera, TruePose(time_s)));
+    for (float& z_m : image->z_m) z_m *= static_cast<float>(1.0 + noise * random.Normal());
+    return image;
+  };
+  std::vector<ImagePair> pairs;
+  for (int i = 20; i < 100; i += 5) {
+    const double first_s = i * kFrameS, second_s = first_s + 0.5;
+    pairs.push_back({first_s, second_s, image_at(first_s), image_at(second_s)});
+  }
+  return pairs;
+}
+
+// What a file says whose poses are `written` and whose clock is ahead by `ahead_s`.
+std::vector<SlamPose> Given(const PoseChange& written, double ahead_s = 0.0) {
+  std::vector<SlamPose> live;
+  for (int i = 0; i < kFrames; ++i) {
+    live.push_back({i * kFrameS, written(TruePose(i * kFrameS - ahead_s)), 0});
+  }
+  return live;
+}
+
+Pose3 AsItIs(const Pose3& pose) { return pose; }
+
+Pose3 Inverted(const Pose3& pose) { return Inverse(pose); }
+
+Pose3 WFirst(const Pose3& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;  // x y z w <- w x y z
+  return {Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
+}
+
+TEST(PoseCheck, MisfitIsTheShareOfDepthThatSurfacesAreApart) {
+  AnalyticRoom room;
+  const Pose3 first = TiltedCamera({-1.0, 0.0, 0.0}, 1.2, 0.0, 0.0);
+  ImagePair pair;
+  pair.first = pair.second = std::make_shared<DepthImage>(room.Render(kCamera, first));
+  EXPECT_NEAR(MisfitOf(pair, kCamera, {}), 0.0, 1e-6);
+  // The wall 4 m ahead, said to be 0.2 m farther; it is most of what is seen.
+  Pose3 back;
+  back.translation.z() = 0.2;
+  EXPECT_NEAR(MisfitOf(pair, kCamera, back), 0.05, 0.005);
+  Pose3 behind;
+  behind.rotation = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(MisfitOf(pair, kCamera, behind), 1.0);
+}
+
+TEST(PoseCheck, RightPosesAreNotDoubted) {
+  int cases = 0;
+  for (const double noise : {0.0, 0.01, 0.03}) {
+    EXPECT_FALSE(DoubtOfPoses(Pairs(noise), kCamera, Given(AsItIs), {})) << noise;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+TEST(PoseCheck, NamesHowPosesAreMeant) {
+  const auto body = [](const Pose3& pose) {
+    Eigen::Matrix3d camera_from_body;  // forward, left, up of the body in the camera's axes
+    camera_from_body << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+    return Pose3{pose.rotation * Eigen::Quaterniond(camera_from_body), pose.translation};
+  };
+  const auto gl = [](const Pose3& pose) {
+    return Pose3{pose.rotation * Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()),
+                 pose.translation};
+  };
+  const std::vector<std::pair<PoseReading, PoseChange>> readings = {
+      {PoseReading::kWFirst, WFirst},
+      {PoseReading::kInverse, Inverted},
+      {PoseReading::kBodyAxes, body},
+      {PoseReading::kGlAxes, gl}};
+  const std::vector<ImagePair> pairs = Pairs(0.01);
+  int cases = 0;
+  for (const auto& [reading, written] : readings) {
+    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    ASSERT_TRUE(doubt) << cases;
+    EXPECT_EQ(doubt->reading, reading) << cases;
+    EXPECT_EQ(doubt->time_offset_s, 0.0);
+    EXPECT_GT(doubt->misfit, 0.05);
+    EXPECT_LT(doubt->better_misfit, 0.02);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 4);
+}
+
+TEST(PoseCheck, NamesAnotherClock) {
+  const std::vector<ImagePair> pairs = Pairs(0.01);
+  int cases = 0;
+  for (const double ahead_s : {-1.5, -0.5, 0.25, 0.5, 1.5}) {
+    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), {});
+    ASSERT_TRUE(doubt) << ahead_s;
+    EXPECT_EQ(doubt->reading, PoseReading::kShifted);
+    EXPECT_NEAR(doubt->time_offset_s, ahead_s, 0.03);
+    RecordingOptions mended;
+    mended.time_offset_s = doubt->time_offset_s;
+    EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), mended)) << ahead_s;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 5);
+}
+
+// The order of numbers is that of the file, whatever the poses were turned to since.
+TEST(PoseCheck, ReadsYUpPosesAsTheyWereWritten) {
+  const auto flip = [](const Pose3& pose) { return FlipY(pose); };
+  const auto given = Given([&](const Pose3& pose) { return flip(WFirst(flip(pose))); });
+  const auto doubt = DoubtOfPoses(Pairs(0.01), kCamera, given, {}, flip);
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->reading, PoseReading::kWFirst);
+}
+
+TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {
+  std::vector<ImagePair> pairs = Pairs(0.0);
+  EXPECT_FALSE(DoubtOfPoses({}, kCamera, Given(Inverted), {}));
+  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, {}, {}));
+  pairs.resize(5);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(Inverted), {}));
+  // Poses that know of no motion fit no better however they are read.
+  EXPECT_FALSE(DoubtOfPoses(Pairs(0.0), kCamera, Given([](const Pose3&) { return Pose3{}; }), {}));
+}
+
+}  // namespace
+}  // namespace depthgrid
