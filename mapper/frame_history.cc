@@ -131,8 +131,14 @@ std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistor
   return planar;
 }
 
+Pose3 CameraPose(const FrameRecord& record, const Pose2& map_from_slam, const StandBlend& stands) {
+  const Pose3 corrected = ApplyPlanar(map_from_slam, *record.slam_from_camera);
+  return record.stand ? stands.Placed(corrected, *record.stand) : corrected;
+}
+
 std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
-                                             const std::vector<Pose2>& map_from_base_of_mapped) {
+                                             const std::vector<Pose2>& map_from_base_of_mapped,
+                                             const StandBlend& stands) {
   std::vector<std::optional<Pose3>> poses;
   for (const FrameRecord& record : history.records()) {
     poses.emplace_back();
@@ -148,7 +154,7 @@ std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
         map_from_slam = mapped->map_from_slam;
       }
     }
-    poses.back() = ApplyPlanar(map_from_slam, *record.slam_from_camera);
+    poses.back() = CameraPose(record, map_from_slam, stands);
   }
   return poses;
 }

@@ -9,6 +9,7 @@
 #include "mapper/core/frame.h"
 #include "mapper/core/level.h"
 #include "mapper/reference_map.h"
+#include "mapper/scan/stand_blend.h"
 
 namespace depthgrid {
 
@@ -19,6 +20,8 @@ struct FrameRecord {
   int epoch = 0;
   int mapped = -1;      // position among the mapped frames, -1 if not inserted
   Pose2 map_from_slam;  // the correction as it was known at the time
+  // Over the floor that is followed in the images; empty where it is not, and the pose's counts.
+  std::optional<CameraStand> stand;
 };
 
 class FrameHistory {
@@ -58,9 +61,14 @@ Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
                                       int newest_mapped);
 
+// A frame's camera in the map: SLAM's pose corrected in the plane, its height and tilt blended
+// with those over the floor where that is followed.
+Pose3 CameraPose(const FrameRecord& record, const Pose2& map_from_slam, const StandBlend& stands);
+
 // Each frame's camera pose in the map, given those of the mapped frames: a frame that was not
 // mapped takes the correction of the nearest mapped one of its epoch, else the one it had online.
 std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
-                                             const std::vector<Pose2>& map_from_base_of_mapped);
+                                             const std::vector<Pose2>& map_from_base_of_mapped,
+                                             const StandBlend& stands);
 
 }  // namespace depthgrid

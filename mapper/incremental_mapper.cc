@@ -90,6 +90,12 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   FrameScans scans = scanner.ScansOf(frame);
   if (scans.matched) report.beams = HitCount(*scans.matched);
   report.stand = scans.stand;
+  const bool follows_floor = options.scan.floor == FloorSource::kImage;
+  // Of SLAM trusted alone the poses stay as they are.
+  if (follows_floor && scans.stand && !options.fusion.TrustsSlamAlone()) {
+    history.newest().stand = scans.stand;
+    stands.Add(*frame.slam_from_camera, *scans.stand);
+  }
   return scans;
 }
 
@@ -243,7 +249,7 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
                 fused.covariance);
   record.map_from_slam = filter.map_from_slam();
   report.map_from_slam = filter.map_from_slam();
-  report.map_from_camera = ApplyPlanar(filter.map_from_slam(), *record.slam_from_camera);
+  report.map_from_camera = CameraPose(record, filter.map_from_slam(), stands);
   for (int axis = 0; axis < 3; ++axis) {
     report.innovation[static_cast<std::size_t>(axis)] = fused.innovation[axis];
     report.gain[static_cast<std::size_t>(axis)] = fused.gain(axis, axis);

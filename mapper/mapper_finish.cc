@@ -16,7 +16,7 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
     map_from_base.push_back(frame.map_from_base);
   }
   if (state_->fixed_map || (state_->prior_frames > 0 && !state_->reference)) {
-    result.map_from_camera = FinalPoses(state_->history, map_from_base);
+    result.map_from_camera = FinalPoses(state_->history, map_from_base, state_->stands);
   } else if (state_->reference) {
     map_from_base = state_->FinishByAdjusting(result);
   } else {
@@ -33,7 +33,7 @@ std::vector<Pose2> IncrementalMapper::State::FinishByAdjusting(MapperResult& res
     if (adjustment.loop_accepted[i]) result.loops.push_back(loop_closer.loops()[i]);
   }
   result.loops = AmongKept(std::move(result.loops), mapped.all());
-  result.map_from_camera = FinalPoses(history, adjustment.map_from_base);
+  result.map_from_camera = FinalPoses(history, adjustment.map_from_base, stands);
   return std::move(adjustment.map_from_base);
 }
 

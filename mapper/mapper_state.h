@@ -29,6 +29,7 @@ struct IncrementalMapper::State {
   FrameScanner scanner;
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
   FrameHistory history;
+  StandBlend stands;
   CorrectionFilter filter;
   PoseErrors errors;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
@@ -47,6 +48,7 @@ struct IncrementalMapper::State {
         clock(std::move(clk)),
         oracle(std::move(orc)),
         scanner(camera, opts.scan),
+        stands(opts.scan.floor_z_m),
         filter(opts.fusion),
         errors(opts.submap.scans),
         loop_closer(opts.loops),

@@ -139,7 +139,7 @@ TEST(FinalPoses, UnmappedFramesFollowTheNearestMappedOne) {
     history.Start(PosedFrame(i, {0.1 * i, 0, 0}, i / 4));
     if (i == 1) history.newest().mapped = 0;
   }
-  const auto poses = FinalPoses(history, {{0.1, 0.3, 0.0}});
+  const auto poses = FinalPoses(history, {{0.1, 0.3, 0.0}}, StandBlend(0.0));
   ASSERT_EQ(poses.size(), 5U);
   for (int i = 0; i < 4; ++i) {
     ExpectNear(BaseOf(*poses[static_cast<std::size_t>(i)]), {0.1 * i, 0.3, 0.0});

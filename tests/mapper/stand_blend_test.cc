@@ -1,0 +1,94 @@
+#include "mapper/scan/stand_blend.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/rng.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kFloorZM = 0.3;
+constexpr int kFrames = 200;
+
+// How a frame truly is, and what is said of it.
+struct Said {
+  Pose3 truth;
+  Pose3 slam;
+  CameraStand floor;
+};
+
+// The floor errs by a few millimetres and hundredths of a degree, SLAM's height by up to `rise_m`
+// and its tilt by up to `lean_rad`, more and more.
+std::vector<Said> Walk(double rise_m, double lean_rad) {
+  RandomStream random(6, RandomStage::kTest);
+  std::vector<Said> frames;
+  for (int i = 0; i < kFrames; ++i) {
+    const double share = static_cast<double>(i) / (kFrames - 1);
+    Said said;
+    said.truth = TiltedCamera({share, -share, 3.0 * share}, kFloorZM + 1.2, 0.2 + 0.1 * share, 0.1);
+    said.slam = said.truth;
+    said.slam.translation.z() += share * rise_m;
+    said.slam.rotation = ExpRotation({share * lean_rad, 0.0, 0.0}) * said.slam.rotation;
+    said.floor = {ExpRotation({0.001 * random.Normal(), 0.001 * random.Normal(), 0.0}) *
+                      LevelFromCamera(said.truth),
+                  1.2 + 0.003 * random.Normal()};
+    frames.push_back(said);
+  }
+  return frames;
+}
+
+// Largest errors over the walk, once all of it is known.
+struct Errors {
+  double height_m = 0.0;
+  double tilt_rad = 0.0;
+  double slams_own = 0.0;  // share of the poses that are SLAM's, bit for bit
+};
+
+Errors ErrorsOf(const std::vector<Said>& frames) {
+  StandBlend blend(kFloorZM);
+  for (const Said& said : frames) blend.Add(said.slam, said.floor);
+  Errors errors;
+  for (const Said& said : frames) {
+    const Pose3 placed = blend.Placed(said.slam, said.floor);
+    const Pose2 base = BaseOf(placed), slam_base = BaseOf(said.slam);
+    EXPECT_EQ(base.translation(), slam_base.translation());
+    EXPECT_NEAR(WrapAngle(base.yaw_rad - slam_base.yaw_rad), 0.0, 1e-12);
+    const Eigen::Vector3d up = LevelFromCamera(placed) *
+                               (LevelFromCamera(said.truth).conjugate() * Eigen::Vector3d::UnitZ());
+    errors.tilt_rad = std::max(errors.tilt_rad, up.head<2>().norm());
+    errors.height_m =
+        std::max(errors.height_m, std::abs(placed.translation.z() - said.truth.translation.z()));
+    errors.slams_own += (placed == said.slam ? 1.0 : 0.0) / kFrames;
+  }
+  return errors;
+}
+
+TEST(StandBlend, TheFloorOutweighsDrift) {
+  const Errors errors = ErrorsOf(Walk(0.5, 0.06));
+  EXPECT_LT(errors.height_m, 0.02);
+  EXPECT_LT(errors.tilt_rad, 0.006);
+  EXPECT_EQ(errors.slams_own, 0.0);
+}
+
+TEST(StandBlend, PosesAsGoodAsTheFloorStayAsTheyAre) {
+  const Errors errors = ErrorsOf(Walk(0.02, 0.005));
+  EXPECT_NEAR(errors.slams_own, 1.0, 1e-9);
+}
+
+TEST(StandBlend, HeightAndTiltAreJudgedApart) {
+  const Errors rises = ErrorsOf(Walk(0.5, 0.0));
+  EXPECT_LT(rises.height_m, 0.02);
+  EXPECT_LT(rises.tilt_rad, 1e-9);
+  const Errors leans = ErrorsOf(Walk(0.0, 0.06));
+  EXPECT_EQ(leans.height_m, 0.0);
+  EXPECT_LT(leans.tilt_rad, 0.006);
+}
+
+TEST(StandBlend, BeforeAnythingIsKnownThePoseCounts) {
+  const Said said = Walk(0.5, 0.06).back();
+  EXPECT_EQ(StandBlend(kFloorZM).Placed(said.slam, said.floor), said.slam);
+}
+
+}  // namespace
+}  // namespace depthgrid
