@@ -154,7 +154,8 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
-  WriteRunReport(folder.work().string());  // of what the folder holds by now
+  WriteRunReport(folder.work().string(),
+                 {folder.work().string()});  // of what the folder holds by now
 }
 
 }  // namespace depthgrid

@@ -232,18 +232,18 @@ Json RunJson(const RunFiles& run, const Config& settings) {
 }
 
 // timing.csv as a script beside the page: times differ from run to run, the page does not.
-void WriteTimesScript(const std::string& folder) {
+void WriteTimesScript(const std::string& folder, const std::string& into) {
   if (!fs::exists(folder + "/timing.csv")) return;
   Json json;
   for (const auto& [name, values] : ReadCsv(folder + "/timing.csv").columns) {
     if (name != "frame") json[name] = RoundedAll(values, 1);
   }
-  WriteFile(folder + "/timing.js", "window.RUN_TIMES = " + json.dump() + ";\n");
+  WriteFile(into + "/timing.js", "window.RUN_TIMES = " + json.dump() + ";\n");
 }
 
 }  // namespace
 
-void WriteRunReport(const std::string& folder) {
+void WriteRunReport(const std::string& folder, const ReportPlace& place) {
   const RunFiles run = ReadRunFolder(folder);
   const Config settings = Config::FromText(run.settings, folder + "/run.yaml");
   Json json;
@@ -252,10 +252,10 @@ void WriteRunReport(const std::string& folder) {
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "is not valid JSON");
   }
-  WriteTimesScript(folder);
+  WriteTimesScript(folder, place.into);
   // A warning may quote a file that is no UTF-8.
   const std::string data = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  WriteFile(folder + "/report.html", FillPage("run.html", TitleOf(settings), data));
+  WriteFile(place.into + "/report.html", FillPage("run.html", TitleOf(settings), data));
 }
 
 }  // namespace depthgrid

@@ -3,10 +3,12 @@
 
 #include <string>
 
+#include "eval/report_place.h"
+
 namespace depthgrid {
 
-// Throws InputError when the folder holds no run. Stage times are not in the page: it is the same
-// bytes for the same run.yaml.
-void WriteRunReport(const std::string& folder);
+// timing.js is written beside it. // Throws InputError when the folder holds no run. Stage times
+// are not in the page: it is the same bytes for the same run.yaml.
+void WriteRunReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

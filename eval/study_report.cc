@@ -113,15 +113,16 @@ Json StudyJson(const StudyOutline& study, const std::vector<CaseFiles>& cases,
 
 bool IsStudyFolder(const std::string& folder) { return fs::exists(folder + "/study.yaml"); }
 
-void WriteStudyReport(const std::string& folder) {
+void WriteStudyReport(const std::string& folder, const ReportPlace& place) {
   if (!IsStudyFolder(folder)) throw InputError(folder, "is no study's folder: no study.yaml");
   const StudyOutline outline = ReadStudyOutline(Config::FromFile(folder + "/study.yaml"));
   std::vector<CaseFiles> cases;
   for (const StudyCase& head : outline.cases) cases.push_back(ReadCase(folder, head));
   try {
     const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
-    const Json json = StudyJson(outline, cases, metrics);
-    WriteFile(folder + "/report.html", FillPage("study.html", outline.title, json.dump()));
+    Json json = StudyJson(outline, cases, metrics);
+    json["back"] = place.back;
+    WriteFile(place.into + "/report.html", FillPage("study.html", outline.title, json.dump()));
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "does not hold the study's scores");
   }

@@ -3,11 +3,13 @@
 
 #include <string>
 
+#include "eval/report_place.h"
+
 namespace depthgrid {
 
 bool IsStudyFolder(const std::string& folder);
 
 // Throws InputError when the folder holds no study, or a case's folder is missing.
-void WriteStudyReport(const std::string& folder);
+void WriteStudyReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

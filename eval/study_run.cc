@@ -94,7 +94,7 @@ std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
   }
   WriteFile(folder.File("study.yaml"), text);
   WriteFile(folder.File("metrics.json"), SummaryJson(results));
-  WriteStudyReport(folder.work().string());
+  WriteStudyReport(folder.work().string(), {folder.work().string()});
   return results;
 }
 

@@ -207,14 +207,16 @@ std::string TextOf(const SweepResults& results, const char* key) {
 
 }  // namespace
 
-void WriteSweepReport(const std::string& folder) {
+void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   const SweepResults results = ReadSweep(folder);
   if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
   const std::string experiment = TextOf(results, "experiment");
-  if (!experiment.empty()) WriteFile(folder + "/experiment.yaml", experiment);
+  if (!experiment.empty()) WriteFile(place.into + "/experiment.yaml", experiment);
   const std::string title = TextOf(results, "title");
-  WriteFile(folder + "/report.html", FillPage("sweep.html", title.empty() ? "Sweep" : title,
-                                              SweepJson(results, GridOf(results)).dump()));
+  Json json = SweepJson(results, GridOf(results));
+  json["back"] = place.back;
+  WriteFile(place.into + "/report.html",
+            FillPage("sweep.html", title.empty() ? "Sweep" : title, json.dump()));
 }
 
 }  // namespace depthgrid

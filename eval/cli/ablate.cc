@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "eval/ablation.h"
+#include "eval/ablation_report.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
@@ -60,6 +61,7 @@ void Ablate(const AblateArguments& arguments) {
   WriteFile(folder.File("experiment.yaml"), ToYaml(plan.experiment));
   WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
   WriteFile(folder.File("ablation.json"), json);
+  WriteAblationReport(folder.work().string(), {folder.work().string()});
   folder.Commit();
   if (arguments.json) {
     fmt::print("{}", json);
@@ -67,6 +69,7 @@ void Ablate(const AblateArguments& arguments) {
   }
   PrintLegend(plan.seeds.size());
   for (const ErrorShares& score : shares) PrintShares(score);
+  SayReport(arguments.common.output);
 }
 
 }  // namespace depthgrid::cli

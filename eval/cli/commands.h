@@ -138,6 +138,8 @@ void Ablate(const AblateArguments& arguments);
 
 struct ReportArguments {
   std::string folder;
+  std::string output;  // another folder for the page; empty: the same
+  bool force = false;  // though that one is not empty
 };
 void Report(const ReportArguments& arguments);
 

@@ -1,11 +1,12 @@
 // The `depthgrid` program: arguments in, exit code out. CLI11 is slow to compile and is included
-// here and in usage only.
+// here, in usage and in common_options only.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <functional>
 
 #include "eval/cli/commands.h"
+#include "eval/cli/common_options.h"
 #include "eval/cli/console.h"
 #include "eval/cli/interrupts.h"
 #include "eval/cli/usage.h"
@@ -25,59 +26,6 @@ constexpr const char* kFirstSteps =
     "  depthgrid COMMAND --help             options and examples of a command\n"
     "Exit codes: 0 done, 1 failed while running, 2 bad usage or input, 130 ended by Ctrl-C,\n"
     "143 by kill.";
-
-void AddSet(CLI::App& app, CommonArguments& common) {
-  app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-}
-
-void AddOutput(CLI::App& app, CommonArguments& common) {
-  app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
-  app.add_flag("--force", common.force,
-               "Write into a folder that is not empty: an earlier run's files go, all others stay");
-}
-
-void AddThreads(CLI::App& app, CommonArguments& common) {
-  app.add_option("--threads", common.threads, "Threads; 0 is one a core. Never changes a result")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""));
-}
-
-void AddCache(CLI::App& app, CommonArguments& common) {
-  app.add_option("--cache", common.cache,
-                 "Keep rendered depth in this folder (default: $DEPTHGRID_CACHE)")
-      ->type_name("DIR");
-  app.add_flag("--no-cache", common.no_cache, "Render everything anew");
-}
-
-// The transformer alone would show its numbers in messages.
-void AddMapMode(CLI::App& app, MapMode& mode) {
-  const std::map<std::string, MapMode> modes = {
-      {"trinary", MapMode::kTrinary}, {"scale", MapMode::kScale}, {"raw", MapMode::kRaw}};
-  app.add_option_function<std::string>(
-         "--map-mode", [&mode, modes](const std::string& name) { mode = modes.at(name); },
-         "What the map's shades mean, as Nav2's modes: trinary, scale or raw")
-      ->check(CLI::IsMember({"trinary", "scale", "raw"}))
-      ->type_name("MODE");
-}
-
-void AddOutputForms(CLI::App& app, OutputArguments& output) {
-  AddMapMode(app, output.map_mode);
-  app.add_option("--video", output.video, "Write a video of the map growing (MP4, by ffmpeg)")
-      ->type_name("FILE");
-}
-
-// --keys prints and ends, whatever else is given, like --help.
-void AddKeys(CLI::App& app, std::string (*keys)()) {
-  app.add_flag_callback(
-      "--keys",
-      [keys] {
-        fmt::print("{}", keys());
-        throw CLI::Success();
-      },
-      "List every key that --set takes, with default, allowed values and meaning");
-}
 
 struct Program {
   CLI::App app{"depthgrid: 2D navigation maps from RGB-D cameras, simulated and recorded",
@@ -204,10 +152,6 @@ void AddSweep(Program& program) {
   AddKeys(*app, &ExperimentKeys);
 }
 
-void AddSeed(CLI::App& app, const char* flag, std::uint64_t& seed, const char* meaning) {
-  app.add_option(flag, seed, meaning)->check(RefusalUnlessSeed)->capture_default_str();
-}
-
 void AddSlam(Program& program) {
   const auto [app, arguments] = program.Add<SlamArguments>(
       program.app, "slam", "Disturb a sequence's true trajectory as a SLAM system would",
@@ -327,9 +271,15 @@ void AddAblate(Program& program) {
 void AddReport(Program& program) {
   const auto [app, arguments] =
       program.Add<ReportArguments>(program.app, "report", "Write a folder's HTML report (again)",
-                                   "depthgrid report /tmp/out", &Report);
-  app->add_option("folder", arguments->folder, "Folder that `run`, `map` or `sweep` wrote")
+                                   "depthgrid report /tmp/out\n"
+                                   "  depthgrid report /mnt/read_only/out -o /tmp/page",
+                                   &Report);
+  app->add_option("folder", arguments->folder,
+                  "Folder that `run`, `map`, `sweep` or `ablate` wrote")
       ->required();
+  app->add_option("-o,--output", arguments->output, "Folder for the page; default: the same one")
+      ->type_name("DIR");
+  app->add_flag("--force", arguments->force, "Write into a folder that is not empty");
 }
 
 void AddRegrid(Program& program) {

@@ -1,7 +1,14 @@
-#include <filesystem>
+#include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "eval/ablation_report.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/output_folder.h"
 #include "eval/run_report.h"
 #include "eval/study_report.h"
 #include "eval/sweep/sweep_database.h"
@@ -9,19 +16,49 @@
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void WriteReport(const std::string& folder, const ReportPlace& place) {
+  if (SweepDatabase::Exists(folder)) {
+    WriteSweepReport(folder, place);
+  } else if (IsStudyFolder(folder)) {
+    WriteStudyReport(folder, place);
+  } else if (IsAblationFolder(folder)) {
+    WriteAblationReport(folder, place);
+  } else {
+    WriteRunReport(folder, place);
+  }
+}
+
+void WriteInPlace(const std::string& folder) {
+  if (::access(folder.c_str(), W_OK) != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written: {}; -o names another folder for the page", folder,
+                    std::generic_category().message(errno)));
+  }
+  WriteReport(folder, {folder});
+}
+
+void WriteElsewhere(const ReportArguments& arguments) {
+  OutputFolder output(arguments.output, arguments.force);
+  const auto plain = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
+  const fs::path back = plain(arguments.folder).lexically_relative(plain(arguments.output));
+  WriteReport(arguments.folder, {output.work().string(), back.string() + "/"});
+  output.Commit();
+}
+
+}  // namespace
 
 void Report(const ReportArguments& arguments) {
-  if (!std::filesystem::is_directory(arguments.folder)) {
-    throw InputError(arguments.folder, "no such folder");
-  }
-  if (SweepDatabase::Exists(arguments.folder)) {
-    WriteSweepReport(arguments.folder);
-  } else if (IsStudyFolder(arguments.folder)) {
-    WriteStudyReport(arguments.folder);
+  if (!fs::is_directory(arguments.folder)) throw InputError(arguments.folder, "no such folder");
+  if (arguments.output.empty()) {
+    WriteInPlace(arguments.folder);
   } else {
-    WriteRunReport(arguments.folder);
+    WriteElsewhere(arguments);
   }
-  SayReport(arguments.folder);
+  SayReport(arguments.output.empty() ? arguments.folder : arguments.output);
 }
 
 }  // namespace depthgrid::cli

@@ -102,7 +102,7 @@ void Summarise(const SweepResults& results) {
   }
   fmt::print("{} in {}/results.csv\n", Counted(results.rows(), "run"), results.folder);
   if (results.rows() > 0) {
-    WriteSweepReport(results.folder);
+    WriteSweepReport(results.folder, {results.folder});
     SayReport(results.folder);
   }
   if (failed == 0) return;

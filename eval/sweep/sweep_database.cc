@@ -2,14 +2,19 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <set>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
 
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -74,6 +79,30 @@ std::string YamlOf(const SQLite::Column& column) {
   if (column.isInteger()) return fmt::format("{}", column.getInt64());
   if (column.isFloat()) return fmt::format("{}", column.getDouble());
   return column.getString();
+}
+
+// Why not; empty where it may be.
+std::string RefusalToWrite(const std::string& folder) {
+  for (const std::string& path : {folder, DatabasePath(folder)}) {
+    if (::access(path.c_str(), W_OK) != 0) return std::generic_category().message(errno);
+  }
+  return "";
+}
+
+void RequireSweep(const std::string& folder) {
+  if (SweepDatabase::Exists(folder)) return;
+  throw InputError(folder, fmt::format("is no sweep's folder: it has no {}", kSweepDatabaseName));
+}
+
+// As the path stands in a URI: RFC 3986's unreserved characters and slashes as they are.
+std::string UriPath(const fs::path& path) {
+  std::string uri;
+  for (const char c : path.string()) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri;
 }
 
 double NumberOf(const SQLite::Column& column) {
@@ -247,27 +276,45 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
   return Open(folder);
 }
 
-SweepDatabase SweepDatabase::Open(const std::string& folder) {
-  if (!Exists(folder)) {
-    throw InputError(folder, fmt::format("is no sweep's folder: it has no {}", kSweepDatabaseName));
-  }
+SweepDatabase SweepDatabase::Opened(const std::string& folder, const std::string& name, int flags) {
   std::string schema;
   try {
-    auto impl = std::make_unique<Impl>(folder, DatabasePath(folder), SQLite::OPEN_READWRITE);
-    SweepDatabase opened(std::move(impl));
+    SweepDatabase opened(std::make_unique<Impl>(folder, name, flags));
     schema = opened.Environment()["schema"];
-    if (schema == kSchema) {
-      // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
-      Writing(folder, [&] {
-        opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
-      });
-      return opened;
-    }
+    if (schema == kSchema) return opened;
   } catch (const SQLite::Exception& error) {
     throw InputError(DatabasePath(folder), std::string("cannot be read: ") + error.what());
   }
   throw InputError(DatabasePath(folder),
                    fmt::format("has layout '{}', must have {}", schema, kSchema));
+}
+
+SweepDatabase SweepDatabase::Open(const std::string& folder) {
+  RequireSweep(folder);
+  if (const std::string why = RefusalToWrite(folder); !why.empty()) {
+    throw InputError(DatabasePath(folder), "cannot be written: " + why);
+  }
+  SweepDatabase opened = Opened(folder, DatabasePath(folder), SQLite::OPEN_READWRITE);
+  // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
+  Writing(folder, [&] {
+    opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
+  });
+  return opened;
+}
+
+SweepDatabase SweepDatabase::OpenToRead(const std::string& folder) {
+  RequireSweep(folder);
+  // With a write-ahead log even readers write, beside the database.
+  if (RefusalToWrite(folder).empty()) return Open(folder);
+  std::error_code missing;
+  const std::string log = DatabasePath(folder) + "-wal";
+  if (const auto size = fs::file_size(log, missing); !missing && size > 0) {
+    throw InputError(log,
+                     "holds the sweep's last runs, and they cannot be read where nothing may be "
+                     "written; copy the folder");
+  }
+  return Opened(folder, "file:" + UriPath(fs::absolute(DatabasePath(folder))) + "?immutable=1",
+                SQLite::OPEN_READONLY | SQLite::OPEN_URI);
 }
 
 std::map<std::string, std::string> SweepDatabase::Environment() const {

@@ -40,6 +40,9 @@ class SweepDatabase {
                               const std::vector<RunOutcome>& outcomes = {});
   // Throws InputError when there is none or it is something else.
   static SweepDatabase Open(const std::string& folder);
+  // The same where it may not be written, on a read-only disk or in somebody else's folder; nothing
+  // may be recorded then.
+  static SweepDatabase OpenToRead(const std::string& folder);
   SweepDatabase(SweepDatabase&&) noexcept;
   SweepDatabase& operator=(SweepDatabase&&) noexcept;
   ~SweepDatabase();
@@ -63,6 +66,7 @@ class SweepDatabase {
  private:
   struct Impl;
   explicit SweepDatabase(std::unique_ptr<Impl> impl);
+  static SweepDatabase Opened(const std::string& folder, const std::string& name, int flags);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -124,7 +126,9 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 SweepLock::SweepLock(const std::string& folder) {
   const std::string path = folder + kLockName;
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0) throw InputError(folder, "cannot be written");
+  if (file_ < 0) {
+    throw InputError(folder, "cannot be written: " + std::generic_category().message(errno));
+  }
   if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
     ::close(file_);
     throw InputError(folder, "another program is working on this sweep");

@@ -59,7 +59,9 @@ const std::vector<double>& SweepResults::Metric(const std::string& name) const {
   FailFinding(folder, "metric", name, names);
 }
 
-SweepResults ReadSweep(const std::string& folder) { return SweepDatabase::Open(folder).Results(); }
+SweepResults ReadSweep(const std::string& folder) {
+  return SweepDatabase::OpenToRead(folder).Results();
+}
 
 std::string ResultsCsv(const SweepResults& results) {
   std::vector<std::string> cells = {"run", "point"};

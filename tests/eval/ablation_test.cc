@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/eval/browser.h"
 #include "tests/eval/program.h"
 
 namespace depthgrid {
@@ -63,6 +64,32 @@ TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
   EXPECT_GT(online["error"].get<double>(), 1e-4);
   const std::string csv = ReadFile(Path("one/ablation.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 7);
+}
+
+TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
+  Succeed("ablate ./small.yaml --seeds 2 -o out");
+  const std::string page = ReadFile(Path("out/report.html"));
+  std::filesystem::remove(Path("out/report.html"));
+  EXPECT_EQ(Program("report out").out, "look at out/report.html\n");
+  EXPECT_EQ(Difference(page, ReadFile(Path("out/report.html"))), "");
+  const auto json = nlohmann::json::parse(ReadFile(Path("out/ablation.json")));
+  Write("out/ablation.json", "{}");
+  const Outcome broken = Program("report out");
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_EQ(broken.err, "depthgrid: out/ablation.json: is no ablation's result\n");
+  const std::optional<std::string> chromium = FindChromium();
+  if (!chromium) GTEST_SKIP() << "no chromium on this machine";
+  Browser browser(*chromium, root_.string() + "_browser");
+  browser.Open(Path("out/report.html"));
+  EXPECT_THAT(browser.problems(), ::testing::IsEmpty());
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#scores table').length"),
+            json["scores"].size());
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#scores tbody tr').length"),
+            6 * json["scores"].size());
+  EXPECT_THAT(browser.Evaluate("document.body.innerText").get<std::string>(),
+              HasSubstr("matched poses are true"));
+  browser.Open(Path("out/report.html"), 400);
+  EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
 
 TEST_F(ProgramAblate, Refusals) {

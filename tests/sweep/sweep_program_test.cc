@@ -1,6 +1,7 @@
 // `depthgrid sweep` end to end: the same table however it came about.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -291,6 +292,50 @@ TEST_F(ProgramSweep, GoesOnOnlyWithTheSameSweep) {
   Write("mine/notes.txt", "mine");
   EXPECT_EQ(Program("sweep ./sweep.yaml -o mine").exit_code, 2);
   EXPECT_EQ(FilesIn("mine"), std::vector<std::string>{"notes.txt"});
+}
+
+// Where nothing may be written a sweep is read all the same, and its page goes elsewhere.
+TEST_F(ProgramSweep, OfAFolderThatMayNotBeWrittenThePageGoesElsewhere) {
+  namespace fs = std::filesystem;
+  Succeed("sweep ./sweep.yaml -o out");
+  fs::create_directory(Path("pages"));
+  fs::permissions(Path("pages"), fs::perms::all);
+  for (const char* file : {"out/results.sqlite", "out/.lock", "out/report.html"}) {
+    ASSERT_EQ(::chmod(Path(file).c_str(), 0444), 0);
+  }
+  ASSERT_EQ(::chmod(Path("out").c_str(), 0555), 0);
+  // Root may write everywhere.
+  const std::string nobody =
+      ::geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  const auto program = [&](const std::string& arguments) {
+    const std::string command = "cd '" + Path("pages") + "' && " + nobody + "'" + kProgramFile +
+                                "' " + arguments + " >'" + Path("said") + "' 2>&1";
+    const int status = std::system(command.c_str());
+    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(Path("said")), ""};
+  };
+  if (program("--version").exit_code != 0) GTEST_SKIP() << "no unprivileged user runs the program";
+  const Outcome elsewhere = program("report ../out -o page");
+  EXPECT_EQ(elsewhere.exit_code, 0) << elsewhere.out;
+  EXPECT_EQ(elsewhere.out, "look at page/report.html\n");
+  EXPECT_THAT(ReadFile(Path("pages/page/report.html")), HasSubstr("\"back\":\"../../out/\""));
+  const Outcome compared = program("compare ../out ../out");
+  EXPECT_EQ(compared.exit_code, 0) << compared.out;
+  const Outcome in_place = program("report ../out");
+  EXPECT_EQ(in_place.exit_code, 1);
+  EXPECT_EQ(in_place.out,
+            "depthgrid: ../out: cannot be written: Permission denied; -o names "
+            "another folder for the page\n");
+  const Outcome again = program("sweep ../sweep.yaml -o ../out");
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(again.out, "depthgrid: ../out: cannot be written: Permission denied\n");
+  ASSERT_EQ(::chmod(Path("out").c_str(), 0755), 0);
+  // What was not put into the database yet would be missed.
+  Write("out/results.sqlite-wal", "runs");
+  ASSERT_EQ(::chmod(Path("out").c_str(), 0555), 0);
+  const Outcome unfinished = program("report ../out -o page2");
+  EXPECT_EQ(unfinished.exit_code, 2);
+  EXPECT_THAT(unfinished.out, HasSubstr("results.sqlite-wal: holds the sweep's last runs"));
+  ASSERT_EQ(::chmod(Path("out").c_str(), 0755), 0);
 }
 
 }  // namespace

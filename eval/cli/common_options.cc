@@ -1,0 +1,68 @@
+#include "eval/cli/common_options.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "eval/cli/usage.h"
+
+namespace depthgrid::cli {
+
+void AddSet(CLI::App& app, CommonArguments& common) {
+  app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void AddOutput(CLI::App& app, CommonArguments& common) {
+  app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
+  app.add_flag("--force", common.force,
+               "Write into a folder that is not empty: an earlier run's files go, all others stay");
+}
+
+void AddThreads(CLI::App& app, CommonArguments& common) {
+  app.add_option("--threads", common.threads, "Threads; 0 is one a core. Never changes a result")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""));
+}
+
+void AddCache(CLI::App& app, CommonArguments& common) {
+  app.add_option("--cache", common.cache,
+                 "Keep rendered depth in this folder (default: $DEPTHGRID_CACHE)")
+      ->type_name("DIR");
+  app.add_flag("--no-cache", common.no_cache, "Render everything anew");
+}
+
+// The transformer alone would show its numbers in messages.
+void AddMapMode(CLI::App& app, MapMode& mode) {
+  const std::map<std::string, MapMode> modes = {
+      {"trinary", MapMode::kTrinary}, {"scale", MapMode::kScale}, {"raw", MapMode::kRaw}};
+  app.add_option_function<std::string>(
+         "--map-mode", [&mode, modes](const std::string& name) { mode = modes.at(name); },
+         "What the map's shades mean, as Nav2's modes: trinary, scale or raw")
+      ->check(CLI::IsMember({"trinary", "scale", "raw"}))
+      ->type_name("MODE");
+}
+
+void AddOutputForms(CLI::App& app, OutputArguments& output) {
+  AddMapMode(app, output.map_mode);
+  app.add_option("--video", output.video, "Write a video of the map growing (MP4, by ffmpeg)")
+      ->type_name("FILE");
+}
+
+// --keys prints and ends, whatever else is given, like --help.
+void AddKeys(CLI::App& app, std::string (*keys)()) {
+  app.add_flag_callback(
+      "--keys",
+      [keys] {
+        fmt::print("{}", keys());
+        throw CLI::Success();
+      },
+      "List every key that --set takes, with default, allowed values and meaning");
+}
+
+void AddSeed(CLI::App& app, const char* flag, std::uint64_t& seed, const char* meaning) {
+  app.add_option(flag, seed, meaning)->check(RefusalUnlessSeed)->capture_default_str();
+}
+
+}  // namespace depthgrid::cli

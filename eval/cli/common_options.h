@@ -1,0 +1,20 @@
+// Options that several commands have.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+
+#include "eval/cli/commands.h"
+
+namespace depthgrid::cli {
+
+void AddSet(CLI::App& app, CommonArguments& common);
+void AddOutput(CLI::App& app, CommonArguments& common);
+void AddThreads(CLI::App& app, CommonArguments& common);
+void AddCache(CLI::App& app, CommonArguments& common);
+void AddMapMode(CLI::App& app, MapMode& mode);
+void AddOutputForms(CLI::App& app, OutputArguments& output);
+void AddKeys(CLI::App& app, std::string (*keys)());
+void AddSeed(CLI::App& app, const char* flag, std::uint64_t& seed, const char* meaning);
+
+}  // namespace depthgrid::cli

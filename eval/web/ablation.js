@@ -1,0 +1,61 @@
+// The page of an ablation: how much of each score's error every stage owns.
+"use strict";
+const ABLATION = JSON.parse(byId("data").textContent);
+const [BAR_WIDTH, BAR_HEIGHT] = [240, 22];
+const nameOf = (word) => word.replaceAll("_", " ");
+
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+// Shares of one score, on one scale.
+function scaleOf(score) {
+  const shares = Object.values(score.truth_for).flatMap((stage) => [stage.share, ...intervalOf(score, stage)]);
+  const known = shares.filter(isNumber);
+  const [low, high] = [Math.min(0, ...known), Math.max(1, ...known)];
+  return (share) => ((share - low) / (high - low)) * (BAR_WIDTH - 4) + 2;
+}
+
+function intervalOf(score, stage) {
+  if (!stage.owned_interval95 || !(score.error > 0)) return [];
+  return stage.owned_interval95.map((owned) => owned / score.error);
+}
+
+function barOf(score, stage, name, at) {
+  const [zero, end] = [at(0), at(stage.share)];
+  const picture = svg("svg", { class: "share", viewBox: `0 0 ${BAR_WIDTH} ${BAR_HEIGHT}`, role: "img", "aria-label": `${name}: ${percent(stage.share)} of the error` },
+    svg("rect", { class: stage.share < 0 ? "below" : "above", x: Math.min(zero, end), y: 5, width: Math.abs(end - zero), height: 12 }),
+    svg("line", { class: "zero", x1: zero, x2: zero, y1: 1, y2: BAR_HEIGHT - 1 }));
+  const interval = intervalOf(score, stage).map(at);
+  if (interval.length === 2) picture.append(svg("line", { x1: interval[0], x2: interval[1], y1: 11, y2: 11 }), ...interval.map((x) => svg("line", { x1: x, x2: x, y1: 7, y2: 15 })));
+  return picture;
+}
+
+function initScores() {
+  for (const [metric, score] of Object.entries(ABLATION.scores)) {
+    const at = scaleOf(score);
+    const rows = Object.entries(score.truth_for).map(([name, stage]) => [
+      nameOf(name), compact(stage.error), compact(stage.owned),
+      stage.owned_interval95 ? `${compact(stage.owned_interval95[0])} to ${compact(stage.owned_interval95[1])}` : "–",
+      percent(stage.share), barOf(score, stage, name, at), compact(stage.p_holm)]);
+    const what = score.error_is === "the score" ? metric : `1 − ${metric}`;
+    byId("scores").append(make("h3", {}, `${what}: ${compact(score.error)} as it is`),
+      make("div", { class: "scroll" }, tableOf(["truth for", "error", "owned", "95 % interval", "share", "", "p"], rows)));
+  }
+}
+
+function initStages() {
+  for (const stage of ABLATION.stages) {
+    byId("stages").append(make("dt", {}, nameOf(stage.name)), make("dd", {}, `${stage.meaning} (against ${nameOf(stage.against)})`));
+  }
+}
+
+initTheme();
+byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? ": fewer than 6 prove nothing" : ""}`;
+initStages();
+initScores();
+byId("settings").textContent = ABLATION.settings;
+document.documentElement.dataset.ready = "true";
