@@ -9,6 +9,7 @@
 #include "eval/hash.h"
 #include "eval/shipped.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
 #include "sim/trajectory.h"
 
@@ -73,6 +74,18 @@ Trajectory FromFile(const ExperimentOptions& options) {
 bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
 
 }  // namespace
+
+std::string WorldHash(const ExperimentOptions& options) {
+  const Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  ContentHash hash;
+  hash.Text(HashOf(scene));
+  if (IsFile(options.trajectory)) {
+    hash.Text(ReadFile(options.trajectory));
+  } else {
+    hash.Text(scene.trajectories.at(NamedTrajectory(scene, options.trajectory)).ToYaml());
+  }
+  return hash.Hex();
+}
 
 World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));

@@ -21,6 +21,10 @@ struct World {
   Trajectory trajectory;
 };
 
+// Of the room and the path that an experiment names: another one when any of the files was changed.
+// Throws InputError when they cannot be read.
+std::string WorldHash(const ExperimentOptions& options);
+
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
 // path that comes too near to geometry.
 World LoadWorld(const ExperimentOptions& options, int build_threads);

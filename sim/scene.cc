@@ -28,17 +28,26 @@ void RequireSaneMesh(const TriangleMesh& mesh, const std::string& path) {
   }
 }
 
+// What a box that is to be the floor must know.
+std::string ExtentText(const TriangleMesh& mesh) {
+  const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
+  return fmt::format("x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m",
+                     bounds.min().x(), bounds.max().x(), bounds.min().y(), bounds.max().y(),
+                     bounds.min().z(), bounds.max().z());
+}
+
 double FloorOf(const TriangleMesh& mesh, const std::optional<double>& stated_z_m,
                const std::string& path) {
   if (!stated_z_m) {
     if (const auto floor_z_m = FindFloor(mesh)) return *floor_z_m;
     throw InputError(path,
-                     "the scene has no floor: no level surface facing up covers a quarter of it");
+                     "the scene has no floor: no level surface facing up covers a quarter of it (" +
+                         ExtentText(mesh) + "); in a scene file a box below the mesh is one");
   }
   if (HasFloorAt(mesh, *stated_z_m)) return *stated_z_m;
   throw InputError(path, fmt::format("floor_z_m is '{}', but no level surface facing up covers a "
-                                     "quarter of the scene there",
-                                     *stated_z_m));
+                                     "quarter of the scene there ({})",
+                                     *stated_z_m, ExtentText(mesh)));
 }
 
 // For files that name no lamps: one so high and far aside that it lights all of the scene alike and

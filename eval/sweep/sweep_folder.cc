@@ -11,6 +11,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 
@@ -31,7 +32,8 @@ Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
           {"experiment", plan.experiment_yaml},
           {"version", DEPTHGRID_VERSION},
           {"instruction_set", DEPTHGRID_ARCH},
-          {"shard", ShardText(shard)}};
+          {"shard", ShardText(shard)},
+          {"rooms", RoomsText(plan)}};
 }
 
 // The first line in which two texts differ, for people.
@@ -54,13 +56,15 @@ std::string Difference(const std::string& a, const std::string& b) {
 void RequireSame(const std::string& place, const Environment& there, const Environment& here,
                  const std::vector<std::string>& respects) {
   for (const std::string& respect : respects) {
-    const auto found = there.find(respect);
-    const std::string value = found == there.end() ? "" : found->second;
-    if (value == here.at(respect)) continue;
+    const auto there_is = there.find(respect), here_is = here.find(respect);
+    if (there_is == there.end() || here_is == here.end()) continue;  // of an earlier version
+    if (there_is->second == here_is->second) continue;
     const std::string what = respect == "sweep"        ? "another sweep"
                              : respect == "experiment" ? "a sweep of another experiment"
+                             : respect == "rooms"      ? "runs in a scene or path that has changed"
                                                        : "a sweep of another " + respect;
-    throw InputError(place, fmt::format("holds {}: {}", what, Difference(value, here.at(respect))));
+    throw InputError(
+        place, fmt::format("holds {}: {}", what, Difference(there_is->second, here_is->second)));
   }
 }
 
@@ -143,7 +147,7 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
   if (SweepDatabase::Exists(folder)) {
     SweepDatabase database = SweepDatabase::Open(folder);
     RequireSame(folder, database.Environment(), here,
-                {"version", "instruction_set", "experiment", "sweep", "shard"});
+                {"version", "instruction_set", "experiment", "sweep", "shard", "rooms"});
     return database;
   }
   if (!force && !IsEmptyFolder(folder)) {
@@ -162,7 +166,7 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
     parts.push_back(ReadSweep(folder));
     const SweepResults& part = parts.back();
     RequireSame(folder, part.environment, parts[0].environment,
-                {"version", "instruction_set", "experiment", "sweep"});
+                {"version", "instruction_set", "experiment", "sweep", "rooms"});
     const auto missing = part.planned_runs - static_cast<int>(part.rows());
     if (missing > 0) {
       throw InputError(folder, fmt::format("is not finished: {} of {} runs are missing", missing,

@@ -13,6 +13,7 @@
 namespace depthgrid {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::string kScenes = std::string(kSourceFolder) + "/scenes/";
@@ -225,14 +226,15 @@ TEST_F(SceneFiles, AFloorIsStatedOrFound) {
   EXPECT_EQ(Load("shapes:\n" + kFloor).floor_z_m, 0.0);
   EXPECT_EQ(ErrorOf("floor_z_m: 0.3\nshapes:\n" + kFloor),
             "~/s.yaml: floor_z_m is '0.3', but no level surface facing up covers a quarter of "
-            "the scene there");
+            "the scene there (x -2.00 to 2.00, y -2.00 to 2.00, z -0.50 to 0.00 m)");
   // A room that is the inside of a box.
   EXPECT_EQ(Load("shapes: [{shape: box, size: [5, 4, 2.5], at: [0, 0, 0.5]}]\n").floor_z_m, 0.5);
   // Thick walls and a roof, but nothing to stand on.
-  EXPECT_THAT(ErrorOf("shapes:\n"
-                      "  - {shape: wall, to: [2, 0], thickness_m: 0.5, count: 2, step: [0, 2, 0]}\n"
-                      "  - {shape: box, size: [3, 3, 0.1], at: [1, 1, 2.5]}\n"),
-              HasSubstr("has no floor"));
+  EXPECT_THAT(
+      ErrorOf("shapes:\n"
+              "  - {shape: wall, to: [2, 0], thickness_m: 0.5, count: 2, step: [0, 2, 0]}\n"
+              "  - {shape: box, size: [3, 3, 0.1], at: [1, 1, 2.5]}\n"),
+      AllOf(HasSubstr("has no floor"), HasSubstr("z 0.00 to 2.60 m); in a scene file a box")));
 }
 
 TEST(Files, OfOtherKindsAreNotScenes) {

@@ -294,6 +294,26 @@ TEST_F(ProgramSweep, GoesOnOnlyWithTheSameSweep) {
   EXPECT_EQ(FilesIn("mine"), std::vector<std::string>{"notes.txt"});
 }
 
+// Half of the runs in one room and half in another would be in one table.
+TEST_F(ProgramSweep, DoesNotGoOnInAChangedRoom) {
+  Succeed("sweep ./sweep.yaml -o out");
+  const std::string table = ReadFile(Path("out/results.csv"));
+  std::string room = kRoom;
+  room.replace(room.find("0.5, 0.5, 1.5"), 13, "0.6, 0.5, 1.5");
+  Write("room.yaml", room);
+  const Outcome changed = Program("sweep ./sweep.yaml -o out");
+  EXPECT_EQ(changed.exit_code, 2);
+  EXPECT_THAT(changed.err, HasSubstr("out: holds runs in a scene or path that has changed: "
+                                     "'room.yaml: "));
+  EXPECT_EQ(ReadFile(Path("out/results.csv")), table);
+  room = kRoom;
+  room.replace(room.find("[1.9, 2.0, 1.1]"), 15, "[1.8, 2.0, 1.1]");
+  Write("room.yaml", room);
+  EXPECT_EQ(Program("sweep ./sweep.yaml -o out").exit_code, 2);
+  Write("room.yaml", std::string("# not to be seen\n") + kRoom);
+  EXPECT_EQ(Program("sweep ./sweep.yaml -o out").exit_code, 0);
+}
+
 // Where nothing may be written a sweep is read all the same, and its page goes elsewhere.
 TEST_F(ProgramSweep, OfAFolderThatMayNotBeWrittenThePageGoesElsewhere) {
   namespace fs = std::filesystem;
