@@ -264,7 +264,8 @@ void Map(const MapArguments& arguments) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckPoses(arguments, input, warnings);
-  CheckScale(arguments, run, warnings);
+  // Poses read the wrong way have another scale too.
+  if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckMatches(arguments, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));

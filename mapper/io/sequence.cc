@@ -103,8 +103,8 @@ void FindCorrections(const std::string& path, DepthSequence& sequence,
     sequence.recording.warnings.push_back(path + ": " + *doubt);
   }
   if (jumps.empty()) return;
-  notes.push_back(
-      fmt::format("the poses jump at {} frames: no motion is taken there", jumps.size()));
+  notes.push_back(fmt::format("the poses jump at {} frame{}: no motion is taken there",
+                              jumps.size(), jumps.size() == 1 ? "" : "s"));
   StartEpochs(jumps, slam.live);
 }
 

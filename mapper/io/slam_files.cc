@@ -32,6 +32,8 @@ std::string LoopRow(const LoopClosure& loop, int epoch, const std::vector<SlamPo
                      stamp_s(loop.first_frame), stamp_s(loop.second_frame));
 }
 
+const char* PluralS(std::size_t count) { return count == 1 ? "" : "s"; }
+
 struct FramedPose {
   std::size_t frame = 0;
   StampedPose pose;
@@ -103,7 +105,8 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   const std::vector<int> jumps = FindJumps(slam.live, revised);
   if (!jumps.empty()) {
     input.notes.push_back(
-        fmt::format("SLAM corrected itself at {} frames (jumps of its live poses)", jumps.size()));
+        fmt::format("SLAM corrected itself at {} frame{} (jumps of its live poses)", jumps.size(),
+                    PluralS(jumps.size())));
   }
   if (const auto doubt = DoubtOf(slam.live, jumps)) {
     input.warnings.push_back(paths.live + ": " + *doubt);
@@ -112,8 +115,8 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   if (!paths.loops.empty() || paths.final.empty()) return;
   slam.loops = LoopsFromRevision(slam.live, revised, jumps);
   if (!slam.loops.empty()) {
-    input.notes.push_back(
-        fmt::format("{} loop closures read off the revised poses", slam.loops.size()));
+    input.notes.push_back(fmt::format("{} loop closure{} read off the revised poses",
+                                      slam.loops.size(), PluralS(slam.loops.size())));
   }
 }
 
@@ -176,8 +179,8 @@ SlamInput ReadLoops(const std::string& path, const FrameNames& frames, double ma
   for (const SlamEvent& event : events.events) {
     if (event.loop) input.slam.loops.push_back(*event.loop);
   }
-  input.notes.push_back(
-      fmt::format("{} loop closures from {}", input.slam.loops.size(), events.kind));
+  input.notes.push_back(fmt::format("{} loop closure{} from {}", input.slam.loops.size(),
+                                    PluralS(input.slam.loops.size()), events.kind));
   return input;
 }
 
@@ -205,7 +208,8 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
     PosesByFrame(slam.final, frames.stamps_s, max_difference_s, paths.final, input.warnings);
   }
   if (!paths.loops.empty()) {
-    input.notes.push_back(fmt::format("{} loop closures from {}", slam.loops.size(), events.kind));
+    input.notes.push_back(fmt::format("{} loop closure{} from {}", slam.loops.size(),
+                                      PluralS(slam.loops.size()), events.kind));
   }
   const bool epochs_known = events.kind == kOwnEvents;
   FindCorrections(paths, epochs_known, input);

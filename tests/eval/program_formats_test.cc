@@ -295,11 +295,11 @@ TEST_F(ProgramFormats, LoopsOfEveryKind) {
   for (int row = 0; row < 3; ++row) tcm += " " + Row(r, last_from_first.translation, row);
   Write("events.txt", "LOOP 11 " + stamp(11) + " 0 " + stamp(0) + " Tcm" + tcm + "\n");
   EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops events.txt"),
-              AllOf(HasSubstr("1 loop closures from ORB-SLAM2 events\n"),
+              AllOf(HasSubstr("1 loop closure from ORB-SLAM2 events\n"),
                     HasSubstr("; 1 of 1 loop closure taken\n")));
   Write("stamped.txt", stamp(0) + " " + stamp(11) + " 0 0 0 0 0 0 1\n");
   EXPECT_THAT(Mapped("seq --poses seq/groundtruth.txt --loops stamped.txt"),
-              AllOf(HasSubstr("1 loop closures from stamped loops\n"),
+              AllOf(HasSubstr("1 loop closure from stamped loops\n"),
                     HasSubstr("; 0 of 1 loop closure taken\n")));  // wrong: the camera turned
   EXPECT_EQ(Program("map seq --loops events.txt -o out2").exit_code, 2);
 }
