@@ -154,6 +154,11 @@ std::string RemedyOf(const PoseDoubt& doubt) {
     case PoseReading::kGlAxes:
       return "with poses of axes x right, y up, z backward; they must be the camera's x right, y "
              "down, z forward";
+    case PoseReading::kScaled:
+      return fmt::format(
+          "with images {:.3g} times as deep: their scale (depth_scale of the camera file, or --set "
+          "sequence.recording.depth_scale) or SLAM's is wrong",
+          1.0 / doubt.scale);
     case PoseReading::kShifted:
       break;
   }

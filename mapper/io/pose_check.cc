@@ -28,6 +28,11 @@ constexpr double kMostShiftS = 5.0;
 constexpr double kCoarseShiftS = 0.1;
 constexpr double kFineShiftS = 0.01;
 
+// Depth or poses in wrong units: up to a thousand times.
+constexpr double kCoarseScale = 1.15;
+constexpr double kFineScale = 1.01;
+constexpr double kMostScale = 1e3;
+
 Pose3 WithWFirst(const Pose3& pose) {
   const Eigen::Quaterniond& q = pose.rotation;  // x y z w as read hold w x y z
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
@@ -132,8 +137,9 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   best.better_misfit = *as_given;
   const auto attempt = [&](PoseReading reading, const PoseChange& change, double shift_s) {
     const auto misfit = fits.Misfit(change, shift_s, least);
-    if (!misfit || *misfit >= best.better_misfit) return;
-    best = {reading, options.time_offset_s + shift_s, *as_given, *misfit};
+    if (!misfit || *misfit >= best.better_misfit) return false;
+    best = {reading, options.time_offset_s + shift_s, 1.0, *as_given, *misfit};
+    return true;
   };
   const auto attempt_written = [&](PoseReading reading, Pose3 (*change)(const Pose3&)) {
     attempt(
@@ -154,6 +160,20 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   if (best.reading == PoseReading::kShifted) {
     attempt_shifts(best.time_offset_s - options.time_offset_s, kFineShiftS, kCoarseShiftS);
   }
+  // With a wrong scale stamps at which the camera moved less fit better too; the scale itself fits
+  // best.
+  const auto attempt_scales = [&](double around, double step, double most) {
+    const int steps = static_cast<int>(std::lround(std::log(most) / std::log(step)));
+    for (int k = -steps; k <= steps; ++k) {
+      const double scale = around * std::pow(step, k);
+      const auto scaled = [scale](const Pose3& pose) {
+        return Pose3{pose.rotation, scale * pose.translation};
+      };
+      if (attempt(PoseReading::kScaled, scaled, 0.0)) best.scale = scale;
+    }
+  };
+  attempt_scales(1.0, kCoarseScale, kMostScale);
+  if (best.reading == PoseReading::kScaled) attempt_scales(best.scale, kFineScale, kCoarseScale);
   if (best.better_misfit > kClearlyBetter * *as_given) return {};
   return best;
 }

@@ -29,11 +29,13 @@ enum class PoseReading {
   kBodyAxes,  // of a robot's axes at the camera: x forward, y left, z up
   kGlAxes,    // of a camera with x right, y up, z backward
   kShifted,   // their clock is another than the images'
+  kScaled,    // their unit of length is another than the images'
 };
 
 struct PoseDoubt {
   PoseReading reading = PoseReading::kWFirst;  // with which the images fit
   double time_offset_s = 0.0;                  // RecordingOptions' own, with which they fit
+  double scale = 1.0;                          // the poses' positions times this fit the images
   // Means of MisfitOf over the pairs, with the poses as given and as they would fit.
   double misfit = 0.0;
   double better_misfit = 0.0;

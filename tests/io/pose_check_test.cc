@@ -133,6 +133,23 @@ TEST(PoseCheck, ReadsYUpPosesAsTheyWereWritten) {
   EXPECT_EQ(doubt->reading, PoseReading::kWFirst);
 }
 
+// Not another clock, though the images fit better at a time at which the camera moved less.
+TEST(PoseCheck, NamesAnotherScale) {
+  const std::vector<ImagePair> pairs = Pairs(0.01);
+  int cases = 0;
+  for (const double scale : {0.2, 5.0, 1000.0}) {
+    const auto scaled = [&](const Pose3& pose) {
+      return Pose3{pose.rotation, scale * pose.translation};
+    };
+    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(scaled), {});
+    ASSERT_TRUE(doubt) << scale;
+    EXPECT_EQ(doubt->reading, PoseReading::kScaled);
+    EXPECT_NEAR(doubt->scale * scale, 1.0, 0.05);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {
   std::vector<ImagePair> pairs = Pairs(0.0);
   EXPECT_FALSE(DoubtOfPoses({}, kCamera, Given(Inverted), {}));
