@@ -1,5 +1,6 @@
 #include "eval/mapping_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "eval/metrics/association.h"
@@ -93,6 +94,12 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
   MappingRun run = recorder.Finish(final_poses);
   run.warnings = source.Warnings();
   return run;
+}
+
+bool SawNothing(const MappingRun& run) {
+  return !run.reports.empty() &&
+         std::all_of(run.reports.begin(), run.reports.end(),
+                     [](const FrameReport& report) { return report.beams == 0; });
 }
 
 Trajectory SlamTrajectory(const MappingRun& run) {

@@ -63,6 +63,12 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
   if (std::find(names.begin(), names.end(), name) != names.end()) {
     return (fs::path(ShippedFolder(kind)) / (name + ".yaml")).string();
   }
+  for (const ShippedKind other : {ShippedKind::kExperiment, ShippedKind::kSweep}) {
+    const std::vector<std::string> others = ShippedNames(other);
+    if (std::find(others.begin(), others.end(), name) == others.end()) continue;
+    throw InputError(name, std::string("is a shipped ") + WordFor(other) + ", no " + WordFor(kind) +
+                               "; see `depthgrid scenes`");
+  }
   const std::string hint = DidYouMean(name, names);
   throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" +
                              (hint.empty() ? "; see `depthgrid scenes`" : hint));

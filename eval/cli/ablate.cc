@@ -46,7 +46,7 @@ void PrintLegend(std::size_t seeds) {
 void Ablate(const AblateArguments& arguments) {
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
-  if (const auto kept = DoubtOfProfile(arguments.experiment, arguments.common.set)) Warn({*kept});
+  Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
   OutputFolder folder(arguments.common.output, arguments.common.force);

@@ -46,6 +46,8 @@ Config ExperimentFile(const std::string& path) {
   return config;
 }
 
+namespace {
+
 std::optional<std::string> DoubtOfProfile(const std::string& name,
                                           const std::vector<std::string>& set) {
   Config given;
@@ -57,6 +59,34 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
   if (kept.empty()) return {};
   return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
                      fmt::join(kept, ", "), profile.front());
+}
+
+// A value that changes the settings and not the run.
+bool IsIdle(const std::string& name, const std::vector<std::string>& set, std::size_t position) {
+  std::vector<std::string> others = set;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(position));
+  const auto key_of = [](const std::string& assignment) {
+    return assignment.substr(0, assignment.find('='));
+  };
+  // Without its scene or profile the rest of the line may make no sense.
+  if (key_of(set[position]) == "scene" || key_of(set[position]) == "slam.profile") return false;
+  const ExperimentOptions with = ExperimentNamed(name, set);
+  const ExperimentOptions without = ExperimentNamed(name, others);
+  return ToYaml(with) != ToYaml(without) &&
+         ToYaml(WithoutIdleSettings(with)) == ToYaml(WithoutIdleSettings(without));
+}
+
+}  // namespace
+
+std::vector<std::string> DoubtsOfSettings(const std::string& name,
+                                          const std::vector<std::string>& set) {
+  std::vector<std::string> doubts;
+  if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (!IsIdle(name, set, i)) continue;
+    doubts.push_back(fmt::format("--set {}: has no effect beside the other settings", set[i]));
+  }
+  return doubts;
 }
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set) {

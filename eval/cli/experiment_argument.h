@@ -15,9 +15,10 @@ namespace depthgrid::cli {
 // for a sweep.
 Config ExperimentFile(const std::string& path);
 
-// What an experiment sets beside slam.profile, such as the drift calibrated for it, when `set`
-// chooses another profile: one line.
-std::optional<std::string> DoubtOfProfile(const std::string& name,
+// What is likely not meant, a line each: what an experiment sets beside slam.profile, such as the
+// drift calibrated for it, when `set` chooses another profile; and what of `set` has no effect,
+// such as a gain where it is learnt.
+std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);

@@ -87,8 +87,12 @@ void RunOne(const RunArguments& arguments) {
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   record.title = arguments.experiment;
-  if (const auto kept = DoubtOfProfile(arguments.experiment, arguments.common.set)) {
-    record.warnings.push_back(*kept);
+  const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
+  record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
+  if (SawNothing(run.mapping)) {
+    record.warnings.push_back(
+        "no frame sees anything in the obstacle band: the path's poses must be those of the "
+        "camera's axes, x right, y down, z forward");
   }
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =

@@ -180,6 +180,16 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
                 {"is '-1', must be a number, 0 or more"});
 }
 
+TEST_F(ProgramErrors, AShippedNameOfAnotherKindIsSaidToBeOne) {
+  EXPECT_EQ(Program("sweep living_room -o out").err,
+            "depthgrid: living_room: is a shipped experiment, no sweep; see `depthgrid scenes`\n");
+  EXPECT_EQ(Program("run kalman_gain -o out").err,
+            "depthgrid: kalman_gain: is a shipped sweep, no experiment; see `depthgrid scenes`\n");
+  EXPECT_EQ(Program("run living_rom -o out").err,
+            "depthgrid: living_rom: no shipped experiment has this name, did you mean "
+            "'living_room'?\n");
+}
+
 TEST_F(ProgramErrors, SeedsAreWholeNumbers) {
   for (const std::string seed : {"-3", "1.5", "nan", "abc", "99999999999999999999", "''"}) {
     for (const char* command : {"slam seq -o out --seed", "ablate ./small.yaml -o out --first-seed",

@@ -205,6 +205,31 @@ TEST_F(ProgramRun, WhatStaysBesideAnotherProfileIsSaid) {
   EXPECT_EQ(said(" --set slam.drift_scale=2"), "");
 }
 
+TEST_F(ProgramRun, WhatHasNoEffectIsSaid) {
+  const auto said = [&](const std::string& set) {
+    return Program("run ./small.yaml -o out --force --set frames=3" + set).err;
+  };
+  EXPECT_EQ(said(" --set mapper.fusion.mode=learned --set mapper.fusion.gain=0.3"),
+            "depthgrid: warning: --set mapper.fusion.gain=0.3: has no effect beside the other "
+            "settings\n");
+  EXPECT_EQ(said(" --set sensor.noise=none --set sensor.noise_scale=2"),
+            "depthgrid: warning: --set sensor.noise_scale=2: has no effect beside the other "
+            "settings\n");
+  EXPECT_EQ(said(" --set mapper.fusion.gain=0.3 --set seed=4 --set slam.drift_scale=2"), "");
+}
+
+// A pose that turns nothing looks straight up.
+TEST_F(ProgramRun, APathThatSeesNothingIsSaid) {
+  Write("up.txt", "0 1.5 1.5 1.2 0 0 0 1\n0.1 1.5 1.6 1.2 0 0 0 1\n");
+  const Outcome outcome =
+      Program("run ./small.yaml -o out --set frames=0 --set trajectory=./up.txt");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(
+      outcome.err,
+      "depthgrid: warning: no frame sees anything in the obstacle band: the path's poses must "
+      "be those of the camera's axes, x right, y down, z forward\n");
+}
+
 TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
   std::filesystem::create_directory(Path("out"));
   Write("out/notes.txt", "mine");
