@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 
 #include "eval/cli/commands.h"
@@ -339,6 +340,9 @@ int Main(int argc, char** argv) {
   } catch (const std::exception& error) {
     // Whatever came of being stopped, that is what happened.
     if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
+    if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+      return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
+    }
     const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
     return Complain(error.what(), bad_input ? kBadInput : kFailed);
   }

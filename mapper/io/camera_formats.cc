@@ -35,13 +35,16 @@ std::vector<double> NumbersAt(const Config& config, const std::string& key,
   return numbers;
 }
 
-int WholeAt(const Config& config, const std::string& key, const std::string& place) {
-  const double number = NumberAt(config, key, place);
+int PixelsOf(double number, std::string_view key, const std::string& place) {
   if (number != std::floor(number) || std::abs(number) > 1e6) {
     throw InputError(place,
                      fmt::format("'{}' is {}, must be a whole number of pixels", key, number));
   }
   return static_cast<int>(number);
+}
+
+int WholeAt(const Config& config, const std::string& key, const std::string& place) {
+  return PixelsOf(NumberAt(config, key, place), key, place);
 }
 
 // The first of several names a key goes by; empty when there is none.
@@ -158,8 +161,8 @@ CameraDescription FromOrbSlam(const std::string& text, const std::string& place)
                         find("Camera.k3").value_or(0.0)};
   camera.has_size = find("Camera.width") && find("Camera.height");
   if (camera.has_size) {
-    pinhole.width_px = static_cast<int>(*find("Camera.width"));
-    pinhole.height_px = static_cast<int>(*find("Camera.height"));
+    pinhole.width_px = PixelsOf(*find("Camera.width"), "Camera.width", place);
+    pinhole.height_px = PixelsOf(*find("Camera.height"), "Camera.height", place);
   }
   const auto scale = find("DepthMapFactor") ? find("DepthMapFactor") : find("RGBD.DepthMapFactor");
   camera.has_depth_scale = scale.has_value();

@@ -101,7 +101,8 @@ MapFile ReadMap(const std::string& yaml_path) {
   }
   const MapYaml yaml = ReadYaml(yaml_path);
   const fs::path image_path = fs::path(yaml_path).parent_path() / yaml.image;
-  if (!fs::exists(image_path)) {
+  std::error_code ignored;  // such as of a name that is too long
+  if (!fs::exists(image_path, ignored)) {
     throw InputError(yaml_path, "image is '" + yaml.image + "': no such file");
   }
   const ShadeImage image = internal::ReadShades(image_path.string(), yaml.rule.mode);

@@ -214,7 +214,8 @@ void SequenceOptions::Visit(OptionsVisitor& v) {
 }
 
 SequenceFormat DetectFormat(const std::string& path) {
-  if (!fs::exists(path)) throw InputError(path, "no such file or folder");
+  std::error_code ignored;  // such as of a name that is too long
+  if (!fs::exists(path, ignored)) throw InputError(path, "no such file or folder");
   if (!fs::is_directory(path)) return SequenceFormat::kCarmen;
   if (fs::exists(fs::path(path) / "depth.txt")) return SequenceFormat::kTum;
   if (IsIclFolder(path)) return SequenceFormat::kIcl;
