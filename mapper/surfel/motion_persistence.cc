@@ -67,11 +67,11 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
     agreement += (errors[i].array() * errors[i - kLag].array()).sign().matrix();
   }
   Eigen::Vector3d persistence = Eigen::Vector3d::Zero();
-  if (pairs < kMinPairs) return persistence;
+  if (pairs < kMinPairs || share_seen.minCoeff() < kLeastShareSeen) return persistence;
   for (int axis = 0; axis < 3; ++axis) {
     // Less a standard error: the fourth root makes much of what independent errors feign.
     const double surely = agreement[axis] / pairs - 1.0 / std::sqrt(pairs);
-    if (share_seen[axis] < kLeastShareSeen || surely <= 0.0) continue;
+    if (surely <= 0.0) continue;
     // Of normal variables whose signs agree so often (Sheppard 1899).
     const double correlation = std::sin(0.5 * std::numbers::pi * surely);
     persistence[axis] =
