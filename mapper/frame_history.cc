@@ -12,6 +12,8 @@ namespace {
 
 // The last motion goes on for this long at most; after a longer gap it says nothing.
 constexpr double kLongestExtrapolationS = 0.5;
+// And over no more of its steps: it took no time then, but for a stamp's rounding.
+constexpr double kMostExtrapolatedSteps = 100.0;
 
 // A second at 30 Hz: SLAM's own motion over it is good to millimetres.
 constexpr int kLoopReachFrames = 30;
@@ -103,7 +105,12 @@ Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam) {
   if (before == nullptr || before->epoch != last->epoch || gap_s > kLongestExtrapolationS) {
     return map_from_last;
   }
-  const double share = gap_s / (last->stamp_s - before->stamp_s);
+  const double step_s = last->stamp_s - before->stamp_s;
+  // Stamps that repeat or go back tell no speed.
+  if (gap_s < 0.0 || step_s <= 0.0 || gap_s > kMostExtrapolatedSteps * step_s) {
+    return map_from_last;
+  }
+  const double share = gap_s / step_s;
   const Pose2 motion = Between(BaseOf(*before->slam_from_camera), slam_from_last);
   return map_from_last * Pose2::FromVector(share * motion.vector());
 }

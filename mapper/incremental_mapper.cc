@@ -5,6 +5,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/frame_check.h"
 #include "mapper/mapper_state.h"
 
 namespace depthgrid {
@@ -22,14 +23,17 @@ const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 
 IncrementalMapper::IncrementalMapper(const MapperOptions& options,
                                      const std::optional<PinholeCamera>& camera, CpuClock clock,
-                                     GainOracle oracle)
-    : state_(std::make_unique<State>(options, camera, std::move(clock), std::move(oracle))) {
+                                     GainOracle oracle) {
+  RequireInRange(options, "mapper");
+  if (camera) Validate(*camera, "camera");
+  state_ = std::make_unique<State>(options, camera, std::move(clock), std::move(oracle));
   if (options.fusion.mode == FusionMode::kOracle && !state_->oracle) {
     throw InputError("mapper.fusion.mode", "oracle needs an experiment that knows the truth");
   }
 }
 IncrementalMapper::~IncrementalMapper() = default;
 IncrementalMapper::IncrementalMapper(IncrementalMapper&&) noexcept = default;
+IncrementalMapper& IncrementalMapper::operator=(IncrementalMapper&&) noexcept = default;
 
 void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
   state_->match_oracle = std::move(oracle);
@@ -59,6 +63,7 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
 
 // The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
+  RequireSound(frame, state_->camera);
   FrameReport report = state_->Begin(frame);
   const StageTimer total(state_->clock, report.times.total_us);
   const FrameScans scans = state_->ScansOf(frame, report);

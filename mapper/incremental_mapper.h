@@ -43,27 +43,44 @@ struct PriorMap {
   bool fixed = false;
 };
 
+// Not for two threads at once; two mappers share nothing. Nothing is printed, no file touched, no
+// thread started.
 class IncrementalMapper {
  public:
-  // The camera may be absent when every frame brings a ready scan. Throws InputError for options
-  // that contradict each other.
+  // `camera` is that of the depth images, without distortion; it may be absent when every frame
+  // brings a ready scan. Throws InputError for a camera that is not sound and for options out of
+  // range or that contradict each other.
   IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
                     CpuClock clock = {}, GainOracle oracle = {});
   ~IncrementalMapper();
+  // What was moved from may be destroyed or assigned to, nothing else.
   IncrementalMapper(IncrementalMapper&&) noexcept;
+  IncrementalMapper& operator=(IncrementalMapper&&) noexcept;
 
   // From the next frame on.
   void SetMatchOracle(MatchOracle oracle);
 
-  // Before the first frame. The result's `mapped` then begins with the prior frames.
+  // Before the first frame, once. The result's `mapped` then begins with the prior frames.
   void StartFrom(PriorMap prior);
 
+  // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
+  // come, when its number is below 0 or was given before, its stamp, pose or a loop is not made of
+  // finite numbers (a pose: of a unit quaternion within 10,000 km, a sigma: positive), or its image
+  // is not the camera's size. What else is amiss is lived with: without a pose nothing is known of
+  // the frame, without image or scan only its pose is corrected; stamps that repeat or go back tell
+  // no speed; a loop with a frame that never came or has no pose counts as rejected.
+  // Mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens of ms, or fill up what is
+  // remembered of all frames, which is then moved: 0.1 s each hour or so. A frame leaves 0.6 kB
+  // behind, 60 MB an hour, and its scan where that is kept (KeepOptions), 3 kB and more.
   FrameReport AddFrame(const Frame& frame);
-  // The last correction, then the map drawn from the stored scans at their final poses.
+  // The last correction, then the map drawn from the stored scans at their final poses. It takes
+  // seconds after tens of thousands of frames; frames may come after it, and another end.
   // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
   // when SLAM is trusted alone (K = 0); frames without one keep their live pose.
   MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
-  // The map as it is known now.
+  // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them, so ask
+  // once in a while rather than after each frame. Empty, of no size, while nothing was mapped.
+  // Throws InputError, as Finish() does, when the map would be larger than 2^28 cells.
   OccupancyMap CurrentMap() const;
 
  private:

@@ -28,6 +28,10 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
 }
 
 std::vector<Pose2> IncrementalMapper::State::FinishByAdjusting(MapperResult& result) const {
+  if (mapped.empty()) {  // ended before the first image that came with a pose
+    result.map_from_camera = FinalPoses(history, {}, stands);
+    return {};
+  }
   Adjustment adjustment = loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kFinish);
   for (std::size_t i = 0; i < loop_closer.loops().size(); ++i) {
     if (adjustment.loop_accepted[i]) result.loops.push_back(loop_closer.loops()[i]);

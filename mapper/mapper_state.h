@@ -23,6 +23,7 @@ constexpr int kRecentFrames = 400;
 
 struct IncrementalMapper::State {
   MapperOptions options;
+  std::optional<PinholeCamera> camera;
   CpuClock clock;
   GainOracle oracle;
   MatchOracle match_oracle;
@@ -42,12 +43,13 @@ struct IncrementalMapper::State {
   bool fixed_map = false;            // of a prior map that is only localised in
   std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
 
-  State(const MapperOptions& opts, const std::optional<PinholeCamera>& camera, CpuClock clk,
+  State(const MapperOptions& opts, const std::optional<PinholeCamera>& cam, CpuClock clk,
         GainOracle orc)
       : options(opts),
+        camera(cam),
         clock(std::move(clk)),
         oracle(std::move(orc)),
-        scanner(camera, opts.scan),
+        scanner(cam, opts.scan),
         stands(opts.scan.floor_z_m),
         filter(opts.fusion),
         errors(opts.submap.scans),

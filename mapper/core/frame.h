@@ -13,11 +13,13 @@
 
 namespace depthgrid {
 
-// Exactly one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
+// At most one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
 // image).
 struct Frame {
-  int index = 0;  // position in the sequence, counted by the source; loop closures refer to it
-  double stamp_s = 0.0;
+  // Position in the sequence from 0 on, counted by the source; loop closures refer to it. Numbers
+  // may be left out, none comes twice.
+  int index = 0;
+  double stamp_s = 0.0;  // seconds since whenever; differences are what counts
   std::shared_ptr<const DepthImage> depth;
   std::shared_ptr<const Scan> scan;
   // With `scan`: what is matched where that is another one (mapper/scan/frame_scans.h).
@@ -25,9 +27,11 @@ struct Frame {
   // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
   // metres (docs/conventions.md). Empty while SLAM is lost.
   std::optional<Pose3> slam_from_camera;
+  // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
+  // two poses is a motion only within an epoch.
   int slam_epoch = 0;
-  std::vector<LoopClosure>
-      loops;  // reported with this frame, to be applied before its pose is used
+  // Reported with this frame, to be applied before its pose is used.
+  std::vector<LoopClosure> loops;
 };
 
 // A sequence read once from front to back.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
+
+// "from 0 to 1", "at least 0", "a finite number".
+std::string Shown(const Interval& interval);
 
 class OptionsVisitor {
  public:
@@ -76,5 +80,16 @@ class OptionsVisitor {
   virtual bool Begin(std::string_view key, std::string_view meaning) = 0;
   virtual void End() = 0;
 };
+
+namespace internal {
+std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& place);
+}  // namespace internal
+
+// For options that were set in code: throws InputError for the first value outside its interval,
+// "PLACE.group.key: is 2, must be from 0 to 1".
+template <typename Options>
+void RequireInRange(Options options, const std::string& place) {
+  options.Visit(*internal::MakeRangeCheck(place));
+}
 
 }  // namespace depthgrid

@@ -9,15 +9,6 @@
 
 namespace depthgrid {
 
-std::string Shown(const Interval& interval) {
-  const bool low = std::isfinite(interval.low);
-  const bool high = std::isfinite(interval.high);
-  if (low && high) return fmt::format("from {} to {}", interval.low, interval.high);
-  if (low) return fmt::format("at least {}", interval.low);
-  if (high) return fmt::format("at most {}", interval.high);
-  return "a finite number";
-}
-
 std::string Joined(const std::vector<std::string_view>& names) {
   std::string out;
   for (const auto& name : names) out += (out.empty() ? "" : ", ") + std::string(name);

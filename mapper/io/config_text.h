@@ -1,4 +1,4 @@
-// The words in which configuration speaks to people: rules and lists of names.
+// The words in which configuration speaks to people: lists of names.
 #pragma once
 
 #include <string>
@@ -8,9 +8,6 @@
 #include "mapper/core/options.h"
 
 namespace depthgrid {
-
-// "from 0 to 1", "at least 0", "a finite number".
-std::string Shown(const Interval& interval);
 
 // "fixed, kalman".
 std::string Joined(const std::vector<std::string_view>& names);

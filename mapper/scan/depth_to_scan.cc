@@ -75,6 +75,19 @@ ScanOptions SliceOptions(ScanOptions options, double half_height_m) {
   return options;
 }
 
+void RequireUsable(const PinholeCamera& camera) {
+  if (camera.HasDistortion()) {
+    throw InputError("camera",
+                     "has distortion, must be that of undistorted images "
+                     "(mapper/io/undistort.h makes them)");
+  }
+  if (camera.width_px < 2 || camera.height_px < 2) {
+    throw InputError("camera", "is " + std::to_string(camera.width_px) + " x " +
+                                   std::to_string(camera.height_px) +
+                                   " pixels, must be 2 x 2 or more");
+  }
+}
+
 void RequireBelow(const char* low_key, double low, const char* high_key, double high) {
   if (low < high) return;
   std::ostringstream rule;
@@ -86,8 +99,7 @@ void RequireBelow(const char* low_key, double low, const char* high_key, double 
 
 DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options)
     : camera_(camera), options_(options) {
-  Require(!camera.HasDistortion(), "depth images come undistorted");
-  Require(camera.width_px >= 2 && camera.height_px >= 2, "depth images have 2x2 pixels or more");
+  RequireUsable(camera);
   RequireBelow("band_low_m", options.band_low_m, "band_high_m", options.band_high_m);
   RequireBelow("min_range_m", options.min_range_m, "max_range_m", options.max_range_m);
 }

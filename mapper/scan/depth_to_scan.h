@@ -34,8 +34,8 @@ struct ScanMemory {
 
 class DepthToScan {
  public:
-  // Throws InputError for options that contradict each other. The camera must be free of distortion
-  // (frame sources undo it).
+  // Throws InputError for options that contradict each other and for a camera that has distortion
+  // (frame sources undo it) or fewer than 2 x 2 pixels.
   DepthToScan(const PinholeCamera& camera, const ScanOptions& options);
 
   // The scan in base axes.

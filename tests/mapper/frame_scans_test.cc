@@ -150,6 +150,23 @@ TEST(FrameScanner, WithoutImageOrPoseThereIsNoScan) {
   EXPECT_EQ(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(Frame{}).obstacles, nullptr);
 }
 
+// As drivers of depth cameras mark them (ROS, 32FC1).
+TEST(FrameScanner, PixelsThatAreNotNumbersAreInvalidOnes) {
+  const Frame whole = WallFrame();
+  std::vector<FrameScans> scans;
+  for (const float missing : {kInvalidDepth, std::numeric_limits<float>::quiet_NaN(),
+                              -std::numeric_limits<float>::quiet_NaN()}) {
+    auto image = std::make_shared<DepthImage>(*whole.depth);
+    for (std::size_t i = 0; i < image->z_m.size(); i += 3) image->z_m[i] = missing;
+    std::fill_n(image->Row(200), 20 * image->width_px, missing);
+    Frame frame = whole;
+    frame.depth = image;
+    scans.push_back(FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(frame));
+    EXPECT_EQ(*scans.back().obstacles, *scans.front().obstacles);
+    EXPECT_EQ(*scans.back().matched, *scans.front().matched);
+  }
+}
+
 TEST(FrameScanner, BeamsOfAReadyScanThatAreNotFiniteSayNothing) {
   const float infinity = std::numeric_limits<float>::infinity();
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -133,6 +133,26 @@ TEST(FrameHistory, RefusesAnIndexTwice) {
   EXPECT_THROW(history.Start(PosedFrame(3, {}, 0)), InputError);
 }
 
+TEST(Extrapolated, GoesOnAsItWentUnlessTheStampsTellNoSpeed) {
+  const auto forward_m = [](double second_s, double third_s) {
+    FrameHistory history;
+    for (int i = 0; i < 3; ++i) {
+      Frame frame = PosedFrame(i, {0.1 * i, 0, 0}, i / 2);
+      frame.stamp_s = i == 0 ? 0.0 : i == 1 ? second_s : third_s;
+      history.Start(frame);
+    }
+    return Extrapolated(history, {}).x_m;
+  };
+  EXPECT_NEAR(forward_m(0.1, 0.2), 0.2, 1e-12);
+  EXPECT_NEAR(forward_m(0.1, 0.25), 0.25, 1e-12);
+  EXPECT_EQ(forward_m(0.1, 0.7), 0.1);   // too long ago
+  EXPECT_EQ(forward_m(0.0, 0.1), 0.1);   // no time between the first two
+  EXPECT_EQ(forward_m(0.0, 0.0), 0.1);   // nor after
+  EXPECT_EQ(forward_m(1e-7, 0.1), 0.1);  // or as good as none
+  EXPECT_EQ(forward_m(-0.1, 0.1), 0.1);
+  EXPECT_EQ(forward_m(0.1, 0.05), 0.1);
+}
+
 TEST(FinalPoses, UnmappedFramesFollowTheNearestMappedOne) {
   FrameHistory history;
   for (int i = 0; i < 5; ++i) {

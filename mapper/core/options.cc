@@ -1,0 +1,98 @@
+#include "mapper/core/options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+// The shortest digits that are read back as the same number.
+std::string Shown(double value) {
+  constexpr double kLeastFixed = 1e-4, kMostFixed = 1e16;
+  const double size = std::abs(value);
+  const bool is_fixed = size == 0.0 || (size >= kLeastFixed && size < kMostFixed);
+  char text[64];
+  const auto end =
+      std::to_chars(std::begin(text), std::end(text), value,
+                    is_fixed ? std::chars_format::fixed : std::chars_format::scientific);
+  return {text, end.ptr};
+}
+
+class RangeCheck final : public OptionsVisitor {
+ public:
+  explicit RangeCheck(const std::string& place) : path_(place) {}
+
+  void Number(std::string_view key, double& value, Interval allowed, std::string_view) override {
+    Check(key, value, allowed);
+  }
+  void Number(std::string_view key, int& value, Interval allowed, std::string_view) override {
+    Check(key, value, allowed);
+  }
+  void Seed(std::string_view, std::uint64_t&, std::string_view) override {}
+  void Flag(std::string_view, bool&, std::string_view) override {}
+  void Text(std::string_view, std::string&, std::string_view) override {}
+  void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
+               std::string_view) override {
+    CheckAll(key, values, allowed);
+  }
+  void Tuple(std::string_view key, std::span<double> values, Interval allowed,
+             std::string_view) override {
+    CheckAll(key, values, allowed);
+  }
+  void Rows(std::string_view key, std::vector<double>& values, std::size_t, Interval allowed,
+            std::string_view) override {
+    CheckAll(key, values, allowed);
+  }
+  void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
+               std::string_view) override {
+    CheckAll(key, values, allowed);
+  }
+
+ protected:
+  void ChoiceIndex(std::string_view, int&, const std::vector<std::string_view>&,
+                   std::string_view) override {}
+  bool Begin(std::string_view key, std::string_view) override {
+    lengths_.push_back(path_.size());
+    path_ += "." + std::string(key);
+    return true;
+  }
+  void End() override {
+    path_.resize(lengths_.back());
+    lengths_.pop_back();
+  }
+
+ private:
+  void Check(std::string_view key, double value, const Interval& allowed) const {
+    if (std::isfinite(value) && value >= allowed.low && value <= allowed.high) return;
+    throw InputError(path_ + "." + std::string(key),
+                     "is " + Shown(value) + ", must be " + depthgrid::Shown(allowed));
+  }
+  void CheckAll(std::string_view key, std::span<const double> values,
+                const Interval& allowed) const {
+    for (const double value : values) Check(key, value, allowed);
+  }
+
+  std::string path_;
+  std::vector<std::size_t> lengths_;  // of the path around each group that is open
+};
+
+}  // namespace
+
+std::string Shown(const Interval& interval) {
+  const bool low = std::isfinite(interval.low);
+  const bool high = std::isfinite(interval.high);
+  if (low && high) return "from " + Shown(interval.low) + " to " + Shown(interval.high);
+  if (low) return "at least " + Shown(interval.low);
+  if (high) return "at most " + Shown(interval.high);
+  return "a finite number";
+}
+
+namespace internal {
+std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& place) {
+  return std::make_unique<RangeCheck>(place);
+}
+}  // namespace internal
+
+}  // namespace depthgrid
