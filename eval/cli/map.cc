@@ -9,6 +9,7 @@
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
 #include "eval/output_folder.h"
+#include "eval/place_check.h"
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
 #include "eval/video_writer.h"
@@ -119,8 +120,8 @@ std::optional<PriorMap> OpenPrior(const MapArguments& arguments) {
 }
 
 // Where in the finished map the sequence begins.
-void FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& settings,
-                 std::vector<std::string>& warnings) {
+FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& settings,
+                       std::vector<std::string>& warnings) {
   // The paper's chain reads the last two submaps only: here one holds everything.
   settings.mapper.submap.scans = kAllScansInOneSubmap;
   const auto slam = ReadSlam(arguments, settings.sequence);
@@ -138,6 +139,24 @@ void FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& se
     warnings.push_back(arguments.map +
                        ": where in it the sequence begins is uncertain, another place "
                        "fits nearly as well");
+  }
+  return *start;
+}
+
+// A place in a finished map is a guess until what is seen there says the same.
+void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const FusionOptions& fusion,
+                const MappingRun& run, std::vector<std::string>& warnings) {
+  if (fusion.TrustsSlamAlone()) return;
+  if (const auto lost = FramesLost(run, arguments.localise)) {
+    warnings.push_back(fmt::format(
+        "{}: lost, of {} of {} hardly anything they show lies on the map; the "
+        "sequence is of another place, or begins elsewhere in it",
+        arguments.map, lost->lost, Counted(static_cast<std::size_t>(lost->frames), "frame")));
+  } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
+    warnings.push_back(fmt::format(
+        "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
+        "off: nothing that was seen ends there",
+        arguments.map, DegFromRad(start.unsure->direction_rad), start.unsure->reach_m));
   }
 }
 
@@ -262,7 +281,8 @@ void Map(const MapArguments& arguments) {
   std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, config, settings, warnings);
-  if (prior) FindStartIn(*prior, arguments, settings, warnings);
+  std::optional<FoundPlace> begin;
+  if (prior) begin = FindStartIn(*prior, arguments, settings, warnings);
   ProgressBar bar("mapping");
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
@@ -272,6 +292,7 @@ void Map(const MapArguments& arguments) {
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckMatches(arguments, settings.mapper.fusion, run, warnings);
+  if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   record.title = arguments.input;

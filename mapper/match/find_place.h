@@ -16,12 +16,20 @@ struct PlacedScan {
   Pose2 slam_from_base;
 };
 
+// A line through the place along which what is seen fits nearly as well: a plain wall.
+struct UnsureAlong {
+  double direction_rad = 0.0;  // in the map, 0 up to pi
+  double reach_m = 0.0;        // how far off the place may be, either way
+};
+
 struct FoundPlace {
   Pose2 map_from_slam;
   // 1 where every return lies on a wall of the map and comes there through free space.
   double score = 0.0;
   // That of the best place elsewhere (1 m or 30 degrees away): near `score`, the place is a guess.
   double second_score = 0.0;
+  // Empty where the place is known to some 0.1 m in every direction.
+  std::optional<UnsureAlong> unsure;
 };
 
 // Tries every free cell and heading, then refines the best. What is near to `guess` (SLAM's

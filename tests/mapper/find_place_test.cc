@@ -112,6 +112,19 @@ TEST(FindPlace, TheGuessDecidesBetweenTwins) {
   }
 }
 
+// In front of a plain wall all places along it look alike; a corner ends that.
+TEST(FindPlace, SaysAlongWhichLineThePlaceIsNotKnown) {
+  const Pose2 facing_a_wall{3.0, 1.0, -0.5 * kPi}, facing_a_corner{1.0, 1.0, -0.75 * kPi};
+  const auto wall = FindPlace(Drawn(), {ScanAt(facing_a_wall, {})}, Pose2{});
+  ASSERT_TRUE(wall && wall->unsure);
+  EXPECT_LT(std::abs(std::sin(wall->unsure->direction_rad)), std::sin(RadFromDeg(6.0)));
+  EXPECT_GT(wall->unsure->reach_m, 1.5);
+  EXPECT_LT(wall->unsure->reach_m, 4.0);
+  const auto corner = FindPlace(Drawn(), {ScanAt(facing_a_corner, {})}, Pose2{});
+  ASSERT_TRUE(corner);
+  EXPECT_FALSE(corner->unsure);
+}
+
 TEST(FindPlace, NothingToFind) {
   EXPECT_FALSE(FindPlace(Drawn(), {}, Pose2{}));
   EXPECT_FALSE(FindPlace(OccupancyMap(GridGeometry{0.05, {0, 0}, 20, 20}),

@@ -1,0 +1,64 @@
+#include "eval/place_check.h"
+
+#include <gtest/gtest.h>
+
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+// So many frames, each of which the map explains so much.
+MappingRun RunOf(int frames, double explained) {
+  MappingRun run;
+  for (int i = 0; i < frames; ++i) {
+    FrameReport report;
+    report.index = i;
+    report.beams = 600;
+    report.map_from_camera = CameraOf({}, 1.0);
+    report.match.found = true;
+    report.match.score = explained;
+    run.reports.push_back(report);
+  }
+  return run;
+}
+
+TEST(FramesLost, AreThoseOfWhichTheMapExplainsNextToNothing) {
+  MappingRun run = RunOf(20, 0.6);
+  EXPECT_FALSE(FramesLost(run, true));
+  run.reports[7].match.found = false;
+  EXPECT_FALSE(FramesLost(run, true));  // a single one happens
+  run.reports[8].match.score = 0.05;
+  const auto lost = FramesLost(run, true);
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->lost, 2);
+  EXPECT_EQ(lost->frames, 20);
+  EXPECT_FALSE(FramesLost(run, false));  // the first fits; the others may lie on new walls
+}
+
+TEST(FramesLost, WithoutAPoseOrAReturnNothingIsSaid) {
+  MappingRun run = RunOf(20, 0.0);
+  for (int i = 0; i < 10; ++i) run.reports[static_cast<std::size_t>(i)].map_from_camera.reset();
+  for (int i = 10; i < 19; ++i) run.reports[static_cast<std::size_t>(i)].beams = 0;
+  EXPECT_EQ(FramesLost(run, true)->frames, 1);
+  run.reports.pop_back();
+  EXPECT_FALSE(FramesLost(run, true));
+}
+
+// A robot that looks along the map's y axis at a wall knows how far off it is, y, and nothing of x.
+TEST(SeesAlong, WhatAMatchTellsIsTurnedIntoTheMap) {
+  const UnsureAlong x_axis{0.0, 1.0}, y_axis{0.5 * kPi, 1.0}, diagonal{0.25 * kPi, 1.0};
+  MappingRun run = RunOf(1, 0.6);
+  MatchResult& match = run.reports[0].match;
+  match.map_from_base.yaw_rad = 0.5 * kPi;
+  match.information.diagonal() << 1e6, 0.0, 1e6;
+  EXPECT_TRUE(SeesAlong(run, y_axis));
+  EXPECT_FALSE(SeesAlong(run, x_axis));
+  EXPECT_FALSE(SeesAlong(run, diagonal));
+  match.information(1, 1) = 1e6;
+  EXPECT_TRUE(SeesAlong(run, x_axis));
+  match.score = 0.1;  // a match at a wrong place
+  EXPECT_FALSE(SeesAlong(run, y_axis));
+}
+
+}  // namespace
+}  // namespace depthgrid
