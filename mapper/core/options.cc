@@ -55,7 +55,7 @@ class RangeCheck final : public OptionsVisitor {
                    std::string_view) override {}
   bool Begin(std::string_view key, std::string_view) override {
     lengths_.push_back(path_.size());
-    path_ += "." + std::string(key);
+    path_.append(".").append(key);
     return true;
   }
   void End() override {
