@@ -206,4 +206,14 @@ GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cell
   return part;
 }
 
+GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths) {
+  constexpr double kMarginM = 0.5;
+  const auto margin_cells = static_cast<int>(std::lround(kMarginM / map.geometry.resolution_m));
+  const GridGeometry known = KnownPart(map, margin_cells);
+  GridGeometry part = known;
+  // Each by its distance from what is known: no stray path draws another one in.
+  for (const Path& path : paths) part = Union(part, WithPath(known, path.poses, margin_cells));
+  return part;
+}
+
 }  // namespace depthgrid

@@ -38,6 +38,8 @@ GridGeometry KnownPart(const StateMap& map, int margin_cells);
 // `part` and the path with that margin: a camera may stand where it never saw the floor. Poses more
 // than a camera's range away from it are left out, so that no stray one makes a huge picture.
 GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells);
+// What a picture of the map with these paths shows: both, and half a metre around.
+GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths);
 
 namespace palette {
 // Distinguishable also with the common colour vision deficiencies (Okabe and Ito 2008).

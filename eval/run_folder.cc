@@ -22,8 +22,6 @@
 namespace depthgrid {
 namespace {
 
-constexpr int kMapMarginCells = 4;
-
 void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
   const MappingRun& run = *record.mapping;
   WriteTrajectory(folder.File("trajectory_slam.txt"), SlamTrajectory(run));
@@ -47,16 +45,13 @@ OccupancyMap MapOf(const MappingRun& run) {
 
 void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   const OccupancyMap map = MapOf(*record.mapping);
-  StateMap shown = StatesOf(map);
-  GridGeometry part = KnownPart(shown, kMapMarginCells);
   std::vector<Path> paths;
   if (record.truth != nullptr) {
-    part = Union(part, KnownPart(record.truth->map, kMapMarginCells));
     paths.push_back({"truth", palette::kTruth, record.truth->trajectory});
   }
   paths.push_back({"slam", palette::kSlam, SlamTrajectory(*record.mapping)});
   paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});
-  part = WithPath(part, paths.back().poses, kMapMarginCells);
+  const GridGeometry part = ShownPart(StatesOf(map), paths);
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
 }
 

@@ -131,5 +131,20 @@ TEST(MapPicture, TheCameraIsInThePicture) {
   EXPECT_EQ(WithPath(part, path, 2), (GridGeometry{0.05, {-7, -2}, 17, 12}));
 }
 
+// Of a large grid, mostly unknown, what is known and driven; the far end of a path that went astray
+// is left out.
+TEST(MapPicture, ShownIsWhatIsKnownAndThePathsHalfAMetreAround) {
+  StateMap map(GridGeometry{0.1, {-500, -500}, 1000, 1000});
+  map.states[map.geometry.Index({0, 0})] = CellState::kFree;
+  map.states[map.geometry.Index({9, 3})] = CellState::kOccupied;
+  const auto pose_at = [](double x_m, double y_m) {
+    return StampedPose{0.0, {Eigen::Quaterniond::Identity(), {x_m, y_m, 1.0}}};
+  };
+  EXPECT_EQ(ShownPart(map, {}), (GridGeometry{0.1, {-5, -5}, 20, 14}));
+  const std::vector<Path> paths = {{"a", {}, {pose_at(2.05, 0.05), pose_at(40.0, 0.0)}},
+                                   {"b", {}, {pose_at(0.05, -1.95)}}};
+  EXPECT_EQ(ShownPart(map, paths), (GridGeometry{0.1, {-5, -25}, 31, 34}));
+}
+
 }  // namespace
 }  // namespace depthgrid
