@@ -18,8 +18,8 @@ namespace depthgrid {
 enum class MapperMethod { kPaper, kSurfel };
 
 struct MapperOptions {
-  // Surfels err by a fifth to a fiftieth of what the paper's chain errs by (docs/results.md, "Laser
-  // logs").
+  // Surfels err by a fourth (rendered rooms) to a hundredth (laser logs) of what the paper's chain
+  // errs by (docs/results.md, "The paper's experiment" and "The paper's chain on laser logs").
   MapperMethod method = MapperMethod::kSurfel;
   ScanOptions scan;
   GridOptions grid;
