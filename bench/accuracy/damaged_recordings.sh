@@ -4,7 +4,7 @@
 # (docs/results.md, "Recordings damaged on purpose"). Needs awk, jq and ffmpeg.
 #   bench/accuracy/damaged_recordings.sh build/release/bin/depthgrid /tmp/damaged
 set -euo pipefail
-program=$1
+program=$(realpath "$1")
 folder=$2
 mkdir "$folder"
 cd "$folder"
