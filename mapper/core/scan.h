@@ -26,7 +26,8 @@ struct Beam {
 // Beams are ordered by increasing bearing. Their origin is base's origin.
 struct Scan {
   std::vector<Beam> beams;
-  double max_range_m = 0.0;  // the range limit the scan was made with; no hit lies beyond it
+  // The range limit the scan was made with; no hit lies beyond it. 0: unknown.
+  double max_range_m = 0.0;
 
   bool operator==(const Scan&) const = default;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/surfel/range_cutoff.h"
+
 namespace depthgrid {
 namespace {
 
@@ -21,9 +23,20 @@ constexpr double kReturnsLikeNoise = 4.0;
 // Of a line.
 constexpr double kFitted = 2.0;
 
+// Nearer the reach than this, in sigmas, too few returns are left to tell where the wall is.
+constexpr double kLeastSigmas = 0.5;
+// A line that noise drew nearer is corrected by too little at first.
+constexpr int kCorrections = 3;
+
+// How many sigmas the line lies before the sensor's reach at this return.
+double SigmasWithinReach(const ScanLine& line, const ScanReturn& r, double max_range_m) {
+  const double inverse_range = line.coefficients.dot(r.direction);
+  return (max_range_m * inverse_range - 1.0) / r.relative_sigma;
+}
+
 }  // namespace
 
-const std::vector<ScanLine>& ScanLineFinder::Find(const ScanReturns& returns) {
+const std::vector<ScanLine>& ScanLineFinder::Find(ScanReturns& returns) {
   Accumulate(returns);
   lines_.clear();
   for (const Span& run : returns.runs()) {
@@ -34,7 +47,9 @@ const std::vector<ScanLine>& ScanLineFinder::Find(const ScanReturns& returns) {
       if (span.size() < min_returns_) continue;
       const int split = BestSplit(span);
       if (split < 0) {
-        lines_.push_back(Fit(span, returns));
+        const ScanLine line = Fit(span, SumsOf(span), returns);
+        const std::optional<ScanLine> sound = correct_cutoff_ ? WithinReach(line, returns) : line;
+        if (sound) lines_.push_back(*sound);
       } else {
         stack_.push_back({split, span.end});
         stack_.push_back({span.begin, split});
@@ -57,20 +72,24 @@ void ScanLineFinder::Accumulate(const ScanReturns& returns) {
     if (last < n) window += returns[last].inverse_range;
     if (first > 0) window -= returns[first - 1].inverse_range;
     const double mean = window / (std::min(last, n - 1) - std::max(first, 0) + 1);
-    const ScanReturn& r = returns[i];
-    const double sigma = r.relative_sigma * mean;
-    const double w = 1.0 / (sigma * sigma);
-    const double wx = w * r.direction.x();
-    const double wy = w * r.direction.y();
-    const double u = r.inverse_range;
-    sum.xx += wx * r.direction.x();
-    sum.xy += wx * r.direction.y();
-    sum.yy += wy * r.direction.y();
-    sum.xu += wx * u;
-    sum.yu += wy * u;
-    sum.uu += w * u * u;
+    Add(returns[i], mean, sum);
     sums_[static_cast<std::size_t>(i) + 1] = sum;
   }
+}
+
+// `inverse_range`: what the return's noise is a share of.
+void ScanLineFinder::Add(const ScanReturn& r, double inverse_range, Sums& sums) {
+  const double sigma = r.relative_sigma * inverse_range;
+  const double w = r.information / (sigma * sigma);
+  const double wx = w * r.direction.x();
+  const double wy = w * r.direction.y();
+  const double u = r.inverse_range;
+  sums.xx += wx * r.direction.x();
+  sums.xy += wx * r.direction.y();
+  sums.yy += wy * r.direction.y();
+  sums.xu += wx * u;
+  sums.yu += wy * u;
+  sums.uu += w * u * u;
 }
 
 ScanLineFinder::Sums ScanLineFinder::SumsOf(Span span) const {
@@ -80,8 +99,7 @@ ScanLineFinder::Sums ScanLineFinder::SumsOf(Span span) const {
 }
 
 // The weighted squared error of the best line.
-double ScanLineFinder::Chi2(Span span) const {
-  const Sums s = SumsOf(span);
+double ScanLineFinder::Chi2(const Sums& s) {
   const double determinant = s.xx * s.yy - s.xy * s.xy;
   const double explained = s.yy * s.xu * s.xu - 2.0 * s.xy * s.xu * s.yu + s.xx * s.yu * s.yu;
   return s.uu - explained / determinant;
@@ -92,12 +110,12 @@ int ScanLineFinder::BestSplit(Span span) const {
   const int first = span.begin + min_returns_;
   const int last = span.end - min_returns_;
   if (first > last) return -1;
-  const double whole = Chi2(span);
+  const double whole = Chi2(SumsOf(span));
   if (whole < split_chi2_) return -1;
   int best = -1;
   double best_chi2 = whole - split_chi2_;
   const auto consider = [&](int k) {
-    const double chi2 = Chi2({span.begin, k}) + Chi2({k, span.end});
+    const double chi2 = Chi2(SumsOf({span.begin, k})) + Chi2(SumsOf({k, span.end}));
     if (chi2 >= best_chi2) return;
     best_chi2 = chi2;
     best = k;
@@ -112,12 +130,11 @@ int ScanLineFinder::BestSplit(Span span) const {
   return best;
 }
 
-ScanLine ScanLineFinder::Fit(Span span, const ScanReturns& returns) const {
+ScanLine ScanLineFinder::Fit(Span span, const Sums& s, const ScanReturns& returns) {
   // In axes turned to the middle of the span: 1/r = a cos + b sin, with the prior on b / a.
   const Eigen::Vector2d ahead =
       (returns[span.begin].direction + returns[span.end - 1].direction).normalized();
   const Eigen::Vector2d left(-ahead.y(), ahead.x());
-  const Sums s = SumsOf(span);
   Eigen::Matrix2d h;
   h << s.xx, s.xy, s.xy, s.yy;
   const Eigen::Vector2d g(s.xu, s.yu);
@@ -133,9 +150,39 @@ ScanLine ScanLineFinder::Fit(Span span, const ScanReturns& returns) const {
   // The variance of atan2(b, a), from the inverse of (aa ab; ab bb).
   const double length2 = a * a + b * b;
   const double variance = (b * b * bb + 2.0 * a * b * ab + a * a * aa) / determinant;
-  const double misfit =
-      (Chi2(span) + kReturnsLikeNoise) / (span.size() - kFitted + kReturnsLikeNoise);
+  const double misfit = (Chi2(s) + kReturnsLikeNoise) / (span.size() - kFitted + kReturnsLikeNoise);
   return {span, a * ahead + b * left, std::sqrt(variance) / length2, std::max(misfit, 1.0)};
+}
+
+// Of the line's returns near the sensor's reach only those are left that noise made short: what the
+// others would have added is given back to them, as far as that can be told. Little or nothing is
+// left of a line beyond the reach.
+std::optional<ScanLine> ScanLineFinder::WithinReach(const ScanLine& fitted,
+                                                    ScanReturns& returns) const {
+  if (!(returns.max_range_m() > 0.0)) return fitted;  // not known
+  ScanLine line = fitted;
+  const auto sigmas = [&](int i) {
+    return SigmasWithinReach(line, returns[i], returns.max_range_m());
+  };
+  for (int round = 0; round < kCorrections; ++round) {
+    Span span = line.span;
+    // A line is farthest at its ends.
+    if (sigmas(span.begin) > kUncutSigmas && sigmas(span.end - 1) > kUncutSigmas) break;
+    while (span.size() > 0 && sigmas(span.begin) < kLeastSigmas) ++span.begin;
+    while (span.size() > 0 && sigmas(span.end - 1) < kLeastSigmas) --span.end;
+    if (span.size() < min_returns_) return std::nullopt;
+    Sums sums;
+    for (int i = span.begin; i < span.end; ++i) {
+      ScanReturn& r = returns[i];
+      const double inverse_range = line.coefficients.dot(r.direction);
+      const RangeCutoff cutoff = CutoffAt(sigmas(i));
+      r.inverse_range = 1.0 / (r.range_m + cutoff.shortfall * r.relative_sigma / inverse_range);
+      r.information = cutoff.information;
+      Add(r, inverse_range, sums);
+    }
+    line = Fit(span, sums, returns);
+  }
+  return line;
 }
 
 }  // namespace depthgrid

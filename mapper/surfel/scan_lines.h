@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "mapper/surfel/scan_returns.h"
@@ -21,12 +22,13 @@ struct ScanLine {
 class ScanLineFinder {
  public:
   // `split_chi2`: a gain of fit this large makes two lines of one. Lines have at least
-  // `min_returns`.
-  ScanLineFinder(double split_chi2, int min_returns)
-      : split_chi2_(split_chi2), min_returns_(min_returns) {}
+  // `min_returns`. `correct_cutoff`: whether returns near the sensor's reach are corrected for
+  // those that are missing (range_cutoff.h).
+  ScanLineFinder(double split_chi2, int min_returns, bool correct_cutoff)
+      : split_chi2_(split_chi2), min_returns_(min_returns), correct_cutoff_(correct_cutoff) {}
 
-  // In order of bearing; valid until the next call.
-  const std::vector<ScanLine>& Find(const ScanReturns& returns);
+  // In order of bearing; valid until the next call. Corrects `returns`.
+  const std::vector<ScanLine>& Find(ScanReturns& returns);
 
  private:
   // Weighted sums over returns: the normal equations of a line fit and its error.
@@ -34,14 +36,17 @@ class ScanLineFinder {
     double xx = 0, xy = 0, yy = 0, xu = 0, yu = 0, uu = 0;
   };
 
+  static void Add(const ScanReturn& r, double inverse_range, Sums& sums);
+  static double Chi2(const Sums& sums);
   void Accumulate(const ScanReturns& returns);
   Sums SumsOf(Span span) const;
-  double Chi2(Span span) const;
   int BestSplit(Span span) const;
-  ScanLine Fit(Span span, const ScanReturns& returns) const;
+  static ScanLine Fit(Span span, const Sums& sums, const ScanReturns& returns);
+  std::optional<ScanLine> WithinReach(const ScanLine& fitted, ScanReturns& returns) const;
 
   double split_chi2_;
   int min_returns_;
+  bool correct_cutoff_;
   std::vector<Sums> sums_;  // before each return
   std::vector<Span> stack_;
   std::vector<ScanLine> lines_;

@@ -19,6 +19,7 @@ constexpr double kNoiseLookupShare = 0.1;
 void ScanReturns::Read(const Scan& scan, const RangeNoise& noise) {
   LearnDirections(scan);
   returns_.clear();
+  max_range_m_ = scan.max_range_m;
   double looked_up_m = 0.0;
   double relative_sigma = 0.0;
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
@@ -28,7 +29,8 @@ void ScanReturns::Read(const Scan& scan, const RangeNoise& noise) {
       looked_up_m = range_m;
       relative_sigma = noise.RelativeSigma(range_m);
     }
-    returns_.push_back({bearings_rad_[i], directions_[i], 1.0 / range_m, relative_sigma});
+    returns_.push_back(
+        {bearings_rad_[i], directions_[i], range_m, 1.0 / range_m, relative_sigma, 1.0});
   }
   DropLoneOutliers();
   Cut();

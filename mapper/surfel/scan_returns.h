@@ -19,8 +19,10 @@ struct Span {
 struct ScanReturn {
   double bearing_rad = 0.0;
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
-  double inverse_range = 0.0;   // 1/m
+  double range_m = 0.0;         // as measured
+  double inverse_range = 0.0;   // 1/m; near the sensor's reach corrected for what it cut off
   double relative_sigma = 0.0;  // of the range, and so of its inverse
+  double information = 1.0;     // as a share of that of a return far from the sensor's reach
 };
 
 class ScanReturns {
@@ -32,8 +34,10 @@ class ScanReturns {
 
   int size() const { return static_cast<int>(returns_.size()); }
   const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
+  ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
   double step_rad() const { return step_rad_; }  // mean angle between beams
+  double max_range_m() const { return max_range_m_; }
 
  private:
   void LearnDirections(const Scan& scan);
@@ -45,6 +49,7 @@ class ScanReturns {
   std::vector<float> bearings_rad_;  // those the directions were computed for
   std::vector<Eigen::Vector2d> directions_;
   double step_rad_ = 1.0;
+  double max_range_m_ = 0.0;
   std::vector<ScanReturn> returns_;
   std::vector<Span> runs_;
 };

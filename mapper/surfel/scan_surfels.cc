@@ -15,6 +15,9 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("min_line_beams", min_line_beams, {3, 1000}, "shorter pieces are left out");
   v.Flag("judge_fit", judge_fit,
          "whether a line that fits its beams worse than their noise explains is believed less");
+  v.Flag(
+      "correct_cutoff", correct_cutoff,
+      "whether returns near the sensor's reach are corrected for those that noise pushed beyond");
 }
 
 std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise,
@@ -59,7 +62,7 @@ Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   for (int i = span.begin; i < span.end; ++i) {
     const ScanReturn& r = returns_[i];
     share += r.inverse_range / line.coefficients.dot(r.direction);
-    variance += r.relative_sigma * r.relative_sigma;
+    variance += r.relative_sigma * r.relative_sigma / r.information;
     direction += r.direction;
   }
   const double count = span.size();

@@ -19,6 +19,8 @@ struct ScanSurfelOptions {
   int min_line_beams = 4;
   // Surfels of a line that fits its beams badly are believed less.
   bool judge_fit = true;
+  // Returns near the sensor's reach are corrected for those that noise pushed beyond it.
+  bool correct_cutoff = true;
 
   void Visit(OptionsVisitor& v);
 };
@@ -28,7 +30,7 @@ class ScanSurfelMaker {
   explicit ScanSurfelMaker(const ScanSurfelOptions& options)
       : options_(options),
         returns_(options.jump_sigmas),
-        lines_(options.split_chi2, options.min_line_beams) {}
+        lines_(options.split_chi2, options.min_line_beams, options.correct_cutoff) {}
 
   // `memory`: of an earlier result, to be used again.
   std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise,
