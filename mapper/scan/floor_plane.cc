@@ -157,6 +157,7 @@ std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& p
   FloorPlane found;
   found.up = Eigen::Vector3d(-plane[1], -plane[2], 1.0).normalized();
   found.height_m = -plane[0] * found.up.z();
+  found.points = sums.used;
   return found;
 }
 

@@ -67,6 +67,7 @@ struct FloorPrior {
 struct FloorPlane {
   double height_m = 0.0;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  int points = 0;  // that lie on it
 };
 std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& prior);
 

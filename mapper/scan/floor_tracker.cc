@@ -27,6 +27,11 @@ constexpr double kStepSigmaM = 0.03;
 constexpr double kStepSigmaRad = RadFromDeg(0.3);
 constexpr double kFirstSigmaM = 0.1;
 constexpr double kFirstSigmaRad = RadFromDeg(2.0);
+// What is known from the frame before narrows the fit, and a plane that lags behind SLAM's tilt
+// sees no more than the points that agree with it. So every so often the floor is looked for as if
+// nothing was known of it, and taken where so many times as many points lie on that plane.
+constexpr int kFramesToLookAnew = 4;
+constexpr double kMorePoints = 1.1;
 
 }  // namespace
 
@@ -82,7 +87,11 @@ void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera
   if (!seen_ || std::abs(*height_m - expected.height_m) > kNearM) {
     prior = {*height_m, kFirstSigmaM, kFirstSigmaRad};
   }
-  const std::optional<FloorPlane> plane = FitFloor(memory_, prior);
+  std::optional<FloorPlane> plane = FitFloor(memory_, prior);
+  if (++looks_ % kFramesToLookAnew == 0) {
+    const auto anew = FitFloor(memory_, {*height_m, kFirstSigmaM, kFirstSigmaRad});
+    if (anew && (!plane || anew->points > kMorePoints * plane->points)) plane = anew;
+  }
   if (!plane) return;
   const Eigen::Quaterniond slam_from_level =
       slam_from_camera.rotation * expected.level_from_camera.conjugate();

@@ -40,6 +40,7 @@ class FloorTracker {
   // A surface where no floor was expected: how much higher, and in how many frames in a row.
   double other_higher_m_ = 0.0;
   int other_frames_ = 0;
+  int looks_ = 0;
   std::optional<double> height_m_;  // of the last frame, once the floor was seen
   LevelPoints memory_;
 };
