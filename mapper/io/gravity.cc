@@ -142,6 +142,7 @@ Eigen::Vector3d NormalOf(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& 
 struct Direction {
   Eigen::Vector3d up;
   double wander_rad = 0.0;
+  bool drifts = false;
 };
 
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -151,13 +152,14 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 // Up as the first images have it: SLAM's world was defined there, and its tilt drifts with time.
 // The middle one of their normals, so that a slanted surface in one of them does no harm, and of
 // the larger surfaces only.
-Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
+Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up,
+                        std::size_t most_views) {
   std::vector<double> sizes;
   sizes.reserve(fits.size());
   for (const PlaneFit& fit : fits) sizes.push_back(static_cast<double>(fit.points));
   const double usual = UpperMedian(sizes);
   std::erase_if(fits, [&](const PlaneFit& f) { return static_cast<double>(f.points) < usual; });
-  fits.resize(std::min(fits.size(), kFirstViews));
+  fits.resize(std::min(fits.size(), most_views));
   Eigen::Vector3d middle = up;
   double least_rad = std::numeric_limits<double>::infinity();
   for (const PlaneFit& fit : fits) {
@@ -171,35 +173,77 @@ Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up) {
   return middle;
 }
 
+// The largest level surface of each image that sees one.
+template <typename Views>
+std::vector<PlaneFit> LargestLevels(const Views& views, const Eigen::Vector3d& up, double band_m) {
+  std::vector<PlaneFit> fits;
+  for (const auto& view : views) {
+    const std::vector<Eigen::Vector3d> level = LevelPoints(view.patches, up);
+    if (level.size() < kMinViewPatches) continue;
+    const PlaneFit fit = FitNear(level, up, Levels(level, up).FullestM(), band_m);
+    if (fit.points >= kMinViewPatches) fits.push_back(fit);
+  }
+  return fits;
+}
+
 // Up as the common normal of the largest level surface of each image. Every image's surface has a
 // height of its own: a table's is as level as the floor, and SLAM's height drifts (0.6 m of drift
 // tilted one plane through all of it by 2.9 degrees).
+struct CommonLevel {
+  Eigen::Vector3d up;
+  std::vector<PlaneFit> fits;  // of the images that see a level surface; none: nothing is known
+};
+
 template <typename Views>
-std::optional<Direction> CommonUp(const Views& views, Eigen::Vector3d up) {
-  std::vector<PlaneFit> fits;
+CommonLevel FitCommonLevel(const Views& views, const Eigen::Vector3d& about_up) {
+  CommonLevel level{about_up, {}};
   for (const double band_m : kFitBandM) {
-    fits.clear();
+    level.fits = LargestLevels(views, level.up, band_m);
+    if (level.fits.empty()) break;
     Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-    for (const auto& view : views) {
-      const std::vector<Eigen::Vector3d> level = LevelPoints(view.patches, up);
-      if (level.size() < kMinViewPatches) continue;
-      const PlaneFit fit = FitNear(level, up, Levels(level, up).FullestM(), band_m);
-      if (fit.points < kMinViewPatches) continue;
-      scatter += fit.scatter;
-      fits.push_back(fit);
-    }
-    if (fits.empty()) return {};
-    up = NormalOf(scatter, up);
+    for (const PlaneFit& fit : level.fits) scatter += fit.scatter;
+    level.up = NormalOf(scatter, level.up);
   }
+  return level;
+}
+
+template <typename Views>
+auto PatchesOf(const Views& views) {
+  auto patches = views.front().patches;
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    patches.insert(patches.end(), views[i].patches.begin(), views[i].patches.end());
+  }
+  return patches;
+}
+
+// Where SLAM's tilt drifts: as the recording's first images have it if they see a floor, otherwise
+// the first of those spread over it that do.
+template <typename Views>
+Eigen::Vector3d FirstUpOf(const Views& first_views, const CommonLevel& spread) {
+  if (!first_views.empty()) {
+    const auto patches = PatchesOf(first_views);
+    if (patches.size() >= kMinFloorPatches) {
+      const CommonLevel first = FitCommonLevel(first_views, CommonNormal(patches));
+      if (first.fits.size() >= kFirstViews) return FirstUp(first.fits, first.up, first.fits.size());
+    }
+  }
+  return FirstUp(spread.fits, spread.up, kFirstViews);
+}
+
+template <typename Views>
+std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
+                                  const Eigen::Vector3d& about_up) {
+  const CommonLevel level = FitCommonLevel(views, about_up);
+  if (level.fits.empty()) return {};
   std::vector<double> angles_rad;
-  for (const PlaneFit& fit : fits) {
-    angles_rad.push_back(AngleBetween(up, NormalOf(fit.scatter, up)));
+  for (const PlaneFit& fit : level.fits) {
+    angles_rad.push_back(AngleBetween(level.up, NormalOf(fit.scatter, level.up)));
   }
   std::sort(angles_rad.begin(), angles_rad.end());
-  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(fits.size()));
-  const double wander_rad = angles_rad[std::min(rank, fits.size() - 1)];
+  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(angles_rad.size()));
+  const double wander_rad = angles_rad[std::min(rank, angles_rad.size() - 1)];
   const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad;
-  return Direction{drifts ? FirstUp(fits, up) : up, wander_rad};
+  return Direction{drifts ? FirstUpOf(first_views, level) : level.up, wander_rad, drifts};
 }
 
 struct FloorOfViews {
@@ -207,43 +251,79 @@ struct FloorOfViews {
   double camera_height_m = 0.0;
 };
 
-// The floor is the lowest of all surfaces where the images agree on it, and the camera's height is
-// that above it. With SLAM's height drifting it is where the first images have it, and the camera's
-// height is that above each image's own lowest surface.
+// Each image's own lowest surface.
 template <typename Views>
-FloorOfViews FloorUnder(const Views& views, const std::vector<Eigen::Vector3d>& level,
-                        const Eigen::Vector3d& up) {
-  const double lowest_m = Levels(level, up).LowestM();
-  std::vector<double> floors_m, above_own_m, above_lowest_m;
+std::vector<FloorOfViews> OwnFloors(const Views& views, const Eigen::Vector3d& up) {
+  std::vector<FloorOfViews> floors;
   for (const auto& view : views) {
-    const double camera_m = up.dot(view.camera);
-    above_lowest_m.push_back(camera_m - lowest_m);
     const std::vector<Eigen::Vector3d> own = LevelPoints(view.patches, up);
     if (own.size() < kMinViewPatches) continue;
     const double own_m = Levels(own, up).LowestM();
     const PlaneFit fit = FitNear(own, up, own_m, kHeightBinM);
-    floors_m.push_back(fit.points > 0 ? up.dot(fit.mean) : own_m);
-    above_own_m.push_back(camera_m - floors_m.back());
+    const double floor_m = fit.points > 0 ? up.dot(fit.mean) : own_m;
+    floors.push_back({floor_m, up.dot(view.camera) - floor_m});
   }
-  const auto agreeing = std::count_if(floors_m.begin(), floors_m.end(), [&](double floor_m) {
-    return std::abs(floor_m - lowest_m) <= kAgreeM;
+  return floors;
+}
+
+double MiddleOf(const std::vector<FloorOfViews>& floors, double FloorOfViews::*number) {
+  std::vector<double> numbers;
+  for (const FloorOfViews& floor : floors) numbers.push_back(floor.*number);
+  return UpperMedian(numbers);
+}
+
+// The floor is the lowest of all surfaces where the images agree on it, and the camera's height is
+// that above it. With SLAM's height drifting it is where the first images have it, and the camera's
+// height is that above each image's own lowest surface.
+template <typename Views>
+FloorOfViews FloorUnder(const Views& views, const Views& first_views,
+                        const std::vector<Eigen::Vector3d>& level, const Eigen::Vector3d& up) {
+  const double lowest_m = Levels(level, up).LowestM();
+  const std::vector<FloorOfViews> own = OwnFloors(views, up);
+  const auto agreeing = std::count_if(own.begin(), own.end(), [&](const FloorOfViews& floor) {
+    return std::abs(floor.height_m - lowest_m) <= kAgreeM;
   });
-  if (!floors_m.empty() &&
-      static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(floors_m.size())) {
-    floors_m.resize(std::min(floors_m.size(), kFirstViews));
-    return {UpperMedian(floors_m), UpperMedian(above_own_m)};
+  if (!own.empty() &&
+      static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(own.size())) {
+    std::vector<FloorOfViews> first = OwnFloors(first_views, up);
+    if (first.size() < kFirstViews) first = own;
+    first.resize(std::min(first.size(), kFirstViews));
+    return {MiddleOf(first, &FloorOfViews::height_m),
+            MiddleOf(own, &FloorOfViews::camera_height_m)};
   }
   const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
-  return {floor_m, UpperMedian(above_lowest_m) + lowest_m - floor_m};
+  std::vector<double> cameras_m;
+  for (const auto& view : views) cameras_m.push_back(up.dot(view.camera) - floor_m);
+  return {floor_m, UpperMedian(cameras_m)};
+}
+
+// Of each view what faces upwards.
+template <typename Views>
+Views Upward(Views views, const Eigen::Vector3d& image_up) {
+  for (auto& view : views) {
+    std::erase_if(view.patches,
+                  [&](const auto& patch) { return patch.normal.dot(image_up) <= kMaxFromImageUp; });
+  }
+  return views;
 }
 
 }  // namespace
 
 void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
                         const Pose3& world_from_camera) {
-  View& view = views_.emplace_back();
-  view.camera = world_from_camera.translation;
+  views_.push_back(ViewOf(image, camera, world_from_camera));
   image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
+}
+
+void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camera,
+                             const Pose3& world_from_camera) {
+  first_views_.push_back(ViewOf(image, camera, world_from_camera));
+}
+
+GravityFinder::View GravityFinder::ViewOf(const DepthImage& image, const PinholeCamera& camera,
+                                          const Pose3& world_from_camera) {
+  View view;
+  view.camera = world_from_camera.translation;
   const int step_px = std::max(1, image.width_px / kPatchesAcross);
   const int base_px = std::max(2, static_cast<int>(kBaselineShare * image.width_px));
   const auto point_at = [&](int u, int v) { return Unproject(camera, u, v, image.At(u, v)); };
@@ -265,33 +345,28 @@ void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
           {world_from_camera * point_at(u, v), world_from_camera.rotation * normal});
     }
   }
+  return view;
 }
 
 std::optional<Gravity> GravityFinder::Find() const {
   if (views_.empty() || image_up_.norm() == 0.0) return {};
   const Eigen::Vector3d image_up = image_up_.normalized();
-  std::vector<View> upward;
-  std::vector<Patch> together;
+  const std::vector<View> upward = Upward(views_, image_up);
+  const std::vector<View> first_upward = Upward(first_views_, image_up);
   std::size_t patches = 0;
-  for (const View& view : views_) {
-    patches += view.patches.size();
-    View& kept = upward.emplace_back();
-    kept.camera = view.camera;
-    for (const Patch& patch : view.patches) {
-      if (patch.normal.dot(image_up) > kMaxFromImageUp) kept.patches.push_back(patch);
-    }
-    together.insert(together.end(), kept.patches.begin(), kept.patches.end());
-  }
+  for (const View& view : views_) patches += view.patches.size();
+  const std::vector<Patch> together = PatchesOf(upward);
   const std::size_t needed = std::max(
       kMinFloorPatches, static_cast<std::size_t>(kMinFloorShare * static_cast<double>(patches)));
   if (together.size() < needed) return {};
-  const auto direction = CommonUp(upward, CommonNormal(together));
+  const auto direction = CommonUp(upward, first_upward, CommonNormal(together));
   if (!direction) return {};
   const std::vector<Eigen::Vector3d> level = LevelPoints(together, direction->up);
   if (level.size() < needed) return {};
-  const FloorOfViews floor = FloorUnder(upward, level, direction->up);
+  const FloorOfViews floor = FloorUnder(upward, first_upward, level, direction->up);
   if (floor.camera_height_m <= 0.0) return {};
-  return Gravity{direction->up, direction->wander_rad, floor.height_m, floor.camera_height_m};
+  return Gravity{direction->up, direction->wander_rad, direction->drifts, floor.height_m,
+                 floor.camera_height_m};
 }
 
 }  // namespace depthgrid

@@ -17,6 +17,8 @@ struct Gravity {
   // By how much up differs from image to image: SLAM's tilt wanders and normals have errors. Nine
   // of ten images are nearer.
   double wander_rad = 0.0;
+  // More than normals' errors explain: SLAM's tilt drifts, and up is as the first images have it.
+  bool drifts = false;
   // Of the floor along `up`: up . point. Where SLAM's height drifts so much that the images do not
   // agree on one floor, as the first images have it.
   double floor_m = 0.0;
@@ -27,6 +29,10 @@ class GravityFinder {
  public:
   // An undistorted image of the recording; a dozen spread over it are enough.
   void Add(const DepthImage& image, const PinholeCamera& camera, const Pose3& world_from_camera);
+  // One of the recording's first, in order of time: where SLAM's tilt drifts, its world is level as
+  // these have it. Images given to Add() may be given too.
+  void AddFirst(const DepthImage& image, const PinholeCamera& camera,
+                const Pose3& world_from_camera);
 
   // Nothing when no plane below the cameras is large enough. Assumes that images are upright
   // within 50 degrees on average (not portrait).
@@ -41,7 +47,11 @@ class GravityFinder {
     Eigen::Vector3d camera;  // its position
     std::vector<Patch> patches;
   };
+  static View ViewOf(const DepthImage& image, const PinholeCamera& camera,
+                     const Pose3& world_from_camera);
+
   std::vector<View> views_;
+  std::vector<View> first_views_;
   Eigen::Vector3d image_up_ = Eigen::Vector3d::Zero();  // sum over the frames, in the world
 };
 

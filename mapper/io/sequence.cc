@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
@@ -22,6 +23,11 @@ namespace fs = std::filesystem;
 
 // Images looked at for gravity.
 constexpr int kGravityViews = 24;
+// Between the first two of them: what is level before SLAM drifts.
+constexpr int kFirstGravityViews = 8;
+// Where SLAM's tilt drifts, what one place's floor says of up is off by 1.5 degrees; and a world as
+// little tilted is levelled from image to image (FloorTracker).
+constexpr double kDriftingAxisRad = RadFromDeg(3.0);
 // Pairs of images that poses are checked by, and how far apart: much of what they show is the same,
 // and the camera has turned by more than SLAM errs.
 constexpr std::size_t kCheckedPairs = 24;
@@ -108,19 +114,30 @@ void FindCorrections(const std::string& path, DepthSequence& sequence,
   StartEpochs(jumps, slam.live);
 }
 
-// From a few images spread over the recording.
+// From a few images spread over the recording, and some of its first.
 std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
-  Recording spread = sequence.recording;
-  spread.images.clear();
+  Recording chosen = sequence.recording;
+  chosen.images.clear();
   const auto& images = sequence.recording.images;
   const std::size_t every = std::max<std::size_t>(1, images.size() / kGravityViews);
-  for (std::size_t i = 0; i < images.size(); i += every) spread.images.push_back(images[i]);
+  const std::size_t every_first = std::max<std::size_t>(1, every / kFirstGravityViews);
+  std::set<double> spread_s;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const bool spread = i % every == 0;
+    if (!spread && !(i < every && i % every_first == 0)) continue;
+    chosen.images.push_back(images[i]);
+    if (spread) spread_s.insert(images[i].stamp_s);
+  }
   GravityFinder finder;
   try {
-    const auto source = OpenRecording(std::move(spread), sequence.slam, options, sequence.reader);
+    const auto source = OpenRecording(std::move(chosen), sequence.slam, options, sequence.reader);
+    const double first_end_s =
+        images.empty() ? 0.0 : images[std::min(every, images.size() - 1)].stamp_s;
     while (const auto frame = source->Next()) {
       if (!frame->depth || !frame->slam_from_camera) continue;
-      finder.Add(*frame->depth, *source->Camera(), *frame->slam_from_camera);
+      const Pose3& pose = *frame->slam_from_camera;
+      if (spread_s.contains(frame->stamp_s)) finder.Add(*frame->depth, *source->Camera(), pose);
+      if (frame->stamp_s < first_end_s) finder.AddFirst(*frame->depth, *source->Camera(), pose);
     }
   } catch (const InputError&) {
     return {};  // what is wrong with the recording is said when the whole of it is opened
@@ -174,7 +191,9 @@ Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& op
         fmt::format("no floor seen in the images, taking {} as up", NameOf(sequence.usual_up)));
     return AxisOf(sequence.usual_up);
   }
-  const WorldUp axis = NearestAxis(gravity->up_in_world, gravity->wander_rad);
+  const double unsure_rad =
+      gravity->drifts ? std::max(gravity->wander_rad, kDriftingAxisRad) : gravity->wander_rad;
+  const WorldUp axis = NearestAxis(gravity->up_in_world, unsure_rad);
   const Eigen::Vector3d up = axis == WorldUp::kAuto ? gravity->up_in_world : AxisOf(axis);
   result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
   const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));
