@@ -41,6 +41,9 @@ constexpr std::size_t kFirstViews = 3;
 // Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
 // all that some see); more is SLAM's drift.
 constexpr double kDriftRad = RadFromDeg(0.8);
+// Or the first images' floor is as much off from what all agree on: SLAM's tilt drifted at first
+// and then no more. What one place's floor says of up is off by up to 1.5 degrees.
+constexpr double kFirstOffRad = RadFromDeg(2.0);
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
@@ -216,18 +219,15 @@ auto PatchesOf(const Views& views) {
   return patches;
 }
 
-// Where SLAM's tilt drifts: as the recording's first images have it if they see a floor, otherwise
-// the first of those spread over it that do.
+// As the recording's first images have it, if they see a floor.
 template <typename Views>
-Eigen::Vector3d FirstUpOf(const Views& first_views, const CommonLevel& spread) {
-  if (!first_views.empty()) {
-    const auto patches = PatchesOf(first_views);
-    if (patches.size() >= kMinFloorPatches) {
-      const CommonLevel first = FitCommonLevel(first_views, CommonNormal(patches));
-      if (first.fits.size() >= kFirstViews) return FirstUp(first.fits, first.up, first.fits.size());
-    }
-  }
-  return FirstUp(spread.fits, spread.up, kFirstViews);
+std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
+  if (first_views.empty()) return {};
+  const auto patches = PatchesOf(first_views);
+  if (patches.size() < kMinFloorPatches) return {};
+  const CommonLevel first = FitCommonLevel(first_views, CommonNormal(patches));
+  if (first.fits.size() < kFirstViews) return {};
+  return FirstUp(first.fits, first.up, first.fits.size());
 }
 
 template <typename Views>
@@ -242,8 +242,12 @@ std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
   std::sort(angles_rad.begin(), angles_rad.end());
   const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(angles_rad.size()));
   const double wander_rad = angles_rad[std::min(rank, angles_rad.size() - 1)];
-  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad;
-  return Direction{drifts ? FirstUpOf(first_views, level) : level.up, wander_rad, drifts};
+  const std::optional<Eigen::Vector3d> first = UpAtFirst(first_views);
+  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad ||
+                      (first && AngleBetween(level.up, *first) > kFirstOffRad);
+  if (!drifts) return Direction{level.up, wander_rad, false};
+  // Otherwise as the first of those spread over it that see one.
+  return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
 }
 
 struct FloorOfViews {
