@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bench/accuracy/laser_run.h"
+#include "bench/guarded_main.h"
 #include "eval/consistency.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
@@ -123,7 +124,8 @@ void PrintConsistency(const char* name, const std::vector<Run>& runs,
 }
 }  // namespace
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
   CLI::App app;
   std::vector<std::string> worlds, sets;
   LaserOptions laser;
@@ -197,4 +199,8 @@ int main(int argc, char** argv) {
     PrintConsistency("NIS", runs, &Run::nis);
     PrintConsistency("NEES", runs, &Run::nees);
   }
+  return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/accuracy/laser_run.h"
+#include "bench/guarded_main.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
@@ -86,7 +87,8 @@ Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Driv
 
 }  // namespace
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
   CLI::App app("A run whose SLAM is lost for a while and comes back elsewhere");
   std::string world_name;
   std::vector<std::string> sets;
@@ -122,4 +124,8 @@ int main(int argc, char** argv) {
           o.worst_ms);
     }
   }
+  return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

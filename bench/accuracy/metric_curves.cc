@@ -6,6 +6,7 @@
 
 #include <iterator>
 
+#include "bench/guarded_main.h"
 #include "mapper/io/file.h"
 
 namespace depthgrid {
@@ -88,7 +89,8 @@ std::string Svg(const std::vector<Curve>& curves) {
 }  // namespace
 }  // namespace depthgrid
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
   if (argc != 2) {
     fmt::print(stderr, "usage: metric_curves FOLDER\n");
     return 2;
@@ -99,3 +101,6 @@ int main(int argc, char** argv) {
   depthgrid::WriteFile(folder + "/metric_curves.svg", depthgrid::Svg(curves));
   return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

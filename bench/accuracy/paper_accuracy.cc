@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "bench/guarded_main.h"
 #include "eval/joint_runs.h"
 #include "eval/metrics/statistics.h"
 #include "eval/shipped.h"
@@ -119,7 +120,8 @@ void PrintSummary(const std::vector<Key>& keys, const std::map<Key, std::vector<
 
 }  // namespace
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
   CLI::App app;
   std::string study_name = "paper";
   std::vector<std::string> variant_texts, sets, only;
@@ -187,4 +189,8 @@ int main(int argc, char** argv) {
     }
   }
   PrintSummary(order, rows);
+  return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "bench/guarded_main.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
@@ -241,7 +242,8 @@ void Walk(double floor_m, int frames, const Settings& settings) {
 }  // namespace
 }  // namespace depthgrid
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
   depthgrid::Settings settings;
   bool no_finish = false;
   std::vector<std::string> sets;
@@ -275,4 +277,8 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
     depthgrid::Walk(floors[i], frames[i], settings);
   }
+  return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

@@ -1,0 +1,21 @@
+// The main of a measuring program: a mistake in what it was given is one line and exit code 2, as
+// with depthgrid itself.
+#pragma once
+
+#include <cstdio>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+
+template <typename Program>
+int GuardedMain(Program program, int argc, char** argv) {
+  try {
+    return program(argc, argv);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 2;
+  }
+}
+
+}  // namespace depthgrid
