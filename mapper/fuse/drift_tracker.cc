@@ -10,6 +10,10 @@ namespace {
 // Until something is learnt matches are believed: a prior that drifts would drag the young map
 // along, and what the first frames draw is never put right online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
+// As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
+// follows the prior agrees with it): so long, and this share of the first walk at least.
+constexpr int kUnconfirmedMotions = 200;
+constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
 // (docs/tried.md, "Settings on laser logs").
@@ -118,7 +122,12 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound() {
-  if (!spread_) return;
+  if (!spread_) {
+    if (learner_.motions() < kUnconfirmedMotions) {
+      noise_.walk = noise_.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
+    }
+    return;
+  }
   const double root = std::sqrt(spread_->frames);
   const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
   noise_.bias = noise_.bias.cwiseMin(most);

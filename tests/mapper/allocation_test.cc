@@ -125,6 +125,7 @@ double AllocationsAFrame(const MapperOptions& options, std::vector<Frame> round)
 MapperOptions PaperOptions() {
   MapperOptions options;
   options.method = MapperMethod::kPaper;
+  options.fusion.mode = FusionMode::kFixed;  // as it ships
   return options;
 }
 

@@ -94,7 +94,11 @@ TEST(DriftTracker, BelievesThePriorNoMoreThanAnAdjustmentDoes) {
   DriftTracker tracker;
   Pose2 slam;
   // SLAM creeps, but the matches are made against a map that creeps along: they agree with it.
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 400; ++i) {
+    if (i == 150) {
+      // That is not believed at first.
+      EXPECT_GT(tracker.noise().walk.minCoeff(), 0.001);
+    }
     slam = slam * Pose2{0.001, 0.0, 0.0};
     MatchResult match;
     match.found = true;
