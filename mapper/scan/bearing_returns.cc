@@ -23,6 +23,7 @@ using internal::kGroupRows;
 using internal::kSkipped;
 
 using Lanes = ReturnsMemory::Lanes;
+constexpr std::size_t kFloatsPerLanes = sizeof(Lanes) / sizeof(float);
 constexpr std::size_t kLanesPerRow = sizeof(BlockLane) / sizeof(Lanes);
 
 std::size_t LanesOf(const BearingBlock& block) {
@@ -30,8 +31,7 @@ std::size_t LanesOf(const BearingBlock& block) {
 }
 
 // Room for the samples and the smallest ones of a block.
-BandSamples RoomAt(const BearingBlock& block, Lanes* lanes) {
-  float* const samples = lanes->lane;
+BandSamples RoomAt(const BearingBlock& block, float* samples) {
   float* const nearest = samples + block.RowCount() * kBlockBearings;
   return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
@@ -151,11 +151,11 @@ void LayOut(std::span<const BearingLineBlock> lines, const ReturnLimits& limits,
     lanes += 2 * LanesOf(stripe.blocks[b]);
   }
   if (memory.size() < lanes) memory.resize(lanes);
-  Lanes* room = memory.data();
+  float* room = memory.empty() ? nullptr : memory.front().lane;  // none while no block has rows
   for (std::size_t b = 0; b < stripe.size; ++b) {
     for (BandFound* band : {&stripe.found[b].band, &stripe.found[b].slice}) {
       band->samples = RoomAt(stripe.blocks[b], room);
-      room += LanesOf(stripe.blocks[b]);
+      room += LanesOf(stripe.blocks[b]) * kFloatsPerLanes;
     }
   }
 }
