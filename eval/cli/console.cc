@@ -26,20 +26,24 @@ std::string TimeText(double seconds) {
 
 }  // namespace
 
+void SayAside(const std::string& words) {
+  std::fputs(words.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 ProgressBar::ProgressBar(std::string label)
     : label_(std::move(label)), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() { Clear(); }
 
 void ProgressBar::Clear() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) SayAside("\r\033[K");
   drawn_ = false;
 }
 
 void ProgressBar::Say(const std::string& words) {
   if (!on_terminal_) return;
-  fmt::print(stderr, "\r\033[K{} ...", words);
-  std::fflush(stderr);
+  SayAside(fmt::format("\r\033[K{} ...", words));
   drawn_ = true;
 }
 
@@ -56,9 +60,8 @@ void ProgressBar::Show(int done, int total) {
   const double rate_hz = elapsed_s > 0.0 ? (done - first_->done) / elapsed_s : 0.0;
   const std::string left = rate_hz > 0.0 ? TimeText((total - done) / rate_hz) + " left" : "";
   const std::string rate = rate_hz > 0.0 ? fmt::format("{:.1f}/s  {}", rate_hz, left) : "";
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {}", label_, "", filled, "",
-             kBarWidth - filled, done, total, rate);
-  std::fflush(stderr);
+  SayAside(fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {}/{}  {}", label_, "", filled, "",
+                       kBarWidth - filled, done, total, rate));
   drawn_ = shown_ = true;
   last_drawn_ = now;
 }
@@ -102,7 +105,7 @@ std::string Printable(std::string text) {
 
 void Warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
-    fmt::print(stderr, "depthgrid: warning: {}\n", Printable(warning));
+    SayAside(fmt::format("depthgrid: warning: {}\n", Printable(warning)));
   }
 }
 

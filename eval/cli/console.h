@@ -12,6 +12,10 @@
 
 namespace depthgrid::cli {
 
+// On standard error. Words that cannot be written there (a full disk) are lost: they are no result,
+// and what is being done goes on.
+void SayAside(const std::string& words);
+
 // A bar with rate and time left; draws nothing unless standard error is a terminal.
 class ProgressBar {
  public:

@@ -302,7 +302,7 @@ int Complain(const std::string& message, int exit_code) {
     if (c == '\n' || c == '\r') c = ' ';
   }
   while (!line.empty() && line.back() == ' ') line.pop_back();
-  fmt::print(stderr, "depthgrid: {}\n", Printable(line));
+  SayAside(fmt::format("depthgrid: {}\n", Printable(line)));
   return exit_code;
 }
 

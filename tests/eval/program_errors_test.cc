@@ -160,6 +160,21 @@ TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {
   }
 }
 
+TEST_F(ProgramErrors, AComplaintThatCannotBeWrittenChangesNothingElse) {
+  const auto exit_code = [&](const std::string& arguments) {
+    const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile + "' " +
+                                arguments + " >'" + Path("said.txt") + "' 2>/dev/full";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  EXPECT_EQ(exit_code("run ./nothing.yaml -o out"), 2);
+  const std::string warned =
+      "run ./small.yaml --set sensor.noise_scale=2 --set sensor.noise=none -o ";
+  ASSERT_THAT(Program(warned + "heard").err, HasSubstr("warning"));
+  EXPECT_EQ(exit_code(warned + "unheard"), 0);
+  ExpectSameBytes("heard", "unheard");
+}
+
 TEST_F(ProgramErrors, ClosedStreamsAreNotTakenForFiles) {
   const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile +
                               "' run ./small.yaml -o closed <&- >&- 2>&-";
