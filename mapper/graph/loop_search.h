@@ -17,7 +17,7 @@ class LoopSearch {
       : options_(options), overlap_(overlap), matcher_(options, overlap) {}
 
   // To be asked after each frame that was mapped: loops that came to be believed. `known` are those
-  // that the poses were adjusted by.
+  // between frames of `frames` that the poses were adjusted by.
   std::vector<PlanarLoop> Find(const std::vector<MappedFrame>& frames,
                                const std::shared_ptr<const Scan>& newest,
                                const std::vector<PlanarLoop>& known, ReferenceMap& reference);

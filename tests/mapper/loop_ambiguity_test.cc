@@ -1,6 +1,8 @@
 // Places that look alike: what the loop search makes of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mapper/graph/loop_search.h"
 #include "mapper/surfel/surfel_map.h"
 #include "tests/mapper/match_world.h"
@@ -51,7 +53,8 @@ class Walk {
   static constexpr int kSteps = 220;
   static constexpr int kAround = 60;
 
-  // The first loops that the search comes to believe.
+  // The first loops that the search comes to believe. It is told of each of `known` once both its
+  // frames are there.
   std::vector<PlanarLoop> Found(const LoopSearchOptions& options,
                                 const std::vector<PlanarLoop>& known = {}) const {
     SurfelMap map(SurfelOptions{});
@@ -61,7 +64,11 @@ class Walk {
       so_far.push_back(frame);
       const auto scan = std::make_shared<const Scan>(*frame.scan);
       map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
-      std::vector<PlanarLoop> found = search.Find(so_far, scan, known, map);
+      std::vector<PlanarLoop> told;
+      for (const PlanarLoop& loop : known) {
+        if (std::max(loop.first, loop.second) <= frame.frame) told.push_back(loop);
+      }
+      std::vector<PlanarLoop> found = search.Find(so_far, scan, told, map);
       if (!found.empty()) return found;
     }
     return {};
