@@ -1,22 +1,16 @@
 #include "eval/consistency.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <map>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
 
 int DirectionsSeen(const MatchResult& match) {
-  constexpr double kUnseen = 1e-6;  // of the best seen direction
-  const Eigen::Vector3d& unit = kMotionUnit;
-  const Eigen::Matrix3d information = unit.asDiagonal() * match.information * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d values = solver.eigenvalues();
-  if (values[2] <= 0.0) return 0;
-  return static_cast<int>((values.array() > kUnseen * values[2]).count());
+  return static_cast<int>(SeenBasis(match.information).cols());
 }
 
 std::vector<ChiSquareSample> InnovationSamples(const std::vector<FrameReport>& reports) {

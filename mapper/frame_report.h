@@ -50,8 +50,10 @@ struct FrameReport {
   Pose2 map_from_slam;                   // the correction after this frame
   MatchResult match;
   std::array<double, 3> innovation = {};  // match against prediction in base axes: m, m, rad
-  double innovation_chi2 = 0.0;           // against the covariance of prediction and match together
-  std::array<double, 3> gain = {};        // the share of the innovation taken, per base axis
+  // Against its covariance, the errors of the map that was matched against included; of what the
+  // gate refused, against prediction and match as the gate has it.
+  double innovation_chi2 = 0.0;
+  std::array<double, 3> gain = {};  // the share of the innovation taken, per base axis
   Eigen::Matrix3d covariance =
       Eigen::Matrix3d::Zero();  // of the estimate in the map taken for exact, base axes
   // The motion of the estimate from an earlier frame (FrameReport::index; at most a submap's frames

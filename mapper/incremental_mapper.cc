@@ -271,6 +271,10 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
   errors.Add(filter.step(), report.index, static_cast<int>(mapped.size()),
              report.match.information / options.fusion.match_overconfidence,
              taken ? reference->MatchedParts() : std::span<const MapPart>());
+  if (errors.innovation_covariance()) {
+    report.innovation_chi2 =
+        SeenChi2(*errors.innovation_covariance(), report.match.information, fused.innovation);
+  }
   report.motion_from = errors.motion_from();
   report.motion_covariance = errors.MotionCovariance(fused.map_from_base);
 }

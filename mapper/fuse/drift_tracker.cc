@@ -16,7 +16,7 @@ constexpr int kUnconfirmedMotions = 200;
 constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
-// (docs/tried.md, "Settings on laser logs").
+// (docs/tried.md, "Settings on laser logs"). What is told of the errors has the map's in it.
 constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
@@ -38,6 +38,7 @@ void DriftTracker::StartAnew() {
   learner_ = MotionNoiseLearner();
   noise_ = MotionNoise();
   noise_.walk = kFirstWalk;
+  learnt_ = noise_;
   next_fit_ = kFirstFit;
   spread_.reset();
   evidence_ = DriftEvidence();
@@ -61,10 +62,10 @@ FilterStep DriftTracker::StepTo(const Pose2& predicted) const {
   FilterStep step;
   step.predicted = predicted;
   if (!last_) return step;
-  step.walk = noise_.walk;
-  step.jitter = noise_.jitter;
-  step.bias_kept = noise_.bias_kept;
-  step.bias_renewed = RenewedBias(noise_);
+  step.walk = learnt_.walk;
+  step.jitter = learnt_.jitter;
+  step.bias_kept = learnt_.bias_kept;
+  step.bias_renewed = RenewedBias(learnt_);
   return step;
 }
 
@@ -76,7 +77,7 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
   next.covariance.bottomRightCorner<3, 3>() = noise_.bias.cwiseProduct(noise_.bias).asDiagonal();
   std::optional<MatchResult> matched;
   step_ = StepTo(map_from_base);
-  step_.new_bias = noise_.bias;
+  step_.new_bias = learnt_.bias;
   if (last_) {
     const DriftState predicted = StateAt(slam_from_base);
     step_.predicted = predicted.map_from_base;
@@ -107,39 +108,42 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
 void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now) {
   learner_.AddMatches(motion, before, now);
   if (learner_.motions() < next_fit_) return;
-  noise_ = learner_.Fit();
+  learnt_ = learner_.Fit();
+  noise_ = learnt_;
   noise_.walk *= kCaution;
   noise_.bias *= kCaution;
-  Bound();
+  Bound(noise_);
+  Bound(learnt_);
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
   evidence_ = DriftEvidence();
-  Bound();
+  Bound(noise_);
+  Bound(learnt_);
 }
 
 // A bias sums up with the number of frames, a walk with its root.
-void DriftTracker::Bound() {
+void DriftTracker::Bound(MotionNoise& noise) const {
   if (!spread_) {
     if (learner_.motions() < kUnconfirmedMotions) {
-      noise_.walk = noise_.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
+      noise.walk = noise.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
     }
     return;
   }
   const double root = std::sqrt(spread_->frames);
   const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
-  noise_.bias = noise_.bias.cwiseMin(most);
-  noise_.walk = noise_.walk.cwiseMin(root * most);
+  noise.bias = noise.bias.cwiseMin(most);
+  noise.walk = noise.walk.cwiseMin(root * most);
   for (int axis = 0; axis < 3; ++axis) {
     const double least = kLeastSigmas * spread_->sigma[axis];
-    const double walked = noise_.walk[axis] / root;
+    const double walked = noise.walk[axis] / root;
     const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
-    if (noise_.bias[axis] >= bias) continue;
+    if (noise.bias[axis] >= bias) continue;
     // With no bias learnt there is nothing to tell how fast it changes.
-    if (noise_.bias[axis] == 0.0) noise_.bias_kept[axis] = MotionNoise().bias_kept[axis];
-    noise_.bias[axis] = bias;
+    if (noise.bias[axis] == 0.0) noise.bias_kept[axis] = MotionNoise().bias_kept[axis];
+    noise.bias[axis] = bias;
   }
 }
 

@@ -40,11 +40,12 @@ class DriftTracker {
   DriftState StateAt(const Pose2& slam_from_base) const;
   FilterStep StepTo(const Pose2& predicted) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
-  void Bound();
+  void Bound(MotionNoise& noise) const;
   void TestBound(const Prediction& prediction, const MatchResult& match);
   void StartAnew();
 
-  MotionNoise noise_;
+  MotionNoise noise_;   // what the filter believes: caution included
+  MotionNoise learnt_;  // without: what is told of the errors
   MotionNoiseLearner learner_;
   std::optional<MotionSpread> spread_;
   DriftEvidence evidence_;  // against it

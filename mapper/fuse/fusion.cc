@@ -1,5 +1,6 @@
 #include "mapper/fuse/fusion.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -27,6 +28,27 @@ Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
   }
   const Eigen::Matrix3d vectors = unit.asDiagonal() * solver.eigenvectors();
   return vectors * inverse.asDiagonal() * vectors.transpose();
+}
+
+SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information) {
+  constexpr double kUnseen = 1e-6;  // of the largest eigenvalue
+  const Eigen::Vector3d& unit = kMotionUnit;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(unit.asDiagonal() * information *
+                                                              unit.asDiagonal());
+  const Eigen::Vector3d& values = solver.eigenvalues();  // in ascending order
+  int unseen = 0;
+  while (unseen < 3 && values[unseen] <= std::max(kUnseen * values[2], 0.0)) ++unseen;
+  return unit.cwiseInverse().asDiagonal() * solver.eigenvectors().rightCols(3 - unseen);
+}
+
+double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
+                const Eigen::Vector3d& innovation) {
+  const SeenBasisMatrix seen = SeenBasis(information);
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
+  const Square seen_covariance = seen.transpose() * covariance * seen;
+  const Vector seen_innovation = seen.transpose() * innovation;
+  return seen_innovation.dot(Eigen::LDLT<Square>(seen_covariance).solve(seen_innovation));
 }
 
 Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {

@@ -33,6 +33,15 @@ Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma);
 // The covariance over the directions that a match sees; the others' is zero.
 Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information);
 
+// Columns v with which vᵀ ν is what a match says of an innovation ν: one for each direction that it
+// sees at least a thousandth as well (sigma) as the best.
+using SeenBasisMatrix = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information);
+
+// nu^T S^-1 nu over the directions that a match with this information sees.
+double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
+                const Eigen::Vector3d& innovation);
+
 // A gain per axis that somebody chose. The covariance is that of a filter with this gain.
 FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
                        const Eigen::Vector3d& gain);

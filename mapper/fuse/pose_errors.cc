@@ -62,10 +62,12 @@ PoseErrors::PoseErrors(int stretch_frames) : stretch_frames_(stretch_frames) {
 void PoseErrors::Add(const FilterStep& step, int index, int mapped,
                      const Eigen::Matrix3d& information, std::span<const MapPart> parts) {
   ++frame_;
+  innovation_.reset();
   if (!knots_.empty()) {  // the first pose is the origin
     if (knots_.back().frame - knots_[marked_].frame >= stretch_frames_) marked_ = knots_.size() - 1;
     Predict(step, parts);
     Take(step, See(step, information, parts));
+    if (parts.empty()) innovation_.reset();
   }
   Keep(index, mapped);
   if (broken_) marked_ = knots_.size() - 1;
@@ -174,6 +176,7 @@ void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
   const Eigen::Matrix3d pose_with_match = match.with_state.middleRows<3>(kPose);
   const Eigen::Matrix3d camera_with_i = camera - pose_with_match;
   const Eigen::Matrix3d i = camera_with_i - pose_with_match.transpose() + match.covariance;
+  innovation_ = Turned(i, step_from_map);
   const Matrix93 state_with_i = state.middleCols<3>(kPose) - match.with_state;
 
   const Matrix9 taken = g * state_with_i.transpose();

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@ class PoseErrors {
 
   // The frame that motions are told from; the newest itself after a break.
   int motion_from() const { return knots_[marked_].index; }
+  // Of the last match's innovation, in base axes of the predicted pose: what the pose and what it
+  // was matched against have in common is not in it. Of what the match does not see only the
+  // prediction's part is told. Empty: the last frame was not matched.
+  const std::optional<Eigen::Matrix3d>& innovation_covariance() const { return innovation_; }
   // Of the motion from there to the newest frame, in base axes of the newest, at this pose.
   Eigen::Matrix3d MotionCovariance(const Pose2& map_from_base) const;
 
@@ -68,6 +73,7 @@ class PoseErrors {
 
   int stretch_frames_;
   bool broken_ = false;
+  std::optional<Eigen::Matrix3d> innovation_;
   int frame_ = -1;
   Eigen::Matrix<double, 12, 12> newest_ = Eigen::Matrix<double, 12, 12>::Zero();
   // Rows: the knots, so that they lie side by side; columns: those of newest_.

@@ -77,6 +77,24 @@ TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   EXPECT_LT(bound.noise().walk.x(), 2.1e-5 * std::sqrt(6.0));
 }
 
+TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
+  DriftTracker tracker;
+  Pose2 slam;
+  RandomStream random(9, RandomStage::kTest);
+  for (int i = 0; i < 1000; ++i) {
+    slam = slam * Pose2{0.02 * random.Normal(), 0.0, 0.0};  // SLAM walks, the camera stands
+    MatchResult match;
+    match.found = true;
+    match.information = MatchInformation();
+    match.map_from_base = Pose2::FromVector(kMatchSigma.cwiseProduct(
+        Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal())));
+    const FusedPose fused = tracker.Fuse(slam, match);
+    tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
+  }
+  EXPECT_NEAR(tracker.step().walk.x(), 0.02, 0.002);
+  EXPECT_NEAR(tracker.noise().walk.x(), 1.4 * tracker.step().walk.x(), 1e-12);
+}
+
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   DriftTracker tracker;
   Pose2 slam;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "mapper/core/rng.h"
 #include "mapper/fuse/correction_filter.h"
@@ -106,6 +107,28 @@ TEST(FuseKalman, TakesUnseenDirectionsFromThePrediction) {
   prediction.covariance.setZero();
   EXPECT_EQ(FuseKalman(prediction, MatchAt(matched, corridor)).map_from_base,
             prediction.map_from_base);
+}
+
+TEST(SeenChi2, LeavesOutWhatTheMatchDoesNotSee) {
+  RandomStream random(5, RandomStage::kTest);
+  const Eigen::Matrix3d covariance = RandomCovariance(random);
+  const Eigen::Vector3d innovation(0.02, -0.01, 0.005);
+  const Eigen::Matrix3d all = Eigen::Vector3d(1e4, 2e4, 1e5).asDiagonal();
+  EXPECT_EQ(SeenBasis(all).cols(), 3);
+  EXPECT_NEAR(SeenChi2(covariance, all, innovation),
+              innovation.dot(covariance.inverse() * innovation), 1e-9);
+  // A corridor at 30 degrees: its direction is neither counted nor known.
+  const Eigen::Vector3d along(std::cos(kPi / 6), std::sin(kPi / 6), 0.0);
+  const Eigen::Vector3d across(-along.y(), along.x(), 0.0);
+  const Eigen::Matrix3d corridor = 1e6 * across * across.transpose() +
+                                   Eigen::Matrix3d(Eigen::Vector3d(0.0, 0.0, 1e6).asDiagonal());
+  EXPECT_EQ(SeenBasis(corridor).cols(), 2);
+  const Eigen::Matrix3d known = 4e-4 * across * across.transpose() +
+                                25.0 * along * along.transpose() +
+                                Eigen::Matrix3d(Eigen::Vector3d(0.0, 0.0, 1e-4).asDiagonal());
+  const Eigen::Vector3d off = 0.04 * across + 7.0 * along + Eigen::Vector3d(0.0, 0.0, 0.03);
+  EXPECT_NEAR(SeenChi2(known, corridor, off), 0.04 * 0.04 / 4e-4 + 0.03 * 0.03 / 1e-4, 1e-6);
+  EXPECT_EQ(SeenChi2(known, Eigen::Matrix3d::Zero(), off), 0.0);
 }
 
 TEST(Transported, IsTheCovarianceInTheNewAxes) {

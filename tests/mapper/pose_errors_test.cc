@@ -113,7 +113,9 @@ TEST(PoseErrors, AgreeWithManySimulatedRuns) {
   constexpr int kFrom = kFrames / 2 + 1;
   ASSERT_EQ(errors.motion_from(), kFrom);
   const Eigen::LDLT<Eigen::Matrix3d> factor(errors.MotionCovariance(TruePose(kFrames)));
+  ASSERT_TRUE(errors.innovation_covariance());
   double sum = 0.0;
+  double innovations = 0.0;
   for (int run = 0; run < kRuns; ++run) {
     std::vector<Eigen::Vector3d> error = {Eigen::Vector3d::Zero()};  // in map axes
     for (int i = 1; i <= kFrames; ++i) {
@@ -127,6 +129,10 @@ TEST(PoseErrors, AgreeWithManySimulatedRuns) {
       }
       if (parts > 0) {
         const Eigen::Vector3d match = map / parts + map_from_base * normal(kMatchSigma);
+        if (i == kFrames) {
+          innovations += SeenChi2(*errors.innovation_covariance(), MatchInformation(),
+                                  base_from_map * (match - predicted));
+        }
         predicted += map_from_base * gain.asDiagonal() * base_from_map * (match - predicted);
       }
       error.push_back(predicted);
@@ -138,6 +144,21 @@ TEST(PoseErrors, AgreeWithManySimulatedRuns) {
   // 1,200 degrees of freedom: the mean of one is known to 4 %; the parts are merged to remembered
   // frames where they are old.
   EXPECT_NEAR(sum / (3.0 * kRuns), 1.0, 0.12);
+  EXPECT_NEAR(innovations / (3.0 * kRuns), 1.0, 0.12);
+}
+
+TEST(PoseErrors, TellInnovationsOnlyOfFramesThatMatched) {
+  PoseErrors errors(1000);
+  const MapPart part = PartOf(-1.0);
+  errors.Add(StepAt(0, Eigen::Vector3d::Zero()), 0, 0, MatchInformation(), {&part, 1});
+  EXPECT_FALSE(errors.innovation_covariance());  // the first pose is the origin
+  errors.Add(StepAt(1, Eigen::Vector3d::Ones()), 1, 1, MatchInformation(), {&part, 1});
+  ASSERT_TRUE(errors.innovation_covariance());
+  // Against an exact map: SLAM's step and the match's noise.
+  const Eigen::Matrix3d expected = Squared(kWalk) + Squared(kMatchSigma);
+  EXPECT_TRUE(errors.innovation_covariance()->isApprox(expected, 1e-9));
+  errors.Add(StepAt(2, Eigen::Vector3d::Zero()), 2, 2, Eigen::Matrix3d::Zero(), {});
+  EXPECT_FALSE(errors.innovation_covariance());
 }
 
 TEST(PoseErrors, StretchesEndWhereTheNextBegins) {
