@@ -63,13 +63,16 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
 
 // A value that changes the settings and not the run.
 bool IsIdle(const std::string& name, const std::vector<std::string>& set, std::size_t position) {
-  std::vector<std::string> others = set;
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(position));
-  const auto key_of = [](const std::string& assignment) {
-    return assignment.substr(0, assignment.find('='));
-  };
+  const std::string key = set[position].substr(0, set[position].find('='));
   // Without its scene or profile the rest of the line may make no sense.
-  if (key_of(set[position]) == "scene" || key_of(set[position]) == "slam.profile") return false;
+  if (key == "scene" || key == "slam.profile") return false;
+  std::vector<std::string> others = set;
+  if (key.ends_with("_seed")) {
+    // It may be said to be what it would be by the experiment's own seed: is another one the same?
+    others[position] = key + (set[position] == key + "=1" ? "=2" : "=1");
+  } else {
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(position));
+  }
   const ExperimentOptions with = ExperimentNamed(name, set);
   const ExperimentOptions without = ExperimentNamed(name, others);
   return ToYaml(with) != ToYaml(without) &&

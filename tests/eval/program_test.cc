@@ -216,6 +216,10 @@ TEST_F(ProgramRun, WhatHasNoEffectIsSaid) {
             "depthgrid: warning: --set sensor.noise_scale=2: has no effect beside the other "
             "settings\n");
   EXPECT_EQ(said(" --set mapper.fusion.gain=0.3 --set seed=4 --set slam.drift_scale=2"), "");
+  // What is said to be as it would be anyway is no mistake, but where nothing errs a seed is one.
+  EXPECT_EQ(said(" --set slam_seed=1 --set depth_seed=1"), "");
+  EXPECT_EQ(said(" --set slam.profile=ground_truth --set slam_seed=2"),
+            "depthgrid: warning: --set slam_seed=2: has no effect beside the other settings\n");
 }
 
 // A pose that turns nothing looks straight up.
