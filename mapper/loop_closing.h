@@ -18,7 +18,7 @@ struct LoopOptions {
   OverlapOptions overlap;
   // With more mapped frames than this a loop only bends the chain of poses while the run goes on,
   // and what was seen is laid over each other at the end. Adjusting all of it holds up a frame: for
-  // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/bench.md, "Growing floors").
+  // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/tried.md, "Loops that hold up a frame").
   int bend_frames = 4000;
   LoopSearchOptions search;
   RelocationOptions relocation;

@@ -16,7 +16,7 @@ namespace {
 
 // Trees of eight branches with whole triangles in their leaves: the same depths bit for bit as the
 // four branches that Embree chooses with ROBUST, and packets of coherent rays take 0.83 of the time
-// (docs/bench.md, "Depth camera"). Leaves of precomputed triangles are faster still, but not
+// (docs/tried.md, "Depth camera"). Leaves of precomputed triangles are faster still, but not
 // robust.
 constexpr const char* kTriangleTree = "bvh8.triangle4v";
 

@@ -32,7 +32,7 @@ struct LoopSearchOptions {
   double max_sigma_m = 0.03;
   double max_sigma_deg = 0.6;
   // Of what both places saw, see loops.overlap. Right places agree by 0.98 and more, a third of the
-  // rooms that look alike as well (docs/bench.md, "Rooms that look alike").
+  // rooms that look alike as well (docs/tried.md, "Which chains of places to believe").
   double min_agreement = 0.99;
   // Nearer to where they are anyway than this, places are left to the adjustment.
   double min_correction_m = 0.1;
@@ -41,7 +41,7 @@ struct LoopSearchOptions {
   int consenting = 4;
   // And over a way of so many times what they correct and what the estimate is likely off by (both
   // together no more than the window): rooms that look alike differ somewhere along several of them
-  // (docs/bench.md, "Rooms that look alike").
+  // (docs/tried.md, "Which chains of places to believe").
   double consent_ways = 7.0;
   double likely_drift_share = 0.005;  // of the way
   // While none waits for others to consent only one of so many searches is made. Once it finds a

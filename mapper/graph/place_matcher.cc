@@ -17,7 +17,7 @@ const Eigen::Vector3d kSearchSigma(0.05, 0.05, 0.02);
 constexpr std::size_t kIterations = 4;
 // After so many steps this share of the agreement that is asked for at last must be there. Of 729
 // places of rooms that look alike 247 agree in the end, none of which this refuses, and 328 of the
-// others (docs/bench.md, "Rooms that look alike").
+// others (docs/tried.md, "What a search costs").
 constexpr std::array<double, 2> kShareAfterSteps = {0.9, 0.97};
 // The scans of a place are matched against the same noisy map: their information is worth so much
 // less (docs/math.md, "Fusion": 2-4).

@@ -16,8 +16,8 @@ struct JointOptions {
   // They go on to so many while the prior turns out better with each.
   int most_rounds = 6;
   // Rounds and first gate of adjustments during the run without new loops. Of more groups than
-  // these two neighbours are adjusted as one: half the time and no less accurate (docs/bench.md,
-  // "Growing floors").
+  // these two neighbours are adjusted as one: half the time and no less accurate (docs/tried.md,
+  // "Loops that hold up a frame").
   int refine_rounds = 3;
   double refine_gate_m = 0.2;
   int refine_groups = 150;
