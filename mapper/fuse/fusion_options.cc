@@ -3,13 +3,15 @@
 namespace depthgrid {
 
 void SlamNoiseOptions::Visit(OptionsVisitor& v) {
+  // A profile whose drift is scaled up says so.
+  constexpr double kMost = 1e6;
   v.Choice("source", source,
            {{SlamNoiseSource::kSetting, "setting"}, {SlamNoiseSource::kProfile, "profile"}},
            "the values below, or those of the run's slam.profile in their place");
-  v.Number("jitter_m", jitter_m, {0.0, 1.0}, "white error of each pose, metres");
-  v.Number("jitter_rad", jitter_rad, {0.0, 1.0}, "white error of each heading, radians");
-  v.Number("walk_m_per_sqrt_s", walk_m_per_sqrt_s, {0.0, 1.0}, "random walk of the position");
-  v.Number("walk_rad_per_sqrt_s", walk_rad_per_sqrt_s, {0.0, 1.0}, "random walk of the heading");
+  v.Number("jitter_m", jitter_m, {0.0, kMost}, "white error of each pose, metres");
+  v.Number("jitter_rad", jitter_rad, {0.0, kMost}, "white error of each heading, radians");
+  v.Number("walk_m_per_sqrt_s", walk_m_per_sqrt_s, {0.0, kMost}, "random walk of the position");
+  v.Number("walk_rad_per_sqrt_s", walk_rad_per_sqrt_s, {0.0, kMost}, "random walk of the heading");
   v.Number("path_share", path_share, {0.0, 1.0}, "metres of error per metre travelled");
   v.Number("turn_share", turn_share, {0.0, 1.0}, "radians of error per radian turned");
 }

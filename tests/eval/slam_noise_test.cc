@@ -4,6 +4,7 @@
 
 #include "eval/experiment.h"
 #include "mapper/core/angle.h"
+#include "mapper/core/options.h"
 #include "sim/scene.h"
 
 namespace depthgrid {
@@ -53,6 +54,17 @@ TEST(SlamNoise, IsTakenFromTheProfileOnlyWhenAskedFor) {
   options.mapper.fusion.slam_noise.source = SlamNoiseSource::kProfile;
   EXPECT_EQ(Completed(options, Scene{}).mapper.fusion.slam_noise.walk_m_per_sqrt_s,
             NoiseOf(options.slam).walk_m_per_sqrt_s);
+}
+
+TEST(SlamNoise, OfTheLargestDriftIsASetting) {
+  for (const SlamProfile profile :
+       {SlamProfile::kOrbSlam2, SlamProfile::kPlanarSlam, SlamProfile::kGroundTruth}) {
+    SlamOptions slam = ProfileOptions(profile);
+    slam.drift_scale = 1000.0;  // as much as slam.drift_scale may be
+    MapperOptions mapper;
+    mapper.fusion.slam_noise = NoiseOf(slam);
+    EXPECT_NO_THROW(RequireInRange(mapper, "mapper"));
+  }
 }
 
 }  // namespace
