@@ -77,11 +77,12 @@ std::string DurationText(double seconds) {
   return fmt::format("{:.1f} h", seconds / kHour);
 }
 
-void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t planned,
+void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t planned, int failed,
               const SweepContext& context) {
   fmt::print("{}: {}, {}", plan.title, Counted(plan.runs.size(), "run"), plan.size_text);
   if (planned < plan.runs.size()) fmt::print("; {} of them here", planned);
   if (runs.size() < planned) fmt::print("; {} done already", planned - runs.size());
+  if (failed > 0) fmt::print("; {} failed and tried again", failed);
   fmt::print("\n");
   if (runs.empty()) return;
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
@@ -148,7 +149,9 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   context.cache_folder = SweepCache(arguments.common);
   const SweepLock lock(output);
   SweepDatabase database = OpenOrCreateSweep(output, plan, shard, arguments.common.force);
-  Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), context);
+  // With `stop` more seeds, or fewer, were done because of them.
+  const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
+  Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), failed, context);
   ProgressBar bar("runs");
   ProgressFile file(output);
   context.progress = [&](int done, int total) {
@@ -260,7 +263,7 @@ void Sweep(const SweepArguments& arguments) {
     context.cache_folder = CacheFolder(arguments.common);
     std::vector<int> runs;
     for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) runs.push_back(run.run);
-    return Announce(plan, runs, runs.size(), context);
+    return Announce(plan, runs, runs.size(), 0, context);
   }
   if (arguments.executor == "slurm") return SweepOnSlurm(arguments, plan, file);
   SweepHere(arguments, plan);

@@ -346,6 +346,19 @@ void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
   });
 }
 
+int SweepDatabase::PlanFailedAgain() {
+  int failed = 0;
+  Writing(impl_->folder, [&] {
+    SQLite::Database& database = *impl_->database;
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    database.exec("DELETE FROM times WHERE run IN (SELECT run FROM failures)");
+    database.exec("DELETE FROM failures");
+    failed = database.exec("UPDATE runs SET state = 'planned' WHERE state = 'failed'");
+    transaction.commit();
+  });
+  return failed;
+}
+
 void SweepDatabase::Drop(const std::vector<int>& runs) {
   SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
   for (const char* table : {"runs", "parameters", "metrics", "times", "failures"}) {

@@ -57,6 +57,8 @@ class SweepDatabase {
   void Record(const RunOutcome& outcome);
   // All outcomes in one transaction.
   void Record(const std::vector<RunOutcome>& outcomes);
+  // Failed runs are planned again: what made them fail may be gone. How many they were.
+  int PlanFailedAgain();
   // Takes these runs out of the plan, with what they gave.
   void Drop(const std::vector<int>& runs);
   // One metric of some runs, in their order; NaN where it is missing.

@@ -55,6 +55,18 @@ TEST_F(SweepDatabaseTest, GivesBackWhatWasRecorded) {
             "2,1,\"[0.5, 1, 0]\",\"a,\"\"b\"\"\",3,0,,2.5,1\n");
 }
 
+TEST_F(SweepDatabaseTest, PlansFailedRunsAgain) {
+  SweepDatabase database = SmallPlan(folder_);
+  database.Record({0, "no room", {}, {{"time_s", 2.0}}});
+  database.Record({1, "", {{"a", 1.0}}, {{"time_s", 3.0}}});
+  EXPECT_EQ(database.PlanFailedAgain(), 1);
+  EXPECT_EQ(database.UnfinishedRuns(), (std::vector<int>{0, 2}));
+  database.Record({0, "", {{"a", 4.0}}, {{"time_s", 5.0}}});
+  EXPECT_EQ(database.PlanFailedAgain(), 0);
+  EXPECT_EQ(database.Results().failures, (std::vector<std::string>{"", ""}));
+  EXPECT_EQ(database.Results().Metric("a"), (std::vector<double>{4.0, 1.0}));
+}
+
 TEST_F(SweepDatabaseTest, KeepsSeedsThatNoDoubleHolds) {
   SmallPlan(folder_).Record({1, "", {{"a", 1.0}}, {}});
   EXPECT_EQ(ReadSweep(folder_).Parameter("seed").texts[0], "18446744073709551615");

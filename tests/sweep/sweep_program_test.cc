@@ -189,6 +189,10 @@ axes:
   const auto& error = results.Metric("trajectory.est.mean_euclidean_m");
   EXPECT_TRUE(std::isnan(error[1]));
   EXPECT_TRUE(std::isfinite(error[0]) && std::isfinite(error[2]));
+  const Outcome again = Program("sweep ./failing.yaml -o out");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.out, HasSubstr("; 2 done already; 1 failed and tried again\n"));
+  EXPECT_EQ(ReadSweep(Path("out")).failures, results.failures);
 }
 
 // The first point fails: the time is that of the next one, the page begins where there is
