@@ -6,6 +6,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/map_start.h"
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
 #include "eval/output_folder.h"
@@ -23,8 +24,6 @@ namespace depthgrid::cli {
 namespace {
 
 constexpr int kAllScansInOneSubmap = 1'000'000;
-// Another place in a finished map that fits this nearly as well is a doubt.
-constexpr double kUncertainShare = 0.9;
 
 struct MapSettings {
   std::string input;
@@ -129,18 +128,25 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
                                    slam ? std::optional(slam->slam) : std::nullopt);
   const auto start = FindStart(prior, *sequence.source, settings.mapper);
   if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
-  prior.map_from_slam = start->map_from_slam;
+  const FoundPlace& place = start->place;
+  prior.map_from_slam = place.map_from_slam;
   fmt::print(
       "{}: {} scans; SLAM's frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
       "elsewhere {:.2f}\n",
-      arguments.map, prior.frames.size(), start->map_from_slam.x_m, start->map_from_slam.y_m,
-      DegFromRad(start->map_from_slam.yaw_rad), start->score, start->second_score);
-  if (start->second_score > kUncertainShare * start->score) {
+      arguments.map, prior.frames.size(), place.map_from_slam.x_m, place.map_from_slam.y_m,
+      DegFromRad(place.map_from_slam.yaw_rad), place.score, place.second_score);
+  if (start->trial) {
+    fmt::print(
+        "of {} places tried on {} the best explains {:.2f} of what is seen, the next {:.2f}\n",
+        start->trial->places, Counted(static_cast<std::size_t>(start->trial->frames), "frame"),
+        start->trial->explained, start->trial->explained_next);
+  }
+  if (start->uncertain()) {
     warnings.push_back(arguments.map +
                        ": where in it the sequence begins is uncertain, another place "
                        "fits nearly as well");
   }
-  return *start;
+  return place;
 }
 
 // A place in a finished map is a guess until what is seen there says the same.

@@ -23,6 +23,11 @@ constexpr double kCoarseSigmaM = 0.15;
 constexpr double kFineSigmaM = 0.06;
 constexpr double kFarthestM = 0.6;
 constexpr std::size_t kRefined = 60;
+// Places this near to each other are one.
+constexpr double kApartM = 0.3;
+constexpr double kApartRad = RadFromDeg(8.0);
+constexpr double kOtherShare = 0.8;
+constexpr std::size_t kMostOthers = 7;
 constexpr double kElsewhereM = 1.0;
 constexpr double kElsewhereRad = RadFromDeg(30.0);
 // What lies this near to the guess (SLAM's drift since the map was made) needs this share of the
@@ -326,10 +331,28 @@ Candidate NearGuess(const WallDistance& walls, const Points& coarse_points, cons
   return best;
 }
 
-bool Elsewhere(const Pose2& a, const Pose2& b) {
+bool IsApart(const Pose2& a, const Pose2& b, double least_m, double least_rad) {
   const Pose2 between = Between(a, b);
-  return std::hypot(between.x_m, between.y_m) > kElsewhereM ||
-         std::abs(between.yaw_rad) > kElsewhereRad;
+  return std::hypot(between.x_m, between.y_m) > least_m || std::abs(between.yaw_rad) > least_rad;
+}
+
+bool Elsewhere(const Pose2& a, const Pose2& b) { return IsApart(a, b, kElsewhereM, kElsewhereRad); }
+
+// Those that may be the place too, best first.
+std::vector<Pose2> OthersThan(const Candidate& best, std::vector<Candidate> candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::vector<Pose2> others;
+  for (const Candidate& candidate : candidates) {
+    if (others.size() == kMostOthers || candidate.score < kOtherShare * best.score) break;
+    const Pose2& pose = candidate.map_from_first;
+    const auto is_apart = [&](const Pose2& other) {
+      return IsApart(other, pose, kApartM, kApartRad);
+    };
+    if (!is_apart(best.map_from_first)) continue;
+    if (std::all_of(others.begin(), others.end(), is_apart)) others.push_back(pose);
+  }
+  return others;
 }
 
 // How far to either side of the place, and along which line farthest, the score stays near its own.
@@ -380,7 +403,10 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
     if (candidate.score > best.score) best = candidate;
   }
   if (guessed.score >= kGuessShare * best.score) best = guessed;
-  FoundPlace found{best.map_from_first * Inverse(slam_from_first), best.score, 0.0, {}};
+  FoundPlace found{best.map_from_first * Inverse(slam_from_first), best.score, 0.0, {}, {}};
+  for (const Pose2& other : OthersThan(best, candidates)) {
+    found.others.push_back(other * Inverse(slam_from_first));
+  }
   const UnsureAlong unsure = UnsureLine(walls, points, candidates, best);
   if (unsure.reach_m >= kLeastUnsureM) found.unsure = unsure;
   for (const Candidate& candidate : candidates) {

@@ -30,6 +30,9 @@ struct FoundPlace {
   double second_score = 0.0;
   // Empty where the place is known to some 0.1 m in every direction.
   std::optional<UnsureAlong> unsure;
+  // Of other places (0.3 m or 8 degrees apart) that fit 0.8 times as well or better, seven at most:
+  // the same as map_from_slam, best first.
+  std::vector<Pose2> others;
 };
 
 // Tries every free cell and heading, then refines the best. What is near to `guess` (SLAM's

@@ -1,0 +1,184 @@
+#include "eval/map_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/level.h"
+#include "mapper/grid/map_drawing.h"
+#include "mapper/scan/frame_scans.h"
+
+namespace depthgrid {
+namespace {
+
+// Scans that say where a run begins: so many, each of another view, so that a camera with a narrow
+// one has looked around a little.
+constexpr int kStartScans = 8;
+constexpr double kNextViewM = 0.3;
+constexpr double kNextViewRad = RadFromDeg(12.0);
+// SLAM's drift over the scans that are laid over the map together.
+constexpr double kStartPathM = 3.0;
+// And over those that say it more exactly; how far SLAM may have drifted in between.
+constexpr double kFirstPathM = 1.0;
+constexpr double kMostShiftM = 0.7;
+
+// Of the best place's fit or explained share: what reaches it may be the place as well.
+constexpr double kUncertainShare = 0.9;
+// The trial is over then.
+constexpr std::size_t kTrialFrames = 400;
+constexpr double kTrialPathM = 6.0;
+// Places that led this near to each other are one.
+constexpr double kSamePlaceM = 0.3;
+constexpr double kSamePlaceRad = RadFromDeg(5.0);
+
+double Way(const Pose2& motion) { return std::hypot(motion.x_m, motion.y_m); }
+
+// The first frames with a pose and a scan, of one epoch of SLAM's, read as far as is asked for.
+class FirstFrames {
+ public:
+  FirstFrames(FrameSource& source, const ScanOptions& options)
+      : source_(source), scanner_(source.Camera(), options) {}
+
+  const std::vector<Frame>& all() const { return frames_; }
+
+  // False at the end.
+  bool ReadOne() {
+    while (auto frame = source_.Next()) {
+      if (!frame->slam_from_camera) continue;
+      if (!frames_.empty() && frame->slam_epoch != frames_.front().slam_epoch) return false;
+      const FrameScans scans = scanner_.ScansOf(*frame);
+      if (!scans.obstacles) continue;
+      frame->depth.reset();
+      // The scanner writes its scans again once nobody holds them.
+      frame->scan = scans.obstacles;
+      frame->matched_scan = scans.matched;
+      frame->loops.clear();
+      frames_.push_back(std::move(*frame));
+      return true;
+    }
+    return false;
+  }
+
+ private:
+  FrameSource& source_;
+  FrameScanner scanner_;
+  std::vector<Frame> frames_;
+};
+
+PlacedScan PlacedScanOf(const Frame& frame) {
+  return {frame.scan, BaseOf(*frame.slam_from_camera)};
+}
+
+std::vector<PlacedScan> FirstViews(FirstFrames& frames) {
+  std::vector<PlacedScan> views;
+  while (static_cast<int>(views.size()) < kStartScans && frames.ReadOne()) {
+    const PlacedScan now = PlacedScanOf(frames.all().back());
+    if (!views.empty()) {
+      const Pose2 step = Between(views.back().slam_from_base, now.slam_from_base);
+      if (Way(step) <= kNextViewM && std::abs(step.yaw_rad) <= kNextViewRad) continue;
+      if (Way(Between(views.front().slam_from_base, now.slam_from_base)) > kStartPathM) break;
+    }
+    views.push_back(now);
+  }
+  return views;
+}
+
+// The same place by the first views alone, over which SLAM has hardly drifted. Few views fit in
+// more places than many: one that is not near the place found says nothing.
+FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
+                  const std::vector<PlacedScan>& scans) {
+  std::vector<PlacedScan> first;
+  for (const PlacedScan& scan : scans) {
+    if (Way(Between(scans.front().slam_from_base, scan.slam_from_base)) > kFirstPathM) break;
+    first.push_back(scan);
+  }
+  if (first.size() == scans.size()) return found;
+  const auto again = FindPlace(map, first, found.map_from_slam);
+  if (!again || again->score < found.score) return found;
+  const Pose2& first_base = scans.front().slam_from_base;
+  const Pose2 shift = Between(found.map_from_slam * first_base, again->map_from_slam * first_base);
+  if (Way(shift) > kMostShiftM) return found;
+  FoundPlace nearer = found;
+  nearer.map_from_slam = again->map_from_slam;
+  return nearer;
+}
+
+struct Tried {
+  Pose2 map_from_slam;  // where it began
+  Pose2 map_from_base;  // where it led
+  double explained = 0.0;
+};
+
+Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const std::vector<Frame>& frames,
+          const MapperOptions& options) {
+  PriorMap fixed = prior;
+  fixed.fixed = true;
+  fixed.map_from_slam = map_from_slam;
+  IncrementalMapper mapper(options, std::nullopt);
+  mapper.StartFrom(std::move(fixed));
+  Tried tried{map_from_slam, {}, 0.0};
+  for (const Frame& frame : frames) {
+    const FrameReport report = mapper.AddFrame(frame);
+    tried.explained += report.match.found ? report.match.score : 0.0;
+    tried.map_from_base = BaseOf(*report.map_from_camera);
+  }
+  tried.explained /= static_cast<double>(frames.size());
+  return tried;
+}
+
+bool LedElsewhere(const Tried& a, const Tried& b) {
+  const Pose2 between = Between(a.map_from_base, b.map_from_base);
+  return Way(between) > kSamePlaceM || std::abs(between.yaw_rad) > kSamePlaceRad;
+}
+
+// The first metres mapped from each place.
+void TryAll(FirstFrames& frames, const PriorMap& prior, const MapperOptions& options,
+            MapStart& start) {
+  double way_m = 0.0;
+  while (frames.all().size() < kTrialFrames && way_m < kTrialPathM && frames.ReadOne()) {
+    const std::size_t newest = frames.all().size() - 1;
+    way_m += Way(Between(PlacedScanOf(frames.all()[newest - 1]).slam_from_base,
+                         PlacedScanOf(frames.all()[newest]).slam_from_base));
+  }
+  std::vector<Tried> all = {Try(start.place.map_from_slam, prior, frames.all(), options)};
+  for (const Pose2& other : start.place.others) {
+    all.push_back(Try(other, prior, frames.all(), options));
+  }
+  const Tried best = *std::max_element(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
+    return a.explained < b.explained;
+  });
+  StartTrial trial{static_cast<int>(all.size()), static_cast<int>(frames.all().size()),
+                   best.explained, 0.0};
+  for (const Tried& tried : all) {
+    if (!LedElsewhere(tried, best)) continue;
+    trial.explained_next = std::max(trial.explained_next, tried.explained);
+  }
+  start.place.map_from_slam = best.map_from_slam;
+  start.trial = trial;
+}
+
+}  // namespace
+
+bool MapStart::uncertain() const {
+  if (trial) return trial->explained_next > kUncertainShare * trial->explained;
+  return place.second_score > kUncertainShare * place.score;
+}
+
+std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
+                                  const MapperOptions& options) {
+  MapDrawing drawing(options.grid);
+  for (const MappedFrame& frame : prior.frames) drawing.Add(*frame.obstacles, frame.map_from_base);
+  const OccupancyMap map = drawing.Map();
+  FirstFrames frames(source, options.scan);
+  const std::vector<PlacedScan> views = FirstViews(frames);
+  const auto found = FindPlace(map, views, Pose2{});
+  if (!found) return {};
+  MapStart start{Nearer(*found, map, views), {}};
+  if (!found->others.empty() && !options.fusion.TrustsSlamAlone()) {
+    TryAll(frames, prior, options, start);
+  }
+  return start;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,99 @@
+#include "eval/map_start.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <memory>
+
+#include "mapper/core/level.h"
+#include "tests/mapper/planar_world.h"
+
+namespace depthgrid {
+namespace {
+
+// A hall of 14 x 4 m that looks the same from either end, but for a crate at one side.
+PlanarWorld Hall() {
+  PlanarWorld world = RectangleWorld(-1.0, -2.0, 13.0, 2.0);
+  for (const Wall& wall : RectangleWorld(4.0, 1.2, 4.5, 1.7)) world.push_back(wall);
+  return world;
+}
+
+PriorMap MapOfHall() {
+  const PlanarWorld world = Hall();
+  PlanarLaser laser;
+  laser.field_of_view_rad = RadFromDeg(270.0);
+  ScanArchive archive;
+  PriorMap prior;
+  for (int i = 0; i <= 120; ++i) {
+    MappedFrame frame;
+    frame.frame = i - 121;
+    frame.stamp_s = 0.1 * i;
+    frame.map_from_base = {0.1 * i, 0.0, i % 2 == 0 ? 0.0 : kPi};
+    frame.scan = archive.Keep(ScanOf(world, frame.map_from_base, laser));
+    frame.obstacles = frame.scan;
+    prior.frames.push_back(frame);
+  }
+  return prior;
+}
+
+// A robot that goes `way_m` straight ahead; SLAM's frame is where it begins.
+class WalkThroughHall final : public FrameSource {
+ public:
+  WalkThroughHall(const Pose2& begin, double way_m) {
+    const PlanarWorld world = Hall();
+    for (int i = 0; i * 0.1 <= way_m; ++i) {
+      const Pose2 slam_from_base{0.1 * i, 0.0, 0.0};
+      Frame frame;
+      frame.index = i;
+      frame.stamp_s = 0.1 * i;
+      frame.scan = std::make_shared<const Scan>(ScanOf(world, begin * slam_from_base,
+                                                       PlanarLaser{.sigma_of_range = 0.01}, 1,
+                                                       static_cast<std::uint32_t>(i)));
+      frame.slam_from_camera = CameraOf(slam_from_base, 0.0);
+      frames_.push_back(frame);
+    }
+  }
+  std::optional<Frame> Next() override {
+    if (frames_.empty()) return {};
+    Frame frame = frames_.front();
+    frames_.pop_front();
+    return frame;
+  }
+  std::optional<PinholeCamera> Camera() const override { return {}; }
+  int FrameCount() const override { return static_cast<int>(frames_.size()); }
+  std::vector<std::string> Warnings() const override { return {}; }
+
+ private:
+  std::deque<Frame> frames_;
+};
+
+// The first views fit at both ends, and SLAM's frame being the map's speaks for the wrong one.
+TEST(FindStart, TriesPlacesThatLookAlike) {
+  const Pose2 begin{12.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 9.0);
+  const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
+  ASSERT_TRUE(start);
+  ASSERT_TRUE(start->trial);
+  EXPECT_GE(start->trial->places, 2);
+  EXPECT_GE(start->trial->frames, 60);  // six metres
+  EXPECT_GT(start->trial->explained, start->trial->explained_next);
+  const Pose2 off = Between(begin, start->place.map_from_slam);
+  EXPECT_LT(off.translation().norm(), 0.1);
+  EXPECT_LT(std::abs(off.yaw_rad), 0.05);
+}
+
+// Nothing that is seen tells the ends apart, and that is said.
+TEST(FindStart, SaysThatItIsUncertain) {
+  WalkThroughHall walk({12.0, 0.0, kPi}, 1.0);
+  const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
+  ASSERT_TRUE(start);
+  EXPECT_TRUE(start->uncertain());
+}
+
+TEST(FindStart, IsNothingWithoutFrames) {
+  WalkThroughHall walk({12.0, 0.0, kPi}, -1.0);
+  EXPECT_FALSE(FindStart(MapOfHall(), walk, MapperOptions{}));
+}
+
+}  // namespace
+}  // namespace depthgrid
