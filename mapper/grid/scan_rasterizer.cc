@@ -1,7 +1,5 @@
 #include "mapper/grid/scan_rasterizer.h"
 
-// Highway asks for AES with AVX2, which x86-64-v3 does not promise and nothing here uses.
-#define HWY_DISABLE_PCLMUL_AES
 #include <hwy/highway.h>
 
 #include <algorithm>

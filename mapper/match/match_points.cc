@@ -1,7 +1,5 @@
 #include "mapper/match/match_points.h"
 
-// Highway asks for AES with AVX2, which x86-64-v3 does not promise and nothing here uses.
-#define HWY_DISABLE_PCLMUL_AES
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 

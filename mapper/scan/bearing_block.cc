@@ -1,12 +1,8 @@
 #include "mapper/scan/bearing_block.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <limits>
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#define HWY_DISABLE_PCLMUL_AES
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/scan/bearing_block.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set

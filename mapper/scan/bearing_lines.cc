@@ -1,7 +1,6 @@
 #include "mapper/scan/bearing_lines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -1,8 +1,6 @@
 // The lines of many bearings at once, one a vector lane (bearing_lines.h).
 #include "mapper/scan/bearing_lines.h"
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#define HWY_DISABLE_PCLMUL_AES
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/scan/bearing_lines_block.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set

@@ -5,9 +5,6 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <new>
-#include <utility>
 
 #include "mapper/scan/bearing_block.h"
 

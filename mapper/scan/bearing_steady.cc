@@ -1,8 +1,6 @@
 // The slice's ranges where its upper or lower part stands elsewhere (bearing_block.h).
 #include "mapper/scan/bearing_block.h"
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#define HWY_DISABLE_PCLMUL_AES
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/scan/bearing_steady.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set

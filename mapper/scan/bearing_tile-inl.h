@@ -7,13 +7,8 @@
 #define DEPTHGRID_BEARING_TILE_INL_H
 #endif
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#ifndef HWY_DISABLE_PCLMUL_AES
-#define HWY_DISABLE_PCLMUL_AES
-#endif
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstdint>
 
 #include "mapper/scan/bearing_block.h"

@@ -7,8 +7,6 @@
 
 #include "mapper/scan/floor_plane.h"
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#define HWY_DISABLE_PCLMUL_AES
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/scan/floor_points.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set

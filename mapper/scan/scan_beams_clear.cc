@@ -4,8 +4,6 @@
 
 #include "mapper/scan/scan_beams.h"
 
-// x86-64-v3 has AVX2 without AES, which nothing here needs.
-#define HWY_DISABLE_PCLMUL_AES
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/scan/scan_beams_clear.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set

@@ -2,8 +2,6 @@
 #include "mapper/scan/bearing_returns.h"
 
 #include <gtest/gtest.h>
-
-#define HWY_DISABLE_PCLMUL_AES
 #include <hwy/highway.h>
 
 #include "mapper/core/rng.h"

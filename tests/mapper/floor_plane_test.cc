@@ -1,8 +1,6 @@
 #include "mapper/scan/floor_plane.h"
 
 #include <gtest/gtest.h>
-
-#define HWY_DISABLE_PCLMUL_AES
 #include <hwy/highway.h>
 
 #include "mapper/core/rng.h"
