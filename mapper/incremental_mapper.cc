@@ -223,8 +223,8 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
   }
   filter_epoch = record.epoch;
   if (prior_start) {
-    const Eigen::Matrix3d covariance = kStartSigma.cwiseProduct(kStartSigma).asDiagonal();
-    filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base, covariance);
+    filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base,
+                  Squared(kStartSigma));
     prior_start.reset();
   }
   return filter.Predict(slam_from_base, record.stamp_s);

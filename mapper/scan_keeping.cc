@@ -1,6 +1,5 @@
 #include "mapper/scan_keeping.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

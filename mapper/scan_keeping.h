@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "mapper/core/key_index.h"
 #include "mapper/core/options.h"
 #include "mapper/reference_map.h"
-#include "mapper/surfel/tile_index.h"
 
 namespace depthgrid {
 
@@ -58,7 +58,7 @@ class ScanKeeping {
   double RoomAfter(std::size_t frames, bool explained) const;
 
   KeepOptions options_;
-  TileIndex place_of_key_;
+  KeyIndex place_of_key_;
   std::vector<Place> places_;
   std::vector<Kept> kept_;
 };

@@ -1,6 +1,5 @@
 #include "mapper/fuse/drift_filter.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
 namespace depthgrid {
@@ -38,12 +37,10 @@ DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
                     const MotionNoise& noise) {
   DriftUpdate update;
   update.fused = FuseKalman(PredictionOf(predicted, noise), match);
-  // The match sees the camera, SLAM's pose is off by its jitter J: information (L^-1 + J)^-1.
-  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d seen =
-      (identity + match.information * Squared(noise.jitter)).inverse() * match.information;
-  const Eigen::Matrix3d pose_covariance = predicted.covariance.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d weight = (identity + seen * pose_covariance).inverse() * seen;
+  // The match sees the camera, SLAM's pose is off by its jitter.
+  const Eigen::Matrix3d seen = WithAddedCovariance(match.information, Squared(noise.jitter));
+  const Eigen::Matrix3d weight =
+      WithAddedCovariance(seen, predicted.covariance.topLeftCorner<3, 3>());
   const Eigen::Matrix<double, 6, 3>& gain = update.gain =
       predicted.covariance.leftCols<3>() * weight;
   const Eigen::Matrix<double, 6, 1> step = gain * update.fused.innovation;

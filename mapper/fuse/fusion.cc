@@ -90,9 +90,13 @@ FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match) {
   return fused;
 }
 
+Eigen::Matrix3d WithAddedCovariance(const Eigen::Matrix3d& information,
+                                    const Eigen::Matrix3d& covariance) {
+  return (Eigen::Matrix3d::Identity() + information * covariance).inverse() * information;
+}
+
 Eigen::Matrix3d InnovationWeight(const Prediction& prediction, const Eigen::Matrix3d& information) {
-  return (Eigen::Matrix3d::Identity() + information * prediction.covariance).inverse() *
-         information;
+  return WithAddedCovariance(information, prediction.covariance);
 }
 
 double InnovationChi2(const Prediction& prediction, const Eigen::Matrix3d& information,

@@ -50,7 +50,12 @@ FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
 // update without inverting P or L, either of which may be singular.
 FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
 
-// Inverse covariance of the innovation, (P + L^-1)^-1 = (I + L P)^-1 L; L may be singular.
+// Information L of what errs by the covariance C in addition, (L^-1 + C)^-1 = (I + L C)^-1 L; L may
+// be singular.
+Eigen::Matrix3d WithAddedCovariance(const Eigen::Matrix3d& information,
+                                    const Eigen::Matrix3d& covariance);
+
+// Inverse covariance of the innovation, (P + L^-1)^-1.
 Eigen::Matrix3d InnovationWeight(const Prediction& prediction, const Eigen::Matrix3d& information);
 
 // nu^T (P + L^-1)^-1 nu.

@@ -42,15 +42,6 @@ Eigen::Vector2d LargestAxis(const Eigen::Matrix2d& matrix) {
   return axis / axis.norm();
 }
 
-// (x, y, yaw) of the map from (forward, left, yaw) of base.
-Eigen::Matrix3d MapFromBaseAxes(double yaw_rad) {
-  const double c = std::cos(yaw_rad);
-  const double s = std::sin(yaw_rad);
-  Eigen::Matrix3d axes;
-  axes << c, -s, 0, s, c, 0, 0, 0, 1;
-  return axes;
-}
-
 // Eigenvectors and eigenvalues per square metre of an information, a radian of yaw being
 // `scale_m.z()` metres.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> AxesOf(const Eigen::Matrix3d& information,
@@ -128,6 +119,14 @@ InformationSums SumUpInformation(const MatchPoints& points, const ProbabilityVie
   }
   end_patch();
   return sums;
+}
+
+Eigen::Matrix3d MapFromBaseAxes(double yaw_rad) {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  Eigen::Matrix3d axes;
+  axes << c, -s, 0, s, c, 0, 0, 0, 1;
+  return axes;
 }
 
 Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_from_base,

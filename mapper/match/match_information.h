@@ -63,6 +63,9 @@ InformationSums SumUpInformation(const MatchPoints& points, const ProbabilityVie
 void AddPatch(const Eigen::Vector3d& gradient, const Eigen::Matrix<double, 3, 2>& shift_curvature,
               double map_sigma_m, Eigen::Matrix3d& gradient_covariance);
 
+// Turns a small motion in base axes (forward, left, yaw) into one in map axes (x, y, yaw).
+Eigen::Matrix3d MapFromBaseAxes(double yaw_rad);
+
 // Inverse covariance of map_from_base for a small motion (forward m, left m, yaw rad) in base axes.
 // Symmetric, positive semidefinite; zero along directions that are not determined.
 Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_from_base,

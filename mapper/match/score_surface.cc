@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/match/match_information.h"
+
 namespace depthgrid {
 namespace {
 
@@ -73,26 +75,23 @@ Eigen::Matrix3d SurfaceInformation(const ScoreSurface& surface, double sharpness
   const Eigen::Matrix3d relative = unit.cwiseInverse().asDiagonal() *
                                    WeightedCovariance(surface, sharpness) *
                                    unit.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(relative + rounding);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(relative + rounding);
   // 1 / c is the information of scores and window together, 1 that of the window; a direction is
   // determined when the scores halve the window's spread.
   constexpr double kDeterminedVariance = 0.25;
   Eigen::Vector3d information = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double variance = axes.eigenvalues()(i);
+    const double variance = spread.eigenvalues()(i);
     if (variance < kDeterminedVariance) information(i) = 1.0 / variance - 1.0;
   }
   const Eigen::Vector3d per_unit(1.0 / (unit.x() * lattice.resolution_m),
                                  1.0 / (unit.y() * lattice.resolution_m),
                                  1.0 / (unit.z() * lattice.yaw_step_rad));
-  const Eigen::Matrix3d in_map = per_unit.asDiagonal() * axes.eigenvectors() *
-                                 information.asDiagonal() * axes.eigenvectors().transpose() *
+  const Eigen::Matrix3d in_map = per_unit.asDiagonal() * spread.eigenvectors() *
+                                 information.asDiagonal() * spread.eigenvectors().transpose() *
                                  per_unit.asDiagonal();
-  const double c = std::cos(lattice.predicted_map_from_base.yaw_rad);
-  const double s = std::sin(lattice.predicted_map_from_base.yaw_rad);
-  Eigen::Matrix3d map_from_base_axes;
-  map_from_base_axes << c, -s, 0, s, c, 0, 0, 0, 1;
-  return map_from_base_axes.transpose() * in_map * map_from_base_axes;
+  const Eigen::Matrix3d axes = MapFromBaseAxes(lattice.predicted_map_from_base.yaw_rad);
+  return axes.transpose() * in_map * axes;
 }
 
 }  // namespace depthgrid

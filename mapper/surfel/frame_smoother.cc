@@ -1,10 +1,8 @@
 #include "mapper/surfel/frame_smoother.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <utility>
 
-#include "mapper/core/error.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/skyline_matrix.h"
 
@@ -28,12 +26,6 @@ struct State {
 
 Eigen::Vector3d Inverted(const Eigen::Vector3d& sigma) {
   return sigma.cwiseProduct(sigma).cwiseInverse();
-}
-
-// The match sees the camera; SLAM's pose is off by its jitter J: information (L^-1 + J)^-1.
-Eigen::Matrix3d InformationOf(const MatchResult& match, const MotionNoise& noise) {
-  const Eigen::Matrix3d jitter = noise.jitter.cwiseProduct(noise.jitter).asDiagonal();
-  return (Eigen::Matrix3d::Identity() + match.information * jitter).inverse() * match.information;
 }
 
 class Equations {
@@ -153,13 +145,16 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
   for (const SmootherFrame& frame : frames) state.map_from_base.push_back(frame.map_from_base);
   state.bias.assign(frames.size(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d motion_weight = Inverted(noise.walk.cwiseMax(kLeastWalk));
+  const Eigen::Matrix3d jitter = Squared(noise.jitter);
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Equations equations(frames.size());
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const int frame = static_cast<int>(k);
       const MatchResult& match = frames[k].match;
       if (match.found) {
-        equations.AddMatch(frame, state.map_from_base[k], match, InformationOf(match, noise));
+        // The match sees the camera, SLAM's pose is off by its jitter.
+        equations.AddMatch(frame, state.map_from_base[k], match,
+                           WithAddedCovariance(match.information, jitter));
       }
       equations.AddBias(frame, state, noise);
       if (k > 0 && frames[k].motion) {
@@ -169,7 +164,6 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
     if (!equations.SolveInto(state)) break;
   }
   // The camera: between where SLAM's jittering pose lies and what its own scan says.
-  const Eigen::Matrix3d jitter = noise.jitter.cwiseProduct(noise.jitter).asDiagonal();
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!frames[k].match.found) continue;
     Prediction prediction;

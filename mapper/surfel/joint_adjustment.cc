@@ -158,7 +158,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
                 JointResult& result) {
   std::vector<Pose2>& map_from_group = result.map_from_group;
   const JointOptions& options = problem.options;
-  const AssociationGate gate{0.6 * options.landmark_m, gate_m,
+  const AssociationGate gate{kAlongShare * options.landmark_m, gate_m,
                              std::cos(RadFromDeg(options.max_angle_deg))};
   const Landmarks landmarks(problem.groups, map_from_group, gate);
   std::vector<GroupLink> links = SettledLinks(problem);

@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "mapper/core/median.h"
+
 namespace depthgrid {
 
-// Collects residuals in units of the sigma they were expected to have; no memory of its own grows.
+// A histogram of residuals in units of the sigma they were expected to have.
 class Misfit {
  public:
   void Add(double sigmas) {
@@ -21,7 +23,6 @@ class Misfit {
   // Variance over expected variance, by the median, which wrong associations do not move; at least
   // 1: where things fit better than expected, nothing is believed more.
   double VarianceFactor() const {
-    constexpr double kSigmaOfMedian = 1.4826;  // of |residual|, normal distribution
     std::uint32_t below = 0;
     std::size_t bin = 0;
     while (bin + 1 < kBins && 2 * (below + counts_[bin]) < count_) below += counts_[bin++];

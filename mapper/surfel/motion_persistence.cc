@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "mapper/surfel/motion_sigma.h"
+#include "mapper/surfel/sign_correlation.h"
 
 namespace depthgrid {
 namespace {
@@ -72,8 +72,7 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
     // Less a standard error: the fourth root makes much of what independent errors feign.
     const double surely = agreement[axis] / pairs - 1.0 / std::sqrt(pairs);
     if (surely <= 0.0) continue;
-    // Of normal variables whose signs agree so often (Sheppard 1899).
-    const double correlation = std::sin(0.5 * std::numbers::pi * surely);
+    const double correlation = CorrelationOfSigns(surely);
     persistence[axis] =
         std::min(std::pow(correlation, 1.0 / static_cast<double>(kLag)), kMostPersistence);
   }

@@ -4,6 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -47,7 +50,6 @@ Eigen::Vector3d ShareSeen(const std::vector<GroupLink>& motions,
 Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Pose2>& map_from_group,
                             const Eigen::Vector3d& share_seen) {
-  constexpr double kSigmaOfMedian = 1.4826;  // of |error|, normal distribution
   if (unit.empty()) return kLeastMotionSigma;
   Eigen::Vector3d sigma;
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,12 +57,10 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
     for (const GroupLink& link : unit) {
       errors.push_back(std::abs(LinkError(link, map_from_group)[axis] / link.sigma[axis]));
     }
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
     // Below the least share the prior is taken for a little better each time, down to the least
     // sigma if it is perfect (measured in docs/math.md).
     const double share = std::max(share_seen[axis], kLeastShareSeen);
-    sigma[axis] = kSigmaOfMedian * *middle / std::sqrt(share);
+    sigma[axis] = kSigmaOfMedian * UpperMedian(std::move(errors)) / std::sqrt(share);
   }
   const double most = sigma.head<2>().maxCoeff();
   return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);

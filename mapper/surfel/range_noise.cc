@@ -14,7 +14,7 @@ constexpr double kDefaultRelativeSigma = 0.01;
 // No sensor is better (0.2 mm at 1 m), and weights stay finite for simulated scans without noise.
 constexpr double kMinRelativeSigma = 2e-4;
 // The median of |x| of a normal variable is 0.6745 sigma; a second difference has sqrt(6) sigma.
-constexpr double kSigmaOfMedian = 1.0 / (0.674489750196 * 2.449489742783);
+constexpr double kSigmaOfMedianDifference = 1.0 / (0.674489750196 * 2.449489742783);
 // A range bin with fewer samples borrows from its neighbours.
 constexpr std::uint32_t kMinSamples = 200;
 // Three beams count as evenly spaced when their gaps agree within this share.
@@ -76,7 +76,7 @@ void RangeNoise::Refresh() {
     const double low = ValueBinLow(static_cast<int>(bin));
     const double high = ValueBinLow(static_cast<int>(bin) + 1);
     const double median = low + (high - low) * (half - below) / histogram_[r][bin];
-    relative_sigma_[r] = std::max(kSigmaOfMedian * median, kMinRelativeSigma);
+    relative_sigma_[r] = std::max(kSigmaOfMedianDifference * median, kMinRelativeSigma);
     known[r] = true;
   }
   if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;

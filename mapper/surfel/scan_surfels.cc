@@ -47,7 +47,8 @@ int ScanSurfelMaker::BeamsAt(const ScanLine& line, int begin) const {
   // Along the wall beams are step * r / cos(incidence) apart, cos = (1/r) / |coefficients|.
   const double spacing_m = returns_.step_rad() * line.coefficients.norm() /
                            std::max(inverse_range * inverse_range, 1e-9);
-  const double fit = std::clamp(options_.max_length_m / spacing_m, 1.0, double(options_.beams));
+  const double fit =
+      std::clamp(options_.max_length_m / spacing_m, 1.0, static_cast<double>(options_.beams));
   const int left = line.span.end - begin;
   const int parts = (left + static_cast<int>(fit) - 1) / static_cast<int>(fit);
   return (left + parts - 1) / parts;

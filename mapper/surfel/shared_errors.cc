@@ -1,9 +1,9 @@
 #include "mapper/surfel/shared_errors.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numbers>
+
+#include "mapper/surfel/sign_correlation.h"
 
 namespace depthgrid {
 namespace {
@@ -50,7 +50,7 @@ void SharedErrors::Add(std::span<const Surfel> surfels, std::span<const double> 
 double SharedErrors::Correlation() const {
   if (pairs_ < kMinPairs) return 0.0;
   const double mean = static_cast<double>(signs_) / static_cast<double>(pairs_);
-  return std::max(0.0, std::sin(0.5 * std::numbers::pi * mean));
+  return std::max(0.0, CorrelationOfSigns(mean));
 }
 
 }  // namespace depthgrid

@@ -28,8 +28,7 @@ class SharedErrors {
  public:
   // Of one group, a residual a surfel; 0 where there is none.
   void Add(std::span<const Surfel> surfels, std::span<const double> residuals);
-  // Of two companions' errors. Of two normal variables the signs' product is 2/pi asin(correlation)
-  // in the mean (Sheppard 1899). At least 0; of few pairs nothing is told.
+  // Of two companions' errors. At least 0; of few pairs nothing is told.
   double Correlation() const;
 
  private:

@@ -13,6 +13,8 @@ namespace {
 constexpr double kGateM = 0.02;
 constexpr double kGateSigmas = 3.0;
 constexpr double kMaxAngleDeg = 40.0;
+// As kAlongShare: a group's surfels end up half to a whole spacing apart.
+constexpr double kGroupAlongShare = 0.5;
 // Over more tied frames than this, a second, the online estimate does not join two to millimetres.
 constexpr std::size_t kLongestGapFrames = 30;
 
@@ -43,8 +45,8 @@ void SurfelGroups::Collect(const std::vector<Surfel>& surfels, const Pose2& grou
   const double min_cosine = std::cos(RadFromDeg(kMaxAngleDeg));
   for (const Surfel& surfel : surfels) {
     const double sigma_m = 1.0 / std::sqrt(surfel.information);
-    newest_.Merge(motion * surfel,
-                  {0.5 * options_.spacing_m, kGateM + kGateSigmas * sigma_m, min_cosine});
+    newest_.Merge(motion * surfel, {kGroupAlongShare * options_.spacing_m,
+                                    kGateM + kGateSigmas * sigma_m, min_cosine});
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/growth.h"
+#include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
 
 namespace depthgrid {
@@ -14,7 +15,8 @@ namespace {
 // A tied frame's pose is as good as its match, but neither better than this nor worse: m, m, rad.
 const Eigen::Vector3d kLeastTieSigma(0.005, 0.005, 0.003);
 const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
-// Matches against the same noisy map are worth less than they say (docs/math.md, "Fusion").
+// Matches against the same noisy map are worth less than they say (docs/math.md, "Scans that are
+// kept").
 constexpr double kTieOverconfidence = 4.0;
 constexpr double kTieHuberSigmas = 2.0;
 
@@ -143,7 +145,7 @@ void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
   for (const Surfel& surfel : surfels) {
     const double off_m =
         options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
-    map.Merge(motion * surfel, {0.6 * options_.spacing_m, off_m, min_cosine}, frame);
+    map.Merge(motion * surfel, {kAlongShare * options_.spacing_m, off_m, min_cosine}, frame);
   }
 }
 
@@ -246,7 +248,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
   for (std::size_t g = 0; g < groups.groups().size(); ++g) {
     InsertInto(map, groups.groups()[g].surfels, map_from_group[g], 0.0);
   }
-  const Eigen::Matrix3d covariance = kAdjustedSigma.cwiseProduct(kAdjustedSigma).asDiagonal();
+  const Eigen::Matrix3d covariance = Squared(kAdjustedSigma);
   std::vector<Pose2> poses = PosesOf(groups.places(), map_from_group);
   std::vector<SmootherFrame> smoother;
   const int first_new = FirstNew(frames);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mapper/core/grid_geometry.h"
+#include "mapper/core/key_index.h"
 #include "mapper/surfel/surfel.h"
-#include "mapper/surfel/tile_index.h"
 
 namespace depthgrid {
 
@@ -17,6 +17,10 @@ struct AssociationGate {
   double off_m = 0.0;       // along its normal
   double min_cosine = 0.0;  // between the normals
 };
+
+// AssociationGate::along_m over the spacing that surfels are to have along a wall: they end up 0.6
+// to 1.2 spacings apart.
+constexpr double kAlongShare = 0.6;
 
 // The surfel a piece belongs to, and for how long.
 struct Association {
@@ -79,7 +83,7 @@ class SurfelStore {
   std::vector<Surfel> surfels_;
   std::vector<float> frames_;      // parallel to surfels_
   std::vector<int> next_in_cell_;  // parallel to surfels_
-  TileIndex tile_of_key_;
+  KeyIndex tile_of_key_;
   std::vector<Tile> tiles_;
 };
 

@@ -1,5 +1,5 @@
-// Which tile has a key. A flat table: look-ups are the matcher's inner loop, and emptying it keeps
-// its memory. It is never walked through, so its order cannot show.
+// Which index has a key. A flat table: look-ups are the surfel matcher's inner loop, and emptying
+// it keeps its memory. It is never walked through, so its order cannot show.
 #pragma once
 
 #include <cstddef>
@@ -9,21 +9,21 @@
 
 namespace depthgrid {
 
-class TileIndex {
+class KeyIndex {
  public:
   // -1 when there is none.
   int Find(std::uint64_t key) const {
     if (entries_.empty()) return -1;
     for (std::size_t i = PlaceOf(key);; i = (i + 1) & (entries_.size() - 1)) {
-      if (entries_[i].tile < 0 || entries_[i].key == key) return entries_[i].tile;
+      if (entries_[i].index < 0 || entries_[i].key == key) return entries_[i].index;
     }
   }
-  // A key that is not there yet.
-  void Add(std::uint64_t key, int tile) {
+  // A key that is not there yet; `index` is not negative.
+  void Add(std::uint64_t key, int index) {
     if (2 * (size_ + 1) > entries_.size()) Grow();
     std::size_t i = PlaceOf(key);
-    while (entries_[i].tile >= 0) i = (i + 1) & (entries_.size() - 1);
-    entries_[i] = {key, tile};
+    while (entries_[i].index >= 0) i = (i + 1) & (entries_.size() - 1);
+    entries_[i] = {key, index};
     ++size_;
   }
   void Clear() {
@@ -34,7 +34,7 @@ class TileIndex {
  private:
   struct Entry {
     std::uint64_t key = 0;
-    int tile = -1;
+    int index = -1;
   };
   static constexpr std::size_t kFirstSize = 16;  // always a power of two
 
@@ -47,7 +47,7 @@ class TileIndex {
     entries_.assign(before.empty() ? kFirstSize : 2 * before.size(), {});
     size_ = 0;
     for (const Entry& entry : before) {
-      if (entry.tile >= 0) Add(entry.key, entry.tile);
+      if (entry.index >= 0) Add(entry.key, entry.index);
     }
   }
 
