@@ -83,10 +83,15 @@ struct IncrementalMapper::State {
   Pose2 CarriedOn() const;
   void Anchor(const Pose2& map_from_base);
   MappedFrame AsMapped(const Pose2& map_from_base) const;
-  std::vector<Pose2> FinishByAdjusting(MapperResult& result) const;
-  // Poses of the mapped frames are overwritten by SLAM's own.
-  void FinishWithSlam(const std::vector<std::optional<Pose3>>& slam_final, MapperResult& result,
-                      std::vector<Pose2>& map_from_base) const;
+  struct FinalEstimate {
+    std::vector<Pose2> map_from_base;                   // of the mapped frames
+    std::vector<std::optional<Pose3>> map_from_camera;  // of all frames
+    std::vector<PlanarLoop> loops;                      // those taken, among the kept frames
+  };
+  FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
+  FinalEstimate FinalAsItIs() const;
+  FinalEstimate FinalByAdjusting() const;
+  FinalEstimate FinalOfSlam(const std::vector<std::optional<Pose3>>& slam_final) const;
   OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
 };
 
