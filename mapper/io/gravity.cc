@@ -11,6 +11,10 @@
 namespace depthgrid {
 namespace {
 
+using internal::SurfaceView;
+using Patches = std::vector<internal::SurfacePatch>;
+using Views = std::vector<SurfaceView>;
+
 // Patches across an image, whatever its size.
 constexpr int kPatchesAcross = 80;
 // Half the baseline of a normal as a share of the width: wide enough to average noise, narrow
@@ -48,7 +52,6 @@ constexpr double kFirstOffRad = RadFromDeg(2.0);
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
 // The direction that most normals share, of a few hundred tried.
-template <typename Patches>
 Eigen::Vector3d CommonNormal(const Patches& patches) {
   Eigen::Vector3d best = patches.front().normal;
   std::size_t most = 0;
@@ -66,10 +69,9 @@ Eigen::Vector3d CommonNormal(const Patches& patches) {
   return best;
 }
 
-template <typename Patches>
 std::vector<Eigen::Vector3d> LevelPoints(const Patches& patches, const Eigen::Vector3d& up) {
   std::vector<Eigen::Vector3d> points;
-  for (const auto& patch : patches) {
+  for (const internal::SurfacePatch& patch : patches) {
     if (patch.normal.dot(up) >= kFloorCone) points.push_back(patch.point);
   }
   return points;
@@ -177,10 +179,9 @@ Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up,
 }
 
 // The largest level surface of each image that sees one.
-template <typename Views>
 std::vector<PlaneFit> LargestLevels(const Views& views, const Eigen::Vector3d& up, double band_m) {
   std::vector<PlaneFit> fits;
-  for (const auto& view : views) {
+  for (const SurfaceView& view : views) {
     const std::vector<Eigen::Vector3d> level = LevelPoints(view.patches, up);
     if (level.size() < kMinViewPatches) continue;
     const PlaneFit fit = FitNear(level, up, Levels(level, up).FullestM(), band_m);
@@ -197,7 +198,6 @@ struct CommonLevel {
   std::vector<PlaneFit> fits;  // of the images that see a level surface; none: nothing is known
 };
 
-template <typename Views>
 CommonLevel FitCommonLevel(const Views& views, const Eigen::Vector3d& about_up) {
   CommonLevel level{about_up, {}};
   for (const double band_m : kFitBandM) {
@@ -210,9 +210,8 @@ CommonLevel FitCommonLevel(const Views& views, const Eigen::Vector3d& about_up) 
   return level;
 }
 
-template <typename Views>
-auto PatchesOf(const Views& views) {
-  auto patches = views.front().patches;
+Patches PatchesOf(const Views& views) {
+  Patches patches = views.front().patches;
   for (std::size_t i = 1; i < views.size(); ++i) {
     patches.insert(patches.end(), views[i].patches.begin(), views[i].patches.end());
   }
@@ -220,7 +219,6 @@ auto PatchesOf(const Views& views) {
 }
 
 // As the recording's first images have it, if they see a floor.
-template <typename Views>
 std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
   if (first_views.empty()) return {};
   const auto patches = PatchesOf(first_views);
@@ -230,7 +228,6 @@ std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
   return FirstUp(first.fits, first.up, first.fits.size());
 }
 
-template <typename Views>
 std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
                                   const Eigen::Vector3d& about_up) {
   const CommonLevel level = FitCommonLevel(views, about_up);
@@ -256,10 +253,9 @@ struct FloorOfViews {
 };
 
 // Each image's own lowest surface.
-template <typename Views>
 std::vector<FloorOfViews> OwnFloors(const Views& views, const Eigen::Vector3d& up) {
   std::vector<FloorOfViews> floors;
-  for (const auto& view : views) {
+  for (const SurfaceView& view : views) {
     const std::vector<Eigen::Vector3d> own = LevelPoints(view.patches, up);
     if (own.size() < kMinViewPatches) continue;
     const double own_m = Levels(own, up).LowestM();
@@ -279,7 +275,6 @@ double MiddleOf(const std::vector<FloorOfViews>& floors, double FloorOfViews::*n
 // The floor is the lowest of all surfaces where the images agree on it, and the camera's height is
 // that above it. With SLAM's height drifting it is where the first images have it, and the camera's
 // height is that above each image's own lowest surface.
-template <typename Views>
 FloorOfViews FloorUnder(const Views& views, const Views& first_views,
                         const std::vector<Eigen::Vector3d>& level, const Eigen::Vector3d& up) {
   const double lowest_m = Levels(level, up).LowestM();
@@ -297,36 +292,22 @@ FloorOfViews FloorUnder(const Views& views, const Views& first_views,
   }
   const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
   std::vector<double> cameras_m;
-  for (const auto& view : views) cameras_m.push_back(up.dot(view.camera) - floor_m);
+  for (const SurfaceView& view : views) cameras_m.push_back(up.dot(view.camera) - floor_m);
   return {floor_m, UpperMedian(cameras_m)};
 }
 
 // Of each view what faces upwards.
-template <typename Views>
 Views Upward(Views views, const Eigen::Vector3d& image_up) {
-  for (auto& view : views) {
+  for (SurfaceView& view : views) {
     std::erase_if(view.patches,
                   [&](const auto& patch) { return patch.normal.dot(image_up) <= kMaxFromImageUp; });
   }
   return views;
 }
 
-}  // namespace
-
-void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
-                        const Pose3& world_from_camera) {
-  views_.push_back(ViewOf(image, camera, world_from_camera));
-  image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
-}
-
-void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camera,
-                             const Pose3& world_from_camera) {
-  first_views_.push_back(ViewOf(image, camera, world_from_camera));
-}
-
-GravityFinder::View GravityFinder::ViewOf(const DepthImage& image, const PinholeCamera& camera,
-                                          const Pose3& world_from_camera) {
-  View view;
+SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
+                   const Pose3& world_from_camera) {
+  SurfaceView view;
   view.camera = world_from_camera.translation;
   const int step_px = std::max(1, image.width_px / kPatchesAcross);
   const int base_px = std::max(2, static_cast<int>(kBaselineShare * image.width_px));
@@ -352,14 +333,27 @@ GravityFinder::View GravityFinder::ViewOf(const DepthImage& image, const Pinhole
   return view;
 }
 
+}  // namespace
+
+void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
+                        const Pose3& world_from_camera) {
+  views_.push_back(ViewOf(image, camera, world_from_camera));
+  image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
+}
+
+void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camera,
+                             const Pose3& world_from_camera) {
+  first_views_.push_back(ViewOf(image, camera, world_from_camera));
+}
+
 std::optional<Gravity> GravityFinder::Find() const {
   if (views_.empty() || image_up_.norm() == 0.0) return {};
   const Eigen::Vector3d image_up = image_up_.normalized();
-  const std::vector<View> upward = Upward(views_, image_up);
-  const std::vector<View> first_upward = Upward(first_views_, image_up);
+  const Views upward = Upward(views_, image_up);
+  const Views first_upward = Upward(first_views_, image_up);
   std::size_t patches = 0;
-  for (const View& view : views_) patches += view.patches.size();
-  const std::vector<Patch> together = PatchesOf(upward);
+  for (const SurfaceView& view : views_) patches += view.patches.size();
+  const Patches together = PatchesOf(upward);
   const std::size_t needed = std::max(
       kMinFloorPatches, static_cast<std::size_t>(kMinFloorShare * static_cast<double>(patches)));
   if (together.size() < needed) return {};

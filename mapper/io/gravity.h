@@ -25,6 +25,19 @@ struct Gravity {
   double camera_height_m = 0.0;  // above the floor, median over the frames
 };
 
+namespace internal {
+// A piece of surface as an image shows it.
+struct SurfacePatch {
+  Eigen::Vector3d point;   // in the world
+  Eigen::Vector3d normal;  // towards the camera
+};
+// What an image shows.
+struct SurfaceView {
+  Eigen::Vector3d camera;  // its position
+  std::vector<SurfacePatch> patches;
+};
+}  // namespace internal
+
 class GravityFinder {
  public:
   // An undistorted image of the recording; a dozen spread over it are enough.
@@ -39,19 +52,8 @@ class GravityFinder {
   std::optional<Gravity> Find() const;
 
  private:
-  struct Patch {
-    Eigen::Vector3d point;   // in the world
-    Eigen::Vector3d normal;  // towards the camera
-  };
-  struct View {
-    Eigen::Vector3d camera;  // its position
-    std::vector<Patch> patches;
-  };
-  static View ViewOf(const DepthImage& image, const PinholeCamera& camera,
-                     const Pose3& world_from_camera);
-
-  std::vector<View> views_;
-  std::vector<View> first_views_;
+  std::vector<internal::SurfaceView> views_;
+  std::vector<internal::SurfaceView> first_views_;
   Eigen::Vector3d image_up_ = Eigen::Vector3d::Zero();  // sum over the frames, in the world
 };
 

@@ -95,8 +95,6 @@ RgbImage DecodeRgbPng(std::string_view png, const std::string& place) {
   return image;
 }
 
-RgbImage ReadRgbPng(const std::string& path) { return DecodeRgbPng(ReadFile(path), path); }
-
 void WriteRgbPng(const std::string& path, const RgbImage& image) {
   WriteFile(path, EncodeRgbPng(image));
 }
@@ -108,12 +106,6 @@ std::string EncodeGreyPng(const GreyImage& image) {
 GreyImage DecodeGreyPng(std::string_view png, const std::string& place) {
   PngPixels pixels = DecodePng(png, PngKind::kGrey8, place);
   return {pixels.width_px, pixels.height_px, std::move(pixels.bytes)};
-}
-
-GreyImage ReadGreyPng(const std::string& path) { return DecodeGreyPng(ReadFile(path), path); }
-
-void WriteGreyPng(const std::string& path, const GreyImage& image) {
-  WriteFile(path, EncodeGreyPng(image));
 }
 
 RgbaImage DecodeRgbaPng(std::string_view png, const std::string& place) {

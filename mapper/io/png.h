@@ -45,14 +45,11 @@ void WriteDepthPng(const std::string& path, const DepthImage& image, double scal
 // Colour: grey, palette, 16-bit and transparent images are converted.
 std::string EncodeRgbPng(const RgbImage& image);
 RgbImage DecodeRgbPng(std::string_view png, const std::string& place);
-RgbImage ReadRgbPng(const std::string& path);
 void WriteRgbPng(const std::string& path, const RgbImage& image);
 
 // Grey: colour is not converted but refused.
 std::string EncodeGreyPng(const GreyImage& image);
 GreyImage DecodeGreyPng(std::string_view png, const std::string& place);
-GreyImage ReadGreyPng(const std::string& path);
-void WriteGreyPng(const std::string& path, const GreyImage& image);
 
 // Any PNG as 8-bit red, green, blue, alpha, for files whose transparency says something.
 struct RgbaImage {

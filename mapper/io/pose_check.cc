@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/level.h"
 #include "mapper/core/median.h"
 #include "mapper/io/pose_track.h"
 
@@ -39,9 +40,8 @@ Pose3 WithWFirst(const Pose3& pose) {
 }
 
 Pose3 FromBodyAxes(const Pose3& pose) {
-  Eigen::Matrix3d body_from_camera;
-  body_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return {pose.rotation * Eigen::Quaterniond(body_from_camera), pose.translation};
+  const Eigen::Quaterniond body_from_camera = CameraOf(Pose2{}, 0.0).rotation;
+  return {pose.rotation * body_from_camera, pose.translation};
 }
 
 Pose3 FromGlAxes(const Pose3& pose) {
@@ -91,6 +91,72 @@ class Fits {
   PoseTrack track_;
 };
 
+Pose3 AsGiven(const Pose3& pose) { return pose; }
+
+// Of the readings tried so far the one with which the images fit best; first that as given.
+class BestReading {
+ public:
+  // `least`: pairs that must have poses. `time_offset_s`: RecordingOptions' own.
+  BestReading(const Fits& fits, std::size_t least, double as_given, double time_offset_s)
+      : fits_(fits), least_(least), time_offset_s_(time_offset_s) {
+    best_.misfit = as_given;
+    best_.better_misfit = as_given;
+  }
+  const PoseDoubt& doubt() const { return best_; }
+
+  // Other meanings of what stands in the file.
+  void TryWritten(const PoseChange& as_written) {
+    const auto attempt = [&](PoseReading reading, Pose3 (*change)(const Pose3&)) {
+      const auto in_world = [&](const Pose3& pose) { return as_written(change(as_written(pose))); };
+      Try(reading, in_world, 0.0);
+    };
+    attempt(PoseReading::kWFirst, WithWFirst);
+    attempt(PoseReading::kInverse, Inverse);
+    attempt(PoseReading::kBodyAxes, FromBodyAxes);
+    attempt(PoseReading::kGlAxes, FromGlAxes);
+  }
+  void TryShifts() {
+    TryShifts(0.0, kCoarseShiftS, kMostShiftS);
+    if (best_.reading != PoseReading::kShifted) return;
+    TryShifts(best_.time_offset_s - time_offset_s_, kFineShiftS, kCoarseShiftS);
+  }
+  void TryScales() {
+    TryScales(1.0, kCoarseScale, kMostScale);
+    if (best_.reading == PoseReading::kScaled) TryScales(best_.scale, kFineScale, kCoarseScale);
+  }
+
+ private:
+  // Whether it is the best.
+  bool Try(PoseReading reading, const PoseChange& change, double shift_s) {
+    const auto misfit = fits_.Misfit(change, shift_s, least_);
+    if (!misfit || *misfit >= best_.better_misfit) return false;
+    best_ = {reading, time_offset_s_ + shift_s, 1.0, best_.misfit, *misfit};
+    return true;
+  }
+  void TryShifts(double around_s, double step_s, double most_s) {
+    const int steps = static_cast<int>(std::lround(most_s / step_s));
+    for (int k = -steps; k <= steps; ++k) {
+      Try(PoseReading::kShifted, AsGiven, around_s + k * step_s);
+    }
+  }
+  // By factors of `step` up to `most` either way.
+  void TryScales(double around, double step, double most) {
+    const int steps = static_cast<int>(std::lround(std::log(most) / std::log(step)));
+    for (int k = -steps; k <= steps; ++k) {
+      const double scale = around * std::pow(step, k);
+      const auto scaled = [scale](const Pose3& pose) {
+        return Pose3{pose.rotation, scale * pose.translation};
+      };
+      if (Try(PoseReading::kScaled, scaled, 0.0)) best_.scale = scale;
+    }
+  }
+
+  const Fits& fits_;
+  std::size_t least_;
+  double time_offset_s_;
+  PoseDoubt best_;
+};
+
 }  // namespace
 
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera,
@@ -130,52 +196,16 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   const std::size_t usable = fits.PairsWithPoses();
   if (usable < kLeastPairs) return {};
   const auto least = static_cast<std::size_t>(kLeastPairShare * static_cast<double>(usable));
-  const auto as_given = fits.Misfit([](const Pose3& pose) { return pose; }, 0.0, least);
+  const auto as_given = fits.Misfit(AsGiven, 0.0, least);
   if (!as_given) return {};
-  PoseDoubt best;
-  best.misfit = *as_given;
-  best.better_misfit = *as_given;
-  const auto attempt = [&](PoseReading reading, const PoseChange& change, double shift_s) {
-    const auto misfit = fits.Misfit(change, shift_s, least);
-    if (!misfit || *misfit >= best.better_misfit) return false;
-    best = {reading, options.time_offset_s + shift_s, 1.0, *as_given, *misfit};
-    return true;
-  };
-  const auto attempt_written = [&](PoseReading reading, Pose3 (*change)(const Pose3&)) {
-    attempt(
-        reading, [&](const Pose3& pose) { return as_written(change(as_written(pose))); }, 0.0);
-  };
-  attempt_written(PoseReading::kWFirst, WithWFirst);
-  attempt_written(PoseReading::kInverse, Inverse);
-  attempt_written(PoseReading::kBodyAxes, FromBodyAxes);
-  attempt_written(PoseReading::kGlAxes, FromGlAxes);
-  const auto attempt_shifts = [&](double around_s, double step_s, double most_s) {
-    const int steps = static_cast<int>(std::lround(most_s / step_s));
-    for (int k = -steps; k <= steps; ++k) {
-      attempt(
-          PoseReading::kShifted, [](const Pose3& pose) { return pose; }, around_s + k * step_s);
-    }
-  };
-  attempt_shifts(0.0, kCoarseShiftS, kMostShiftS);
-  if (best.reading == PoseReading::kShifted) {
-    attempt_shifts(best.time_offset_s - options.time_offset_s, kFineShiftS, kCoarseShiftS);
-  }
+  BestReading best(fits, least, *as_given, options.time_offset_s);
+  best.TryWritten(as_written);
+  best.TryShifts();
   // With a wrong scale stamps at which the camera moved less fit better too; the scale itself fits
   // best.
-  const auto attempt_scales = [&](double around, double step, double most) {
-    const int steps = static_cast<int>(std::lround(std::log(most) / std::log(step)));
-    for (int k = -steps; k <= steps; ++k) {
-      const double scale = around * std::pow(step, k);
-      const auto scaled = [scale](const Pose3& pose) {
-        return Pose3{pose.rotation, scale * pose.translation};
-      };
-      if (attempt(PoseReading::kScaled, scaled, 0.0)) best.scale = scale;
-    }
-  };
-  attempt_scales(1.0, kCoarseScale, kMostScale);
-  if (best.reading == PoseReading::kScaled) attempt_scales(best.scale, kFineScale, kCoarseScale);
-  if (best.better_misfit > kClearlyBetter * *as_given) return {};
-  return best;
+  best.TryScales();
+  if (best.doubt().better_misfit > kClearlyBetter * *as_given) return {};
+  return best.doubt();
 }
 
 }  // namespace depthgrid

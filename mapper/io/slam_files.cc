@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -136,8 +135,18 @@ void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vecto
   for (SlamPose& frame : live) frame.slam_from_camera = track.At(frame.stamp_s).slam_from_camera;
 }
 
-void Append(std::vector<std::string>& to, const std::vector<std::string>& lines) {
-  to.insert(to.end(), lines.begin(), lines.end());
+// Reads a file of events; its loops, warnings and a note are put into `input`.
+SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double max_difference_s,
+                      SlamInput& input) {
+  SlamEvents events = ParseSlamEvents(ReadFile(path), path, frames, max_difference_s);
+  input.warnings.insert(input.warnings.end(), events.warnings.begin(), events.warnings.end());
+  std::vector<LoopClosure>& loops = input.slam.loops;
+  for (const SlamEvent& event : events.events) {
+    if (event.loop) loops.push_back(*event.loop);
+  }
+  input.notes.push_back(
+      fmt::format("{} loop closure{} from {}", loops.size(), PluralS(loops.size()), events.kind));
+  return events;
 }
 
 }  // namespace
@@ -174,13 +183,7 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output) {
 
 SlamInput ReadLoops(const std::string& path, const FrameNames& frames, double max_difference_s) {
   SlamInput input;
-  const SlamEvents events = ParseSlamEvents(ReadFile(path), path, frames, max_difference_s);
-  input.warnings = events.warnings;
-  for (const SlamEvent& event : events.events) {
-    if (event.loop) input.slam.loops.push_back(*event.loop);
-  }
-  input.notes.push_back(fmt::format("{} loop closure{} from {}", input.slam.loops.size(),
-                                    PluralS(input.slam.loops.size()), events.kind));
+  TakeEvents(path, frames, max_difference_s, input);
   return input;
 }
 
@@ -190,13 +193,7 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   SlamInput input;
   SlamOutput& slam = input.slam;
   SlamEvents events;
-  if (!paths.loops.empty()) {
-    events = ParseSlamEvents(ReadFile(paths.loops), paths.loops, frames, max_difference_s);
-    Append(input.warnings, events.warnings);
-  }
-  for (const SlamEvent& event : events.events) {
-    if (event.loop) slam.loops.push_back(*event.loop);
-  }
+  if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
   const Trajectory live = ReadPoseFile(paths.live, frames, input.warnings);
   std::vector<std::string> unsaid;  // poses of no frame are what is interpolated between
   const auto framed = PosesByFrame(live, frames.stamps_s, max_difference_s, paths.live,
@@ -206,10 +203,6 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   if (!paths.final.empty()) {
     slam.final = ReadPoseFile(paths.final, frames, input.warnings);
     PosesByFrame(slam.final, frames.stamps_s, max_difference_s, paths.final, input.warnings);
-  }
-  if (!paths.loops.empty()) {
-    input.notes.push_back(fmt::format("{} loop closure{} from {}", slam.loops.size(),
-                                      PluralS(slam.loops.size()), events.kind));
   }
   const bool epochs_known = events.kind == kOwnEvents;
   FindCorrections(paths, epochs_known, input);
