@@ -16,6 +16,13 @@ struct Colour {
   bool operator==(const Colour&) const = default;
 };
 
+inline void SetPixel(RgbImage& image, int u_px, int v_px, Colour colour) {
+  std::uint8_t* const pixel = image.At(u_px, v_px);
+  pixel[0] = colour.red;
+  pixel[1] = colour.green;
+  pixel[2] = colour.blue;
+}
+
 // Coordinates are pixels, (0, 0) the centre of the top left one. What lies outside is clipped.
 class Canvas {
  public:

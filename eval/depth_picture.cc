@@ -74,10 +74,7 @@ RgbImage DepthPicture(const DepthImage& depth, double max_depth_m) {
       const float z_m = depth.At(u, v);
       const Colour colour =
           z_m > 0.0F ? DepthColour(1.0 - static_cast<double>(z_m) / max_depth_m) : kInvalidPixel;
-      std::uint8_t* pixel = picture.At(u, v);
-      pixel[0] = colour.red;
-      pixel[1] = colour.green;
-      pixel[2] = colour.blue;
+      SetPixel(picture, u, v, colour);
     }
   }
   return picture;

@@ -17,12 +17,9 @@ RgbImage Paint(const GridGeometry& geometry, ColourOf colour_of) {
   RgbImage image(geometry.width_cells, geometry.height_cells);
   for (int row = 0; row < geometry.height_cells; ++row) {
     for (int column = 0; column < geometry.width_cells; ++column) {
-      const Colour colour = colour_of(Cell{geometry.min_cell.x + column,
-                                           geometry.min_cell.y + geometry.height_cells - 1 - row});
-      std::uint8_t* pixel = image.At(column, row);
-      pixel[0] = colour.red;
-      pixel[1] = colour.green;
-      pixel[2] = colour.blue;
+      SetPixel(image, column, row,
+               colour_of(Cell{geometry.min_cell.x + column,
+                              geometry.min_cell.y + geometry.height_cells - 1 - row}));
     }
   }
   return image;
@@ -86,12 +83,62 @@ std::string LengthText(double length_m) {
   return std::to_string(std::lround(length_m * 100.0)) + " cm";
 }
 
-GridGeometry Widened(GridGeometry geometry, int margin_cells) {
-  geometry.min_cell.x -= margin_cells;
-  geometry.min_cell.y -= margin_cells;
-  geometry.width_cells += 2 * margin_cells;
-  geometry.height_cells += 2 * margin_cells;
-  return geometry;
+constexpr int kMarginPx = 12;
+constexpr int kTextScale = 2;
+
+// A scale bar and the paths' names, in one line.
+class Legend {
+ public:
+  Legend(double width_m, double px_per_m, const std::vector<Path>& paths)
+      : bar_text_(LengthText(ScaleBarLength(width_m))),
+        bar_px_(static_cast<int>(std::lround(ScaleBarLength(width_m) * px_per_m))),
+        paths_(paths) {}
+
+  int WidthPx() const {
+    int width_px = 4 * kMarginPx + bar_px_ + Canvas::TextWidth(bar_text_, kTextScale);
+    for (const Path& path : paths_) {
+      width_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
+    }
+    return width_px;
+  }
+  static int HeightPx() { return Canvas::TextHeight(kTextScale) + 2 * kMarginPx; }
+
+  // Below this row.
+  void Draw(int row_px, Canvas& canvas) const {
+    const int text_top = row_px + kMarginPx;
+    const int middle = text_top + Canvas::TextHeight(kTextScale) / 2;
+    canvas.Fill(kMarginPx, middle - 1, bar_px_, 3, kInk);
+    canvas.Fill(kMarginPx, middle - 6, 2, 13, kInk);
+    canvas.Fill(kMarginPx + bar_px_ - 2, middle - 6, 2, 13, kInk);
+    int left = kMarginPx + bar_px_ + kMarginPx;
+    canvas.Text(left, text_top, bar_text_, kTextScale, kInk);
+    left += Canvas::TextWidth(bar_text_, kTextScale) + 2 * kMarginPx;
+    for (const Path& path : paths_) {
+      canvas.Fill(left, middle - 2, 2 * kMarginPx, 4, path.colour);
+      left += 3 * kMarginPx;
+      canvas.Text(left, text_top, path.name, kTextScale, kInk);
+      left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
+    }
+  }
+
+ private:
+  std::string bar_text_;
+  int bar_px_;
+  const std::vector<Path>& paths_;
+};
+
+// Over a picture of so many rows, whose lower left corner is the origin. The centre of cell (i,
+// j)'s picture is that of its enlarged square.
+void DrawPath(const Path& path, const Eigen::Vector2d& origin_m, double px_per_m, int rows_px,
+              Canvas& canvas) {
+  constexpr double kPathWidthPx = 2.5;
+  std::vector<Eigen::Vector2d> points;
+  for (const StampedPose& pose : path.poses) {
+    const Eigen::Vector2d offset_m = pose.world_from_camera.translation.head<2>() - origin_m;
+    points.emplace_back(offset_m.x() * px_per_m - 0.5, rows_px - offset_m.y() * px_per_m - 0.5);
+  }
+  canvas.Polyline(points, kPathWidthPx, path.colour);
+  if (!points.empty()) canvas.Disc(points.front(), 2.0 * kPathWidthPx, path.colour);
 }
 
 }  // namespace
@@ -125,54 +172,21 @@ RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
 
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
                       const std::vector<Path>& paths) {
-  constexpr int kMarginPx = 12;
-  constexpr int kTextScale = 2;
-  constexpr double kPathWidthPx = 2.5;
   const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
   const double px_per_m = factor / geometry.resolution_m;
-  const double bar_m = ScaleBarLength(geometry.width_cells * geometry.resolution_m);
-  const int bar_px = static_cast<int>(std::lround(bar_m * px_per_m));
-  int legend_px = 4 * kMarginPx + bar_px + Canvas::TextWidth(LengthText(bar_m), kTextScale);
-  for (const Path& path : paths) {
-    legend_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
-  }
-  const int line_px = Canvas::TextHeight(kTextScale) + kMarginPx;
-  const int footer_px = kMarginPx + line_px;
-  Canvas canvas(std::max(large.width_px, legend_px), large.height_px + footer_px, kPaper);
+  const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths);
+  Canvas canvas(std::max(large.width_px, legend.WidthPx()), large.height_px + Legend::HeightPx(),
+                kPaper);
   RgbImage image = canvas.image();
   for (int row = 0; row < large.height_px; ++row) {
     std::copy_n(large.At(0, row), 3 * large.width_px, image.At(0, row));
   }
   canvas = Canvas(std::move(image));
-
-  // The centre of cell (i, j)'s picture is that of its enlarged square.
-  const Eigen::Vector2d origin_m = geometry.OriginM();
   for (const Path& path : paths) {
-    std::vector<Eigen::Vector2d> points;
-    for (const StampedPose& pose : path.poses) {
-      const Eigen::Vector2d offset_m = pose.world_from_camera.translation.head<2>() - origin_m;
-      points.emplace_back(offset_m.x() * px_per_m - 0.5,
-                          large.height_px - offset_m.y() * px_per_m - 0.5);
-    }
-    canvas.Polyline(points, kPathWidthPx, path.colour);
-    if (!points.empty()) canvas.Disc(points.front(), 2.0 * kPathWidthPx, path.colour);
+    DrawPath(path, geometry.OriginM(), px_per_m, large.height_px, canvas);
   }
-
-  const int text_top = large.height_px + kMarginPx;
-  const int middle = text_top + Canvas::TextHeight(kTextScale) / 2;
-  canvas.Fill(kMarginPx, middle - 1, bar_px, 3, kInk);
-  canvas.Fill(kMarginPx, middle - 6, 2, 13, kInk);
-  canvas.Fill(kMarginPx + bar_px - 2, middle - 6, 2, 13, kInk);
-  int left = kMarginPx + bar_px + kMarginPx;
-  canvas.Text(left, text_top, LengthText(bar_m), kTextScale, kInk);
-  left += Canvas::TextWidth(LengthText(bar_m), kTextScale) + 2 * kMarginPx;
-  for (const Path& path : paths) {
-    canvas.Fill(left, middle - 2, 2 * kMarginPx, 4, path.colour);
-    left += 3 * kMarginPx;
-    canvas.Text(left, text_top, path.name, kTextScale, kInk);
-    left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
-  }
+  legend.Draw(large.height_px, canvas);
   return canvas.image();
 }
 
@@ -182,11 +196,7 @@ GridGeometry KnownPart(const StateMap& map, int margin_cells) {
   known.height_cells = 0;
   for (std::size_t i = 0; i < map.states.size(); ++i) {
     if (map.states[i] == CellState::kUnknown) continue;
-    GridGeometry one = map.geometry;
-    one.min_cell = map.geometry.CellAt(i);
-    one.width_cells = 1;
-    one.height_cells = 1;
-    known = Union(known, one);
+    known = Union(known, OnlyCell(map.geometry.CellAt(i), map.geometry.resolution_m));
   }
   if (known.size() == 0) return map.geometry;
   return Widened(known, margin_cells);
@@ -197,11 +207,9 @@ GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cell
   const int far_cells = CellIndex(kFarM, part.resolution_m);
   const GridGeometry near = Widened(part, far_cells);
   for (const StampedPose& pose : path) {
-    GridGeometry one = part;
-    one.min_cell = CellOf(pose.world_from_camera.translation.head<2>(), part.resolution_m);
-    one.width_cells = 1;
-    one.height_cells = 1;
-    if (near.Contains(one.min_cell)) part = Union(part, Widened(one, margin_cells));
+    const Cell at = CellOf(pose.world_from_camera.translation.head<2>(), part.resolution_m);
+    const GridGeometry around = Widened(OnlyCell(at, part.resolution_m), margin_cells);
+    if (near.Contains(at)) part = Union(part, around);
   }
   return part;
 }

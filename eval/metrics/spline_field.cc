@@ -45,12 +45,7 @@ void BoxFilter(std::vector<double>& values, std::size_t first, std::size_t strid
 
 SplineField::SplineField(const CellSet& set, int smoothing_radius_cells) {
   constexpr int kPasses = 3;
-  const int margin = kPasses * smoothing_radius_cells + 2;
-  geometry_ = set.geometry;
-  geometry_.min_cell.x -= margin;
-  geometry_.min_cell.y -= margin;
-  geometry_.width_cells += 2 * margin;
-  geometry_.height_cells += 2 * margin;
+  geometry_ = Widened(set.geometry, kPasses * smoothing_radius_cells + 2);
   values_.assign(geometry_.size(), 0.0);
   for (std::size_t i = 0; i < set.members.size(); ++i) {
     if (set.members[i] != 0) values_[geometry_.Index(set.geometry.CellAt(i))] = 1.0;

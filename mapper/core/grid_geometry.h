@@ -57,6 +57,19 @@ struct GridGeometry {
   Eigen::Vector2d OriginM() const { return {min_cell.x * resolution_m, min_cell.y * resolution_m}; }
 };
 
+// The rectangle of one cell.
+inline GridGeometry OnlyCell(const Cell& cell, double resolution_m) {
+  return {resolution_m, cell, 1, 1};
+}
+
+// With so many cells more on every side.
+inline GridGeometry Widened(const GridGeometry& geometry, int margin_cells) {
+  return {geometry.resolution_m,
+          {geometry.min_cell.x - margin_cells, geometry.min_cell.y - margin_cells},
+          geometry.width_cells + 2 * margin_cells,
+          geometry.height_cells + 2 * margin_cells};
+}
+
 // The smallest rectangle that contains both; an empty one (zero size) counts for nothing. Same
 // resolution required.
 GridGeometry Union(const GridGeometry& a, const GridGeometry& b);

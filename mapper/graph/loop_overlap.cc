@@ -43,11 +43,7 @@ void RaiseAroundWalls(int reach_cells, SeenPlace& place) {
 
 // The border is so wide that no wall lies near it.
 void SetFindings(const OccupancyMap& map, int reach_cells, SeenPlace& place) {
-  place.geometry = map.geometry;
-  place.geometry.min_cell = {map.geometry.min_cell.x - reach_cells,
-                             map.geometry.min_cell.y - reach_cells};
-  place.geometry.width_cells += 2 * reach_cells;
-  place.geometry.height_cells += 2 * reach_cells;
+  place.geometry = Widened(map.geometry, reach_cells);
   place.findings.assign(place.geometry.size(), SeenPlace::kUnseen);
   const float* prob = map.occupied_prob.data();
   for (int y = 0; y < map.geometry.height_cells; ++y) {

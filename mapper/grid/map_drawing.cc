@@ -11,6 +11,11 @@
 namespace depthgrid {
 namespace {
 
+// Cell `i` of a tile's.
+Cell CellOfTile(int tile_row, int tile_column, int i) {
+  return {tile_column * kWordCells + i % kWordCells, tile_row * kWordCells + i / kWordCells};
+}
+
 std::size_t CellInTile(const Cell& cell) {
   return static_cast<std::size_t>((cell.y & (kWordCells - 1)) * kWordCells +
                                   (cell.x & (kWordCells - 1)));
@@ -112,11 +117,8 @@ GridGeometry MapDrawing::SeenRectangle() const {
     for (int i = 0; i < kWordCells * kWordCells; ++i) {
       const CellRecord& cell = tile->cells[static_cast<std::size_t>(i)];
       if (cell.hits + cell.passes == 0) continue;
-      GridGeometry one = seen;
-      one.min_cell = {index.second * kWordCells + i % kWordCells,
-                      index.first * kWordCells + i / kWordCells};
-      one.width_cells = one.height_cells = 1;
-      seen = Union(seen, one);
+      const Cell at = CellOfTile(index.first, index.second, i);
+      seen = Union(seen, OnlyCell(at, options_.resolution_m));
     }
   }
   return seen;
@@ -128,8 +130,7 @@ OccupancyMap MapDrawing::Map() const {
   OccupancyMap map(seen);
   for (const auto& [index, tile] : tiles_) {
     for (int i = 0; i < kWordCells * kWordCells; ++i) {
-      const Cell cell{index.second * kWordCells + i % kWordCells,
-                      index.first * kWordCells + i / kWordCells};
+      const Cell cell = CellOfTile(index.first, index.second, i);
       if (!map.geometry.Contains(cell)) continue;
       map.occupied_prob[map.geometry.Index(cell)] =
           Probability(tile->cells[static_cast<std::size_t>(i)]);

@@ -28,6 +28,10 @@ constexpr double kApartM = 0.3;
 constexpr double kApartRad = RadFromDeg(8.0);
 constexpr double kOtherShare = 0.8;
 constexpr std::size_t kMostOthers = 7;
+// A refinement begins with steps of half the lattice's, which end at 1.6 mm and 0.06 degrees.
+constexpr double kFirstStepM = 0.05;
+constexpr double kFirstStepRad = RadFromDeg(2.0);
+constexpr int kHalvings = 5;
 constexpr double kElsewhereM = 1.0;
 constexpr double kElsewhereRad = RadFromDeg(30.0);
 // What lies this near to the guess (SLAM's drift since the map was made) needs this share of the
@@ -52,9 +56,9 @@ constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
 constexpr double kFreeWorth = 0.5;
 
 // Distance to the nearest wall, cut at kFarthestM, and what the cells are.
-class WallDistance {
+class DistanceField {
  public:
-  explicit WallDistance(const OccupancyMap& map)
+  explicit DistanceField(const OccupancyMap& map)
       : geometry_(map.geometry), distance_m_(map.geometry.size(), static_cast<float>(kFarthestM)) {
     states_ = StatesOf(map).states;
     for (std::size_t i = 0; i < distance_m_.size(); ++i) {
@@ -139,7 +143,7 @@ Points PointsOf(const std::vector<PlacedScan>& scans, std::size_t wanted) {
   return chosen;
 }
 
-double ScoreOf(const WallDistance& walls, const Points& points, const Pose2& map_from_first,
+double ScoreOf(const DistanceField& walls, const Points& points, const Pose2& map_from_first,
                double sigma_m) {
   const double c = std::cos(map_from_first.yaw_rad);
   const double s = std::sin(map_from_first.yaw_rad);
@@ -169,12 +173,8 @@ struct Candidate {
 // is worth that ends in a cell, and one that passes through it.
 class CoarseMap {
  public:
-  CoarseMap(const GridGeometry& geometry, const WallDistance& walls, int margin_cells)
-      : geometry_(geometry) {
-    geometry_.min_cell.x -= margin_cells;
-    geometry_.min_cell.y -= margin_cells;
-    geometry_.width_cells += 2 * margin_cells;
-    geometry_.height_cells += 2 * margin_cells;
+  CoarseMap(const GridGeometry& geometry, const DistanceField& walls, int margin_cells)
+      : geometry_(Widened(geometry, margin_cells)) {
     cells_.reserve(geometry_.size());
     for (std::size_t i = 0; i < geometry_.size(); ++i) {
       const Eigen::Vector2d centre = CellCentre(geometry_.CellAt(i), geometry_.resolution_m);
@@ -247,7 +247,7 @@ double ReachOf(const Points& points) {
 
 // The best places on a lattice of cells and headings, which is the same but for rounding to cells
 // as ScoreOf there.
-std::vector<Candidate> Coarse(const OccupancyMap& map, const WallDistance& walls,
+std::vector<Candidate> Coarse(const OccupancyMap& map, const DistanceField& walls,
                               const Points& points) {
   std::vector<Candidate> best;
   const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
@@ -282,10 +282,9 @@ std::vector<Candidate> Coarse(const OccupancyMap& map, const WallDistance& walls
 }
 
 // Steps along each axis, halved when none is better.
-Candidate Refined(const WallDistance& walls, const Points& points, const Pose2& start) {
+Candidate Refined(const DistanceField& walls, const Points& points, const Pose2& start) {
   Candidate best{start, ScoreOf(walls, points, start, kFineSigmaM)};
-  Eigen::Vector3d step(0.05, 0.05, RadFromDeg(2.0));
-  constexpr int kHalvings = 5;
+  Eigen::Vector3d step(kFirstStepM, kFirstStepM, kFirstStepRad);
   for (int halving = 0; halving < kHalvings;) {
     bool moved = false;
     for (int axis = 0; axis < 3; ++axis) {
@@ -307,7 +306,7 @@ Candidate Refined(const WallDistance& walls, const Points& points, const Pose2& 
 }
 
 // The best place within reach of `guess`.
-Candidate NearGuess(const WallDistance& walls, const Points& coarse_points, const Points& points,
+Candidate NearGuess(const DistanceField& walls, const Points& coarse_points, const Points& points,
                     const Pose2& guess) {
   std::vector<Candidate> around;
   const int steps = static_cast<int>(kGuessReachM / kGuessStepM);
@@ -356,7 +355,7 @@ std::vector<Pose2> OthersThan(const Candidate& best, std::vector<Candidate> cand
 }
 
 // How far to either side of the place, and along which line farthest, the score stays near its own.
-UnsureAlong UnsureLine(const WallDistance& walls, const Points& points,
+UnsureAlong UnsureLine(const DistanceField& walls, const Points& points,
                        const std::vector<Candidate>& candidates, const Candidate& best) {
   UnsureAlong widest;
   for (const Candidate& other : candidates) {
@@ -388,7 +387,7 @@ UnsureAlong UnsureLine(const WallDistance& walls, const Points& points,
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
                                     const Pose2& guess) {
   if (scans.empty()) return {};
-  const WallDistance walls(map);
+  const DistanceField walls(map);
   const Points points = PointsOf(scans, kPoints);
   if (!walls.any() || points.empty()) return {};
   std::vector<Candidate> candidates;
