@@ -37,10 +37,8 @@ void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
 // A run that mapped nothing still has a map: one unknown cell.
 OccupancyMap MapOf(const MappingRun& run) {
   if (run.result.map.geometry.size() > 0) return run.result.map;
-  GridGeometry one_cell = run.result.map.geometry;
-  one_cell.width_cells = 1;
-  one_cell.height_cells = 1;
-  return OccupancyMap(one_cell);
+  const GridGeometry& none = run.result.map.geometry;
+  return OccupancyMap(OnlyCell(none.min_cell, none.resolution_m));
 }
 
 void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
@@ -91,23 +89,25 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
                    const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores) {
   RunRecord record;
   record.settings = ToYaml(options);
-  record.scene_hash = world.scene_hash;
   record.warnings = mapping.warnings;
   record.mapping = &mapping;
   record.slam = &slam;
   record.truth = &truth;
   record.scores = &scores;
-  record.scene = &world.scene;
+  record.world = &world;
   record.scan = options.mapper.scan;
   return record;
 }
 
-std::string Provenance(const std::string& scene_hash) {
+std::string Provenance(const World* world) {
   std::string yaml = "provenance:\n";
   yaml += fmt::format("  version: {}\n", DEPTHGRID_VERSION);
-  if (!scene_hash.empty()) yaml += fmt::format("  scene_hash: {}\n", scene_hash);
+  if (world != nullptr) yaml += fmt::format("  scene_hash: {}\n", world->scene_hash);
   yaml += fmt::format("  instruction_set: {}\n", DEPTHGRID_ARCH);
-  if (!scene_hash.empty()) yaml += "  ray_instruction_set: avx2\n";
+  if (world != nullptr) {
+    yaml += fmt::format("  ray_instruction_set: {}\n",
+                        world->rays.isa() == RayIsa::kAvx512 ? "avx512" : "avx2");
+  }
   return yaml;
 }
 
@@ -132,7 +132,7 @@ bool IsRunFile(const std::filesystem::path& relative) {
 
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
-  WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.scene_hash));
+  WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.world));
   WriteFile(folder.File("warnings.txt"), Lines(record.warnings));
   WriteMap(folder.File("map.yaml"), MapOf(*record.mapping), record.map_mode);
   WriteMapPicture(folder, record);
@@ -145,7 +145,8 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);
   WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
-  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.scene, truth);
+  const Scene* scene = record.world != nullptr ? &record.world->scene : nullptr;
+  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, scene, truth);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));

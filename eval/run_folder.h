@@ -1,4 +1,4 @@
-// The folder of a run (docs/formats.md): all that `run` and `map` leave behind.
+// The folder of a run (docs/run_folder.md): all that `run` and `map` leave behind.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,13 @@
 namespace depthgrid {
 
 struct RunRecord {
-  std::string title;                  // what was run, for people
   std::string settings;               // YAML of every effective key
-  std::string scene_hash;             // empty for recorded data
   std::vector<std::string> warnings;  // what was wrong with the input and survived
   const MappingRun* mapping = nullptr;
   const SlamOutput* slam = nullptr;    // nothing for recorded data without events
   const TruthRecord* truth = nullptr;  // nothing for recorded data
   const RunScores* scores = nullptr;
-  const Scene* scene = nullptr;  // nothing for recorded data
+  const World* world = nullptr;  // nothing for recorded data
   ScanOptions scan;              // the mapper's
   MapMode map_mode = MapMode::kTrinary;
   double wall_s_total = 0.0;
@@ -41,7 +39,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 // metrics.json of a run.
 std::string MetricsOf(const RunScores& scores);
 
-// Version and instruction set, as in every run.yaml.
-std::string Provenance(const std::string& scene_hash);
+// Version and instruction sets, as in every run.yaml. `world`: null for recorded data.
+std::string Provenance(const World* world);
 
 }  // namespace depthgrid

@@ -1,14 +1,15 @@
 #include "eval/study_run.h"
 
 #include <chrono>
-#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "eval/input_map.h"
+#include "eval/joint_runs.h"
 #include "eval/metrics_json.h"
 #include "eval/run_folder.h"
 #include "eval/study_report.h"
+#include "mapper/core/cpu_clock.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
 
@@ -52,7 +53,7 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
   record.wall_s_total = wall_s;
-  record.cpu_s_total = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  record.cpu_s_total = ProcessCpuS();
   WriteMap(folder.File("input_map.yaml"), input);
   WriteRunFolder(folder, record);
   folder.Commit();

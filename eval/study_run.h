@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/joint_runs.h"
+#include "eval/experiment.h"
 #include "eval/output_folder.h"
 #include "eval/study.h"
 

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
@@ -151,8 +150,6 @@ std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }  
 std::string Number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
 }
-
-double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 int ThreadsOr(int requested) { return requested > 0 ? requested : UsableThreads(); }
 

@@ -74,9 +74,6 @@ std::string Short(double value);
 // "-" for nothing.
 std::string Number(const std::optional<double>& value, int digits);
 
-// CPU time of this program so far, all threads.
-double ProcessCpuS();
-
 int ThreadsOr(int requested);
 
 }  // namespace depthgrid::cli

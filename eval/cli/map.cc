@@ -16,6 +16,7 @@
 #include "eval/video_writer.h"
 #include "eval/way_check.h"
 #include "mapper/core/angle.h"
+#include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
@@ -301,7 +302,6 @@ void Map(const MapArguments& arguments) {
   if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
-  record.title = arguments.input;
   record.settings = ToYaml(settings);
   record.mapping = &run;
   record.scan = settings.mapper.scan;

@@ -59,7 +59,7 @@ void Render(const RenderArguments& arguments) {
   for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
   writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);
   WriteTruthMaps(folder.work().string(), MakeTruth(world, options.mapper, threads));
-  WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(world.scene_hash));
+  WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(&world));
   folder.Commit();
   const std::string& output = arguments.common.output;
   fmt::print("rendered {} frames in {}; the true map is {}/truth_map.yaml\n", sensor.FrameCount(),

@@ -14,6 +14,7 @@
 #include "eval/study.h"
 #include "eval/study_run.h"
 #include "eval/video_writer.h"
+#include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -86,7 +87,6 @@ void RunOne(const RunArguments& arguments) {
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
-  record.title = arguments.experiment;
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
   if (SawNothing(run.mapping)) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <optional>
 #include <set>
 
@@ -7,6 +6,7 @@
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
+#include "mapper/core/cpu_clock.h"
 
 namespace depthgrid {
 namespace {
@@ -17,8 +17,6 @@ constexpr std::size_t kShortFrames = 24;
 constexpr std::size_t kLongFrames = 60;
 // A sweep whose first points all fail is not worth more.
 constexpr std::size_t kMostTries = 8;
-
-double CpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // CPU seconds of parts of a run.
 struct PilotTimes {
@@ -32,11 +30,11 @@ double RunS(const ScanSet& whole, std::size_t frames, const TruthRecord& truth) 
   ScanSet set = whole;
   set.slam.live.resize(frames);
   set.scans.resize(frames);
-  const double before_s = CpuS();
+  const double before_s = ProcessCpuS();
   ScannedSource source(set);
   const MappingRun mapping = MapExperiment(source, set.options, *set.world, set.slam, {});
   SweepMetrics(Score(mapping, truth, set.options.metrics));
-  return CpuS() - before_s;
+  return ProcessCpuS() - before_s;
 }
 
 PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepContext& context) {
@@ -50,7 +48,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   set.scans.resize(pilot);
   const SyntheticSensor sensor(*set.world, set.options, context.cache_folder);
   FrameScanner scanner(set.world->camera, set.options.mapper.scan);
-  const double before_s = CpuS();
+  const double before_s = ProcessCpuS();
   for (std::size_t i = 0; i < pilot; ++i) {
     Frame frame;
     frame.depth = std::make_shared<const DepthImage>(sensor.Image(static_cast<int>(i)));
@@ -58,7 +56,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
     frame.slam_epoch = set.slam.live[i].epoch;
     set.scans[i] = scanner.ScansOf(frame);
   }
-  times.scan_s = (CpuS() - before_s) / static_cast<double>(pilot);
+  times.scan_s = (ProcessCpuS() - before_s) / static_cast<double>(pilot);
   const std::size_t few = std::min(pilot, kShortFrames);
   RunS(set, few, *truth);  // the first pays for what later ones find ready
   const double few_s = RunS(set, few, *truth);

@@ -88,6 +88,17 @@ TEST_F(ProgramRun, ItsOwnSettingsGiveItAgain) {
   ExpectSameBytes("out", "again");
 }
 
+TEST_F(ProgramRun, SaysWhichInstructionSetCastItsRays) {
+  const auto says = [&](const std::string& folder, const std::string& isa) {
+    EXPECT_THAT(ReadFile(Path(folder + "/run.yaml")), HasSubstr("ray_instruction_set: " + isa));
+  };
+  Succeed("run ./small.yaml -o usual");
+  says("usual", "avx2\n");
+  if (!__builtin_cpu_supports("avx512vl")) GTEST_SKIP() << "no AVX-512 on this machine";
+  Succeed("run ./small.yaml --set sensor.isa=avx512 -o wide");
+  says("wide", "avx512\n");
+}
+
 TEST_F(ProgramRun, RenderSlamAndMapGiveWhatRunGives) {
   Succeed("run ./small.yaml -o run");
   Succeed("render ./small.yaml -o seq");
