@@ -54,8 +54,8 @@ struct FrameReport {
   // gate refused, against prediction and match as the gate has it.
   double innovation_chi2 = 0.0;
   std::array<double, 3> gain = {};  // the share of the innovation taken, per base axis
-  Eigen::Matrix3d covariance =
-      Eigen::Matrix3d::Zero();  // of the estimate in the map taken for exact, base axes
+  // Of the estimate in base axes, the map taken for exact.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // The motion of the estimate from an earlier frame (FrameReport::index; at most a submap's frames
   // back, and none before a correction of the map) and its covariance, the errors of the map that
   // it was matched against included: base axes of this frame; -1 and zero if not tracked.

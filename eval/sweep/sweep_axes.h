@@ -1,11 +1,10 @@
-// The axes of a sweep's file (docs/sweeps.md, "Axes").
+// The axes of a sweep's file (docs/sweeps.md, "The file").
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "mapper/core/options.h"
 #include "mapper/io/config.h"
 
 namespace depthgrid {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "mapper/core/trajectory.h"
@@ -14,8 +13,8 @@ namespace depthgrid {
 // carries one standard deviation for translation and one for rotation (isotropic information
 // 1/sigma^2).
 struct LoopClosure {
-  int reported_at_frame =
-      0;  // the event arrives with this frame, before its pose; >= max(first, second)
+  // The event arrives with this frame, before its pose; >= max(first_frame, second_frame).
+  int reported_at_frame = 0;
   int first_frame = 0;
   int second_frame = 0;
   Pose3 first_from_second;  // relative camera pose

@@ -27,7 +27,7 @@ enum class FusionMode {
 
 // How the error of SLAM's motion grows from one frame to the next. Jitter is white noise of each
 // pose, the rest grows with time, path and turning. Defaults: ORB-SLAM2 on TUM fr2/desk, error of
-// relative motion over 0.03-60 s (docs/math.md).
+// relative motion over 0.03-60 s (docs/slam_surrogate.md, `orb_slam2_desk`).
 struct SlamNoiseOptions {
   SlamNoiseSource source = SlamNoiseSource::kSetting;
   double jitter_m = 0.0024;

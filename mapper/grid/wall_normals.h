@@ -13,9 +13,9 @@ struct WallHit {
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();
 };
 
-// The hits in the order of the beams. The normal
-// is that of the line through the neighbouring hits within `reach_m` without a jump of more than
-// `reach_m`; where they make no line, the beam's own direction.
+// The hits in the order of the beams; `hits` keeps its memory. The normal is that of the line
+// through the neighbouring hits within `reach_m` without a jump of more than `reach_m`; where they
+// make no line, the beam's own direction.
 void FindWallHits(const Scan& scan, double reach_m, std::vector<WallHit>& hits);
 
 }  // namespace depthgrid

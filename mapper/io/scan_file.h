@@ -1,5 +1,5 @@
 // scans.bin: the scans a map was drawn from, at their final poses, so that it can be drawn again
-// (docs/formats.md, "Stored scans"). Little-endian, no padding.
+// (docs/run_folder.md, "scans.bin"). Little-endian, no padding.
 #pragma once
 
 #include <string>

@@ -52,7 +52,7 @@ bool FloorTracker::Believes(double height_m, double expected_m) {
     other_frames_ = 0;
     return true;
   }
-  if (other_frames_ == 0 || std::abs(higher_m - other_higher_m_) > kNearM) other_frames_ = 0;
+  if (std::abs(higher_m - other_higher_m_) > kNearM) other_frames_ = 0;
   other_higher_m_ = higher_m;
   ++other_frames_;
   // The floor lower than thought is the camera higher above it.

@@ -26,8 +26,7 @@ struct ScanOptions {
   // upper edge is above a person's shoulders and below door lintels.
   double band_low_m = 0.1;
   double band_high_m = 1.8;
-  double min_range_m =
-      0.4;  // depth nearer than this is not trusted (Kinect's and ICL-NUIM's limit)
+  double min_range_m = 0.4;  // depth nearer is not trusted (Kinect's and ICL-NUIM's limit)
   double max_range_m = 6.0;  // horizontal; farther returns only clear
   int band_rows = 10;        // of mode row_band
   // A return counts when this many of its bearing agree: 3 rows are 25 mm of height at 4 m, and no
