@@ -4,7 +4,6 @@
 #include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
 #include "mapper/core/level.h"
-#include "mapper/fuse/fusion.h"
 #include "sim/slam_surrogate.h"
 #include "sim/true_scan.h"
 
@@ -84,13 +83,12 @@ RunScores RunOne(const Stage& stage, const ExperimentOptions& given, const TrueS
   const ExperimentOptions options = WithTruth(given, truth);
   const Trajectory& path = stage.world.trajectory;
   const SlamOutput slam = DisturbTrajectory(path, options.slam, options.SlamSeed());
-  const auto true_base = [&path](int frame) {
-    return BaseOf(path[static_cast<std::size_t>(frame)].world_from_camera);
-  };
-  const GainOracle gain = [&](int frame, const Pose2& predicted, const Pose2& matched) {
-    return OracleGain(true_base(frame), predicted, matched);
-  };
-  const MatchOracle match = truth.matcher ? MatchOracle(true_base) : MatchOracle();
+  MatchOracle match;
+  if (truth.matcher) {
+    match = [&path](int frame) {
+      return BaseOf(path[static_cast<std::size_t>(frame)].world_from_camera);
+    };
+  }
   std::optional<SyntheticSensor> sensor;
   std::unique_ptr<FrameSource> source;
   if (truth.converter) {
@@ -100,7 +98,7 @@ RunScores RunOne(const Stage& stage, const ExperimentOptions& given, const TrueS
     source = std::make_unique<SyntheticSource>(*sensor, slam, stage.context.threads);
   }
   const MappingRun run =
-      MapFrames(*source, options.mapper, slam.final, stage.context.progress, gain, match);
+      MapFrames(*source, options.mapper, slam.final, stage.context.progress, OracleOf(path), match);
   return Score(run, stage.truth, options.metrics);
 }
 

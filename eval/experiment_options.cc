@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 // A file name becomes absolute, so that run.yaml means the same from everywhere; a shipped or named
 // thing stays a name.
 void ResolveFile(std::string& name, const std::string& base_folder) {
-  const bool is_file = name.find('/') != std::string::npos || fs::path(name).has_extension();
-  if (is_file) name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
+  if (IsFileName(name))
+    name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
 }
 
 }  // namespace

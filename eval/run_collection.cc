@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <limits>
 
@@ -11,6 +10,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -37,12 +37,6 @@ std::vector<fs::path> RunFolders(const std::string& folder) {
   return runs;
 }
 
-double NumberOf(const std::string& text) {
-  double number = kNothing;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? number : kNothing;
-}
-
 void AddParameters(const fs::path& run, SweepResults& table) {
   constexpr std::array<const char*, 7> kKeys = {
       "scene", "trajectory", "frames", "seed", "depth_seed", "slam_seed", "trajectory_seed"};
@@ -54,7 +48,7 @@ void AddParameters(const fs::path& run, SweepResults& table) {
     const std::string text =
         settings.Has(parameter.key) ? settings.List(parameter.key).front() : "";
     parameter.texts.push_back(text);
-    parameter.numbers.push_back(NumberOf(text));
+    parameter.numbers.push_back(ParseNumber(text).value_or(kNothing));
   }
 }
 

@@ -23,11 +23,11 @@ const char* WordFor(ShippedKind kind) {
   return "";
 }
 
+}  // namespace
+
 bool IsFileName(const std::string& name) {
   return name.find('/') != std::string::npos || fs::path(name).has_extension();
 }
-
-}  // namespace
 
 std::string ShippedFolder(ShippedKind kind) {
   const fs::path executable = fs::read_symlink("/proc/self/exe");

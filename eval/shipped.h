@@ -8,8 +8,11 @@ namespace depthgrid {
 
 enum class ShippedKind { kScene, kExperiment, kSweep };
 
-// The file a command-line argument or a key means: itself when it holds a '/' or ends in an
-// extension (.yaml, or a mesh file's), otherwise the shipped file of that name. `base_folder` is
+// Whether a command-line argument or a key means a file rather than something shipped: it holds a
+// '/' or ends in an extension (.yaml, or a mesh file's).
+bool IsFileName(const std::string& name);
+
+// The file that it means: itself, or the shipped file of that name. `base_folder` is
 // where a relative file name in another file starts; empty for the working directory. Throws
 // InputError with the nearest shipped name.
 std::string ResolveName(const std::string& name, ShippedKind kind,

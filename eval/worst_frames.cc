@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <numbers>
 
+#include "eval/frame_reference.h"
 #include "eval/map_picture.h"
 #include "eval/match_surface.h"
 #include "eval/report_json_impl.h"
@@ -46,7 +46,7 @@ ReportJson SurfaceJson(const MatchSurface& surface) {
   return {{"step_m", surface.step_m},
           {"half_steps", surface.half_steps},
           {"residual", RoundedAll(surface.residual, kDecimals)},
-          {"yaw_step_deg", surface.yaw_step_rad * 180.0 / std::numbers::pi},
+          {"yaw_step_deg", DegFromRad(surface.yaw_step_rad)},
           {"yaw_residual", RoundedAll(surface.yaw_residual, kDecimals)}};
 }
 

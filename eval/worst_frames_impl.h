@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "eval/frame_reference.h"
+#include "eval/run_files.h"
+#include "mapper/grid/grid_options.h"
+#include "mapper/grid/submap.h"
 
 namespace depthgrid {
 

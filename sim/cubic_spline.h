@@ -16,8 +16,6 @@ class CubicSpline {
   Eigen::VectorXd Value(double u) const;
   Eigen::VectorXd Slope(double u) const;  // first derivative
   Eigen::VectorXd Bend(double u) const;   // second derivative
-  double FirstKnot() const { return knots_.front(); }
-  double LastKnot() const { return knots_.back(); }
 
  private:
   Eigen::Index IntervalOf(double u) const;

@@ -35,18 +35,18 @@ inline float Acos(float x) {
   return std::sqrt(1.0F - x) * p;
 }
 
-// theta / (pi/2 - theta), bounded: no model means anything in the last half degree.
-inline float ObliqueRatio(float theta) {
-  constexpr float kLeastRest = 0.01F;
-  return theta / std::max(kRightAngle - theta, kLeastRest);
-}
+// pi/2 - theta is bounded by this: no model means anything in the last half degree.
+constexpr float kLeastRest = 0.01F;
+
+// theta / (pi/2 - theta), bounded.
+inline float ObliqueRatio(float theta) { return theta / std::max(kRightAngle - theta, kLeastRest); }
 
 // Nguyen, Izadi, Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and
 // tracking", 3DIMPVT 2012: equations for the axial and lateral standard deviation of a Kinect v1.
 inline float NguyenSigma(float z, float theta) {
   constexpr float kOblique = 1.04719755120F;  // 60 degrees
   const float frontal = 0.0012F + 0.0019F * (z - 0.4F) * (z - 0.4F);
-  const float rest = std::max(kRightAngle - theta, 0.01F);
+  const float rest = std::max(kRightAngle - theta, kLeastRest);
   const float oblique = 0.0001F / std::sqrt(z) * (theta * theta) / (rest * rest);
   return frontal + Select(theta > kOblique, oblique, 0.0F);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "eval/frame_reference.h"
 #include "eval/match_surface.h"
 #include "eval/worst_frames_impl.h"
 
