@@ -2,7 +2,6 @@
 // (docs/statistics.md, "Ablation").
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

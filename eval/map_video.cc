@@ -1,7 +1,5 @@
 #include "eval/map_video.h"
 
-#include <algorithm>
-
 #include "eval/map_picture.h"
 #include "eval/video_writer.h"
 #include "mapper/grid/map_drawing.h"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapper/core/level.h"
-
 namespace depthgrid {
 namespace {
 

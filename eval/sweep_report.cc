@@ -11,7 +11,6 @@
 #include "eval/metrics/statistics.h"
 #include "eval/report_json_impl.h"
 #include "eval/statistics/metric_direction.h"
-#include "eval/statistics/sample_summary.h"
 #include "eval/sweep_grid.h"
 #include "eval/web_assets.h"
 #include "mapper/core/error.h"

@@ -1,7 +1,6 @@
 // The true side of an experiment: the room, the camera and where the camera went.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "eval/experiment_options.h"

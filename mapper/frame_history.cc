@@ -1,11 +1,11 @@
 #include "mapper/frame_history.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 
 #include "mapper/core/error.h"
 #include "mapper/core/growth.h"
+#include "mapper/core/level.h"
 
 namespace depthgrid {
 namespace {

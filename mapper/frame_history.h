@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
-#include "mapper/core/level.h"
 #include "mapper/reference_map.h"
 #include "mapper/scan/stand_blend.h"
 

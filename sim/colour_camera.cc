@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 
 #include "mapper/core/error.h"
 #include "sim/colour_shaders.h"

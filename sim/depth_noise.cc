@@ -1,7 +1,6 @@
 #include "sim/depth_noise.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "mapper/core/angle.h"

@@ -5,9 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "mapper/core/camera.h"
+#include "mapper/core/depth_image.h"
 #include "mapper/core/normal_block.h"
-#include "sim/depth_camera.h"
 
 namespace depthgrid::noise {
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 
 #include "mapper/core/error.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "mapper/core/error.h"
-
 namespace depthgrid {
 namespace {
 

@@ -3,8 +3,6 @@
 
 #include <embree3/rtcore.h>
 
-#include <limits>
-
 #include "sim/ray_scene.h"
 
 namespace depthgrid {

@@ -1,6 +1,5 @@
 #include "sim/slam_run.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "mapper/core/error.h"

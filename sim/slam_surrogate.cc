@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "mapper/core/error.h"
 #include "sim/loop_correction.h"
 #include "sim/slam_error.h"
 #include "sim/slam_loops.h"

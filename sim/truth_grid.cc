@@ -1,6 +1,5 @@
 #include "sim/truth_grid.h"
 
-#include <algorithm>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/comparison.h"

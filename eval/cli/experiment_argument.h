@@ -1,7 +1,6 @@
 // An experiment as named on the command line, with its overrides.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

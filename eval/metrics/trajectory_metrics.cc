@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "eval/metrics/alignment.h"
+
 namespace depthgrid {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "eval/metrics/alignment.h"
 #include "eval/metrics/association.h"
 #include "eval/metrics/statistics.h"
 #include "eval/metrics/trajectory_drift.h"

@@ -1,5 +1,6 @@
 #include "eval/sweep/scan_set.h"
 
+#include "eval/experiment.h"
 #include "eval/hash.h"
 #include "mapper/io/config.h"
 #include "sim/slam_surrogate.h"

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "eval/experiment.h"
 #include "eval/synthetic_source.h"
 #include "mapper/scan/frame_scans.h"
 

@@ -1,6 +1,5 @@
 #include "eval/sweep/sweep_engine.h"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <map>

@@ -3,8 +3,9 @@
 
 #include <memory>
 
-#include "eval/experiment.h"
 #include "eval/sweep/shelf.h"
+#include "eval/truth_record.h"
+#include "eval/world.h"
 
 namespace depthgrid {
 

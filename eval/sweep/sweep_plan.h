@@ -4,8 +4,6 @@
 // for one seed all points see the same depth noise and the same errors of SLAM.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // A finished map: the probability of each cell to be occupied, and its reading in three states.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>

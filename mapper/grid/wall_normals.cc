@@ -1,7 +1,5 @@
 #include "mapper/grid/wall_normals.h"
 
-#include <algorithm>
-
 namespace depthgrid {
 namespace {
 

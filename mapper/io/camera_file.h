@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/options.h"

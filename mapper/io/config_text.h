@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "mapper/core/options.h"
-
 namespace depthgrid {
 
 // "fixed, kalman".

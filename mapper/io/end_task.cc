@@ -1,6 +1,5 @@
 #include "mapper/io/end_task.h"
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <vector>

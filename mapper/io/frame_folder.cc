@@ -10,7 +10,6 @@
 #include "mapper/io/damage.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/numbered_images.h"
-#include "mapper/io/png.h"
 
 namespace depthgrid {
 namespace {

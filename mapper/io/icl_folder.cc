@@ -11,7 +11,7 @@
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/numbered_images.h"
-#include "mapper/io/png.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {

@@ -8,6 +8,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/undistort.h"
 
 namespace depthgrid {

@@ -12,7 +12,6 @@
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/frame_names.h"
 #include "mapper/io/png.h"
-#include "mapper/io/pose_track.h"
 #include "mapper/io/recording_options.h"
 
 namespace depthgrid {

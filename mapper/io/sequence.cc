@@ -12,6 +12,7 @@
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/gravity.h"
 #include "mapper/io/icl_folder.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/slam_jumps.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"

@@ -13,6 +13,7 @@
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/png.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "mapper/match/match_points.h"
-#include "mapper/match/probability_view.h"
 #include "mapper/match/search_lattice.h"
 
 namespace depthgrid {

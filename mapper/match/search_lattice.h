@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "mapper/match/match_points.h"
 #include "mapper/match/probability_view.h"

@@ -3,9 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <utility>
 
 namespace depthgrid {
 namespace {

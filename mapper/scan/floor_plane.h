@@ -1,14 +1,13 @@
 // The floor seen in a depth image.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
-#include "mapper/scan/camera_stand.h"
 
 namespace depthgrid {
 

@@ -1,7 +1,5 @@
 #include "mapper/scan/stand_blend.h"
 
-#include <algorithm>
-
 namespace depthgrid {
 namespace {
 

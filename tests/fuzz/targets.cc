@@ -18,6 +18,7 @@
 #include "mapper/io/pgm.h"
 #include "mapper/io/png.h"
 #include "mapper/io/pose_file.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/scan_file.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_jumps.h"

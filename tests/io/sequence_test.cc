@@ -9,6 +9,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
+#include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
 #include "tests/io/temporary_folder.h"

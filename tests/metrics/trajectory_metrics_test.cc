@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "eval/metrics/alignment.h"
 #include "mapper/core/rng.h"
 
 namespace depthgrid {
