@@ -134,17 +134,13 @@ CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const Cel
 
 MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
                   const std::optional<CellSet>& observable) {
-  GridGeometry geometry = Union(truth.geometry, estimate.geometry);
-  if (observable) geometry = Union(geometry, observable->geometry);
-  const StateMap truth_here = OnGeometry(truth, geometry);
-  const StateMap estimate_here = OnGeometry(estimate, geometry);
-  CellSet everywhere(geometry);
+  const ScoredMaps maps = OnOneGeometry(truth, estimate, observable);
+  CellSet everywhere(maps.truth.geometry);
   std::fill(everywhere.members.begin(), everywhere.members.end(), 1);
   MapScore score;
-  score.all = ScoreCells(truth_here, estimate_here, everywhere, KnownCells(truth_here));
+  score.all = ScoreCells(maps.truth, maps.estimate, everywhere, KnownCells(maps.truth));
   if (observable) {
-    const CellSet seen = OnGeometry(*observable, geometry);
-    score.observable = ScoreCells(truth_here, estimate_here, seen, seen);
+    score.observable = ScoreCells(maps.truth, maps.estimate, maps.scored, maps.scored);
   }
   return score;
 }

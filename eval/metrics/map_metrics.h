@@ -3,8 +3,7 @@
 // Both maps are read in three states on one lattice of cells. Scores come over the observable cells
 // and over all cells of both maps:
 //  - precision counts estimated cells of a state that lie in the scored set; each is right if a
-//  true
-//    cell of that state, anywhere, is within the tolerance;
+//    true cell of that state, anywhere, is within the tolerance;
 //  - recall counts true cells of that state that lie in the scored set; each is found if an
 //    estimated cell of that state, anywhere, is within the tolerance.
 // So an estimated wall in an unobservable cell counts against precision only in the "all" score.

@@ -13,7 +13,7 @@
 
 namespace depthgrid {
 
-// The dear ones can be switched off. Times: living room, 5 cm, one thread (docs/metrics.md).
+// The dear ones can be switched off.
 struct MetricsOptions {
   bool registration = true;
   bool ssim = true;

@@ -26,8 +26,8 @@ struct NavigabilityOptions {
 struct Navigability {
   int pairs = 0;    // starts and goals between which the true map has a way
   int planned = 0;  // of these, those with a way on the estimated map
-  int collisions =
-      0;  // of the planned, those that would hit a true wall, or leave what is known to be free
+  // Of the planned, those that would hit a true wall, or leave what is truly free.
+  int collisions = 0;
   double success_rate = 0.0;             // planned and no collision, of all pairs
   double falsely_blocked_rate = 0.0;     // not planned, of all pairs
   std::optional<double> collision_rate;  // of the planned

@@ -33,8 +33,8 @@ Picture PictureOfStates(const StateMap& map, const Shades& shades, int margin_ce
 constexpr double kWindowSigmaPx = 1.5;
 constexpr int kWindowRadiusPx = 5;
 
-// Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; pixels nearer
-// than the radius to the edge keep what can be said of them from inside.
+// Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; beyond its
+// edge the picture goes on as it is there.
 Picture Smoothed(const Picture& picture, double sigma_px, int radius_px);
 
 // Pixel by pixel.

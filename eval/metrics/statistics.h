@@ -13,7 +13,7 @@ struct Statistics {
   double std = 0.0;     // of the population (divided by n), as NumPy and evo have it
   double min = 0.0;
   double max = 0.0;
-  double sse = 0.0;
+  double sse = 0.0;  // sum of squared errors
 };
 
 // Requires at least one value.

@@ -36,16 +36,18 @@ std::optional<Drift> DriftOverTime(const std::vector<PosePair>& pairs, double la
   return DriftAlong(pairs, stamps_s, lag_s);
 }
 
-std::optional<Drift> DriftOverPath(const std::vector<PosePair>& pairs, double length_m) {
-  std::vector<double> path_m;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const double step_m = i == 0 ? 0.0
-                                 : (pairs[i].reference.world_from_camera.translation -
-                                    pairs[i - 1].reference.world_from_camera.translation)
-                                       .norm();
-    path_m.push_back(i == 0 ? 0.0 : path_m.back() + step_m);
+std::vector<double> ReferencePath(const std::vector<PosePair>& pairs) {
+  std::vector<double> path_m(pairs.size(), 0.0);
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    const Eigen::Vector3d step_m = pairs[i].reference.world_from_camera.translation -
+                                   pairs[i - 1].reference.world_from_camera.translation;
+    path_m[i] = path_m[i - 1] + step_m.norm();
   }
-  return DriftAlong(pairs, path_m, length_m);
+  return path_m;
+}
+
+std::optional<Drift> DriftOverPath(const std::vector<PosePair>& pairs, double length_m) {
+  return DriftAlong(pairs, ReferencePath(pairs), length_m);
 }
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
 // How fast an estimate drifts: the error of relative motion against the time and the path it is
-// taken over, and the error of each pose over time.
+// taken over.
 #pragma once
 
 #include <array>
@@ -26,6 +26,8 @@ constexpr std::array<double, 4> kDriftLengthsM = {1.0, 2.0, 5.0, 10.0};
 // From every pose to the first that is at least `lag_s` later; its own lag may be longer by up to
 // half of it, else it does not count. Empty when no motion is long enough.
 std::optional<Drift> DriftOverTime(const std::vector<PosePair>& pairs, double lag_s);
+// The reference's path from the first pair to each, metres; xyz.
+std::vector<double> ReferencePath(const std::vector<PosePair>& pairs);
 // From every pose to the first at least `length_m` of the reference's path ahead (KITTI's rule,
 // Geiger et al. 2012, with every pose a start).
 std::optional<Drift> DriftOverPath(const std::vector<PosePair>& pairs, double length_m);

@@ -29,16 +29,6 @@ std::optional<Statistics> SummariseIfAny(const std::vector<double>& values) {
   return Summarise(values);
 }
 
-double PathLength(const std::vector<PosePair>& pairs) {
-  double path_m = 0.0;
-  for (std::size_t i = 1; i < pairs.size(); ++i) {
-    path_m += (pairs[i].reference.world_from_camera.translation -
-               pairs[i - 1].reference.world_from_camera.translation)
-                  .norm();
-  }
-  return path_m;
-}
-
 // The first pair always determines it.
 std::vector<PosePair> AlignedAtOrigin(const std::vector<PosePair>& pairs, Alignment alignment) {
   return Aligned(pairs, *Align(pairs, alignment));
@@ -150,7 +140,7 @@ std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
   score.reference_poses = static_cast<int>(reference.size());
   score.estimate_poses = static_cast<int>(estimate.size());
   score.matched_poses = static_cast<int>(pairs.size());
-  score.reference_path_m = PathLength(pairs);
+  score.reference_path_m = ReferencePath(pairs).back();
   ScoreAbsolute(pairs, score);
   ScoreRelative(pairs, score);
   ScoreDrift(pairs, score);

@@ -11,7 +11,8 @@
 
 namespace depthgrid {
 
-// Euclidean distance from each point to the nearest of the targets, exact; at least one target.
+// Euclidean distance from each point to the nearest of the targets, exact, in metres; at least one
+// target. The targets are sorted into squares of `spacing_m`, which only changes the time it takes.
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
                                      const std::vector<Eigen::Vector2d>& targets, double spacing_m);
 
