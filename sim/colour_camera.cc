@@ -20,7 +20,8 @@ constexpr float kNearM = 0.01F;
 constexpr int kSamples = 4;            // all that llvmpipe has
 constexpr int kMaxImageSidePx = 8192;  // llvmpipe's limit is 16384; this is 1 GB already
 
-// Uniform and storage locations of sim/colour_shaders.cc.
+// Uniform and storage locations of sim/colour_shaders.cc, which states sizes as numbers.
+static_assert(kMaxLights == 32);
 constexpr GLint kCameraFromWorld = 0;
 constexpr GLint kClipFromCamera = 1;
 constexpr GLint kEye = 2;

@@ -13,6 +13,7 @@ namespace depthgrid {
 
 constexpr Interval kCoordinate = {-kMaxSceneExtentM, kMaxSceneExtentM};
 constexpr Interval kLength = {1e-4, kMaxSceneExtentM};  // a tenth of a millimetre: paper
+constexpr Interval kFacets = {3, 512};                  // around something round
 
 struct ItemOptions {
   std::string shape;

@@ -178,6 +178,8 @@ std::string LowerCaseExtension(const std::string& path) {
   return extension;
 }
 
+std::string MeshExtensions() { return fmt::format("{}", fmt::join(kExtensions, " ")); }
+
 bool IsMeshFile(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   return std::any_of(kExtensions.begin(), kExtensions.end(),
@@ -186,7 +188,7 @@ bool IsMeshFile(const std::string& path) {
 
 MeshFile ReadMeshFile(const std::string& path, double scale, UpAxis up) {
   if (!IsMeshFile(path)) {
-    throw InputError(path, "is not a mesh file (.obj .ply .stl .gltf .glb .dae)");
+    throw InputError(path, fmt::format("is not a mesh file ({})", MeshExtensions()));
   }
   RequireReadableFile(path);
   MeshFile file = LowerCaseExtension(path) == ".ply" ? ReadPlyFile(path, scale, up)

@@ -18,6 +18,9 @@ struct MeshFile {
   std::vector<Material> materials;
 };
 
+// The endings of mesh files: ".obj .ply ...".
+std::string MeshExtensions();
+
 // Whether the path ends like a mesh file.
 bool IsMeshFile(const std::string& path);
 

@@ -107,9 +107,9 @@ class Observer {
 
   void MarkOccupied(const ViewPyramid& view, const Vector2d& hit) {
     // A hit on a cell boundary lands on either side of it by rounding; the surface is in one.
-    constexpr double kRounding_m = 1e-4;
-    for (const double dx : {kRounding_m, -kRounding_m}) {
-      for (const double dy : {kRounding_m, -kRounding_m}) {
+    constexpr double kRoundingM = 1e-4;
+    for (const double dx : {kRoundingM, -kRoundingM}) {
+      for (const double dy : {kRoundingM, -kRoundingM}) {
         const Cell cell = CellOf({hit.x() + dx, hit.y() + dy}, truth_.geometry.resolution_m);
         if (truth_.At(cell) != CellState::kOccupied) continue;
         const std::size_t index = truth_.geometry.Index(cell);

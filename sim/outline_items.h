@@ -12,7 +12,6 @@
 
 namespace depthgrid {
 
-constexpr Interval kFacets = {3, 512};
 constexpr Interval kSmooth = {0, 5};
 
 // Points of two coordinates from the numbers Rows() gives.

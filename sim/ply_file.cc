@@ -6,6 +6,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "mapper/core/error.h"
@@ -69,6 +70,8 @@ class PlyParser {
     if (*begin == '+') ++begin;
     double number = 0.0;
     const auto [stop, error] = std::from_chars(begin, end, number);
+    // Too large or too small for a double: from_chars leaves the number alone, strtod says which.
+    if (error == std::errc::result_out_of_range) number = std::strtod(begin, nullptr);
     if (error == std::errc::invalid_argument || (stop != end && !IsPlySpace(*stop))) {
       std::size_t word_end = at_;
       while (word_end < text_.size() && !IsPlySpace(text_[word_end]) && word_end - at_ < 32)

@@ -65,9 +65,8 @@ SceneFile ReadAsFile(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   if (extension == ".yaml" || extension == ".yml") return ReadSceneFile(path);
   if (!IsMeshFile(path)) {
-    throw InputError(path,
-                     "is neither a scene (.yaml) nor a mesh file (.obj .ply .stl .gltf .glb "
-                     ".dae)");
+    throw InputError(
+        path, fmt::format("is neither a scene (.yaml) nor a mesh file ({})", MeshExtensions()));
   }
   SceneFile file;
   MeshFile mesh = ReadMeshFile(path);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kLargestScale = 1000.0;  // what SlamOptions allows
 constexpr double kTolerance = 1e-3;       // of the target
 constexpr int kMaxTrials = 40;
+constexpr double kLeastShare = 0.1;  // of the bracket that a trial cuts off at either end
 
 double LiveErrorM(const Trajectory& truth, const SlamOutput& output) {
   double sum_m = 0.0;
@@ -63,8 +64,8 @@ DriftCalibration CalibrateDrift(const Trajectory& truth, SlamOptions options, do
     if (std::abs(best.error_m - target_m) <= kTolerance * target_m) {
       return {best.scale, best.error_m, true};
     }
-    const double share =
-        std::clamp((target_m - low.error_m) / (high.error_m - low.error_m), 0.1, 0.9);
+    const double share = std::clamp((target_m - low.error_m) / (high.error_m - low.error_m),
+                                    kLeastShare, 1.0 - kLeastShare);
     best = tried(low.scale + share * (high.scale - low.scale));
     (best.error_m < target_m ? low : high) = best;
   }

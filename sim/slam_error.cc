@@ -130,18 +130,6 @@ Twist DrawJitter(const SlamOptions& options, std::uint64_t seed, std::uint32_t f
   return Draw(random, options.jitter_translation_m, options.jitter_rotation_deg);
 }
 
-}  // namespace
-
-Pose3 PivotedMotion(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m,
-                    double pivot_m) {
-  if (rotation_rad.isZero(0.0)) return {Eigen::Quaterniond::Identity(), translation_m};
-  const Eigen::Quaterniond rotation = ExpRotation(rotation_rad);
-  const Eigen::Vector3d pivot(0.0, 0.0, pivot_m);
-  return {rotation, translation_m + pivot - rotation * pivot};
-}
-
-namespace {
-
 // Turns about horizontal axes of the world are `share` of what was drawn.
 Twist Levelled(const Twist& twist, const Pose3& world_from_camera, double share) {
   if (share == 1.0) return twist;
@@ -152,6 +140,14 @@ Twist Levelled(const Twist& twist, const Pose3& world_from_camera, double share)
 }
 
 }  // namespace
+
+Pose3 PivotedMotion(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m,
+                    double pivot_m) {
+  if (rotation_rad.isZero(0.0)) return {Eigen::Quaterniond::Identity(), translation_m};
+  const Eigen::Quaterniond rotation = ExpRotation(rotation_rad);
+  const Eigen::Vector3d pivot(0.0, 0.0, pivot_m);
+  return {rotation, translation_m + pivot - rotation * pivot};
+}
 
 std::vector<FrameErrors> DrawFrameErrors(const Trajectory& truth, const SlamOptions& options,
                                          std::uint64_t seed) {

@@ -97,7 +97,7 @@ SlamOptions PlanarSlamMeasured() {
   return options;
 }
 
-// From the error over lags of 0.033 to 60 s on TUM fr2/desk (18.7 m, 99 s), reproduced within 16 %.
+// From the error over lags of 0.033 to 60 s on TUM fr2/desk (18.7 m, 99 s), reproduced within 25 %.
 // The pivot is the distance of the desk that makes rotation and translation errors agree. The
 // trajectory was that after all corrections, so there are no loops left to close.
 SlamOptions OrbSlam2Desk() {

@@ -13,7 +13,6 @@
 namespace depthgrid {
 
 constexpr Interval kRadiusOrTip = {0.0, kMaxSceneExtentM};
-constexpr Interval kSegments = {3, 512};
 
 inline Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
@@ -47,7 +46,7 @@ struct CylinderItem {
   void Visit(OptionsVisitor& v) {
     v.Number("radius_m", radius_m, kLength, "radius at the foot");
     v.Number("height_m", height_m, kLength, "height");
-    v.Number("segments", segments, kSegments, "facets around");
+    v.Number("segments", segments, kFacets, "facets around");
   }
   TriangleMesh Build(const std::string&) const {
     return Revolve(FrustumOutline(radius_m, radius_m, height_m), segments);
@@ -63,7 +62,7 @@ struct ConeItem {
     v.Number("radius_m", radius_m, kLength, "radius at the foot");
     v.Number("top_radius_m", top_radius_m, kRadiusOrTip, "radius at the top; 0 is a tip");
     v.Number("height_m", height_m, kLength, "height");
-    v.Number("segments", segments, kSegments, "facets around");
+    v.Number("segments", segments, kFacets, "facets around");
   }
   TriangleMesh Build(const std::string&) const {
     return Revolve(FrustumOutline(radius_m, top_radius_m, height_m), segments);
@@ -106,8 +105,8 @@ struct TorusItem {
   void Visit(OptionsVisitor& v) {
     v.Number("radius_m", radius_m, kLength, "of the tube's centre line");
     v.Number("tube_radius_m", tube_radius_m, kLength, "of the tube; below radius_m");
-    v.Number("segments", segments, kSegments, "facets around the ring");
-    v.Number("tube_segments", tube_segments, kSegments, "facets around the tube");
+    v.Number("segments", segments, kFacets, "facets around the ring");
+    v.Number("tube_segments", tube_segments, kFacets, "facets around the tube");
   }
   TriangleMesh Build(const std::string& place) const {
     if (tube_radius_m >= radius_m) {

@@ -13,15 +13,11 @@ namespace {
 void CheckExtent(const TriangleMesh& mesh, double resolution_m) {
   constexpr double kMaxCells = 2e8;
   if (mesh.vertices.empty()) return;
-  Eigen::Vector3f low = mesh.vertices.front(), high = low;
-  for (const Eigen::Vector3f& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  const Eigen::Vector3d cells = (high - low).cast<double>() / resolution_m;
+  const Eigen::Vector3f size_m = BoundsOf(mesh).sizes();
+  const Eigen::Vector3d cells = size_m.cast<double>() / resolution_m;
   if (cells.x() * cells.y() > kMaxCells) {
-    throw InputError("truth map", "the scene is " + std::to_string(high.x() - low.x()) + " x " +
-                                      std::to_string(high.y() - low.y()) + " m, must be below " +
+    throw InputError("truth map", "the scene is " + std::to_string(size_m.x()) + " x " +
+                                      std::to_string(size_m.y()) + " m, must be below " +
                                       std::to_string(static_cast<long>(kMaxCells)) + " cells of " +
                                       std::to_string(resolution_m) + " m");
   }

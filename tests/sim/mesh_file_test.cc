@@ -250,6 +250,7 @@ TEST_F(MeshFiles, PlyErrorsSayWhatIsWrong) {
   EXPECT_EQ(ErrorOf("a.ply", edited("3 1 2 3", "9 1 2 3")),
             "ends before all that its header announces");
   EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 nan\n")), "vertex 3 is not finite");
+  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 1e999\n")), "vertex 3 is not finite");
   EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 x\n")), "'x' is not a number");
   EXPECT_EQ(ErrorOf("a.ply", edited("vertex 4", "vertex 4000000000")),
             "ends before all that its header announces");
