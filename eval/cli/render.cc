@@ -16,9 +16,7 @@
 namespace depthgrid::cli {
 namespace {
 
-struct Written {
-  bool with_colour = false;
-};
+struct Written {};  // a frame that is in the folder: nothing is left to hand on
 
 // Images of one frame to the folder. A colour camera has a thread's context, so each thread makes
 // its own.
@@ -51,7 +49,7 @@ void Render(const RenderArguments& arguments) {
     ProgressBar bar("rendering");
     OrderedFrames<Written> frames(sensor.FrameCount(), threads, [&](int frame) {
       WriteFrame(world, sensor, writer, !arguments.no_colour, frame);
-      return Written{!arguments.no_colour};
+      return Written{};
     });
     for (int done = 1; frames.Next(); ++done) bar.Show(done, sensor.FrameCount());
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapper/io/config.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -47,10 +48,8 @@ std::string UnknownWord(const CLI::App& app, const std::string& word) {
 }
 
 std::optional<double> FiniteNumber(const std::string& text) {
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || *stop != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto value = ParseNumber(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -16,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "eval/sweep/sql_values_impl.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
 
@@ -39,13 +38,6 @@ CREATE TABLE times (run INTEGER PRIMARY KEY);
 CREATE TABLE failures (run INTEGER PRIMARY KEY, reason TEXT NOT NULL);
 )";
 
-std::string Quoted(const std::string& name) {
-  std::string quoted(1, '"');
-  for (const char c : name) quoted.append(c == '"' ? 2 : 1, c);
-  quoted += '"';
-  return quoted;
-}
-
 std::string DatabasePath(const std::string& folder) {
   return (fs::path(folder) / kSweepDatabaseName).string();
 }
@@ -59,26 +51,6 @@ void Writing(const std::string& folder, const Work& work) {
     throw std::runtime_error(
         fmt::format("{}: cannot be written: {}", DatabasePath(folder), error.what()));
   }
-}
-
-// What is the shortest text of a number goes in as that number, so that SQL and pandas see it as
-// such, and comes out as the same text.
-void BindYaml(SQLite::Statement& statement, int index, const std::string& text) {
-  constexpr double kExactIntegers = 9007199254740992.0;  // 2^53
-  const auto number = ParseNumber(text);
-  if (!number || !std::isfinite(*number) || fmt::format("{}", *number) != text) {
-    statement.bind(index, text);
-  } else if (std::trunc(*number) == *number && std::abs(*number) < kExactIntegers) {
-    statement.bind(index, static_cast<std::int64_t>(*number));
-  } else {
-    statement.bind(index, *number);
-  }
-}
-
-std::string YamlOf(const SQLite::Column& column) {
-  if (column.isInteger()) return fmt::format("{}", column.getInt64());
-  if (column.isFloat()) return fmt::format("{}", column.getDouble());
-  return column.getString();
 }
 
 // Why not; empty where it may be.
@@ -103,20 +75,6 @@ std::string UriPath(const fs::path& path) {
     uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri;
-}
-
-double NumberOf(const SQLite::Column& column) {
-  return column.isNull() ? kNone : column.getDouble();
-}
-
-std::vector<std::string> ColumnsOf(SQLite::Database& database, const std::string& table) {
-  std::vector<std::string> names;
-  SQLite::Statement query(database, "SELECT name FROM pragma_table_info('" + table + "')");
-  while (query.executeStep()) {
-    const std::string name = query.getColumn(0).getString();
-    if (name != "run") names.push_back(name);
-  }
-  return names;
 }
 
 }  // namespace
@@ -179,6 +137,36 @@ struct SweepDatabase::Impl {
     InsertWide("times", outcome.run, outcome.times);
   }
 
+  void PlanRuns(const std::vector<std::string>& parameter_keys,
+                const std::vector<PlannedRun>& plan) {
+    std::string marks = "?";
+    for (const std::string& key : parameter_keys) {
+      database->exec("ALTER TABLE parameters ADD COLUMN " + Quoted(key));
+      marks += ", ?";
+    }
+    SQLite::Statement run(*database, "INSERT INTO runs VALUES (?, ?, 'planned')");
+    SQLite::Statement values(*database, "INSERT INTO parameters VALUES (" + marks + ")");
+    for (const PlannedRun& planned : plan) {
+      Require(planned.values.size() == parameter_keys.size(), "each parameter has a value");
+      run.bind(1, planned.run);
+      run.bind(2, planned.point);
+      run.exec();
+      run.reset();
+      values.bind(1, planned.run);
+      int index = 2;
+      for (const std::string& value : planned.values) BindYaml(values, index++, value);
+      values.exec();
+      values.reset();
+    }
+  }
+
+  void Note(const std::string& key, const std::string& value) {
+    SQLite::Statement insert(*database, "INSERT INTO environment VALUES (?, ?)");
+    insert.bind(1, key);
+    insert.bind(2, value);
+    insert.exec();
+  }
+
   // Columns of a table of numbers for all finished runs, sorted by name.
   std::vector<SweepColumn> WideColumns(const std::string& table) const {
     std::vector<std::string> names = ColumnsOf(*database, table);
@@ -239,36 +227,11 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
   fs::remove(partial);
   Writing(folder, [&] {
     Impl impl(folder, partial, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    SQLite::Database& database = *impl.database;
-    SQLite::Transaction transaction(database);
-    database.exec(kTables);
-    const auto note = [&](const std::string& key, const std::string& value) {
-      SQLite::Statement insert(database, "INSERT INTO environment VALUES (?, ?)");
-      insert.bind(1, key);
-      insert.bind(2, value);
-      insert.exec();
-    };
-    note("schema", kSchema);
-    for (const auto& [key, value] : environment) note(key, value);
-    std::string marks = "?";
-    for (const std::string& key : parameter_keys) {
-      database.exec("ALTER TABLE parameters ADD COLUMN " + Quoted(key));
-      marks += ", ?";
-    }
-    SQLite::Statement run(database, "INSERT INTO runs VALUES (?, ?, 'planned')");
-    SQLite::Statement values(database, "INSERT INTO parameters VALUES (" + marks + ")");
-    for (const PlannedRun& planned : plan) {
-      Require(planned.values.size() == parameter_keys.size(), "each parameter has a value");
-      run.bind(1, planned.run);
-      run.bind(2, planned.point);
-      run.exec();
-      run.reset();
-      values.bind(1, planned.run);
-      int index = 2;
-      for (const std::string& value : planned.values) BindYaml(values, index++, value);
-      values.exec();
-      values.reset();
-    }
+    SQLite::Transaction transaction(*impl.database);
+    impl.database->exec(kTables);
+    impl.Note("schema", kSchema);
+    for (const auto& [key, value] : environment) impl.Note(key, value);
+    impl.PlanRuns(parameter_keys, plan);
     for (const RunOutcome& outcome : outcomes) impl.Insert(outcome);
     transaction.commit();
   });
@@ -360,16 +323,19 @@ int SweepDatabase::PlanFailedAgain() {
 }
 
 void SweepDatabase::Drop(const std::vector<int>& runs) {
-  SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-  for (const char* table : {"runs", "parameters", "metrics", "times", "failures"}) {
-    SQLite::Statement remove(*impl_->database, fmt::format("DELETE FROM {} WHERE run = ?", table));
-    for (const int run : runs) {
-      remove.bind(1, run);
-      remove.exec();
-      remove.reset();
+  Writing(impl_->folder, [&] {
+    SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    for (const char* table : {"runs", "parameters", "metrics", "times", "failures"}) {
+      SQLite::Statement remove(*impl_->database,
+                               fmt::format("DELETE FROM {} WHERE run = ?", table));
+      for (const int run : runs) {
+        remove.bind(1, run);
+        remove.exec();
+        remove.reset();
+      }
     }
-  }
-  transaction.commit();
+    transaction.commit();
+  });
 }
 
 std::vector<double> SweepDatabase::MetricOf(const std::string& name,

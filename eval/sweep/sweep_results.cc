@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "eval/sweep/sql_values_impl.h"
 #include "eval/sweep/sweep_database.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -15,11 +16,7 @@ namespace {
 
 // RFC 4180: quotes only where a comma, a quote or a line end asks for them.
 std::string CsvCell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted(1, '"');
-  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
-  quoted += '"';
-  return quoted;
+  return text.find_first_of(",\"\n\r") == std::string::npos ? text : Quoted(text);
 }
 
 std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
