@@ -10,6 +10,9 @@
 
 namespace depthgrid {
 
+// The height at which rays meet the fences below, whatever the band.
+constexpr float kFenceMiddleM = 0.5F;
+
 // The band's surfaces for rays that do not care about height.
 struct BandOutline {
   TriangleMesh fences;              // what they look like from above, drawn out from z = 0 to 1

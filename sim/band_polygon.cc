@@ -14,7 +14,7 @@ double OnGrid(double cells, double tolerance_cells) {
 }  // namespace
 
 BandPolygon BandPolygon::Cut(std::size_t axis, double bound, double sign) const {
-  constexpr double kRounding_cells = 1e-6;  // of snapped corners and the interpolation below
+  constexpr double kRoundingCells = 1e-6;  // of snapped corners and the interpolation below
   BandPolygon kept;
   for (int i = 0; i < size_; ++i) {
     const Corner& a = corners_[static_cast<std::size_t>(i)];
@@ -23,8 +23,8 @@ BandPolygon BandPolygon::Cut(std::size_t axis, double bound, double sign) const 
     if (beyond_a <= 0) kept.Add(a);
     if ((beyond_a < 0 && beyond_b > 0) || (beyond_a > 0 && beyond_b < 0)) {
       const double t = beyond_a / (beyond_a - beyond_b);
-      Corner crossing = {OnGrid(a[0] + t * (b[0] - a[0]), kRounding_cells),
-                         OnGrid(a[1] + t * (b[1] - a[1]), kRounding_cells),
+      Corner crossing = {OnGrid(a[0] + t * (b[0] - a[0]), kRoundingCells),
+                         OnGrid(a[1] + t * (b[1] - a[1]), kRoundingCells),
                          a[2] + t * (b[2] - a[2])};
       crossing[axis] = bound;
       kept.Add(crossing);
@@ -47,13 +47,13 @@ double BandPolygon::Max(std::size_t axis) const {
 
 BandPolygon InBand(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle,
                    const HeightBand& band, double resolution_m) {
-  constexpr double kSnap_m = 1e-5;  // half a step of single precision is 2 um at 50 m
+  constexpr double kSnapM = 1e-5;  // half a step of single precision is 2 um at 50 m
   BandPolygon polygon;
   for (const std::uint32_t index : triangle) {
     const Eigen::Vector3d vertex = mesh.vertices[index].cast<double>();
-    polygon.Add({OnGrid(vertex.x() / resolution_m, kSnap_m / resolution_m),
-                 OnGrid(vertex.y() / resolution_m, kSnap_m / resolution_m),
-                 SnappedTo(SnappedTo(vertex.z(), band.low_z_m, kSnap_m), band.high_z_m, kSnap_m)});
+    polygon.Add({OnGrid(vertex.x() / resolution_m, kSnapM / resolution_m),
+                 OnGrid(vertex.y() / resolution_m, kSnapM / resolution_m),
+                 SnappedTo(SnappedTo(vertex.z(), band.low_z_m, kSnapM), band.high_z_m, kSnapM)});
   }
   if (polygon.Max(2) < band.low_z_m || polygon.Min(2) > band.high_z_m) return {};
   return polygon.Cut(2, band.low_z_m, -1.0).Cut(2, band.high_z_m, 1.0);

@@ -27,9 +27,9 @@ DepthSamples Sample(DepthNoiseModel model, const SampleSource& source, std::size
     case DepthNoiseModel::kNguyen:
       return SampleAcrossEdges(source, first, count, random, scale);
     case DepthNoiseModel::kHanda:
-      return SampleBetweenPixels(source, first, count, random, scale * noise::kHandaShift_px);
+      return SampleBetweenPixels(source, first, count, random, scale * noise::kHandaShiftPx);
     case DepthNoiseModel::kAzure:
-      return SampleBetweenPixels(source, first, count, random, scale * noise::kAzureShift_px);
+      return SampleBetweenPixels(source, first, count, random, scale * noise::kAzureShiftPx);
     default:
       return SampleInPlace(source, first, count);
   }
@@ -55,7 +55,7 @@ void Measure(DepthNoiseModel model, const DepthSamples& clean, const Values& the
     case DepthNoiseModel::kHanda:
       for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
         measured[i] = noise::HandaDepth(1.0F / clean.z[i],
-                                        scale * noise::kHandaDisparitySigma_steps * normal[i]);
+                                        scale * noise::kHandaDisparitySigmaSteps * normal[i]);
       }
       return;
     case DepthNoiseModel::kD435:
@@ -108,7 +108,7 @@ DepthImage DepthNoise::Apply(const DepthFrame& clean, std::uint64_t seed,
     return lit;
   }
   DepthImage measured = AddNoise(lit, clean.incidence_cos.data(), seed, frame);
-  if (options_.noise == DepthNoiseModel::kAzure) DropEdges(lit, noise::kAzureEdgeStep_m, measured);
+  if (options_.noise == DepthNoiseModel::kAzure) DropEdges(lit, noise::kAzureEdgeStepM, measured);
   return measured;
 }
 

@@ -51,29 +51,29 @@ inline float NguyenSigma(float z, float theta) {
   return frontal + Select(theta > kOblique, oblique, 0.0F);
 }
 
-inline float NguyenLateralSigma_px(float theta) { return 0.8F + 0.035F * ObliqueRatio(theta); }
+inline float NguyenLateralSigmaPx(float theta) { return 0.8F + 0.035F * ObliqueRatio(theta); }
 
 // Handa et al., "A benchmark for RGB-D visual odometry, 3D reconstruction and SLAM", ICRA 2014,
 // after Barron and Malik, CVPR 2013. Z in cm: 35130 / floor(35130 / Z + N(0, 1/6^2) + 0.5), steps
 // of an eighth of a pixel of disparity, 35130 = 8 f b. A widely copied port rounds where this takes
 // the floor, and so measures short by 1.4 mm at 1 m and 22.6 mm at 4 m.
-constexpr float kHandaSteps_m = 351.30F;
-constexpr float kHandaShift_px = 0.5F;
-constexpr float kHandaDisparitySigma_steps = 1.0F / 6.0F;
+constexpr float kHandaStepsM = 351.30F;
+constexpr float kHandaShiftPx = 0.5F;
+constexpr float kHandaDisparitySigmaSteps = 1.0F / 6.0F;
 
 inline float HandaDepth(float inverse_z, float noise_steps) {
   constexpr float kMostSteps = 1e6F;  // a third of a millimetre
-  const float shifted = kHandaSteps_m * inverse_z + noise_steps + 0.5F;
+  const float shifted = kHandaStepsM * inverse_z + noise_steps + 0.5F;
   const float steps = Whole(std::min(std::max(shifted, 0.0F), kMostSteps));
-  return Select(steps >= 1.0F, kHandaSteps_m / steps, 0.0F);
+  return Select(steps >= 1.0F, kHandaStepsM / steps, 0.0F);
 }
 
 // Stereo: z = f B / disparity, whose subpixel error is 0.08 px (Intel, "Best known methods for
 // tuning RealSense D400 depth cameras", RMS error formula), B = 50 mm.
 inline float D435Sigma(float z, float focal_px) {
-  constexpr float kSubpixel_px = 0.08F;
-  constexpr float kBaseline_m = 0.050F;
-  return z * z * (kSubpixel_px / (focal_px * kBaseline_m));
+  constexpr float kSubpixelPx = 0.08F;
+  constexpr float kBaselineM = 0.050F;
+  return z * z * (kSubpixelPx / (focal_px * kBaselineM));
 }
 
 // Fankhauser et al., "Kinect v2 for mobile robot navigation: evaluation and modeling", ICAR 2015.
@@ -85,8 +85,8 @@ inline float KinectV2Sigma(float z, float theta) {
 }
 
 // An Azure Kinect-like time-of-flight camera.
-constexpr float kAzureShift_px = 0.25F;
-constexpr float kAzureEdgeStep_m = 0.8F;  // pixels whose 3x3 neighbours differ by more are lost
+constexpr float kAzureShiftPx = 0.25F;
+constexpr float kAzureEdgeStepM = 0.8F;  // pixels whose 3x3 neighbours differ by more are lost
 
 inline float AzureSigma(float z) { return 0.0005F + 0.001F * std::max(z - 0.5F, 0.0F); }
 

@@ -59,7 +59,7 @@ DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, st
   alignas(64) Indices other;
   alignas(64) Values shift_px;
   for (std::size_t i = 0; i < kItems; ++i) {
-    const float sigma_px = scale * NguyenLateralSigma_px(Acos(samples.cosine[i]));
+    const float sigma_px = scale * NguyenLateralSigmaPx(Acos(samples.cosine[i]));
     const float u = Whole(Clamp(pixels.u[i] + sigma_px * normal_u[i], last_u) + 0.5F);
     const float v = Whole(Clamp(pixels.v[i] + sigma_px * normal_v[i], last_v) + 0.5F);
     const float du = u - pixels.u[i], dv = v - pixels.v[i];
@@ -124,9 +124,9 @@ DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, 
     const float p = a[i], q = b[i], r = c[i], s = d[i];
     const float low = std::min(std::min(p, q), std::min(r, s));
     const float high = std::max(std::max(p, q), std::max(r, s));
-    constexpr float kDiagonal_px = 1.41421356F;
+    constexpr float kDiagonalPx = 1.41421356F;
     // 0, invalid, is a break from any other.
-    const bool breaks = IsBreak(high, low, kDiagonal_px, samples.cosine[i], source.focal_px);
+    const bool breaks = IsBreak(high, low, kDiagonalPx, samples.cosine[i], source.focal_px);
     const float top = p + right[i] * (q - p), bottom = r + right[i] * (s - r);
     const float between = top + down[i] * (bottom - top);
     const float inverse = Select(breaks, near[i], between);

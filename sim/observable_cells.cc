@@ -66,7 +66,8 @@ class Observer {
     const double width_rad = bearings.high - bearings.low;
     const auto count = static_cast<std::size_t>(std::ceil(width_rad / half_cell_rad)) + 1;
     const Vector2d at = world_from_camera.translation.head<2>();
-    const Eigen::Vector3f origin(static_cast<float>(at.x()), static_cast<float>(at.y()), 0.5F);
+    const Eigen::Vector3f origin(static_cast<float>(at.x()), static_cast<float>(at.y()),
+                                 kFenceMiddleM);
     rays_.resize(count);
     directions_.resize(count);
     distances_.resize(count);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "mapper/core/error.h"
+#include "sim/corner_cutting.h"
 #include "sim/item_options.h"
 #include "sim/polygon.h"
 #include "sim/revolve.h"
@@ -43,7 +44,7 @@ struct LatheItem {
     if (!IsSimple(corners)) {
       throw InputError(place, "outline must have three corners or more and not cross itself");
     }
-    return Revolve(CutCorners(corners, smooth), segments);
+    return Revolve(CutCorners(corners, smooth, true), segments);
   }
 };
 
@@ -64,7 +65,7 @@ struct PrismItem {
                                           "corners in the end",
                                           corners.size(), smooth, kMaxCorners));
     }
-    const Polygon rounded = CutCorners(corners, smooth);
+    const Polygon rounded = CutCorners(corners, smooth, true);
     if (!IsSimple(corners) || !IsSimple(rounded)) {
       throw InputError(place, "outline must have three corners or more and not cross itself");
     }

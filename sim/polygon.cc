@@ -97,19 +97,4 @@ std::vector<std::array<std::uint32_t, 3>> Triangulate(const Polygon& polygon) {
   return triangles;
 }
 
-Polygon CutCorners(const Polygon& polygon, int rounds) {
-  Polygon cut = polygon;
-  for (int round = 0; round < rounds; ++round) {
-    Polygon next;
-    for (std::size_t i = 0; i < cut.size(); ++i) {
-      const Vector2d& a = cut[i];
-      const Vector2d& b = cut[(i + 1) % cut.size()];
-      next.emplace_back(0.75 * a + 0.25 * b);
-      next.emplace_back(0.25 * a + 0.75 * b);
-    }
-    cut = std::move(next);
-  }
-  return cut;
-}
-
 }  // namespace depthgrid

@@ -20,8 +20,4 @@ bool IsSimple(const Polygon& polygon);
 // ears: quadratic, for outlines of up to a few hundred corners.
 std::vector<std::array<std::uint32_t, 3>> Triangulate(const Polygon& polygon);
 
-// Cuts each corner `rounds` times at a quarter of its edges (Chaikin 1974): tends to a quadratic
-// B-spline.
-Polygon CutCorners(const Polygon& polygon, int rounds);
-
 }  // namespace depthgrid

@@ -60,8 +60,8 @@ DepthImage WithFlyingPixels(const DepthFrame& clean, const PinholeCamera& camera
 }
 
 void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double baseline_m) {
-  constexpr float kBias_px = 1.5F;       // a slanted surface does not shade itself
-  constexpr int kWidestGap_columns = 4;  // neighbours further apart are different surfaces
+  constexpr float kBiasPx = 1.5F;       // a slanted surface does not shade itself
+  constexpr int kWidestGapColumns = 4;  // neighbours further apart are different surfaces
   const int width = depth.width_px;
   // Disparities beyond the image's width leave the projector's buffer: nearer than f b / width.
   const auto span = static_cast<std::size_t>(3 * width);
@@ -88,7 +88,7 @@ void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double 
       light(column, disparity(u));
       if (u + 1 == width || row[u + 1] <= 0.0F) continue;
       const int next = columns[static_cast<std::size_t>(u + 1)];
-      if (next - column > kWidestGap_columns) continue;
+      if (next - column > kWidestGapColumns) continue;
       for (int between = column + 1; between < next; ++between) {
         light(between, std::min(disparity(u), disparity(u + 1)));
       }
@@ -96,7 +96,7 @@ void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double 
     for (int u = 0; u < width; ++u) {
       const int column = columns[static_cast<std::size_t>(u)];
       if (column < 0 || column >= static_cast<int>(span)) continue;
-      if (nearest[static_cast<std::size_t>(column)] > disparity(u) + kBias_px) {
+      if (nearest[static_cast<std::size_t>(column)] > disparity(u) + kBiasPx) {
         row[u] = kInvalidDepth;
       }
     }

@@ -16,7 +16,7 @@ DepthImage WithFlyingPixels(const DepthFrame& clean, const PinholeCamera& camera
 
 // Invalidates what a projector `baseline_m` to the camera's right does not light, as far as the
 // image itself shows what stands in its way: a surface whose projector column (u - f b / z) is
-// covered by one more than a pixel of disparity nearer.
+// covered by one of more than 1.5 pixels more disparity.
 void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double baseline_m);
 
 // Invalidates the pixels of `measured` whose 3x3 neighbours in `clean` lie further apart than

@@ -5,30 +5,13 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "sim/corner_cutting.h"
 
 namespace depthgrid {
 namespace {
 
 using Eigen::Vector3d;
 using Path = std::vector<Vector3d>;
-
-// Chaikin's corner cutting in space; an open path keeps its ends.
-Path CutCorners(Path path, int rounds, bool closed) {
-  for (int round = 0; round < rounds; ++round) {
-    Path next;
-    const std::size_t edges = closed ? path.size() : path.size() - 1;
-    if (!closed) next.push_back(path.front());
-    for (std::size_t i = 0; i < edges; ++i) {
-      const Vector3d& a = path[i];
-      const Vector3d& b = path[(i + 1) % path.size()];
-      if (closed || i > 0) next.emplace_back(0.75 * a + 0.25 * b);
-      if (closed || i + 1 < edges) next.emplace_back(0.25 * a + 0.75 * b);
-    }
-    if (!closed) next.push_back(path.back());
-    path = std::move(next);
-  }
-  return path;
-}
 
 // The path's direction at each point: the mean of the two edges that meet there.
 std::vector<Vector3d> Tangents(const Path& path, bool closed) {

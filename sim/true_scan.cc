@@ -10,9 +10,6 @@
 namespace depthgrid {
 namespace {
 
-// Fences reach from z = 0 to 1 whatever the band.
-constexpr float kFenceMiddleM = 0.5F;
-
 TriangleMesh FencesOf(const TriangleMesh& mesh, const HeightBand& band) {
   return OutlineOf(mesh, band, StateMap()).fences;
 }

@@ -20,9 +20,9 @@ class SweepLock {
   int file_ = -1;
 };
 
-// The database in `folder`, made when there is none. Throws InputError when the folder holds
-// another sweep, another part of it, or one of another version or instruction set, and when it
-// holds something else (unless `force`). A folder that is made is left only if all went well.
+// The database in `folder`, which exists; made when there is none. Throws InputError when the
+// folder holds another sweep, another part of it, or one of another version or instruction set, and
+// when it holds something else (unless `force`).
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
                                 const Shard& shard, bool force);
 

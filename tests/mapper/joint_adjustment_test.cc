@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 constexpr int kGroups = 40;
-constexpr double kStep_m = 0.2;
+constexpr double kStepM = 0.2;
 constexpr int kFramesPerGroup = 5;
 
 // Two walls along x on both sides of the camera: nothing says how far along them it is.
@@ -41,11 +41,11 @@ Corridor WalkWithAJump(double jump_m) {
     SurfelGroup group;
     group.first_frame = g * kFramesPerGroup;
     group.frames = kFramesPerGroup;
-    group.map_from_group = {g * kStep_m, 0.0, 0.0};
+    group.map_from_group = {g * kStepM, 0.0, 0.0};
     group.surfels = CorridorSeen();
     corridor.groups.push_back(group);
     const double error_m = g % 2 == 0 ? 0.001 : -0.001;
-    const double motion_m = kStep_m + (g == kGroups / 2 ? jump_m : error_m);
+    const double motion_m = kStepM + (g == kGroups / 2 ? jump_m : error_m);
     corridor.motions.push_back({true, {motion_m, 0.0, 0.0}, kFramesPerGroup});
   }
   return corridor;
@@ -75,7 +75,7 @@ TEST(JointAdjustment, APriorMapDoesNotTellHowSlamErrs) {
   constexpr int kPrior = 3 * kGroups / 4;
   Corridor corridor = WalkWithAJump(0.001);
   for (std::size_t g = 0; g < kPrior; ++g) {
-    corridor.motions[g] = {true, {kStep_m, 0.0, 0.0}, kFramesPerGroup, true};
+    corridor.motions[g] = {true, {kStepM, 0.0, 0.0}, kFramesPerGroup, true};
   }
   corridor.motions[kPrior].known = false;
   JointOptions options;
@@ -88,9 +88,9 @@ TEST(JointAdjustment, ALoopBendsWhatIsNewAndNotThePriorMap) {
   constexpr int kPrior = kGroups / 2;
   Corridor corridor = WalkWithAJump(0.001);
   for (std::size_t g = 0; g < kPrior; ++g) {
-    corridor.motions[g] = {true, {kStep_m, 0.0, 0.0}, kFramesPerGroup, true};
+    corridor.motions[g] = {true, {kStepM, 0.0, 0.0}, kFramesPerGroup, true};
   }
-  const Pose2 measured{(kGroups - 1) * kStep_m + 0.08, 0.0, 0.0};
+  const Pose2 measured{(kGroups - 1) * kStepM + 0.08, 0.0, 0.0};
   const GroupLink loop{0, kGroups - 1, measured, {0.01, 0.01, 0.01}};
   JointOptions options;
   options.rounds = 0;  // the first step, which has to bring revisits within the gate
@@ -106,7 +106,7 @@ TEST(JointAdjustment, ALoopBendsWhatIsNewAndNotThePriorMap) {
 TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
   const Corridor corridor = WalkWithAJump(0.001);
   const auto sideways = [](int first, double by_m, bool on_trial) {
-    const Pose2 measured{(kGroups - 1 - first) * kStep_m, by_m, 0.0};
+    const Pose2 measured{(kGroups - 1 - first) * kStepM, by_m, 0.0};
     GroupLink loop{first, kGroups - 1, measured, {0.02, 0.02, 0.01}};
     loop.on_trial = on_trial;
     return loop;

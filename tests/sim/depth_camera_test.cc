@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kTolerance_m = 2e-5;
+constexpr double kToleranceM = 2e-5;
 
 Eigen::Quaterniond RandomRotation(RandomStream& random) {
   return Eigen::Quaterniond(random.Normal(), random.Normal(), random.Normal(), random.Normal())
@@ -78,7 +78,7 @@ TEST(DepthCamera, SeesABoxFromInsideAsClosedForm) {
           });
       EXPECT_EQ(c.hits, 640 * 480);
       EXPECT_EQ(c.wrong, 0);
-      EXPECT_LT(c.max_error_m, kTolerance_m);
+      EXPECT_LT(c.max_error_m, kToleranceM);
     }
   }
 }
@@ -89,7 +89,7 @@ TEST(DepthCamera, SeesAFacingPlaneAtItsDistance) {
   test::AddQuad(wall, {3, -50, -50}, {3, 50, -50}, {3, 50, 50}, {3, -50, 50});
   const DepthCamera camera(RayScene(wall), PinholeCamera{});
   const DepthFrame frame = camera.RenderWithIncidence(CameraOf({0, 0, 0}, 0));
-  for (const float z : frame.depth.z_m) ASSERT_NEAR(z, 3.0F, kTolerance_m);
+  for (const float z : frame.depth.z_m) ASSERT_NEAR(z, 3.0F, kToleranceM);
   const auto cosine = [&](int u, int v) {
     return frame.incidence_cos[static_cast<std::size_t>(v * 640 + u)];
   };
@@ -115,7 +115,7 @@ TEST(DepthCamera, SeesASphereAsClosedForm) {
   const Comparison c = Compare(camera.Render(pose), camera.camera(), pose, closed_form);
   EXPECT_EQ(c.wrong, 0);
   EXPECT_GT(c.hits, 50000);
-  EXPECT_LT(c.max_error_m, kTolerance_m);
+  EXPECT_LT(c.max_error_m, kToleranceM);
 }
 
 TEST(DepthCamera, LeavesPixelsThatSeeNothingInvalid) {
@@ -123,7 +123,7 @@ TEST(DepthCamera, LeavesPixelsThatSeeNothingInvalid) {
   test::AddQuad(half, {2, 0, -9}, {2, 9, -9}, {2, 9, 9}, {2, 0, 9});
   const DepthCamera camera(RayScene(half), PinholeCamera{});
   const DepthFrame frame = camera.RenderWithIncidence(CameraOf({0, 0, 0}, 0));
-  EXPECT_NEAR(frame.depth.At(319, 100), 2.0F, kTolerance_m);
+  EXPECT_NEAR(frame.depth.At(319, 100), 2.0F, kToleranceM);
   EXPECT_EQ(frame.depth.At(320, 100), kInvalidDepth);
   EXPECT_EQ(frame.incidence_cos[320], 0.0F);
   const DepthCamera nothing(RayScene(TriangleMesh{}), PinholeCamera{});
