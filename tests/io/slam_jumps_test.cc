@@ -97,6 +97,12 @@ TEST(SlamJumps, APlaceNeverSeenBeforeHasNoLoop) {
   EXPECT_THAT(LoopsFromRevision(Drifting(), Revised(), {100}), IsEmpty());
 }
 
+TEST(SlamJumps, AJumpThatWasNotRevisedHasNoLoop) {
+  Trajectory revised = Revised();
+  revised.erase(revised.begin() + kJumpAt);
+  EXPECT_THAT(LoopsFromRevision(Drifting(), revised, {kJumpAt}), IsEmpty());
+}
+
 TEST(SlamJumps, EpochsCountUpFromEachJump) {
   std::vector<SlamPose> live(5);
   StartEpochs({2, 4}, live);

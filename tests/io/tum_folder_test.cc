@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 class TumFolderTest : public TemporaryFolderTest {
  protected:
@@ -200,8 +201,12 @@ TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
 // "depth_scale: 5000" that lost its last digits is another camera.
 TEST_F(TumFolderTest, ACutCameraFileIsSaid) {
   WriteSequence();
-  Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: 50");
+  const std::string camera = "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: 50";
   std::vector<std::string> warnings;
+  Write("camera.yaml", camera + "00\n");
+  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 5000.0);
+  EXPECT_THAT(warnings, IsEmpty());
+  Write("camera.yaml", camera);
   EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 50.0);
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("camera.yaml: the last line has no line end")));
 }

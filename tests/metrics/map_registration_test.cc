@@ -158,6 +158,11 @@ TEST(WallDistances, HandWorked) {
   // Moved by one cell to the left, the upper two coincide.
   const auto moved = ScoreWallDistances(walls(truth), walls(estimate), all, {-0.05, 0.0, 0.0});
   EXPECT_NEAR(*moved.estimate_to_truth_m, 0.1 / 3, 1e-12);
+  // Where only true walls are scored there is one direction, and no score of both.
+  const auto one_way = ScoreWallDistances(walls(truth), walls(estimate), walls(truth));
+  EXPECT_FALSE(one_way.estimate_to_truth_m);
+  EXPECT_EQ(one_way.truth_to_estimate_m, score.truth_to_estimate_m);
+  EXPECT_FALSE(one_way.chamfer_m || one_way.hausdorff95_m || one_way.f1_5cm || one_way.f1_10cm);
 }
 
 }  // namespace

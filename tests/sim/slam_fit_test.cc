@@ -175,6 +175,24 @@ TEST(CalibrateDrift, ReachesItsTargetOnOtherSeedsToo) {
   }
 }
 
+TEST(CalibrateDrift, FramesWithoutAPoseHaveNoError) {
+  const Trajectory truth = RoundADesk(20.0);
+  SlamOptions options;
+  options.drift_speed_mps = 0.01;
+  options.lost_rate_hz = 0.2;
+  const SlamOutput output = DisturbTrajectory(truth, options, 4);
+  double sum_m = 0.0;
+  int posed = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const auto& pose = output.live[i].slam_from_camera;
+    if (!pose) continue;
+    sum_m += (pose->translation - truth[i].world_from_camera.translation).head<2>().norm();
+    ++posed;
+  }
+  ASSERT_LT(posed, static_cast<int>(truth.size()) - 20);
+  EXPECT_NEAR(MeanLiveErrorM(truth, options, {4, 1}), sum_m / posed, 1e-12);
+}
+
 TEST(CalibrateDrift, SaysWhenItCannot) {
   SlamOptions options = ProfileOptions(SlamProfile::kOrbSlam2);
   options.bias_translation_m = 0.5;

@@ -191,6 +191,23 @@ TEST(SimulateLoops, KeepPrecisionRecallAndSigma) {
   EXPECT_NEAR(DegFromRad(std::sqrt(rotation_square / true_loops)), 0.5, 0.02);
 }
 
+TEST(SimulateLoops, JoinTrackedFramesOnly) {
+  const Trajectory truth = Circling(6.0, 12.0);
+  std::vector<bool> tracked(truth.size());
+  for (std::size_t i = 0; i < tracked.size(); ++i) tracked[i] = i % 100 < 50;
+  SlamLoopOptions options = WithScenario({}, LoopScenario::kFalse);
+  options.repeat_s = 2.0;
+  int false_loops = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (const SimulatedLoop& loop : SimulateLoops(truth, tracked, options, seed)) {
+      EXPECT_TRUE(tracked[static_cast<std::size_t>(loop.closure.first_frame)]);
+      EXPECT_TRUE(tracked[static_cast<std::size_t>(loop.closure.second_frame)]);
+      false_loops += loop.is_true ? 0 : 1;
+    }
+  }
+  EXPECT_GT(false_loops, 50);
+}
+
 TEST(SimulateLoops, WaitForTracking) {
   const Trajectory truth = Circling(1.4);
   std::vector<bool> tracked(truth.size(), true);

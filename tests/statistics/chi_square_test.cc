@@ -17,6 +17,7 @@ TEST(ChiSquare, IsTheTablesDistribution) {
     EXPECT_NEAR(ChiSquareCdf(x, 1), 2.0 * NormalCdf(std::sqrt(x)) - 1.0, 1e-10);
   }
   EXPECT_EQ(ChiSquareCdf(0.0, 3), 0.0);
+  EXPECT_EQ(ChiSquareCdf(-1.0, 3), 0.0);
   // Printed tables.
   EXPECT_NEAR(ChiSquareQuantile(0.95, 1), 3.8415, 5e-5);
   EXPECT_NEAR(ChiSquareQuantile(0.95, 3), 7.8147, 5e-5);

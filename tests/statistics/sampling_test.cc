@@ -129,6 +129,7 @@ TEST(SampleSize, AgreesWithSciPy) {
   EXPECT_EQ(SeedsNeeded(1.0, 0.0), 2);
   EXPECT_EQ(SeedsNeeded(1e-5, 1.0), std::nullopt);
   EXPECT_EQ(SeedsNeededByRanks(0.5, 1.0), 36);  // ceil(34 * pi / 3)
+  EXPECT_EQ(SeedsNeededByRanks(1e-5, 1.0), std::nullopt);
 }
 
 TEST(BestSetting, HandWorked) {

@@ -80,6 +80,7 @@ TEST(Wilcoxon, NothingToRank) {
   EXPECT_EQ(result.pairs, 0);
   EXPECT_EQ(result.zeros, 3);
   EXPECT_EQ(result.p_value, 1.0);
+  EXPECT_EQ(result.rank_biserial, 0.0);
   EXPECT_EQ(Wilcoxon({}).p_value, 1.0);
   EXPECT_EQ(Wilcoxon({-0.5}).p_value, 1.0);  // one pair can never decide
 }
