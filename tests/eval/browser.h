@@ -136,6 +136,11 @@ class Browser {
     dup2(out_copy, 4);
     const int nothing = open("/dev/null", O_RDWR);
     for (const int stream : {0, 1, 2}) dup2(nothing, stream);
+    // Killed, it leaves temporary files and settings that are not the profile's: they go with it.
+    // Relative, since the path of its socket, which is among them, must fit into 107 bytes.
+    if (chdir(folder_.c_str()) != 0) _exit(127);
+    setenv("TMPDIR", ".", 1);
+    setenv("HOME", folder_.c_str(), 1);
     const std::string profile = "--user-data-dir=" + folder_;
     // --no-sandbox: tests run as root in containers, and open files of their own only.
     execl(program.c_str(), program.c_str(), "--headless", "--no-sandbox", "--disable-gpu",

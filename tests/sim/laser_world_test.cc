@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "sim/odometry_noise.h"
-#include "tests/scratch.h"
+#include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
 namespace {
@@ -109,16 +108,17 @@ TEST(LaserWorld, TooNearIsZeroAndTooFarTheMaximum) {
   EXPECT_EQ(reported[3], options.max_range_m);
 }
 
-TEST(LaserWorld, ReadsSegmentsAndRefusesOthers) {
-  const std::string path = ScratchPath() + ".txt";
-  std::ofstream(path) << "# walls\n0 0 1 0\n\n1 0 1 2.5 # east\n";
-  const LaserWorld world = ReadLaserWorld(path);
+using LaserWorldFile = TemporaryFolderTest;
+
+TEST_F(LaserWorldFile, ReadsSegmentsAndRefusesOthers) {
+  Write("world.txt", "# walls\n0 0 1 0\n\n1 0 1 2.5 # east\n");
+  const LaserWorld world = ReadLaserWorld(Path("world.txt"));
   ASSERT_EQ(world.walls.size(), 2U);
   EXPECT_EQ(world.walls[1].b_m, Eigen::Vector2d(1.0, 2.5));
-  std::ofstream(path) << "0 0 1\n";
-  EXPECT_THROW(ReadLaserWorld(path), InputError);
-  std::ofstream(path) << "# nothing\n";
-  EXPECT_THROW(ReadLaserWorld(path), InputError);
+  Write("world.txt", "0 0 1\n");
+  EXPECT_THROW(ReadLaserWorld(Path("world.txt")), InputError);
+  Write("world.txt", "# nothing\n");
+  EXPECT_THROW(ReadLaserWorld(Path("world.txt")), InputError);
   EXPECT_THROW(ReadLaserWorld("/nonexistent"), InputError);
 }
 
