@@ -32,12 +32,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For parsers of files: a folder of this process, in memory where there is such a place.
+// For parsers of files: a folder of this process.
 class Scratch {
  public:
   Scratch() {
-    const fs::path base = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
-    folder_ = base / ("depthgrid_fuzz." + std::to_string(::getpid()));
+    folder_ = fs::temp_directory_path() / ("depthgrid_fuzz." + std::to_string(::getpid()));
     fs::create_directories(folder_);
   }
   ~Scratch() {
