@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "mapper/core/angle.h"
+#include "mapper/match/distance_field.h"
 
 namespace depthgrid {
 namespace {
@@ -54,69 +55,6 @@ constexpr double kLeastUnsureM = 0.2;
 // end: walls alone fit in many places, also outside of the map, where no free space does.
 constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
 constexpr double kFreeWorth = 0.5;
-
-// Distance to the nearest wall, cut at kFarthestM, and what the cells are.
-class DistanceField {
- public:
-  explicit DistanceField(const OccupancyMap& map)
-      : geometry_(map.geometry), distance_m_(map.geometry.size(), static_cast<float>(kFarthestM)) {
-    states_ = StatesOf(map).states;
-    for (std::size_t i = 0; i < distance_m_.size(); ++i) {
-      if (states_[i] != CellState::kOccupied) continue;
-      distance_m_[i] = 0.0F;
-      any_ = true;
-    }
-    Sweep(1);
-    Sweep(-1);
-  }
-  bool any() const { return any_; }
-  double At(const Eigen::Vector2d& point_m) const {
-    const Cell cell = CellOf(point_m, geometry_.resolution_m);
-    return geometry_.Contains(cell) ? distance_m_[geometry_.Index(cell)] : kFarthestM;
-  }
-  // 1 free, 0 not seen, -1 a wall.
-  int FreeAt(const Eigen::Vector2d& point_m) const {
-    const Cell cell = CellOf(point_m, geometry_.resolution_m);
-    if (!geometry_.Contains(cell)) return 0;
-    const CellState state = states_[geometry_.Index(cell)];
-    return state == CellState::kUnknown ? 0 : state == CellState::kFree ? 1 : -1;
-  }
-
- private:
-  // A chamfer sweep (Borgefors 1986, weights 1 and sqrt 2): within 8 % of the Euclidean distance.
-  void Sweep(int way) {
-    const auto near = static_cast<float>(geometry_.resolution_m);
-    const float diagonal = near * std::sqrt(2.0F);
-    const int width = geometry_.width_cells;
-    const int height = geometry_.height_cells;
-    const auto at = [&](int x, int y) -> float& {
-      return distance_m_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                         static_cast<std::size_t>(x)];
-    };
-    for (int row = 0; row < height; ++row) {
-      const int y = way > 0 ? row : height - 1 - row;
-      for (int column = 0; column < width; ++column) {
-        const int x = way > 0 ? column : width - 1 - column;
-        float& here = at(x, y);
-        const auto from = [&](int dx, int dy, float step) {
-          const int nx = x - way * dx;
-          const int ny = y - way * dy;
-          if (nx < 0 || ny < 0 || nx >= width || ny >= height) return;
-          here = std::min(here, at(nx, ny) + step);
-        };
-        from(1, 0, near);
-        from(0, 1, near);
-        from(1, 1, diagonal);
-        from(-1, 1, diagonal);
-      }
-    }
-  }
-
-  GridGeometry geometry_;
-  std::vector<float> distance_m_;
-  std::vector<CellState> states_;
-  bool any_ = false;
-};
 
 // A return, with the sensor that saw it.
 struct Return {
@@ -387,7 +325,7 @@ UnsureAlong UnsureLine(const DistanceField& walls, const Points& points,
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
                                     const Pose2& guess) {
   if (scans.empty()) return {};
-  const DistanceField walls(map);
+  const DistanceField walls(map, kFarthestM);
   const Points points = PointsOf(scans, kPoints);
   if (!walls.any() || points.empty()) return {};
   std::vector<Candidate> candidates;
