@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
 #include "mapper/grid/map_drawing.h"
+#include "mapper/match/distance_field.h"
 #include "mapper/scan/frame_scans.h"
 
 namespace depthgrid {
@@ -23,14 +25,26 @@ constexpr double kStartPathM = 3.0;
 constexpr double kFirstPathM = 1.0;
 constexpr double kMostShiftM = 0.7;
 
-// Of the best place's fit or explained share: what reaches it may be the place as well.
+// Of the best place's fit or agreement: what reaches it may be the place as well.
 constexpr double kUncertainShare = 0.9;
 // The trial is over then.
 constexpr std::size_t kTrialFrames = 400;
 constexpr double kTrialPathM = 6.0;
+// The place that fitted first is taken when it agrees so well beside the best: SLAM's frame is
+// mostly the map's, and of alike offices one that the robot is not in may agree better where it
+// leaves the map.
+constexpr double kFirstShare = 0.8;
 // Places that led this near to each other are one.
 constexpr double kSamePlaceM = 0.3;
 constexpr double kSamePlaceRad = RadFromDeg(5.0);
+// Every so many-th beam is compared: it is on a wall, or off it, or passes one where asked.
+constexpr std::size_t kNextBeam = 4;
+constexpr double kOnWallM = 0.15;
+constexpr double kOffWallM = 0.3;
+constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
+// What the map does not know is worth this much of what it contradicts: a place from where the
+// robot leaves the map at once has little to show.
+constexpr double kUnknownWorth = 0.1;
 
 double Way(const Pose2& motion) { return std::hypot(motion.x_m, motion.y_m); }
 
@@ -107,23 +121,54 @@ FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
 struct Tried {
   Pose2 map_from_slam;  // where it began
   Pose2 map_from_base;  // where it led
-  double explained = 0.0;
+  double agreement = 0.0;
 };
 
-Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const std::vector<Frame>& frames,
-          const MapperOptions& options) {
+// Beams that agree with the map or contradict it.
+struct Agreement {
+  int beams = 0;
+  int on_wall = 0;
+  int against = 0;
+
+  double share() const {
+    return on_wall == 0 ? 0.0 : on_wall / (on_wall + against + kUnknownWorth * beams);
+  }
+};
+
+void Compare(const Scan& scan, const Pose2& map_from_base, const DistanceField& walls,
+             Agreement& agreement) {
+  const Eigen::Vector2d from = map_from_base.translation();
+  for (std::size_t i = 0; i < scan.beams.size(); i += kNextBeam) {
+    const Beam& beam = scan.beams[i];
+    if (!beam.hit) continue;
+    const Eigen::Vector2d to = map_from_base * EndPoint(beam);
+    const bool through = std::any_of(std::begin(kOnTheWay), std::end(kOnTheWay), [&](double share) {
+      return walls.FreeAt(from + share * (to - from)) < 0;
+    });
+    const double off_m = walls.At(to);
+    ++agreement.beams;
+    if (through || (off_m > kOffWallM && walls.FreeAt(to) > 0)) {
+      ++agreement.against;
+    } else if (off_m < kOnWallM) {
+      ++agreement.on_wall;
+    }
+  }
+}
+
+Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const DistanceField& walls,
+          const std::vector<Frame>& frames, const MapperOptions& options) {
   PriorMap fixed = prior;
   fixed.fixed = true;
   fixed.map_from_slam = map_from_slam;
   IncrementalMapper mapper(options, std::nullopt);
   mapper.StartFrom(std::move(fixed));
   Tried tried{map_from_slam, {}, 0.0};
+  Agreement agreement;
   for (const Frame& frame : frames) {
-    const FrameReport report = mapper.AddFrame(frame);
-    tried.explained += report.match.found ? report.match.score : 0.0;
-    tried.map_from_base = BaseOf(*report.map_from_camera);
+    tried.map_from_base = BaseOf(*mapper.AddFrame(frame).map_from_camera);
+    Compare(*frame.scan, tried.map_from_base, walls, agreement);
   }
-  tried.explained /= static_cast<double>(frames.size());
+  tried.agreement = agreement.share();
   return tried;
 }
 
@@ -133,26 +178,29 @@ bool LedElsewhere(const Tried& a, const Tried& b) {
 }
 
 // The first metres mapped from each place.
-void TryAll(FirstFrames& frames, const PriorMap& prior, const MapperOptions& options,
-            MapStart& start) {
+void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
+            const MapperOptions& options, MapStart& start) {
   double way_m = 0.0;
   while (frames.all().size() < kTrialFrames && way_m < kTrialPathM && frames.ReadOne()) {
     const std::size_t newest = frames.all().size() - 1;
     way_m += Way(Between(PlacedScanOf(frames.all()[newest - 1]).slam_from_base,
                          PlacedScanOf(frames.all()[newest]).slam_from_base));
   }
-  std::vector<Tried> all = {Try(start.place.map_from_slam, prior, frames.all(), options)};
+  const DistanceField walls(map, kOffWallM + map.geometry.resolution_m);
+  std::vector<Tried> all = {Try(start.place.map_from_slam, prior, walls, frames.all(), options)};
   for (const Pose2& other : start.place.others) {
-    all.push_back(Try(other, prior, frames.all(), options));
+    all.push_back(Try(other, prior, walls, frames.all(), options));
   }
-  const Tried best = *std::max_element(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
-    return a.explained < b.explained;
+  const auto most = std::max_element(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
+    return a.agreement < b.agreement;
   });
+  const Tried& first = all.front();
+  const Tried best = first.agreement >= kFirstShare * most->agreement ? first : *most;
   StartTrial trial{static_cast<int>(all.size()), static_cast<int>(frames.all().size()),
-                   best.explained, 0.0};
+                   best.agreement, 0.0};
   for (const Tried& tried : all) {
     if (!LedElsewhere(tried, best)) continue;
-    trial.explained_next = std::max(trial.explained_next, tried.explained);
+    trial.agreement_next = std::max(trial.agreement_next, tried.agreement);
   }
   start.place.map_from_slam = best.map_from_slam;
   start.trial = trial;
@@ -161,7 +209,7 @@ void TryAll(FirstFrames& frames, const PriorMap& prior, const MapperOptions& opt
 }  // namespace
 
 bool MapStart::uncertain() const {
-  if (trial) return trial->explained_next > kUncertainShare * trial->explained;
+  if (trial) return trial->agreement_next > kUncertainShare * trial->agreement;
   return place.second_score > kUncertainShare * place.score;
 }
 
@@ -176,7 +224,7 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
   if (!found) return {};
   MapStart start{Nearer(*found, map, views), {}};
   if (!found->others.empty() && !options.fusion.TrustsSlamAlone()) {
-    TryAll(frames, prior, options, start);
+    TryAll(frames, prior, map, options, start);
   }
   return start;
 }

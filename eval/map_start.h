@@ -9,12 +9,14 @@
 
 namespace depthgrid {
 
-// How well places in the map explained what was seen next, over so many frames.
+// How well what was seen next, over so many frames, agreed with the map from several places on:
+// a / (a + c + b / 10), where of b beams a end on a wall of the map, and c where it is free or
+// beyond a wall. What the map does not know speaks for no place and against none.
 struct StartTrial {
   int places = 0;
   int frames = 0;
-  double explained = 0.0;       // mean share of a scan on the map, 0..1, of the place chosen
-  double explained_next = 0.0;  // of the best one that led elsewhere
+  double agreement = 0.0;       // 0..1, of the place chosen
+  double agreement_next = 0.0;  // of the best one that led elsewhere
 };
 
 struct MapStart {
@@ -26,8 +28,8 @@ struct MapStart {
 };
 
 // The first views of `source` (of its first 3 m) are laid over the whole map. Where they fit in
-// several places, the first metres are mapped from each, the map left as it is, and the place that
-// explains most is taken. Nothing when no scan shows anything.
+// several places, the first metres are placed in it from each, and the place from which they agree
+// with it best is taken. Nothing when no scan shows anything.
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options);
 

@@ -138,9 +138,9 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
       DegFromRad(place.map_from_slam.yaw_rad), place.score, place.second_score);
   if (start->trial) {
     fmt::print(
-        "of {} places tried on {} the best explains {:.2f} of what is seen, the next {:.2f}\n",
+        "of {} places tried on {} the best agrees with the map by {:.2f}, the next by {:.2f}\n",
         start->trial->places, Counted(static_cast<std::size_t>(start->trial->frames), "frame"),
-        start->trial->explained, start->trial->explained_next);
+        start->trial->agreement, start->trial->agreement_next);
   }
   if (start->uncertain()) {
     warnings.push_back(arguments.map +

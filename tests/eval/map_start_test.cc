@@ -11,10 +11,20 @@
 namespace depthgrid {
 namespace {
 
-// A hall of 14 x 4 m that looks the same from either end, but for a crate at one side.
+// A hall of 26 x 4 m that looks the same from either end, but for shelves on the left of its
+// middle.
 PlanarWorld Hall() {
-  PlanarWorld world = RectangleWorld(-1.0, -2.0, 13.0, 2.0);
-  for (const Wall& wall : RectangleWorld(4.0, 1.2, 4.5, 1.7)) world.push_back(wall);
+  PlanarWorld world = RectangleWorld(-1.0, -2.0, 25.0, 2.0);
+  const auto add = [&](double x0, double x1, double depth_m) {
+    for (const double side : {-1.0, 1.0}) {
+      for (const Wall& wall : RectangleWorld(x0, side * 2.0, x1, side * (2.0 - depth_m))) {
+        world.push_back(wall);
+      }
+    }
+  };
+  add(3.0, 3.4, 0.5);  // pillars
+  add(20.6, 21.0, 0.5);
+  add(7.8, 11.8, 1.5);
   return world;
 }
 
@@ -24,9 +34,9 @@ PriorMap MapOfHall() {
   laser.field_of_view_rad = RadFromDeg(270.0);
   ScanArchive archive;
   PriorMap prior;
-  for (int i = 0; i <= 120; ++i) {
+  for (int i = 0; i <= 240; ++i) {
     MappedFrame frame;
-    frame.frame = i - 121;
+    frame.frame = i - 241;
     frame.stamp_s = 0.1 * i;
     frame.map_from_base = {0.1 * i, 0.0, i % 2 == 0 ? 0.0 : kPi};
     frame.scan = archive.Keep(ScanOf(world, frame.map_from_base, laser));
@@ -69,29 +79,29 @@ class WalkThroughHall final : public FrameSource {
 
 // The first views fit at both ends, and SLAM's frame being the map's speaks for the wrong one.
 TEST(FindStart, TriesPlacesThatLookAlike) {
-  const Pose2 begin{12.0, 0.0, kPi};
-  WalkThroughHall walk(begin, 9.0);
+  const Pose2 begin{24.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 12.0);
   const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
   ASSERT_TRUE(start);
   ASSERT_TRUE(start->trial);
   EXPECT_GE(start->trial->places, 2);
   EXPECT_GE(start->trial->frames, 60);  // six metres
-  EXPECT_GT(start->trial->explained, start->trial->explained_next);
+  EXPECT_GT(start->trial->agreement, start->trial->agreement_next);
   const Pose2 off = Between(begin, start->place.map_from_slam);
-  EXPECT_LT(off.translation().norm(), 0.1);
+  EXPECT_LT(off.translation().norm(), 0.5);  // matching finds the rest
   EXPECT_LT(std::abs(off.yaw_rad), 0.05);
 }
 
 // Nothing that is seen tells the ends apart, and that is said.
 TEST(FindStart, SaysThatItIsUncertain) {
-  WalkThroughHall walk({12.0, 0.0, kPi}, 1.0);
+  WalkThroughHall walk({24.0, 0.0, kPi}, 1.0);
   const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
   ASSERT_TRUE(start);
   EXPECT_TRUE(start->uncertain());
 }
 
 TEST(FindStart, IsNothingWithoutFrames) {
-  WalkThroughHall walk({12.0, 0.0, kPi}, -1.0);
+  WalkThroughHall walk({24.0, 0.0, kPi}, -1.0);
   EXPECT_FALSE(FindStart(MapOfHall(), walk, MapperOptions{}));
 }
 
