@@ -40,10 +40,12 @@ void Render(const RenderArguments& arguments) {
   const ExperimentOptions given = ExperimentOrScene(arguments.scene, arguments.common.set);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   const int threads = ThreadsOr(arguments.common.threads);
+  const std::string cache_folder = CacheFolder(arguments.common);
+  KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
   const ExperimentOptions options = Completed(given, world.scene);
   RequireUsableScans(world, options.mapper);  // they set the true map's band: now, not at the end
-  const SyntheticSensor sensor(world, options, CacheFolder(arguments.common));
+  const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   {
     ProgressBar bar("rendering");

@@ -75,6 +75,7 @@ RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);
+  KeepShadersInCache(arguments.common);
   context.progress = bar.AsProgress();
   return context;
 }

@@ -12,6 +12,7 @@ namespace depthgrid {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 
 class ProgramRun : public ProgramTest {};
@@ -214,6 +215,16 @@ TEST_F(ProgramRun, WhatStaysBesideAnotherProfileIsSaid) {
   EXPECT_EQ(said(" --set slam.profile=orb_slam2"), "");
   EXPECT_EQ(said(" --set slam.profile=ground_truth"), "");
   EXPECT_EQ(said(" --set slam.drift_scale=2"), "");
+}
+
+// Mesa would keep compiled shaders among the user's.
+TEST_F(ProgramRun, LeavesTheUsersCacheAlone) {
+  std::filesystem::create_directory(Path("users"));
+  ::setenv("XDG_CACHE_HOME", Path("users").c_str(), 1);
+  Succeed("render ./small.yaml -o images --set frames=2");
+  Succeed("render ./small.yaml -o images --force --set frames=2 --cache cache");
+  ::unsetenv("XDG_CACHE_HOME");
+  EXPECT_THAT(FilesIn("users"), IsEmpty());
 }
 
 TEST_F(ProgramRun, WhatHasNoEffectIsSaid) {
