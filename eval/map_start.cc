@@ -34,6 +34,8 @@ constexpr double kTrialPathM = 6.0;
 // mostly the map's, and of alike offices one that the robot is not in may agree better where it
 // leaves the map.
 constexpr double kFirstShare = 0.8;
+// The way back must agree as well as the way there, but for chance.
+constexpr double kRetracedShare = 0.98;
 // Places that led this near to each other are one.
 constexpr double kSamePlaceM = 0.3;
 constexpr double kSamePlaceRad = RadFromDeg(5.0);
@@ -119,8 +121,9 @@ FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
 }
 
 struct Tried {
-  Pose2 map_from_slam;  // where it began
-  Pose2 map_from_base;  // where it led
+  Pose2 map_from_slam;       // where it began
+  Pose2 last_map_from_slam;  // where it led
+  Pose2 map_from_base;       // of the last frame
   double agreement = 0.0;
 };
 
@@ -162,10 +165,13 @@ Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const DistanceField
   fixed.map_from_slam = map_from_slam;
   IncrementalMapper mapper(options, std::nullopt);
   mapper.StartFrom(std::move(fixed));
-  Tried tried{map_from_slam, {}, 0.0};
+  Tried tried;
+  tried.map_from_slam = map_from_slam;
   Agreement agreement;
   for (const Frame& frame : frames) {
-    tried.map_from_base = BaseOf(*mapper.AddFrame(frame).map_from_camera);
+    const FrameReport report = mapper.AddFrame(frame);
+    tried.map_from_base = BaseOf(*report.map_from_camera);
+    tried.last_map_from_slam = report.map_from_slam;
     Compare(*frame.scan, tried.map_from_base, walls, agreement);
   }
   tried.agreement = agreement.share();
@@ -175,6 +181,20 @@ Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const DistanceField
 bool LedElsewhere(const Tried& a, const Tried& b) {
   const Pose2 between = Between(a.map_from_base, b.map_from_base);
   return Way(between) > kSamePlaceM || std::abs(between.yaw_rad) > kSamePlaceRad;
+}
+
+// The first views may say little of where they are: one wall. Later ones have told, and the way
+// back from there leads to where it began.
+Pose2 Retraced(const Tried& best, const PriorMap& prior, const DistanceField& walls,
+               const std::vector<Frame>& frames, const MapperOptions& options) {
+  std::vector<Frame> back(frames.rbegin(), frames.rend());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    back[i].index = static_cast<int>(i);
+    back[i].stamp_s = frames.back().stamp_s - back[i].stamp_s;
+  }
+  const Tried retraced = Try(best.last_map_from_slam, prior, walls, back, options);
+  const bool as_good = retraced.agreement >= kRetracedShare * best.agreement;
+  return as_good ? retraced.last_map_from_slam : best.map_from_slam;
 }
 
 // The first metres mapped from each place.
@@ -202,14 +222,14 @@ void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
     if (!LedElsewhere(tried, best)) continue;
     trial.agreement_next = std::max(trial.agreement_next, tried.agreement);
   }
-  start.place.map_from_slam = best.map_from_slam;
+  start.place.map_from_slam = Retraced(best, prior, walls, frames.all(), options);
   start.trial = trial;
 }
 
 }  // namespace
 
 bool MapStart::uncertain() const {
-  if (trial) return trial->agreement_next > kUncertainShare * trial->agreement;
+  if (trial && trial->places > 1) return trial->agreement_next > kUncertainShare * trial->agreement;
   return place.second_score > kUncertainShare * place.score;
 }
 
@@ -223,9 +243,7 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
   const auto found = FindPlace(map, views, Pose2{});
   if (!found) return {};
   MapStart start{Nearer(*found, map, views), {}};
-  if (!found->others.empty() && !options.fusion.TrustsSlamAlone()) {
-    TryAll(frames, prior, map, options, start);
-  }
+  if (!options.fusion.TrustsSlamAlone()) TryAll(frames, prior, map, options, start);
   return start;
 }
 

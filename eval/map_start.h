@@ -21,15 +21,15 @@ struct StartTrial {
 
 struct MapStart {
   FoundPlace place;
-  std::optional<StartTrial> trial;  // where several places fitted the first views
+  std::optional<StartTrial> trial;  // empty where SLAM is trusted alone
 
   // Whether another place fits nearly as well.
   bool uncertain() const;
 };
 
-// The first views of `source` (of its first 3 m) are laid over the whole map. Where they fit in
-// several places, the first metres are placed in it from each, and the place from which they agree
-// with it best is taken. Nothing when no scan shows anything.
+// The first views of `source` (of its first 3 m) are laid over the whole map. From each place where
+// they fit the first metres are placed in it, and the one from which they agree with it best is
+// taken; the way back tells where exactly they began. Nothing when no scan shows anything.
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options);
 

@@ -136,7 +136,7 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
       "elsewhere {:.2f}\n",
       arguments.map, prior.frames.size(), place.map_from_slam.x_m, place.map_from_slam.y_m,
       DegFromRad(place.map_from_slam.yaw_rad), place.score, place.second_score);
-  if (start->trial) {
+  if (start->trial && start->trial->places > 1) {
     fmt::print(
         "of {} places tried on {} the best agrees with the map by {:.2f}, the next by {:.2f}\n",
         start->trial->places, Counted(static_cast<std::size_t>(start->trial->frames), "frame"),
