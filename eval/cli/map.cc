@@ -138,7 +138,8 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
       DegFromRad(place.map_from_slam.yaw_rad), place.score, place.second_score);
   if (start->trial && start->trial->places > 1) {
     fmt::print(
-        "of {} places tried on {} the best agrees with the map by {:.2f}, the next by {:.2f}\n",
+        "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "
+        "{:.2f}\n",
         start->trial->places, Counted(static_cast<std::size_t>(start->trial->frames), "frame"),
         start->trial->agreement, start->trial->agreement_next);
   }
