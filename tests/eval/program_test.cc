@@ -69,10 +69,15 @@ TEST_F(ProgramRun, IsTheSameBytesAtAnyThreadCountAndTwice) {
 TEST_F(ProgramRun, IsTheSameBytesWithAColdAWarmAndADamagedCache) {
   Succeed("run ./small.yaml --no-cache -o none");
   Succeed("run ./small.yaml --cache cache -o cold");
-  const auto entries = FilesIn("cache");
+  const auto images_kept = [&] {
+    std::vector<std::string> files = FilesIn("cache");
+    std::erase_if(files, [](const std::string& file) { return file.starts_with("mesa_"); });
+    return files;
+  };
+  const auto entries = images_kept();
   ASSERT_EQ(entries.size(), 12U);
   Succeed("run ./small.yaml --cache cache -o warm");
-  EXPECT_EQ(FilesIn("cache"), entries);
+  EXPECT_EQ(images_kept(), entries);
   std::string damaged = ReadFile(Path("cache/" + entries[0]));
   damaged[damaged.size() / 2] ^= 1;
   Write("cache/" + entries[0], damaged);
