@@ -43,7 +43,6 @@ constexpr double kSamePlaceRad = RadFromDeg(5.0);
 constexpr std::size_t kNextBeam = 4;
 constexpr double kOnWallM = 0.15;
 constexpr double kOffWallM = 0.3;
-constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
 // What the map does not know is worth this much of what it contradicts: a place from where the
 // robot leaves the map at once has little to show.
 constexpr double kUnknownWorth = 0.1;

@@ -8,6 +8,9 @@
 
 namespace depthgrid {
 
+// Where along its way a beam asks whether the map is free.
+inline constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
+
 class DistanceField {
  public:
   // Distances are cut at `farthest_m`.

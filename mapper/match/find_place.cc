@@ -51,9 +51,8 @@ constexpr double kUnsureReachM = 5.0;
 // Less than this is found by matching: of 40 starts in two rooms those right to 2 cm had 0.16 m and
 // less, but for four of which another place fitted nearly as well.
 constexpr double kLeastUnsureM = 0.2;
-// Where along its way a beam asks whether the map is free, and what the answer is worth beside its
-// end: walls alone fit in many places, also outside of the map, where no free space does.
-constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
+// What free space on a beam's way is worth beside its end: walls alone fit in many places, also
+// outside of the map, where no free space does.
 constexpr double kFreeWorth = 0.5;
 
 // A return, with the sensor that saw it.
