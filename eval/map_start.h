@@ -11,7 +11,7 @@ namespace depthgrid {
 
 // How well what was seen next, over so many frames, agreed with the map from several places on:
 // a / (a + c + b / 10), where of b beams a end on a wall of the map, and c where it is free or
-// beyond a wall. What the map does not know speaks for no place and against none.
+// beyond a wall. What the map does not know counts little.
 struct StartTrial {
   int places = 0;
   int frames = 0;

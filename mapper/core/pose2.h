@@ -53,4 +53,11 @@ inline double Separation(const Pose2& world_from_i, const Pose2& world_from_j) {
   return i_from_j.translation().norm() + std::abs(i_from_j.yaw_rad);
 }
 
+// Whether one is farther from the other than this, or turned by more.
+inline bool AreApart(const Pose2& world_from_i, const Pose2& world_from_j, double least_m,
+                     double least_rad) {
+  const Pose2 i_from_j = Between(world_from_i, world_from_j);
+  return i_from_j.translation().norm() > least_m || std::abs(i_from_j.yaw_rad) > least_rad;
+}
+
 }  // namespace depthgrid

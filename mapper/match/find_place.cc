@@ -267,12 +267,9 @@ Candidate NearGuess(const DistanceField& walls, const Points& coarse_points, con
   return best;
 }
 
-bool IsApart(const Pose2& a, const Pose2& b, double least_m, double least_rad) {
-  const Pose2 between = Between(a, b);
-  return std::hypot(between.x_m, between.y_m) > least_m || std::abs(between.yaw_rad) > least_rad;
+bool Elsewhere(const Pose2& a, const Pose2& b) {
+  return AreApart(a, b, kElsewhereM, kElsewhereRad);
 }
-
-bool Elsewhere(const Pose2& a, const Pose2& b) { return IsApart(a, b, kElsewhereM, kElsewhereRad); }
 
 // Those that may be the place too, best first.
 std::vector<Pose2> OthersThan(const Candidate& best, std::vector<Candidate> candidates) {
@@ -283,7 +280,7 @@ std::vector<Pose2> OthersThan(const Candidate& best, std::vector<Candidate> cand
     if (others.size() == kMostOthers || candidate.score < kOtherShare * best.score) break;
     const Pose2& pose = candidate.map_from_first;
     const auto is_apart = [&](const Pose2& other) {
-      return IsApart(other, pose, kApartM, kApartRad);
+      return AreApart(other, pose, kApartM, kApartRad);
     };
     if (!is_apart(best.map_from_first)) continue;
     if (std::all_of(others.begin(), others.end(), is_apart)) others.push_back(pose);

@@ -42,17 +42,23 @@ TEST(DriftEvidence, GrowsWithTheSquareOfASteadyInnovation) {
   EXPECT_EQ(blind.Chi2(), 0.0);
 }
 
+// Of a camera at the origin.
+MatchResult NoisyMatch(RandomStream& random) {
+  MatchResult match;
+  match.found = true;
+  match.information = MatchInformation();
+  match.map_from_base = Pose2::FromVector(
+      kMatchSigma.cwiseProduct(Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal())));
+  return match;
+}
+
 // The camera stands still; SLAM creeps forward by `creep_m` a frame. Mean error over the frames.
 double ErrorM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m, std::uint64_t seed) {
   RandomStream random(seed, RandomStage::kTest);
   double sum_m = 0.0;
   for (int i = 0; i < frames; ++i) {
     slam = slam * Pose2{creep_m, 0.0, 0.0};
-    MatchResult match;
-    match.found = true;
-    match.information = MatchInformation();
-    match.map_from_base = Pose2::FromVector(kMatchSigma.cwiseProduct(
-        Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal())));
+    const MatchResult match = NoisyMatch(random);
     const FusedPose fused = tracker.Fuse(slam, match);
     tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
     sum_m += fused.map_from_base.translation().norm();
@@ -83,11 +89,7 @@ TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
   RandomStream random(9, RandomStage::kTest);
   for (int i = 0; i < 1000; ++i) {
     slam = slam * Pose2{0.02 * random.Normal(), 0.0, 0.0};  // SLAM walks, the camera stands
-    MatchResult match;
-    match.found = true;
-    match.information = MatchInformation();
-    match.map_from_base = Pose2::FromVector(kMatchSigma.cwiseProduct(
-        Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal())));
+    const MatchResult match = NoisyMatch(random);
     const FusedPose fused = tracker.Fuse(slam, match);
     tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
   }
