@@ -25,7 +25,8 @@ struct MatchResult {
   bool found = false;
   Pose2 map_from_base;  // meaningful only when found
   // Inverse covariance of map_from_base for a small motion (forward m, left m, yaw rad) in base
-  // axes; zero along directions the scan does not see (a corridor's axis).
+  // axes (a mapper's report: those of the predicted pose); zero along directions the scan does not
+  // see (a corridor's axis).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;  // share of the beams that the map explains, 0..1
   int iterations = 0;

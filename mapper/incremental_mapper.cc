@@ -238,6 +238,7 @@ void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
   if (match_oracle && report.match.found) {
     report.match.map_from_base = match_oracle(report.index);
   }
+  report.match.information = InformationFor(prediction, report.match, options.fusion.tilt_rad);
 }
 
 // Eq. 3.

@@ -7,6 +7,12 @@
 #include <cmath>
 
 namespace depthgrid {
+namespace {
+
+// As the threshold of Debiased() (surfel/debias.h), for the same reason.
+constexpr double kFeigned = 3.0;
+
+}  // namespace
 
 Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma) {
   return sigma.cwiseProduct(sigma).asDiagonal();
@@ -49,6 +55,28 @@ double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& inform
   const Square seen_covariance = seen.transpose() * covariance * seen;
   const Vector seen_innovation = seen.transpose() * innovation;
   return seen_innovation.dot(Eigen::LDLT<Square>(seen_covariance).solve(seen_innovation));
+}
+
+Eigen::Matrix3d InformationIn(const Pose2& pose, const MatchResult& match) {
+  const Eigen::Matrix3d match_from_pose = AdjointOf(Between(match.map_from_base, pose));
+  return match_from_pose.transpose() * match.information * match_from_pose;
+}
+
+Eigen::Matrix3d InformationFor(const Prediction& prediction, const MatchResult& match,
+                               double tilt_rad) {
+  const Eigen::Matrix3d information = InformationIn(prediction.map_from_base, match);
+  if (tilt_rad <= 0.0) return information;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
+      prediction.covariance.topLeftCorner<2, 2>());
+  const Eigen::Vector2d known_least = solver.eigenvectors().col(1);
+  const Eigen::Vector2d across(-known_least.y(), known_least.x());
+  const Eigen::Matrix2d told = information.topLeftCorner<2, 2>();
+  const double seen = known_least.dot(told * known_least);
+  const double feigned = tilt_rad * tilt_rad * across.dot(told * across);
+  const double share = seen > kFeigned * feigned ? 1.0 - kFeigned * feigned / seen : 0.0;
+  Eigen::Matrix3d cleared = Eigen::Matrix3d::Identity();
+  cleared.topLeftCorner<2, 2>() -= (1.0 - std::sqrt(share)) * known_least * known_least.transpose();
+  return cleared * information * cleared;
 }
 
 Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {

@@ -42,6 +42,16 @@ SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information);
 double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
                 const Eigen::Vector3d& innovation);
 
+// A match's information for small motions in base axes of `pose`, which is near to its own. A wall
+// tells of what is across it; axes turned by a thousandth of a radian tell of what is along it too.
+Eigen::Matrix3d InformationIn(const Pose2& pose, const MatchResult& match);
+
+// The same in base axes of the prediction, cleared of what it feigns of the direction in the plane
+// that the prediction knows least. `tilt_rad`: how uncertain it is which way that direction runs
+// to what is seen; 0 clears nothing (docs/math.md, "Fusion").
+Eigen::Matrix3d InformationFor(const Prediction& prediction, const MatchResult& match,
+                               double tilt_rad);
+
 // A gain per axis that somebody chose. The covariance is that of a filter with this gain.
 FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
                        const Eigen::Vector3d& gain);

@@ -51,6 +51,9 @@ struct FusionOptions {
   SlamNoiseOptions slam_noise;
   // `kalman`: the match's information is divided by this, for errors its beams have in common.
   double match_overconfidence = 1.0;
+  // What is seen is not told to run along the direction that the prediction knows least better than
+  // this: InformationFor().
+  double tilt_rad = 0.001;
   // Innovations with a larger chi-square (3 degrees of freedom) are not taken; 0 takes all. Off:
   // gates at 9-16 lock onto the prior and diverge (docs/math.md).
   double gate_chi2 = 0.0;

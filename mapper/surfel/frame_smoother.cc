@@ -15,6 +15,8 @@ constexpr int kIterations = 2;
 constexpr int kUnknowns = 6;
 // Where neither match nor motion says anything, a frame stays: far below any real information.
 constexpr double kStayInformation = 1e-3;
+// Radians for a metre of `stay_m`.
+constexpr double kStayTurn = 0.1;
 // No prior is better, a frame; also keeps weights finite for perfect ones.
 const Eigen::Vector3d kLeastWalk(1e-5, 1e-5, 2e-6);
 const Eigen::Vector3d kLeastBias(1e-6, 1e-6, 2e-7);
@@ -38,6 +40,12 @@ class Equations {
     AddBlock(kUnknowns * frame, information);
     g_.segment<3>(kUnknowns * frame) +=
         information * InnovationOf(map_from_base, match.map_from_base);
+  }
+
+  void AddStay(int frame, const Pose2& map_from_base, const Pose2& stay,
+               const Eigen::Vector3d& weight) {
+    AddBlock(kUnknowns * frame, weight.asDiagonal());
+    g_.segment<3>(kUnknowns * frame) += weight.cwiseProduct(InnovationOf(map_from_base, stay));
   }
 
   // error = relative pose against motion * bias; weight is diagonal.
@@ -140,22 +148,27 @@ MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames) {
   return learner.Fit();
 }
 
-std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise) {
+std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise,
+                            double stay_m) {
   State state;
   for (const SmootherFrame& frame : frames) state.map_from_base.push_back(frame.map_from_base);
   state.bias.assign(frames.size(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d motion_weight = Inverted(noise.walk.cwiseMax(kLeastWalk));
   const Eigen::Matrix3d jitter = Squared(noise.jitter);
+  const Eigen::Vector3d stay_weight =
+      stay_m > 0.0 ? Inverted({stay_m, stay_m, kStayTurn * stay_m}) : Eigen::Vector3d::Zero();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Equations equations(frames.size());
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const int frame = static_cast<int>(k);
       const MatchResult& match = frames[k].match;
+      const Pose2& pose = state.map_from_base[k];
       if (match.found) {
         // The match sees the camera, SLAM's pose is off by its jitter.
-        equations.AddMatch(frame, state.map_from_base[k], match,
-                           WithAddedCovariance(match.information, jitter));
+        equations.AddMatch(frame, pose, match,
+                           WithAddedCovariance(InformationIn(pose, match), jitter));
       }
+      equations.AddStay(frame, pose, frames[k].map_from_base, stay_weight);
       equations.AddBias(frame, state, noise);
       if (k > 0 && frames[k].motion) {
         equations.AddMotion(frame, state, *frames[k].motion, motion_weight);

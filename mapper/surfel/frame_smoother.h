@@ -20,7 +20,11 @@ struct SmootherFrame {
 MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames);
 
 // The most likely poses given all matches and motions. The prior's bias of each frame is unknown
-// too, and its jitter is told from the camera's own motion.
-std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise);
+// too, and its jitter is told from the camera's own motion. Each pose stays near its guess, to
+// `stay_m` and a tenth of a radian for each metre of that (standard deviations; 0: anywhere): a
+// bias that is told before and after a stretch of a thousand frames says little of where they go
+// between.
+std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise,
+                            double stay_m);
 
 }  // namespace depthgrid

@@ -152,6 +152,27 @@ SightingTrust TrustAt(const Landmarks& landmarks, const std::vector<Pose2>& map_
   return trust;
 }
 
+// How much each motion tells of SLAM's errors.
+std::vector<Eigen::Vector3d> AsJudged(std::vector<Eigen::Vector3d> shares,
+                                      const JointOptions& options) {
+  if (!options.judge_motions) std::fill(shares.begin(), shares.end(), MeanShare(shares));
+  return shares;
+}
+
+// Before anything is solved: all of a motion between groups that saw something.
+std::vector<Eigen::Vector3d> FirstShares(const Problem& problem,
+                                         const std::vector<GroupLink>& motions) {
+  const auto saw = [&](int group) {
+    return !problem.groups[static_cast<std::size_t>(group)].surfels.empty();
+  };
+  std::vector<Eigen::Vector3d> shares;
+  for (const GroupLink& link : motions) {
+    const bool seen = !problem.options.judge_motions || (saw(link.first) && saw(link.second));
+    shares.push_back(Eigen::Vector3d::Constant(seen ? 1.0 : 0.0));
+  }
+  return shares;
+}
+
 // One Gauss-Newton step of everything: landmarks are found anew at the current poses, and what is
 // known of the prior afterwards. False when nothing could be solved.
 bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
@@ -175,12 +196,12 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
   AddMotions(motions, result.motion_persistence, map_from_group, *h, g);
   if (!Factor(*h)) return false;
-  const Eigen::Vector3d share = ShareSeen(motions, map_from_group, *h);
+  const std::vector<Eigen::Vector3d> shares = SharesSeen(motions, map_from_group, *h);
   Step(*h, g, map_from_group);
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
-  result.motion_sigma = MotionSigma(unit, map_from_group, share);
+  result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
   if (options.learn_persistence) {
-    result.motion_persistence = MotionPersistence(unit, map_from_group, share);
+    result.motion_persistence = MotionPersistence(unit, map_from_group, MeanShare(shares));
   }
   return true;
 }
@@ -190,8 +211,8 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   for (const SurfelGroup& group : problem.groups) {
     result.map_from_group.push_back(group.map_from_group);
   }
-  result.motion_sigma =
-      MotionSigma(UnitMotionLinks(problem), result.map_from_group, Eigen::Vector3d::Ones());
+  const std::vector<GroupLink> unit = UnitMotionLinks(problem);
+  result.motion_sigma = MotionSigma(unit, result.map_from_group, FirstShares(problem, unit));
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
   bool settled = true;
   for (int round = 0;
@@ -236,6 +257,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
          "whether landmarks whose neighbours in a group's view err alike are believed less");
   v.Flag("judge_landmarks", judge_landmarks,
          "whether a landmark whose sightings fit worse than most is believed less");
+  v.Flag("judge_motions", judge_motions,
+         "whether a motion tells as much of SLAM's errors as it was seen");
   v.Flag("learn_persistence", learn_persistence,
          "whether SLAM's errors go on from group to group as much as they are seen to");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");

@@ -36,6 +36,9 @@ struct JointOptions {
   // And each one over how much worse its sightings fit than most landmarks' do: what has no surface
   // of its own, such as a plant, looks different from everywhere.
   bool judge_landmarks = true;
+  // What SLAM's motions err by is told by each as far as it was seen (MotionSigma); else by all
+  // alike.
+  bool judge_motions = true;
   // SLAM's errors go on from group to group as much as they are seen to (MotionPersistence).
   bool learn_persistence = true;
   double loop_huber_sigmas = 2.0;

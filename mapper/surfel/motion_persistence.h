@@ -14,7 +14,7 @@ namespace depthgrid {
 // By axis (forward, left, yaw): what is left, in the next motion, of the error of one, from 0 (they
 // are independent) to below 1. A first-order autoregressive process, told by the signs of the
 // errors of `unit` four links apart. 0 for few links, and where on any axis little of what is known
-// of the motions was seen (`share_seen`, as of ShareSeen), since the errors are those of the poses
+// of the motions was seen (`share_seen`, as of MeanShare), since the errors are those of the poses
 // then.
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,

@@ -20,47 +20,100 @@ const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
 // independent.
 constexpr std::size_t kProbes = 12;
 
+// Motions of which this share was seen count as much as any: where the prior is nearly perfect
+// little is seen beside it, and of all motions alike.
+constexpr double kWhollyCounted = 0.03;
+
 // Signs of links probed together, without a pattern that repeats (Thue and Morse).
 double SignOf(std::size_t i) { return std::popcount(i) % 2 == 0 ? 1.0 : -1.0; }
 
+// How an axis of the link's error, over its sigma, changes with small motions of its two groups.
+struct ErrorRow {
+  Eigen::RowVector3d by_first;
+  Eigen::RowVector3d by_second;
+};
+ErrorRow RowOf(const GroupLink& link, int axis, const std::vector<Pose2>& map_from_group) {
+  return {ErrorByFirst(link, map_from_group).row(axis) / link.sigma[axis],
+          Eigen::RowVector3d::Unit(axis) / link.sigma[axis]};
+}
+
+struct Weighed {
+  double value = 0.0;
+  double weight = 0.0;
+};
+
+// Half of the weight lies below it and half above; where nothing has weight all count alike.
+double WeighedMedian(std::vector<Weighed> values) {
+  double all = 0.0;
+  for (const Weighed& v : values) all += v.weight;
+  if (all <= 0.0) {
+    for (Weighed& v : values) all += v.weight = 1.0;
+  }
+  std::stable_sort(values.begin(), values.end(),
+                   [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
+  double below = 0.0;
+  for (const Weighed& v : values) {
+    below += v.weight;
+    if (below > 0.5 * all) return v.value;
+  }
+  return values.back().value;
+}
+
 }  // namespace
 
-Eigen::Vector3d ShareSeen(const std::vector<GroupLink>& motions,
-                          const std::vector<Pose2>& map_from_group, const PoseMatrix& factored) {
-  if (motions.empty()) return Eigen::Vector3d::Ones();
-  Eigen::Vector3d left = Eigen::Vector3d::Zero();
+std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
+                                        const std::vector<Pose2>& map_from_group,
+                                        const PoseMatrix& factored) {
+  std::vector<Eigen::Vector3d> shares(motions.size());
   for (int axis = 0; axis < 3; ++axis) {
+    std::vector<ErrorRow> rows;
+    for (const GroupLink& link : motions) rows.push_back(RowOf(link, axis, map_from_group));
     for (std::size_t begin = 0; begin < std::min(kProbes, motions.size()); ++begin) {
       Eigen::VectorXd probe = Eigen::VectorXd::Zero(factored.size());
       for (std::size_t i = begin; i < motions.size(); i += kProbes) {
-        const GroupLink& link = motions[i];
-        const double unit = SignOf(i / kProbes) / link.sigma[axis];
-        probe.segment<3>(3 * link.first) +=
-            unit * ErrorByFirst(link, map_from_group).row(axis).transpose();
-        probe[3 * link.second + axis] += unit;
+        const double sign = SignOf(i / kProbes);
+        probe.segment<3>(3 * motions[i].first) += sign * rows[i].by_first.transpose();
+        probe.segment<3>(3 * motions[i].second) += sign * rows[i].by_second.transpose();
       }
-      left[axis] += probe.dot(factored.Solve(probe));
+      const Eigen::VectorXd solved = factored.Solve(probe);
+      for (std::size_t i = begin; i < motions.size(); i += kProbes) {
+        const double left =
+            SignOf(i / kProbes) * (rows[i].by_first.dot(solved.segment<3>(3 * motions[i].first)) +
+                                   rows[i].by_second.dot(solved.segment<3>(3 * motions[i].second)));
+        shares[i][axis] = std::clamp(1.0 - left, 0.0, 1.0);
+      }
     }
   }
-  const Eigen::Vector3d share =
-      Eigen::Vector3d::Ones() - left / static_cast<double>(motions.size());
-  return share.cwiseMax(0.0).cwiseMin(1.0);
+  return shares;
+}
+
+Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares) {
+  if (shares.empty()) return Eigen::Vector3d::Ones();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& share : shares) sum += share;
+  return sum / static_cast<double>(shares.size());
 }
 
 Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Pose2>& map_from_group,
-                            const Eigen::Vector3d& share_seen) {
+                            const std::vector<Eigen::Vector3d>& shares_seen) {
   if (unit.empty()) return kLeastMotionSigma;
   Eigen::Vector3d sigma;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> errors;
-    for (const GroupLink& link : unit) {
-      errors.push_back(std::abs(LinkError(link, map_from_group)[axis] / link.sigma[axis]));
+    std::vector<Weighed> errors;
+    double weights = 0.0, seen = 0.0;
+    for (std::size_t i = 0; i < unit.size(); ++i) {
+      const double error = LinkError(unit[i], map_from_group)[axis] / unit[i].sigma[axis];
+      const double share = shares_seen[i][axis];
+      const double weight = std::min(share / kWhollyCounted, 1.0);
+      errors.push_back({std::abs(error), weight});
+      weights += weight;
+      seen += weight * share;
     }
     // Below the least share the prior is taken for a little better each time, down to the least
     // sigma if it is perfect (measured in docs/math.md).
-    const double share = std::max(share_seen[axis], kLeastShareSeen);
-    sigma[axis] = kSigmaOfMedian * UpperMedian(std::move(errors)) / std::sqrt(share);
+    const double share = std::max(weights > 0.0 ? seen / weights : 0.0, kLeastShareSeen);
+    sigma[axis] = kSigmaOfMedian * WeighedMedian(std::move(errors)) / std::sqrt(share);
   }
   const double most = sigma.head<2>().maxCoeff();
   return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);

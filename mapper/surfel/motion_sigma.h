@@ -14,20 +14,26 @@ namespace depthgrid {
 // With a smaller share seen the prior's errors are hardly told from those of what is seen.
 constexpr double kLeastShareSeen = 0.3;
 
-// By axis (forward, left, yaw), the mean share of what is known of these motions that was seen and
-// not given by the links themselves: 1 - P / sigma^2, where P is the variance that is left of a
-// link's error (MacKay 1992, "Bayesian interpolation": the well-determined parameters). `factored`
-// are the equations at these poses with the links in them. Of more links than probes the sum of P
-// is estimated (Hutchinson 1989), always in the same way.
-Eigen::Vector3d ShareSeen(const std::vector<GroupLink>& motions,
-                          const std::vector<Pose2>& map_from_group, const PoseMatrix& factored);
+// By axis (forward, left, yaw), the share of what is known of each motion that was seen and not
+// given by the link itself: 1 - P / sigma^2, where P is the variance that is left of the link's
+// error (MacKay 1992, "Bayesian interpolation": the well-determined parameters). `factored` are the
+// equations at these poses with the links in them. Of more links than probes P is estimated
+// (Tang and Saad 2012, "A probing method for computing the diagonal of a matrix inverse"), always
+// in the same way.
+std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
+                                        const std::vector<Pose2>& map_from_group,
+                                        const PoseMatrix& factored);
+
+// Their mean; one without motions.
+Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares);
 
 // The standard deviation, over that of `unit`, of SLAM's motions from the adjusted poses, which the
-// links have drawn towards them: mean square / share. By the median of their errors: where a group
-// sees only walls along one direction nothing but the prior holds it, and a mean square of such
-// groups' errors would let go of the prior everywhere.
+// links have drawn towards them: mean square / share. By the median of their errors: where a
+// group sees only walls along one direction nothing but the prior holds it, and a mean square of
+// such groups' errors would let go of the prior everywhere. Motions that nobody saw do not count:
+// their errors are zero, however wrong they are. `shares_seen`: one a link.
 Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Pose2>& map_from_group,
-                            const Eigen::Vector3d& share_seen);
+                            const std::vector<Eigen::Vector3d>& shares_seen);
 
 }  // namespace depthgrid

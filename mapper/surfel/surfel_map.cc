@@ -98,8 +98,8 @@ std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
 // How well groups' poses are known to be adjusted, before each frame is looked at.
 const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 
-// Fewer groups do not tell how the prior errs: from the seven of the first 60 frames a prior that
-// drifts 0.375 m was called nearly perfect (docs/tried.md).
+// Fewer groups that saw something do not tell how the prior errs: from the seven of the first 60
+// frames a prior that drifts 0.375 m was called nearly perfect (docs/tried.md).
 constexpr int kMinGroupsForSpread = 20;
 
 }  // namespace
@@ -112,6 +112,8 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("merge_gate_m", merge_gate_m, {0.0, 1.0},
            "a surfel is changed by what lies this near along its normal");
   v.Number("merge_gate_sigmas", merge_gate_sigmas, {0.0, 100.0}, "and so many sigmas of noise");
+  v.Number("stay_m", stay_m, {0.0, 1000.0},
+           "at the end frames stay this near to where the joint adjustment has them; 0: anywhere");
 }
 
 SurfelMap::SurfelMap(const SurfelOptions& options)
@@ -196,7 +198,11 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   const auto new_groups =
       std::count_if(groups.groups().begin(), groups.groups().end(),
                     [&](const SurfelGroup& group) { return group.first_frame >= first_new; });
-  if (new_groups >= kMinGroupsForSpread) {
+  const auto that_saw =
+      std::count_if(groups.groups().begin(), groups.groups().end(), [&](const SurfelGroup& group) {
+        return group.first_frame >= first_new && !group.surfels.empty();
+      });
+  if (that_saw >= kMinGroupsForSpread) {
     adjustment.motion_spread = {
         result.motion_sigma,
         static_cast<double>(frames.size() - static_cast<std::size_t>(first_new)) /
@@ -262,7 +268,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     }
     smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
-  const std::vector<Pose2> smoothed = Smoothed(smoother, NoiseOf(smoother));
+  const std::vector<Pose2> smoothed = Smoothed(smoother, NoiseOf(smoother), options_.stay_m);
   std::copy(smoothed.begin(), smoothed.end(), poses.begin() + first_new);
   return poses;
 }

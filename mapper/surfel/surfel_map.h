@@ -24,6 +24,8 @@ struct SurfelOptions {
   // A piece of scan changes a surfel that lies this near along the normal, and its own noise.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
+  // At the end each frame's pose stays near that of the joint adjustment (Smoothed).
+  double stay_m = 0.3;
 
   void Visit(OptionsVisitor& v);
 };

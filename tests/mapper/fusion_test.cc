@@ -131,6 +131,57 @@ TEST(SeenChi2, LeavesOutWhatTheMatchDoesNotSee) {
   EXPECT_EQ(SeenChi2(known, Eigen::Matrix3d::Zero(), off), 0.0);
 }
 
+// A wall along x, seen from anywhere: what tells of it is across it.
+Eigen::Matrix3d InformationOfWall(double seen_yaw_rad) {
+  const Eigen::Vector3d across(-std::sin(seen_yaw_rad), std::cos(seen_yaw_rad), 0.0);
+  return 1e6 * across * across.transpose();
+}
+
+TEST(InformationIn, IsTheSameWallFromOtherAxes) {
+  const MatchResult match = MatchAt({2.0, 1.0, 0.3}, InformationOfWall(-0.3));
+  const Eigen::Matrix3d there = InformationIn({2.0, 1.0, 0.1}, match);
+  EXPECT_NEAR((there - InformationOfWall(-0.1)).norm(), 0.0, 1e-4);
+  EXPECT_NEAR((InformationIn(match.map_from_base, match) - match.information).norm(), 0.0, 1e-9);
+}
+
+// Turned and moved, a small motion's chi-square stays what it is.
+TEST(InformationIn, KeepsWhatAMotionCosts) {
+  RandomStream random(7, RandomStage::kTest);
+  for (int i = 0; i < 20; ++i) {
+    const Pose2 pose = RandomPose(random);
+    const MatchResult match =
+        MatchAt(pose * Pose2{0.02, -0.01, 0.03}, RandomCovariance(random).inverse());
+    const Eigen::Vector3d small = 1e-6 * Eigen::Vector3d(random.Normal(), random.Normal(), 1.0);
+    const Pose2 moved = pose * Pose2::FromVector(small) * Between(pose, match.map_from_base);
+    const Eigen::Vector3d of_match = InnovationOf(match.map_from_base, moved);
+    const double cost = of_match.dot(match.information * of_match);
+    EXPECT_NEAR(small.dot(InformationIn(pose, match) * small), cost, 1e-3 * cost);
+  }
+}
+
+TEST(InformationFor, AWallAlongTheWayTellsNothingOfTheWay) {
+  Prediction prediction;
+  prediction.covariance = Squared({0.3, 1e-3, 2e-4});
+  const MatchResult tilted = MatchAt({}, InformationOfWall(5e-4));
+  EXPECT_NEAR((InformationFor(prediction, tilted, 0.0) - tilted.information).norm(), 0.0, 1e-9);
+  const Eigen::Matrix3d cleared = InformationFor(prediction, tilted, 1e-3);
+  EXPECT_LT(cleared(0, 0), 1e-9);
+  EXPECT_LT(std::abs(cleared(0, 1)), 1e-6);
+  EXPECT_NEAR(cleared(1, 1), 1e6, 10.0);
+}
+
+TEST(InformationFor, WhatStandsAcrossTheWayIsKept) {
+  Prediction prediction;
+  prediction.covariance = Squared({0.3, 1e-3, 2e-4});
+  const MatchResult oblique = MatchAt({}, InformationOfWall(0.2));
+  EXPECT_NEAR((InformationFor(prediction, oblique, 1e-3) - oblique.information).norm(), 0.0, 100.0);
+  const MatchResult corner =
+      MatchAt({}, Eigen::Vector3d(1e4, 1e6, 1e5).asDiagonal().toDenseMatrix());
+  const Eigen::Matrix3d kept = InformationFor(prediction, corner, 1e-3);
+  EXPECT_NEAR(kept(0, 0), 1e4, 10.0);
+  EXPECT_NEAR(kept(1, 1), 1e6, 1e-6);
+}
+
 TEST(Transported, IsTheCovarianceInTheNewAxes) {
   // Checked to first order: a pose error d before the motion is an error e after it.
   RandomStream random(3, RandomStage::kTest);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 #include "mapper/core/rng.h"
 #include "mapper/surfel/skyline_matrix.h"
@@ -40,19 +42,19 @@ SkylineMatrix EquationsOf(const Chain& chain) {
 }
 
 // A pose seen with information d: of what is known of the motion, d / (d + 1 / sigma^2) was seen.
-TEST(ShareSeen, IsWhatThePriorDoesNotTell) {
+TEST(SharesSeen, IsWhatThePriorDoesNotTell) {
   const Chain chain = ChainOf(2, {0.1, 0.2, 0.05});
   SkylineMatrix h = EquationsOf(chain);
   h.Diagonal(3) += 300.0;  // forward: 300 against 100
   h.Diagonal(4) += 25.0;   // left: as much as the prior; yaw: nothing
   ASSERT_TRUE(h.Factor());
-  const Eigen::Vector3d share = ShareSeen(chain.links, chain.map_from_group, h);
+  const Eigen::Vector3d share = SharesSeen(chain.links, chain.map_from_group, h)[0];
   EXPECT_NEAR(share.x(), 0.75, 1e-9);
   EXPECT_NEAR(share.y(), 0.5, 1e-9);
   EXPECT_NEAR(share.z(), 0.0, 1e-9);
 }
 
-TEST(ShareSeen, ManyLinksAreEstimatedWell) {
+TEST(SharesSeen, ManyLinksAreEstimatedWell) {
   const Chain chain = ChainOf(200, {0.02, 0.01, 0.004});
   SkylineMatrix h = EquationsOf(chain);
   RandomStream random(1, RandomStage::kTest);
@@ -81,10 +83,28 @@ TEST(ShareSeen, ManyLinksAreEstimatedWell) {
     exact -= left.diagonal().cwiseQuotient(link.sigma.cwiseAbs2()) / 199.0;
   }
   ASSERT_TRUE(h.Factor());
-  const Eigen::Vector3d share = ShareSeen(chain.links, chain.map_from_group, h);
+  const std::vector<Eigen::Vector3d> shares = SharesSeen(chain.links, chain.map_from_group, h);
+  const Eigen::Vector3d share = MeanShare(shares);
   EXPECT_GT(exact.minCoeff(), 0.02);
   EXPECT_LT(exact.maxCoeff(), 0.9);
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(share[axis], exact[axis], 0.03) << axis;
+}
+
+// The first half of the way nothing is seen, the second each pose ten times as well as the prior
+// knows a motion.
+TEST(SharesSeen, AreEachLinksOwn) {
+  const Chain chain = ChainOf(200, {0.02, 0.01, 0.004});
+  SkylineMatrix h = EquationsOf(chain);
+  for (int i = 3 * 100; i < h.size(); ++i) h.Diagonal(i) += 1e9;
+  ASSERT_TRUE(h.Factor());
+  const std::vector<Eigen::Vector3d> shares = SharesSeen(chain.links, chain.map_from_group, h);
+  ASSERT_EQ(shares.size(), 199U);
+  for (std::size_t i = 0; i < 95; ++i) EXPECT_LT(shares[i].maxCoeff(), 0.1) << i;
+  for (std::size_t i = 105; i < 199; ++i) EXPECT_GT(shares[i].minCoeff(), 0.99) << i;
+}
+
+TEST(SharesSeen, WithoutLinksAllIsSeen) {
+  EXPECT_EQ(MeanShare({}), Eigen::Vector3d(Eigen::Vector3d::Ones()));
 }
 
 // Adjusted between a prior and sightings of the same variance, motions show half of the prior's
@@ -102,7 +122,8 @@ TEST(MotionSigma, CountsWhatThePriorHasDrawnToItself) {
     poses.push_back(poses.back() * Pose2{1.0 + left_after, 0.0, 0.0});
     links.push_back({i - 1, i, {1.0, 0.0, 0.0}, Eigen::Vector3d::Ones(), 0.0});
   }
-  const Eigen::Vector3d sigma = MotionSigma(links, poses, {0.5, 0.5, 0.5});
+  const Eigen::Vector3d sigma =
+      MotionSigma(links, poses, std::vector(links.size(), Eigen::Vector3d(0.5, 0.5, 0.5)));
   EXPECT_NEAR(sigma.x(), kTrueSigma, 0.02 * kTrueSigma);
   // To the left nothing was seen of an error, but that direction is not that much better.
   EXPECT_DOUBLE_EQ(sigma.y(), 0.5 * sigma.x());
@@ -112,11 +133,33 @@ TEST(MotionSigma, CountsWhatThePriorHasDrawnToItself) {
 TEST(MotionSigma, OneWrongMotionIsNotTheRule) {
   Chain chain = ChainOf(21, Eigen::Vector3d::Ones());
   for (GroupLink& link : chain.links) link.first_from_second.x_m += 0.001;
-  const Eigen::Vector3d share = Eigen::Vector3d::Ones();
+  const std::vector<Eigen::Vector3d> share(chain.links.size(), Eigen::Vector3d::Ones());
   const Eigen::Vector3d before = MotionSigma(chain.links, chain.map_from_group, share);
   chain.links[7].first_from_second.x_m += 5.0;
   const Eigen::Vector3d after = MotionSigma(chain.links, chain.map_from_group, share);
   EXPECT_NEAR(after.x(), before.x(), 0.01 * before.x());
+}
+
+// Where nothing is seen the poses are the prior's, and its errors nought.
+TEST(MotionSigma, MotionsThatNobodySawSayNothing) {
+  Chain chain = ChainOf(100, Eigen::Vector3d::Ones());
+  std::vector<Eigen::Vector3d> shares(chain.links.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < 10; ++i) {
+    chain.links[i].first_from_second.x_m += 0.001;
+    shares[i].setConstant(1.0);
+  }
+  const double seen = MotionSigma(chain.links, chain.map_from_group, shares).x();
+  EXPECT_NEAR(seen, 1.4826 * 0.001, 2e-5);  // the motions turn
+  std::fill(shares.begin(), shares.end(), MeanShare(shares));
+  EXPECT_LT(MotionSigma(chain.links, chain.map_from_group, shares).x(), 0.1 * seen);
+}
+
+TEST(MotionSigma, WhereNothingWasSeenAllMotionsCountAlike) {
+  Chain chain = ChainOf(21, Eigen::Vector3d::Ones());
+  for (GroupLink& link : chain.links) link.first_from_second.x_m += 0.001;
+  const std::vector<Eigen::Vector3d> shares(chain.links.size(), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(MotionSigma(chain.links, chain.map_from_group, shares).x(),
+              1.4826 * 0.001 / std::sqrt(kLeastShareSeen), 3e-5);
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+#include "mapper/surfel/frame_smoother.h"
+
+#include <gtest/gtest.h>
+
+namespace depthgrid {
+namespace {
+
+// Along a bare wall: both ends are seen whole, between them only what lies across. SLAM goes 2 mm a
+// frame too far, and 2 mm too short in the second half.
+std::vector<SmootherFrame> AlongAWall(int frames, int seen) {
+  std::vector<SmootherFrame> run;
+  for (int k = 0; k < frames; ++k) {
+    SmootherFrame frame;
+    frame.map_from_base = {0.02 * k, 0.0, 0.0};
+    frame.match.found = true;
+    frame.match.map_from_base = frame.map_from_base;
+    frame.match.information = Eigen::Vector3d(0.0, 1e6, 1e7).asDiagonal();
+    if (k < seen || k >= frames - seen) frame.match.information(0, 0) = 1e6;
+    const double too_far_m = k < frames / 2 ? 0.002 : -0.002;
+    if (k > 0) frame.motion = Pose2{0.02 + too_far_m, 0.0, 0.0};
+    run.push_back(frame);
+  }
+  return run;
+}
+
+MotionNoise LastingBias() {
+  MotionNoise noise;
+  noise.jitter.setZero();
+  noise.walk.setConstant(1e-4);
+  noise.bias.setConstant(0.002);
+  noise.bias_kept.setConstant(0.99);
+  return noise;
+}
+
+double FarthestOff(const std::vector<SmootherFrame>& run, const std::vector<Pose2>& smoothed) {
+  double farthest_m = 0.0;
+  for (std::size_t k = 0; k < run.size(); ++k) {
+    const Pose2 off = Between(run[k].map_from_base, smoothed[k]);
+    farthest_m = std::max(farthest_m, off.translation().norm());
+  }
+  return farthest_m;
+}
+
+TEST(Smoothed, StaysNearTheGuessWhereNothingIsSeen) {
+  const std::vector<SmootherFrame> run = AlongAWall(601, 20);
+  const double anywhere_m = FarthestOff(run, Smoothed(run, LastingBias(), 0.0));
+  EXPECT_GT(anywhere_m, 0.3);
+  EXPECT_LT(FarthestOff(run, Smoothed(run, LastingBias(), 0.3)), 0.3 * anywhere_m);
+}
+
+TEST(Smoothed, GoesWhereMatchesSay) {
+  std::vector<SmootherFrame> run = AlongAWall(200, 200);
+  for (SmootherFrame& frame : run) frame.match.map_from_base.y_m += 0.05;
+  for (const double stay_m : {0.0, 0.3}) {
+    const std::vector<Pose2> smoothed = Smoothed(run, LastingBias(), stay_m);
+    for (const Pose2& pose : smoothed) EXPECT_NEAR(pose.y_m, 0.05, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
