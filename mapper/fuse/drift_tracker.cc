@@ -11,7 +11,8 @@ namespace {
 // along, and what the first frames draw is never put right online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
-// follows the prior agrees with it): so long, and this share of the first walk at least.
+// follows the prior agrees with it): so long, or once SLAM was wrongly taken for good until the
+// next adjustment, and this share of the first walk at least.
 constexpr int kUnconfirmedMotions = 200;
 constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
@@ -119,6 +120,7 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
+  drifted_ = false;
   evidence_ = DriftEvidence();
   Bound(noise_);
   Bound(learnt_);
@@ -127,7 +129,7 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound(MotionNoise& noise) const {
   if (!spread_) {
-    if (learner_.motions() < kUnconfirmedMotions) {
+    if (drifted_ || learner_.motions() < kUnconfirmedMotions) {
       noise.walk = noise.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
     }
     return;
@@ -151,7 +153,9 @@ void DriftTracker::Bound(MotionNoise& noise) const {
 void DriftTracker::TestBound(const Prediction& prediction, const MatchResult& match) {
   evidence_.Add(InnovationOf(prediction.map_from_base, match.map_from_base),
                 InnovationWeight(prediction, match.information));
-  if (evidence_.Chi2() > kMostChi2) StartAnew();
+  if (evidence_.Chi2() <= kMostChi2) return;
+  StartAnew();
+  drifted_ = true;
 }
 
 }  // namespace depthgrid

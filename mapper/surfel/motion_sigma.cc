@@ -22,7 +22,7 @@ constexpr std::size_t kProbes = 12;
 
 // Motions of which this share was seen count as much as any: where the prior is nearly perfect
 // little is seen beside it, and of all motions alike.
-constexpr double kWhollyCounted = 0.03;
+constexpr double kWhollyCounted = 0.1;
 
 // Signs of links probed together, without a pattern that repeats (Thue and Morse).
 double SignOf(std::size_t i) { return std::popcount(i) % 2 == 0 ? 1.0 : -1.0; }
