@@ -110,6 +110,27 @@ TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   EXPECT_LT(ErrorM(tracker, slam, 100, 0.003, 4), 0.02);
 }
 
+TEST(DriftTracker, BelievesAPriorThatDriftedOnlyAfterTheNextAdjustment) {
+  DriftTracker tracker;
+  Pose2 slam;
+  ErrorM(tracker, slam, 100, 0.0, 1);
+  tracker.BoundMotion(kNearlyPerfect);
+  ErrorM(tracker, slam, 200, 0.003, 2);  // lifts the bound
+  // However long matches agree with SLAM.
+  const Pose2 drifted = slam;
+  for (int i = 0; i < 1000; ++i) {
+    MatchResult match;
+    match.found = true;
+    match.information = MatchInformation();
+    match.map_from_base = tracker.Predict(drifted).map_from_base;
+    const FusedPose fused = tracker.Fuse(drifted, match);
+    tracker.Commit(drifted, fused.map_from_base, fused.covariance, match);
+  }
+  EXPECT_GE(tracker.noise().walk.minCoeff(), 0.0015);
+  tracker.BoundMotion(kNearlyPerfect);
+  EXPECT_LT(tracker.noise().walk.maxCoeff(), 1e-4);
+}
+
 TEST(DriftTracker, BelievesThePriorNoMoreThanAnAdjustmentDoes) {
   DriftTracker tracker;
   Pose2 slam;
