@@ -1,10 +1,7 @@
 # A corridor 2 m wide round a block, twice as long as it is deep, with door recesses on both sides, and a way along
 # its middle: one round and 20 m more, .8 m/s at 30 Hz, turning on the spot at the corners. Writes NAME.world.txt
 # and NAME.truth.txt for laser_accuracy (docs/results.md, "Another building"):
-#   awk -v name=/tmp/ring -v round_m=190 -v recess_every_m=3 -f bench/accuracy/corridor_world.awk
-function wall(x1, y1, x2, y2) { printf("%.4f %.4f %.4f %.4f\n", x1, y1, x2, y2) > (name ".world.txt") }
-# Numbers in [0, 1) that look like chance and are the same everywhere.
-function chance(  v) { counter++; v = counter * 0.6180339887498949 + counter * counter * 0.0137; return v - int(v) }
+#   awk -v name=/tmp/ring -v round_m=190 -v recess_every_m=3 -f bench/accuracy/laser_world.awk -f bench/accuracy/corridor_world.awk
 # One side, with recesses .9 m wide and .15 m deep to the given side of it (1 left, -1 right).
 function side(x1, y1, x2, y2, left,   n, c, s, at, end) {
   n = sqrt((x2 - x1) ^ 2 + (y2 - y1) ^ 2); c = (x2 - x1) / n; s = (y2 - y1) / n
@@ -19,9 +16,6 @@ function side(x1, y1, x2, y2, left,   n, c, s, at, end) {
 function recess(x, y, c, s, left,   dx, dy, ex, ey) {
   dx = -s * 0.15 * left; dy = c * 0.15 * left; ex = x + c * 0.9; ey = y + s * 0.9
   wall(x, y, x + dx, y + dy); wall(x + dx, y + dy, ex + dx, ey + dy); wall(ex + dx, ey + dy, ex, ey)
-}
-function pose(x, y, yaw) {
-  printf("%.6f %.6f %.6f 0 0 0 %.12f %.12f\n", (frame++) / 30, x, y, sin(yaw / 2), cos(yaw / 2)) > (name ".truth.txt")
 }
 BEGIN {
   long = round_m / 3; short = round_m / 6; step = 0.8 / 30; quarter = atan2(1, 0)

@@ -1,14 +1,8 @@
 # A hall of 30 x 48 m, too wide for a sensor that reaches 6 m: six racks 16 m long with bare sides, pillars, pallets. A
 # way of 80 m through it, along aisles chosen by `way` (1, 2, ...), .7 m/s at 30 Hz, turning on the spot where aisles cross.
 # Writes NAME.world.txt and NAME.truth.txt for laser_accuracy (docs/results.md, "Another building"):
-#   awk -v name=/tmp/hall1 -v way=1 -f bench/accuracy/hall_world.awk
-function wall(x1, y1, x2, y2) { printf("%.4f %.4f %.4f %.4f\n", x1, y1, x2, y2) > (name ".world.txt") }
+#   awk -v name=/tmp/hall1 -v way=1 -f bench/accuracy/laser_world.awk -f bench/accuracy/hall_world.awk
 function box(x1, y1, x2, y2) { wall(x1, y1, x2, y1); wall(x2, y1, x2, y2); wall(x2, y2, x1, y2); wall(x1, y2, x1, y1) }
-# Numbers in [0, 1) that look like chance and are the same everywhere.
-function chance(  v) { counter++; v = counter * 0.6180339887498949 + counter * counter * 0.0137; return v - int(v) }
-function pose(x, y, yaw) {
-  printf("%.6f %.6f %.6f 0 0 0 %.12f %.12f\n", (frame++) / 30, x, y, sin(yaw / 2), cos(yaw / 2)) > (name ".truth.txt")
-}
 # Turns by the shorter side, 90 degrees a second.
 function turn_to(wanted,   off, steps, k, from) {
   off = wanted - yaw

@@ -11,8 +11,8 @@ namespace {
 // along, and what the first frames draw is never put right online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
-// follows the prior agrees with it): so long, or once SLAM was wrongly taken for good until the
-// next adjustment, and this share of the first walk at least.
+// follows the prior agrees with it). For so many motions, and again from where SLAM drifts more
+// than it was taken to until the next adjustment, this share of the first walk is the least.
 constexpr int kUnconfirmedMotions = 200;
 constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.

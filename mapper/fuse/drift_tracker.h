@@ -48,7 +48,7 @@ class DriftTracker {
   MotionNoise learnt_;  // without: what is told of the errors
   MotionNoiseLearner learner_;
   std::optional<MotionSpread> spread_;
-  bool drifted_ = false;    // more than it was taken to; no adjustment has said more since
+  bool drifted_ = false;    // SLAM, more than it was taken to since the last adjustment
   DriftEvidence evidence_;  // against it
   int next_fit_ = 0;
   FilterStep step_;

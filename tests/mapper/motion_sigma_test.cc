@@ -90,8 +90,8 @@ TEST(SharesSeen, ManyLinksAreEstimatedWell) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(share[axis], exact[axis], 0.03) << axis;
 }
 
-// The first half of the way nothing is seen, the second each pose ten times as well as the prior
-// knows a motion.
+// The first half of the way nothing is seen, the second each pose far better than the prior knows a
+// motion.
 TEST(SharesSeen, AreEachLinksOwn) {
   const Chain chain = ChainOf(200, {0.02, 0.01, 0.004});
   SkylineMatrix h = EquationsOf(chain);
