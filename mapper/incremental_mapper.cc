@@ -270,11 +270,14 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
 void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& report) {
   const bool taken = report.match.found && !fused.rejected;
   errors.Add(filter.step(), report.index, static_cast<int>(mapped.size()),
-             report.match.information / options.fusion.match_overconfidence,
+             report.match.information /
+                 (options.fusion.match_overconfidence * match_noise.factor()),
              taken ? reference->MatchedParts() : std::span<const MapPart>());
   if (errors.innovation_covariance()) {
-    report.innovation_chi2 =
-        SeenChi2(*errors.innovation_covariance(), report.match.information, fused.innovation);
+    const InnovationSize size =
+        SeenSize(*errors.innovation_covariance(), report.match.information, fused.innovation);
+    report.innovation_chi2 = size.chi2;
+    if (options.fusion.JudgesInnovations()) match_noise.Add(size);
   }
   report.motion_from = errors.motion_from();
   report.motion_covariance = errors.MotionCovariance(fused.map_from_base);

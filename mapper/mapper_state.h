@@ -7,6 +7,7 @@
 #include "mapper/adjustment_rounds.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/correction_filter.h"
+#include "mapper/fuse/match_noise.h"
 #include "mapper/fuse/pose_errors.h"
 #include "mapper/graph/loop_search.h"
 #include "mapper/incremental_mapper.h"
@@ -33,6 +34,7 @@ struct IncrementalMapper::State {
   StandBlend stands;
   CorrectionFilter filter;
   PoseErrors errors;
+  MatchNoise match_noise;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;

@@ -12,7 +12,9 @@ namespace {
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
 // follows the prior agrees with it). For so many motions, and again from where SLAM drifts more
-// than it was taken to until the next adjustment, this share of the first walk is the least.
+// than it was taken to until the next adjustment, the filter believes no less than this share of
+// the first walk. What is told of the errors is what was learnt: a filter that believes the matches
+// does not confirm itself.
 constexpr int kUnconfirmedMotions = 200;
 constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
@@ -115,6 +117,9 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
   noise_.bias *= kCaution;
   Bound(noise_);
   Bound(learnt_);
+  if (!spread_ && (drifted_ || learner_.motions() < kUnconfirmedMotions)) {
+    noise_.walk = noise_.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
+  }
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }
 
@@ -128,12 +133,7 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
 
 // A bias sums up with the number of frames, a walk with its root.
 void DriftTracker::Bound(MotionNoise& noise) const {
-  if (!spread_) {
-    if (drifted_ || learner_.motions() < kUnconfirmedMotions) {
-      noise.walk = noise.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
-    }
-    return;
-  }
+  if (!spread_) return;
   const double root = std::sqrt(spread_->frames);
   const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
   noise.bias = noise.bias.cwiseMin(most);

@@ -47,14 +47,15 @@ SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information) {
   return unit.cwiseInverse().asDiagonal() * solver.eigenvectors().rightCols(3 - unseen);
 }
 
-double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
-                const Eigen::Vector3d& innovation) {
+InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
+                        const Eigen::Vector3d& innovation) {
   const SeenBasisMatrix seen = SeenBasis(information);
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
   const Square seen_covariance = seen.transpose() * covariance * seen;
   const Vector seen_innovation = seen.transpose() * innovation;
-  return seen_innovation.dot(Eigen::LDLT<Square>(seen_covariance).solve(seen_innovation));
+  return {seen_innovation.dot(Eigen::LDLT<Square>(seen_covariance).solve(seen_innovation)),
+          static_cast<int>(seen.cols())};
 }
 
 Eigen::Matrix3d InformationIn(const Pose2& pose, const MatchResult& match) {

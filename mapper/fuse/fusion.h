@@ -39,8 +39,12 @@ using SeenBasisMatrix = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor
 SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information);
 
 // nu^T S^-1 nu over the directions that a match with this information sees.
-double SeenChi2(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
-                const Eigen::Vector3d& innovation);
+struct InnovationSize {
+  double chi2 = 0.0;
+  int directions = 0;
+};
+InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
+                        const Eigen::Vector3d& innovation);
 
 // A match's information for small motions in base axes of `pose`, which is near to its own. A wall
 // tells of what is across it; axes turned by a thousandth of a radian tell of what is along it too.

@@ -30,6 +30,8 @@ void FusionOptions::Visit(OptionsVisitor& v) {
   v.Group("slam_noise", slam_noise, "kalman: how the error of SLAM's motion grows");
   v.Number("match_overconfidence", match_overconfidence, {0.01, 1e4},
            "kalman: the match's information is divided by this");
+  v.Flag("judge_innovations", judge_innovations,
+         "learned: errors are told as if matches were as noisy as innovations show");
   v.Number("tilt_rad", tilt_rad, {0.0, 1.0},
            "how uncertain it is which way a wall runs to what the prediction knows least; 0: not");
   v.Number("gate_chi2", gate_chi2, {0.0, 1e6},

@@ -51,6 +51,9 @@ struct FusionOptions {
   SlamNoiseOptions slam_noise;
   // `kalman`: the match's information is divided by this, for errors its beams have in common.
   double match_overconfidence = 1.0;
+  // `learned`: whether what is told of the errors, innovation_chi2 and motion_covariance, takes
+  // matches for as noisy as their innovations show (MatchNoise). No pose depends on it.
+  bool judge_innovations = true;
   // What is seen is not told to run along the direction that the prediction knows least better than
   // this: InformationFor().
   double tilt_rad = 0.001;
@@ -60,6 +63,8 @@ struct FusionOptions {
   // `adaptive`: how fast the gain follows; about 1/rate frames.
   double adaptive_rate = 0.02;
 
+  // With SLAM's noise from a setting it could as well be that which is wrong.
+  bool JudgesInnovations() const { return mode == FusionMode::kLearned && judge_innovations; }
   bool TrustsSlamAlone() const {
     return mode == FusionMode::kFixed && gain == std::array<double, 3>{};
   }

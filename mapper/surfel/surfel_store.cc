@@ -6,6 +6,9 @@
 namespace depthgrid {
 namespace {
 
+// A surfel seen again so many frames after those that drew it was found by a match against it. What
+// is drawn there from then on errs as it does, so it is theirs still.
+constexpr float kVisitFrames = 400.0F;
 // A surfel that moved stays in the cell it was added to; so much is looked beyond the gate for it.
 constexpr double kMovedM = 0.02;
 
@@ -105,8 +108,9 @@ int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate, double 
   Surfel& surfel = surfels_[static_cast<std::size_t>(index)];
   Fuse(piece, surfel);
   float& mean = frames_[static_cast<std::size_t>(index)];
+  const float later = static_cast<float>(frame) - mean;
   const auto share = static_cast<float>(piece.information / surfel.information);
-  mean += share * (static_cast<float>(frame) - mean);
+  if (later < kVisitFrames) mean += share * later;
   return index;
 }
 

@@ -47,7 +47,8 @@ class SurfelStore {
   // surfel of its own. Returns its index. `frame`: the one that saw it, or a mean of several.
   int Merge(const Surfel& piece, const AssociationGate& gate, double frame = 0.0);
   int Add(const Surfel& surfel, double frame = 0.0);
-  // The mean of the frames that drew a surfel, weighed by information.
+  // The mean of the frames that drew a surfel, weighed by information; of those of its first visit
+  // when it was seen again long after.
   double FrameOf(int index) const {
     return static_cast<double>(frames_[static_cast<std::size_t>(index)]);
   }

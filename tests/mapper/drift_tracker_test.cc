@@ -97,6 +97,14 @@ TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
   EXPECT_NEAR(tracker.noise().walk.x(), 1.4 * tracker.step().walk.x(), 1e-12);
 }
 
+TEST(DriftTracker, TellsErrorsAsLearntBeforeTheFirstAdjustment) {
+  DriftTracker tracker;
+  Pose2 slam;
+  ErrorM(tracker, slam, 150, 0.0, 6);
+  EXPECT_EQ(tracker.noise().walk.minCoeff(), 0.0015);  // believed no less
+  EXPECT_LT(tracker.step().walk.maxCoeff(), 0.001);
+}
+
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   DriftTracker tracker;
   Pose2 slam;

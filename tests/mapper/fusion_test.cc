@@ -109,13 +109,13 @@ TEST(FuseKalman, TakesUnseenDirectionsFromThePrediction) {
             prediction.map_from_base);
 }
 
-TEST(SeenChi2, LeavesOutWhatTheMatchDoesNotSee) {
+TEST(SeenSize, LeavesOutWhatTheMatchDoesNotSee) {
   RandomStream random(5, RandomStage::kTest);
   const Eigen::Matrix3d covariance = RandomCovariance(random);
   const Eigen::Vector3d innovation(0.02, -0.01, 0.005);
   const Eigen::Matrix3d all = Eigen::Vector3d(1e4, 2e4, 1e5).asDiagonal();
   EXPECT_EQ(SeenBasis(all).cols(), 3);
-  EXPECT_NEAR(SeenChi2(covariance, all, innovation),
+  EXPECT_NEAR(SeenSize(covariance, all, innovation).chi2,
               innovation.dot(covariance.inverse() * innovation), 1e-9);
   // A corridor at 30 degrees: its direction is neither counted nor known.
   const Eigen::Vector3d along(std::cos(kPi / 6), std::sin(kPi / 6), 0.0);
@@ -127,8 +127,9 @@ TEST(SeenChi2, LeavesOutWhatTheMatchDoesNotSee) {
                                 25.0 * along * along.transpose() +
                                 Eigen::Matrix3d(Eigen::Vector3d(0.0, 0.0, 1e-4).asDiagonal());
   const Eigen::Vector3d off = 0.04 * across + 7.0 * along + Eigen::Vector3d(0.0, 0.0, 0.03);
-  EXPECT_NEAR(SeenChi2(known, corridor, off), 0.04 * 0.04 / 4e-4 + 0.03 * 0.03 / 1e-4, 1e-6);
-  EXPECT_EQ(SeenChi2(known, Eigen::Matrix3d::Zero(), off), 0.0);
+  EXPECT_EQ(SeenSize(known, corridor, off).directions, 2);
+  EXPECT_NEAR(SeenSize(known, corridor, off).chi2, 0.04 * 0.04 / 4e-4 + 0.03 * 0.03 / 1e-4, 1e-6);
+  EXPECT_EQ(SeenSize(known, Eigen::Matrix3d::Zero(), off).chi2, 0.0);
 }
 
 // A wall along x, seen from anywhere: what tells of it is across it.

@@ -130,8 +130,9 @@ TEST(PoseErrors, AgreeWithManySimulatedRuns) {
       if (parts > 0) {
         const Eigen::Vector3d match = map / parts + map_from_base * normal(kMatchSigma);
         if (i == kFrames) {
-          innovations += SeenChi2(*errors.innovation_covariance(), MatchInformation(),
-                                  base_from_map * (match - predicted));
+          innovations += SeenSize(*errors.innovation_covariance(), MatchInformation(),
+                                  base_from_map * (match - predicted))
+                             .chi2;
         }
         predicted += map_from_base * gain.asDiagonal() * base_from_map * (match - predicted);
       }

@@ -196,6 +196,17 @@ TEST(SurfelStore, MergingMovesAlongTheNormalByInformation) {
   EXPECT_EQ(store.Merge({{1.0, 0.0}, {1.0, 0.0}, 1.0, 1.0}, {0.05, 0.1, 0.7}), 1);
 }
 
+TEST(SurfelStore, FramesAreThoseOfTheFirstVisit) {
+  const AssociationGate gate{0.05, 0.1, 0.7};
+  const Surfel piece{{1.0, 0.0}, {-1.0, 0.0}, 1.0, 1.0};
+  SurfelStore store;
+  for (const int frame : {100, 101, 102, 103}) store.Merge(piece, gate, frame);
+  EXPECT_NEAR(store.FrameOf(0), 101.5, 1e-4);
+  for (const int frame : {2000, 2001, 2002}) store.Merge(piece, gate, frame);
+  EXPECT_NEAR(store.FrameOf(0), 101.5, 1e-4);
+  EXPECT_EQ(store[0].information, 7.0);
+}
+
 TEST(SurfelMatcher, FindsTheWayBackAndIsAsSureAsItSays) {
   RangeNoise noise;
   ScanSurfelMaker maker({});
