@@ -1,5 +1,5 @@
 // The last step of the joint adjustment: each frame's pose from its own scan and the prior's motion
-// (docs/math.md, "Joint adjustment").
+// (docs/math.md, "The last smoothing").
 #pragma once
 
 #include <optional>

@@ -111,7 +111,7 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
       seen += weight * share;
     }
     // Below the least share the prior is taken for a little better each time, down to the least
-    // sigma if it is perfect (measured in docs/math.md).
+    // sigma if it is perfect (docs/tried.md, "A nearly perfect prior").
     const double share = std::max(weights > 0.0 ? seen / weights : 0.0, kLeastShareSeen);
     sigma[axis] = kSigmaOfMedian * WeighedMedian(std::move(errors)) / std::sqrt(share);
   }
