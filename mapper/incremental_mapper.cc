@@ -269,10 +269,10 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
 
 void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& report) {
   const bool taken = report.match.found && !fused.rejected;
-  errors.Add(filter.step(), report.index, static_cast<int>(mapped.size()),
-             report.match.information /
-                 (options.fusion.match_overconfidence * match_noise.factor()),
-             taken ? reference->MatchedParts() : std::span<const MapPart>());
+  errors.Add(
+      filter.step(), report.index, static_cast<int>(mapped.size()),
+      report.match.information / (options.fusion.match_overconfidence * match_noise.factor()),
+      taken ? reference->MatchedParts() : std::span<const MapPart>());
   if (errors.innovation_covariance()) {
     const InnovationSize size =
         SeenSize(*errors.innovation_covariance(), report.match.information, fused.innovation);
