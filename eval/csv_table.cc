@@ -28,7 +28,7 @@ const std::vector<double>& CsvTable::Column(const std::string& name) const {
 }
 
 CsvTable ReadCsv(const std::string& path) {
-  const std::string text = ReadFile(path);
+  const std::string text = ReadTextFile(path);
   CsvTable table;
   table.place = path;
   std::vector<std::string_view> names;

@@ -236,7 +236,7 @@ CameraDescription ReadCameraDescription(const std::string& path) {
 
 CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings) {
-  const std::string text = ReadFile(path);
+  const std::string text = ReadTextFile(path);
   WarnOfCut(path, text, warnings);
   return ParseCameraDescription(text, path);
 }

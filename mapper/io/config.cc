@@ -84,7 +84,7 @@ Config& Config::operator=(const Config& other) {
 Config::~Config() = default;
 
 Config Config::FromFile(const std::string& path) {
-  return FromText(ReadFile(path, kMaxConfigBytes), path);
+  return FromText(ReadTextFile(path, kMaxConfigBytes), path);
 }
 
 Config Config::FromText(const std::string& text, const std::string& place) {

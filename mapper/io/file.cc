@@ -18,6 +18,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// First bytes of compressed files, and the program that undoes each.
+struct Compression {
+  std::string_view begin;
+  const char* name;
+  const char* remedy;
+};
+constexpr Compression kCompressions[] = {{"\x1F\x8B", "gzip", "gunzip"},
+                                         {"BZh", "bzip2", "bunzip2"},
+                                         {"\xFD"
+                                          "7zXZ",
+                                          "xz", "unxz"},
+                                         {"\x28\xB5\x2F\xFD", "zstd", "unzstd"},
+                                         {"PK\x03\x04", "zip", "unzip"}};
+constexpr std::size_t kLongestBegin = 5;
+
+void RefuseCompressed(const std::string& path, std::string_view content) {
+  for (const Compression& compression : kCompressions) {
+    if (!content.starts_with(compression.begin)) continue;
+    throw InputError(path, fmt::format("is compressed by {}: {} it first", compression.name,
+                                       compression.remedy));
+  }
+}
+
 // Unique among threads and processes that may write the same file at once.
 std::string TemporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
@@ -53,6 +76,20 @@ std::string ReadFile(const std::string& path, std::size_t max_bytes) {
     throw InputError(path, "cannot be read");
   }
   return content;
+}
+
+void RequireUncompressed(const std::string& path) {
+  RequireFile(path);
+  std::ifstream stream(path, std::ios::binary);
+  char begin[kLongestBegin] = {};
+  stream.read(begin, kLongestBegin);
+  RefuseCompressed(path, {begin, static_cast<std::size_t>(stream.gcount())});
+}
+
+std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
+  std::string text = ReadFile(path, max_bytes);
+  RefuseCompressed(path, text);
+  return text;
 }
 
 void WriteFile(const std::string& path, std::string_view content) {

@@ -18,6 +18,13 @@ void RequireFile(const std::string& path);
 // `max_bytes`.
 std::string ReadFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
 
+// Throws InputError, with what to do, for a file that begins as one of a program that compresses.
+// Readers of text that take it line by line ask before they begin.
+void RequireUncompressed(const std::string& path);
+
+// ReadFile() for text: throws InputError for a compressed file as well.
+std::string ReadTextFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
+
 // Writes beside `path` and renames, so that a reader sees the old file or the whole new one, never
 // a part. Throws std::runtime_error (a failure while running, not bad input) and leaves nothing
 // behind.

@@ -149,7 +149,8 @@ CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string
   const std::string path = camera_path.empty() ? folder.camera_path : camera_path;
   if (path.empty()) {
     throw InputError(folder.recording.name,
-                     "has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
+                     "has no camera file (camera.yaml, camera-intrinsics.txt, ... or --camera "
+                     "FILE)");
   }
   CameraDescription camera = ReadCameraDescription(path, warnings);
   if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;

@@ -4,6 +4,14 @@
 
 namespace depthgrid {
 
+std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s) {
+  const std::string added =
+      names.time_offset_s == 0.0 ? "" : fmt::format(" ({:g} s added)", names.time_offset_s);
+  return fmt::format("images from {:.3f} to {:.3f} s{}, poses from {:.3f} to {:.3f} s",
+                     names.stamps_s.front(), names.stamps_s.back(), added, first_pose_s,
+                     last_pose_s);
+}
+
 std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
                                               const FrameNames& frames, const std::string& place,
                                               std::vector<std::string>& warnings) {

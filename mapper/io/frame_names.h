@@ -23,6 +23,15 @@ struct FrameNames {
   }
 };
 
+// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", and what was added to the images'.
+// `names` has frames.
+std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s);
+
+// Whether so few frames have a pose that it is to be said why.
+inline bool MostLackPoses(std::size_t with_pose, std::size_t frames) {
+  return 2 * with_pose < frames;
+}
+
 // Poses without stamps, an entry a frame of `numbers`: one for each frame in order or, where some
 // frames have been left out, one for each number from 0. Another count is a warning, and they pair
 // from the first.

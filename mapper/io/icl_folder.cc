@@ -138,7 +138,8 @@ DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
 DepthReader IclDepthReader(const CameraFile& camera, const RecordingOptions& options) {
   return [png = PngDepthReader(DepthFormatOf(camera, options)),
           pinhole = camera.camera](const std::string& path) {
-    return path.ends_with(kRayEnding) ? ParseRayLengths(ReadFile(path), pinhole, path) : png(path);
+    return path.ends_with(kRayEnding) ? ParseRayLengths(ReadTextFile(path), pinhole, path)
+                                      : png(path);
   };
 }
 

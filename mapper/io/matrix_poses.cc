@@ -115,13 +115,13 @@ std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
 }
 
 std::optional<Pose3> ReadMatrixPose(const std::string& path) {
-  return ParseMatrixPose(ReadFile(path), path);
+  return ParseMatrixPose(ReadTextFile(path), path);
 }
 
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
                                                   std::vector<std::string>& warnings) {
   RowDamage damage;
-  auto poses = ParseMatrixPoses(ReadFile(path), path, damage);
+  auto poses = ParseMatrixPoses(ReadTextFile(path), path, damage);
   damage.AppendTo(warnings, path);
   return poses;
 }

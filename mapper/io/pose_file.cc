@@ -14,6 +14,8 @@ namespace depthgrid {
 namespace {
 
 constexpr std::size_t kTumColumns = 8;
+constexpr const char* kTumIsOtherwise =
+    " (a TUM trajectory has 8 columns, t x y z qx qy qz qw, with decimal points)";
 
 // Rows of 4, 12 or 16 columns, of which the first few may be damaged.
 bool HoldsMatrices(const std::string& text) {
@@ -31,7 +33,14 @@ bool HoldsMatrices(const std::string& text) {
 Trajectory StampedMatrices(const std::string& text, const std::string& place,
                            const FrameNames& frames, std::vector<std::string>& warnings) {
   RowDamage damage;
-  auto poses = ParseMatrixPoses(text, place, damage);
+  auto poses = [&] {
+    try {
+      return ParseMatrixPoses(text, place, damage);
+    } catch (const InputError& error) {
+      // Four columns are also a trajectory without rotations, 16 one with decimal commas.
+      throw InputError("", std::string(error.what()) + kTumIsOtherwise);
+    }
+  }();
   const auto empty = std::count(poses.begin(), poses.end(), std::nullopt);
   damage.AppendTo(warnings, place);
   if (empty > damage.damaged()) {
@@ -65,7 +74,7 @@ Trajectory ParsePoses(const std::string& text, const std::string& place, const F
 
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings) {
-  return ParsePoses(ReadFile(path), path, frames, warnings);
+  return ParsePoses(ReadTextFile(path), path, frames, warnings);
 }
 
 }  // namespace depthgrid

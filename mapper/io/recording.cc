@@ -88,16 +88,17 @@ class RecordingSource final : public FrameSource {
  private:
   void FindPoses(const SlamOutput& slam, const RecordingOptions& options) {
     const PoseTrack track(slam.live, options);
-    int without = 0;
+    std::size_t without = 0;
     for (const RecordedImage& image : recording_.images) {
       poses_.push_back(track.At(image.stamp_s));
       if (!poses_.back().slam_from_camera) ++without;
     }
     const std::size_t frames = recording_.images.size();
-    if (without == static_cast<int>(frames)) throw NoSharedStamps(slam, options);
+    if (without == frames) throw NoSharedStamps(slam, options);
     if (without > 0) {
-      recording_.warnings.push_back(
-          fmt::format("{}: {} of {} frames have no pose", recording_.name, without, frames));
+      recording_.warnings.push_back(fmt::format("{}: {} of {} frames have no pose{}",
+                                                recording_.name, without, frames,
+                                                WhyWithout(slam, options, frames - without)));
     }
     int lost_loops = 0;
     loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);
@@ -109,12 +110,20 @@ class RecordingSource final : public FrameSource {
 
   InputError NoSharedStamps(const SlamOutput& slam, const RecordingOptions& options) const {
     if (slam.live.empty()) return {recording_.name, "the trajectory for it holds no pose"};
-    return {recording_.name,
-            fmt::format("no pose within {} s of any image: images from {:.3f} to {:.3f} s, poses "
-                        "from {:.3f} to {:.3f} s",
-                        options.max_stamp_difference_s, recording_.images.front().stamp_s,
-                        recording_.images.back().stamp_s, slam.live.front().stamp_s,
-                        slam.live.back().stamp_s)};
+    return {recording_.name, fmt::format("no pose within {} s of any image: {}",
+                                         options.max_stamp_difference_s, Ranges(slam, options))};
+  }
+  // Poses that were given a frame each have its stamps: their file's reader said why.
+  std::string WhyWithout(const SlamOutput& slam, const RecordingOptions& options,
+                         std::size_t with_pose) const {
+    const bool by_frame = std::any_of(slam.live.begin(), slam.live.end(),
+                                      [](const SlamPose& pose) { return !pose.slam_from_camera; });
+    if (by_frame || !MostLackPoses(with_pose, recording_.images.size())) return "";
+    return ": " + Ranges(slam, options);
+  }
+  std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
+    return StampRanges(NamesOf(recording_, options.time_offset_s), slam.live.front().stamp_s,
+                       slam.live.back().stamp_s);
   }
 
   // A folder whose images cannot be read at all, or do not belong to the camera, is bad input; a

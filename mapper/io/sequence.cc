@@ -55,7 +55,8 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
     const std::string truth = (fs::path(path) / "groundtruth.txt").string();
     if (!fs::exists(truth)) {
       throw InputError(path,
-                       "a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
+                       "a TUM folder needs poses: a TUM trajectory (--poses FILE), or "
+                       "groundtruth.txt in it");
     }
     sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
     notes.emplace_back("poses: groundtruth.txt of the folder");

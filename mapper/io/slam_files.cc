@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -38,11 +39,24 @@ struct FramedPose {
   StampedPose pose;
 };
 
+std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
+  return StampRanges(frames, poses.front().stamp_s, poses.back().stamp_s);
+}
+
+// Poses that hardly ever have the stamp of a frame are of another clock, unit or recording.
+void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
+               const std::string& path, std::vector<std::string>& warnings) {
+  if (!MostLackPoses(with_pose, frames.stamps_s.size())) return;
+  warnings.push_back(fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose,
+                                 frames.stamps_s.size(), RangesOf(frames, poses)));
+}
+
 // Poses by the input frames they belong to: of several of one frame the nearest. Those of no frame
 // are counted in the warnings; throws InputError when all are.
-std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const std::vector<double>& stamps_s,
+std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& frames,
                                      double max_difference_s, const std::string& path,
                                      std::vector<std::string>& warnings) {
+  const std::vector<double>& stamps_s = frames.stamps_s;
   std::vector<FramedPose> framed;
   int homeless = 0;
   int doubled = 0;
@@ -64,10 +78,8 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const std::vector<
     if (distance_s(found) < distance_s(framed.back())) framed.back() = found;
   }
   if (framed.empty() && !stamps_s.empty()) {
-    throw InputError(path, fmt::format("no pose within {} s of any image: images from {:.3f} to "
-                                       "{:.3f} s, poses from {:.3f} to {:.3f} s",
-                                       max_difference_s, stamps_s.front(), stamps_s.back(),
-                                       poses.front().stamp_s, poses.back().stamp_s));
+    throw InputError(path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
+                                       RangesOf(frames, poses)));
   }
   const auto warn = [&](int count, const char* what) {
     if (count > 0) warnings.push_back(fmt::format("{}: {} {}", path, count, what));
@@ -138,7 +150,7 @@ void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vecto
 // Reads a file of events; its loops, warnings and a note are put into `input`.
 SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double max_difference_s,
                       SlamInput& input) {
-  SlamEvents events = ParseSlamEvents(ReadFile(path), path, frames, max_difference_s);
+  SlamEvents events = ParseSlamEvents(ReadTextFile(path), path, frames, max_difference_s);
   input.warnings.insert(input.warnings.end(), events.warnings.begin(), events.warnings.end());
   std::vector<LoopClosure>& loops = input.slam.loops;
   for (const SlamEvent& event : events.events) {
@@ -196,17 +208,23 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
   const Trajectory live = ReadPoseFile(paths.live, frames, input.warnings);
   std::vector<std::string> unsaid;  // poses of no frame are what is interpolated between
-  const auto framed = PosesByFrame(live, frames.stamps_s, max_difference_s, paths.live,
+  const auto framed = PosesByFrame(live, frames, max_difference_s, paths.live,
                                    reading.interpolate ? unsaid : input.warnings);
   slam.live = LivePoses(framed, events.events, frames.stamps_s);
   slam.final = live;
   if (!paths.final.empty()) {
     slam.final = ReadPoseFile(paths.final, frames, input.warnings);
-    PosesByFrame(slam.final, frames.stamps_s, max_difference_s, paths.final, input.warnings);
+    const auto revised =
+        PosesByFrame(slam.final, frames, max_difference_s, paths.final, input.warnings);
+    WarnOfFew(revised.size(), frames, slam.final, paths.final, input.warnings);
   }
   const bool epochs_known = events.kind == kOwnEvents;
   FindCorrections(paths, epochs_known, input);
   if (reading.interpolate) Interpolate(live, reading, slam.live);
+  const auto with_pose =
+      std::count_if(slam.live.begin(), slam.live.end(),
+                    [](const SlamPose& pose) { return pose.slam_from_camera.has_value(); });
+  WarnOfFew(static_cast<std::size_t>(with_pose), frames, live, paths.live, input.warnings);
   return input;
 }
 

@@ -72,7 +72,7 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
 }
 
 TrajectoryFile ReadTrajectoryFile(const std::string& path) {
-  return ParseTrajectory(ReadFile(path), path);
+  return ParseTrajectory(ReadTextFile(path), path);
 }
 
 Trajectory ReadTrajectory(const std::string& path) {

@@ -47,7 +47,7 @@ std::optional<CameraFile> TumCamera(const std::string& folder) {
 }
 
 StampedFileList ReadFileList(const std::string& path) {
-  return ParseFileList(ReadFile(path), path);
+  return ParseFileList(ReadTextFile(path), path);
 }
 
 // Depth images with the colour image nearest in time; a frame's stamp is that of its pose.
@@ -159,7 +159,10 @@ CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& 
     return file;
   }
   const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
-  if (!known) throw InputError(path, "no such file; it states the camera's intrinsics");
+  if (!known) {
+    throw InputError(
+        path, "no such file; it states the camera's intrinsics (--camera FILE names another)");
+  }
   warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");
   return *known;
 }

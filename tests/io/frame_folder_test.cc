@@ -150,7 +150,8 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError(), "~: holds no numbered depth images (frame-000000.depth.png, depth/0.png)");
   WriteSevenScenes("");
   std::filesystem::remove(Path("camera-intrinsics.txt"));
-  EXPECT_EQ(OpenError(), "~: has no camera file (camera.yaml, camera-intrinsics.txt, ...)");
+  EXPECT_EQ(OpenError(),
+            "~: has no camera file (camera.yaml, camera-intrinsics.txt, ... or --camera FILE)");
   Write("camera-intrinsics.txt", "500 0\n");
   EXPECT_THAT(OpenError(), HasSubstr("~/camera-intrinsics.txt: the camera matrix must have"));
   Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");

@@ -151,7 +151,8 @@ TEST_F(SequenceTest, OneClearLineForEachFault) {
   WriteRoom();
   std::filesystem::remove(Path("groundtruth.txt"));
   EXPECT_EQ(ErrorOf([&] { OpenSequence(folder_); }),
-            "~: a TUM folder needs poses: a TUM trajectory, or groundtruth.txt in it");
+            "~: a TUM folder needs poses: a TUM trajectory (--poses FILE), or groundtruth.txt in "
+            "it");
   SequenceOptions options;
   EXPECT_THROW(Config::FromText("world_up: w", "x").Read(options), InputError);
 }

@@ -125,6 +125,40 @@ TEST_F(SlamFiles, RefuseWhatCannotBe) {
               HasSubstr("loops.csv:2: frames and epochs must not go down"));
 }
 
+// Stamps in nanoseconds: the first one is 0 in any unit.
+TEST_F(SlamFiles, PosesOfHardlyAnyFrameAreSaidWithTheStamps) {
+  const SlamOutput example = Example();
+  Trajectory nanoseconds = example.final;
+  for (StampedPose& pose : nanoseconds) pose.stamp_s *= 1e9;
+  WriteTrajectory(Paths().live, nanoseconds);
+  const std::string said =
+      Paths().live + ": gives 1 of 12 frames a pose: images from 0.000 to 0.367 s, poses from " +
+      "0.000 to 366667000.000 s";
+  for (const bool interpolate : {false, true}) {
+    const SlamInput input =
+        ReadSlamFiles({Paths().live, "", ""}, {Stamps(example)}, {0.02, interpolate, 0.2});
+    EXPECT_THAT(input.warnings, testing::Contains(said)) << interpolate;
+  }
+  WriteSlamFiles(folder_, example);
+  EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(example)}).warnings, testing::IsEmpty());
+}
+
+// A file of positions alone has the columns of a matrix's rows, one with decimal commas of a whole.
+TEST_F(SlamFiles, WhatIsNoMatrixMayBeAMistakenTrajectory) {
+  for (const char* rows : {"0 1 2 1\n1 1.1 2 1\n2 1.2 2 1\n",
+                           "0,0 1,5 2,5 1,0 0,0 0,0 0,0 1,0\n0,1 1,6 2,5 1,0 0,0 0,0 0,0 1,0\n"}) {
+    WriteFile(Paths().live, rows);
+    try {
+      ReadSlamFiles({Paths().live, "", ""}, {Stamps(Example())});
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("slam.txt:"), HasSubstr("the matrix"),
+                                      HasSubstr("a TUM trajectory has 8 columns"),
+                                      HasSubstr("with decimal points")));
+    }
+  }
+}
+
 TEST_F(SlamFiles, RefusePosesOfOtherFrames) {
   const SlamOutput written = Example();
   WriteSlamFiles(folder_, written);

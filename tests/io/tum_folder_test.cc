@@ -220,6 +220,30 @@ TEST_F(TumFolderTest, AScaleThatIsTakenForGrantedIsSaid) {
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("states no depth_scale; it is 5000 a metre unless")));
 }
 
+// Of two frames in four that is nothing to wonder at.
+TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
+  WriteSequence();
+  const auto warnings_with = [&](const Trajectory& poses) {
+    return OpenTumFolder(folder_, SlamOutputOf(poses))->Warnings();
+  };
+  EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(125e6, 1.0), PoseAt(375e6, 2.0)}),
+              ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
+                                    "poses from 0.000 to 375000000.000 s"));
+  EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
+              ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
+}
+
+TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
+  WriteSequence();
+  RecordingOptions options;
+  options.time_offset_s = 2.5;
+  EXPECT_EQ(ErrorOf([&] {
+              OpenTumFolder(folder_, SlamOutputOf({PoseAt(0.0, 0.0), PoseAt(0.375, 1.0)}), options);
+            }),
+            "~: no pose within 0.02 s of any image: images from 2.500 to 2.875 s (2.5 s added), "
+            "poses from 0.000 to 0.375 s");
+}
+
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError({PoseAt(0, 0)}), "~/depth.txt: no such file");
   const Trajectory truth = WriteSequence();
@@ -230,7 +254,9 @@ TEST_F(TumFolderTest, OneClearLineForEachFault) {
   WriteCameraFile(Path("camera.yaml"), {{8, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0});
   EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: is 4x3 pixels, the camera 8x3");
   std::filesystem::remove(Path("camera.yaml"));
-  EXPECT_EQ(OpenError(truth), "~/camera.yaml: no such file; it states the camera's intrinsics");
+  EXPECT_EQ(OpenError(truth),
+            "~/camera.yaml: no such file; it states the camera's intrinsics (--camera FILE names "
+            "another)");
   WriteCameraFile(Path("camera.yaml"), SmallCamera());
   std::filesystem::remove_all(Path("depth"));
   EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: no such file");
