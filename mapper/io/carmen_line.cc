@@ -13,7 +13,10 @@ namespace depthgrid {
 namespace {
 
 constexpr int kMaxReadings = 20000;
-constexpr double kMaxCoordinateM = 1e6;  // an odometry beyond this is a damaged number
+// What the mapper takes (frame_check.h), which has room for UTM; beyond it is a damaged number.
+constexpr double kMaxCoordinateM = 1e7;
+constexpr double kMaxYawRad = 1e6;
+constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
 constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
 
 class Tokens {
@@ -76,10 +79,12 @@ std::optional<Pose2> ReadPose(Tokens& tokens) {
   const std::optional<double> y_m = tokens.NextNumber();
   const std::optional<double> yaw_rad = tokens.NextNumber();
   // Negated so that NaN is refused as well.
-  const auto sane = [](const std::optional<double>& v) {
-    return v && std::abs(*v) <= kMaxCoordinateM;
+  const auto sane = [](const std::optional<double>& v, double most) {
+    return v && std::abs(*v) <= most;
   };
-  if (!sane(x_m) || !sane(y_m) || !sane(yaw_rad)) return std::nullopt;
+  if (!sane(x_m, kMaxCoordinateM) || !sane(y_m, kMaxCoordinateM) || !sane(yaw_rad, kMaxYawRad)) {
+    return std::nullopt;
+  }
   return Pose2{*x_m, *y_m, WrapAngle(*yaw_rad)};
 }
 
@@ -107,7 +112,7 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   scan.bearing_step_rad = kPi / (scan.range_m.size() % 2 == 0 ? n : n - 1.0);
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
-  if (!laser || !robot) return Damage("FLASER", "with a damaged pose");
+  if (!laser || !robot) return Damage("FLASER", kDamagedPose);
   scan.odom_from_laser = *laser;
   const auto stamp_s = ReadStamp(tokens, 0);
   if (!stamp_s) return Damage("FLASER", "without a time");
@@ -140,7 +145,7 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   if (!ReadList(tokens, 0)) return Damage(kName, "with damaged remissions");
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
-  if (!laser || !robot) return Damage(kName, "with a damaged pose");
+  if (!laser || !robot) return Damage(kName, kDamagedPose);
   scan.odom_from_laser = *laser;
   const auto stamp_s = ReadStamp(tokens, 5);
   if (!stamp_s) return Damage(kName, "without a time");

@@ -14,6 +14,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
+#include "mapper/io/slam_jumps.h"
 
 namespace depthgrid {
 namespace {
@@ -29,6 +30,11 @@ constexpr double kOdometryJumpMps = 50.0;
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
   const double distance_m = (odom_from_next.translation() - odom_from_last.translation()).norm();
   return distance_m > std::max(kOdometryJumpM, kOdometryJumpMps * time_s);
+}
+
+double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
+  return (b.odom_from_laser.translation() - a.odom_from_laser.translation()).norm() /
+         (b.stamp_s - a.stamp_s);
 }
 
 Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
@@ -81,10 +87,15 @@ class CarmenLogSource : public FrameSource {
                   const std::vector<LoopClosure>& loops)
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
+    RequireUncompressed(path_);
     Rewind();
-    while (const auto scan = NextScan()) {
+    std::vector<double> speeds_mps;
+    std::optional<CarmenScan> last;
+    while (auto scan = NextScan()) {
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
+      if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
+      last = std::move(scan);
     }
     const int lines = line_number_;
     for (const auto& [reason, seen] : problems_) {
@@ -92,7 +103,15 @@ class CarmenLogSource : public FrameSource {
                                           : fmt::format("{}:{}: {} ({} such lines)", path_,
                                                         seen.first_line, reason, seen.count));
     }
+    WarnOfOrder();
+    if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
+      warnings_.push_back(fmt::format(
+          "{}: the laser moves at {:.0f} m/s: is the odometry in metres, and are the stamps in "
+          "seconds?",
+          path_, *speed_mps));
+    }
     if (names_.stamps_s.empty()) {
+      if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
       throw InputError(path_,
                        fmt::format("no usable FLASER or ROBOTLASER1 line among {} lines{}", lines,
                                    warnings_.empty() ? "" : "; first: " + warnings_[0]));
@@ -137,6 +156,16 @@ class CarmenLogSource : public FrameSource {
     epoch_ = 0;
   }
 
+  // Sorting is not for the program: of a clock that was set back it would make one drive of two.
+  void WarnOfOrder() {
+    const std::size_t used = names_.stamps_s.size();
+    if (static_cast<std::size_t>(earlier_) <= used) return;
+    warnings_.push_back(fmt::format(
+        "{}: {} of {} scans are earlier than one before them, so most of the log is left out: its "
+        "lines must be in order of time; is it written backwards, or was its clock set back?",
+        path_, earlier_, used + static_cast<std::size_t>(earlier_)));
+  }
+
   void Note(const std::string& reason) {
     Problem& problem = problems_[reason];
     if (problem.count++ == 0) problem.first_line = line_number_;
@@ -166,6 +195,9 @@ class CarmenLogSource : public FrameSource {
     while (ReadLine()) {
       std::string_view text{line_.data(), line_size_};
       if (line_number_ == 1) text = WithoutByteOrderMark(text);
+      if (names_.stamps_s.empty() && text.find('\0') != std::string_view::npos) {
+        has_zero_bytes_ = true;
+      }
       CarmenLine line = ParseCarmenLine(text);
       if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
         Note(damage->reason);
@@ -176,6 +208,7 @@ class CarmenLogSource : public FrameSource {
       if (scan->stamp_s != last_stamp_s_) ++lines_of_scans_;
       // Also what drops the second of two messages written for one scan.
       if (scan->stamp_s <= last_stamp_s_) {
+        earlier_ += scan->stamp_s < last_stamp_s_ ? 1 : 0;
         Note("a scan that is not later than the one before it");
         continue;
       }
@@ -205,6 +238,8 @@ class CarmenLogSource : public FrameSource {
   double last_stamp_s_ = 0.0;
   std::optional<Pose2> odom_from_last_;
   int epoch_ = 0;
+  int earlier_ = 0;              // scans left out, those of the same stamp aside
+  bool has_zero_bytes_ = false;  // before the first scan
   std::map<std::string, Problem> problems_;
   std::vector<std::string> warnings_;
 };

@@ -20,7 +20,8 @@ using internal::ShadeRule;
 // Origins are printed with six decimals or more; a smaller offset from the lattice of cells is
 // rounding.
 constexpr double kOriginRoundingM = 1e-6;
-constexpr double kMaxOriginM = 1e6;
+constexpr double kMaxOriginM = 1.05e7;     // a map around a pose as far as the mapper takes them
+constexpr double kMaxOriginCells = 2.1e9;  // so that indices are within int
 
 struct MapYaml {
   std::string image;
@@ -66,6 +67,12 @@ MapYaml ReadYaml(const std::string& path) {
   if (free > occupied) {
     throw InputError(path,
                      fmt::format("free_thresh {} is above occupied_thresh {}", free, occupied));
+  }
+  const double origin_cells = std::hypot(yaml.origin[0], yaml.origin[1]) / yaml.resolution_m;
+  if (origin_cells > kMaxOriginCells) {
+    throw InputError(path, fmt::format("origin is {:.3g} cells of {} m from zero, at most {:.3g} "
+                                       "can be counted",
+                                       origin_cells, yaml.resolution_m, kMaxOriginCells));
   }
   return yaml;
 }

@@ -23,6 +23,8 @@ constexpr double kAccelerationMps2 = 10.0;
 constexpr double kTurnAccelerationRadps2 = 30.0;
 // Steps on each side that say what motion is usual.
 constexpr int kStepsAround = 4;
+// So few poses can be far apart in truth.
+constexpr std::size_t kFewSteps = 3;
 // A loop's two frames: this much path apart, and this near in the revised trajectory.
 constexpr double kMinPathM = 2.0;
 constexpr double kMaxDistanceM = 1.0;
@@ -185,11 +187,15 @@ std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
   return loops;
 }
 
+std::optional<double> ImpossibleSpeedMps(std::vector<double> speeds_mps) {
+  constexpr double kFastestMps = 50.0;  // cars are slower
+  if (speeds_mps.size() <= kFewSteps) return {};
+  const double usual_mps = UpperMedian(std::move(speeds_mps));
+  return usual_mps > kFastestMps ? std::optional(usual_mps) : std::nullopt;
+}
+
 std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
                                    const std::vector<int>& jumps) {
-  // So few poses as three can be far apart in truth.
-  constexpr std::size_t kFewJumps = 3;
-  constexpr double kFastestMps = 50.0;  // cars are slower
   std::vector<double> speeds_mps;
   const SlamPose* last = nullptr;
   for (const SlamPose& pose : live) {
@@ -201,10 +207,9 @@ std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
     }
     last = &pose;
   }
-  if (speeds_mps.size() <= kFewJumps) return {};
-  const double usual_mps = UpperMedian(speeds_mps);
-  if (usual_mps > kFastestMps) {
-    return "the camera moves at " + std::to_string(std::llround(usual_mps)) +
+  if (speeds_mps.size() <= kFewSteps) return {};
+  if (const auto speed_mps = ImpossibleSpeedMps(speeds_mps)) {
+    return "the camera moves at " + std::to_string(std::llround(*speed_mps)) +
            " m/s: are the poses in metres, and the stamps in seconds?";
   }
   if (2 * jumps.size() <= speeds_mps.size()) return {};

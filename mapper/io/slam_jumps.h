@@ -21,6 +21,10 @@ std::vector<int> FindJumps(const std::vector<SlamPose>& live, const Trajectory& 
 std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
                                            const Trajectory& final, const std::vector<int>& jumps);
 
+// The usual of the speeds between one pose and the next, where nothing on wheels or legs is so fast
+// and they are enough to tell.
+std::optional<double> ImpossibleSpeedMps(std::vector<double> speeds_mps);
+
 // What to say when most steps jump or are faster than a car, as poses in millimetres or of another
 // recording are; nothing for others.
 std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,

@@ -5,9 +5,9 @@
 namespace depthgrid {
 namespace {
 
-// False for NaN too. The limit keeps cell indices within int.
+// False for NaN too. The limit, that of frames, keeps cell indices within int.
 bool IsUsable(const Pose2& pose) {
-  constexpr double kFarthestM = 1e6;
+  constexpr double kFarthestM = 1.05e7;
   return std::abs(pose.x_m) < kFarthestM && std::abs(pose.y_m) < kFarthestM &&
          std::isfinite(pose.yaw_rad);
 }

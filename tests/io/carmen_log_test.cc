@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
@@ -176,11 +177,12 @@ TEST(CarmenLog, MotionIsNotTakenAcrossAJumpOfThePose) {
   };
   // 14 km and back within a tenth of a second; then 90 m, in which two seconds may have passed.
   const TextFile file(scan_at("1", "0") + scan_at("1.1", "0.1") + scan_at("14000", "0.2") +
-                      scan_at("1.2", "0.3") + scan_at("91.2", "2.3") + scan_at("101.3", "2.4"));
+                      scan_at("1.2", "0.3") + scan_at("91.2", "2.3") + scan_at("101.3", "2.4") +
+                      scan_at("101.3", "2.5") + scan_at("101.3", "2.6") + scan_at("101.3", "2.7"));
   const auto source = OpenCarmenLog(file.path());
   std::vector<int> epochs;
   for (const Frame& frame : ReadAll(*source)) epochs.push_back(frame.slam_epoch);
-  EXPECT_EQ(epochs, (std::vector<int>{0, 0, 1, 2, 2, 3}));
+  EXPECT_EQ(epochs, (std::vector<int>{0, 0, 1, 2, 2, 3, 3, 3, 3}));
   ASSERT_EQ(source->Warnings().size(), 1U);
   EXPECT_THAT(source->Warnings()[0], testing::HasSubstr(":3: the pose jumps"));
   EXPECT_THAT(source->Warnings()[0], testing::HasSubstr("(3 such lines)"));
@@ -211,6 +213,67 @@ TEST(CarmenLog, RefusesFilesWithoutScan) {
   EXPECT_THROW(OpenCarmenLog("/nonexistent/file.log"), InputError);
   const TextFile empty("");
   EXPECT_THROW(OpenCarmenLog(empty.path()), InputError);
+}
+
+std::string WarningsOf(const std::string& text) {
+  const TextFile file(text);
+  std::string all;
+  for (const std::string& warning : OpenCarmenLog(file.path())->Warnings()) all += warning + "\n";
+  return all;
+}
+
+std::string RefusalOf(const std::string& text) {
+  const TextFile file(text);
+  try {
+    OpenCarmenLog(file.path());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+std::string ScanAt(double x_m, double y_m, int stamp_s) {
+  std::ostringstream line;
+  line.precision(17);
+  line << "FLASER 2 1 1 " << x_m << " " << y_m << " 0 0 0 0 " << stamp_s << " h 1\n";
+  return line.str();
+}
+
+TEST(CarmenLog, TakesCoordinatesOfAMapGrid) {
+  const TextFile utm(ScanAt(400000.5, 5300000.25, 1));
+  const auto frame = OpenCarmenLog(utm.path())->Next();
+  EXPECT_EQ(BaseOf(*frame->slam_from_camera).translation(), Eigen::Vector2d(400000.5, 5300000.25));
+  EXPECT_THAT(RefusalOf(ScanAt(2e7, 0, 1)),
+              testing::HasSubstr("damaged pose (no numbers, or beyond 10,000 km)"));
+}
+
+TEST(CarmenLog, MostScansOutOfOrderAreSaidWithTheirCause) {
+  std::string backwards, doubled;
+  for (int i = 9; i >= 0; --i) backwards += ScanAt(0, 0, i);
+  for (int i = 0; i < 9; ++i) doubled += ScanAt(0, 0, i) + ScanAt(0, 0, i) + ScanAt(0, 0, i);
+  EXPECT_THAT(WarningsOf(backwards),
+              testing::HasSubstr("9 of 10 scans are earlier than one before them"));
+  // Several messages of one scan are usual.
+  EXPECT_THAT(WarningsOf(doubled), testing::Not(testing::HasSubstr("order of time")));
+}
+
+TEST(CarmenLog, OdometryFasterThanACarIsSaid) {
+  std::string metres, centimetres;
+  for (int i = 0; i < 9; ++i) {
+    metres += ScanAt(0.6 * i, 0, i);
+    centimetres += ScanAt(60.0 * i, 0, i);
+  }
+  EXPECT_EQ(WarningsOf(metres), "");
+  EXPECT_THAT(WarningsOf(centimetres), testing::HasSubstr("the laser moves at 60 m/s"));
+}
+
+TEST(CarmenLog, SaysThatAFileIsNoText) {
+  EXPECT_THAT(RefusalOf("\x1F\x8B\x08 packed"),
+              testing::HasSubstr("is compressed by gzip: gunzip it first"));
+  EXPECT_THAT(RefusalOf(std::string("#BAG\n\0\1\n", 8)), testing::HasSubstr("has zero bytes"));
+  // Those that a crash left at the end do no harm.
+  const TextFile crashed(std::string(kFlaser) + std::string(100, '\0'));
+  EXPECT_EQ(OpenCarmenLog(crashed.path())->FrameCount(), 1);
 }
 
 TEST(CarmenLog, WrittenLinesReadBack) {
