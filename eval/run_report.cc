@@ -202,7 +202,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["warnings"] = run.warnings;
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);
   const bool planar = !run.slam.empty() && IsPlanar(run.slam.front().world_from_camera);
-  json["input_poses"] = planar ? "Odometry" : "SLAM";
+  json["input_poses"] = planar ? "odometry" : "SLAM";
   json["mapped_frames"] = run.scans.size();
   json["map"] = MapJson(run);
   json["paths"]["slam"] = PathJson(PosesAt(run.slam, stamps_s));

@@ -13,7 +13,7 @@ const LAYERS = [
   ["observable", "Observable"],
 ].filter(([name]) => RUN.map.layers[name]);
 const PATHS = [
-  ["truth", "Truth", "truth"], ["slam", `${RUN.input_poses}, as it came in`, "slam"],
+  ["truth", "Truth", "truth"], ["slam", `${RUN.input_poses[0].toUpperCase()}${RUN.input_poses.slice(1)}, as it came in`, "slam"],
   ["online", "Estimate at the time", "online"], ["est", "Estimate at the end", "est"],
 ].filter(([name]) => RUN.paths[name]);
 const shownPaths = new Set(["scan", ...PATHS.map(([name]) => name).filter((name) => name !== "online")]);
