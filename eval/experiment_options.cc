@@ -70,25 +70,4 @@ std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
   return kept;
 }
 
-ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
-  const SlamOptions usual_slam = ProfileOptions(SlamProfile::kGroundTruth);
-  SlamOptions& slam = options.slam;
-  slam.profile = usual_slam.profile;  // its values are all there
-  const bool drifts = slam.walk_translation_m > 0.0 || slam.walk_rotation_deg > 0.0 ||
-                      slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
-  if (!drifts) slam.drift_scale = usual_slam.drift_scale;
-  const std::uint64_t depth_seed = options.DepthSeed();
-  options.slam_seed = ToYaml(slam) == ToYaml(usual_slam) ? 0 : options.SlamSeed();
-  SensorOptions& sensor = options.sensor;
-  const bool noisy = sensor.noise != DepthNoiseModel::kNone;
-  if (!noisy) sensor.noise_scale = SensorOptions{}.noise_scale;
-  options.depth_seed = noisy || sensor.flying_pixels > 0.0 ? depth_seed : 0;
-  options.seed = 0;  // the two are all it is for
-  FusionOptions& fusion = options.mapper.fusion;
-  const bool gain_is_set =
-      fusion.mode == FusionMode::kFixed || fusion.mode == FusionMode::kAdaptive;
-  if (!gain_is_set) fusion.gain = FusionOptions{}.gain;
-  return options;
-}
-
 }  // namespace depthgrid

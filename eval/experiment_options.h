@@ -49,8 +49,4 @@ ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);
 std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
                                            const std::vector<std::string>& profiles);
 
-// The same experiment for the same result: what has no effect beside the rest (a gain that is
-// learnt, the drift scale of SLAM without drift, the seed of what does not err) is at its default.
-ExperimentOptions WithoutIdleSettings(ExperimentOptions options);
-
 }  // namespace depthgrid

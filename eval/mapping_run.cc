@@ -96,12 +96,6 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
   return run;
 }
 
-bool SawNothing(const MappingRun& run) {
-  return !run.reports.empty() &&
-         std::all_of(run.reports.begin(), run.reports.end(),
-                     [](const FrameReport& report) { return report.beams == 0; });
-}
-
 Trajectory SlamTrajectory(const MappingRun& run) {
   return Collect(run, [&](std::size_t i) { return run.reports[i].slam_from_camera; });
 }

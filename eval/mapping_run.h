@@ -66,9 +66,6 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const GainOracle& oracle = {}, const MatchOracle& match_oracle = {},
                      const std::optional<PriorMap>& prior = {});
 
-// Whether no scan of a run that has poses has a hit.
-bool SawNothing(const MappingRun& run);
-
 // Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
 // source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own
 // odometry is.

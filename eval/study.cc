@@ -6,6 +6,7 @@
 #include <cctype>
 #include <map>
 
+#include "eval/idle_settings.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -74,7 +75,38 @@ void WarnOfRepeats(Study& study) {
   }
 }
 
+// Of the keys of a case those that are idle there, of the shared ones those that are in every case.
+void WarnOfIdle(const Config& shared, const std::vector<Config>& cases, const Config& overrides,
+                Study& study) {
+  Study alone;  // without the overrides
+  const auto is_overridden = [&](const std::string& key) { return overrides.Has(key); };
+  const auto add = [&](const Config& file, const IdleSettingList& idle,
+                       const ExperimentOptions& options, const IsOverridden& overridden) {
+    const auto doubts = DoubtsOfFile(
+        file, idle, [&] { return options; }, overridden);
+    study.warnings.insert(study.warnings.end(), doubts.begin(), doubts.end());
+  };
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Config own = Without(cases[i], kCaseHeadKeys);
+    alone.experiments.emplace_back();
+    shared.Read(alone.experiments.back());
+    own.Read(alone.experiments.back());
+    add(own, IdleSettings(study.experiments[i]), alone.experiments.back(), is_overridden);
+  }
+  const IdleSettingList everywhere = InBoth(IdleInEveryCase(study), IdleInEveryCase(alone));
+  add(shared, everywhere, alone.experiments.front(), is_overridden);
+}
+
 }  // namespace
+
+IdleSettingList IdleInEveryCase(const Study& study) {
+  IdleSettingList idle;
+  for (const ExperimentOptions& options : study.experiments) {
+    const IdleSettingList here = IdleSettings(options);
+    idle = &options == &study.experiments.front() ? here : InBoth(idle, here);
+  }
+  return idle;
+}
 
 bool IsStudy(const Config& config) { return config.Has("cases"); }
 
@@ -111,6 +143,7 @@ Study ReadStudy(Config config, const Config& overrides, const std::string& base_
     const Config own = Without(entry, kCaseHeadKeys);
     study.experiments.push_back(ReadExperiment({&shared, &own, &overrides}, base_folder));
   }
+  WarnOfIdle(shared, cases, overrides, study);
   WarnOfRepeats(study);
   return study;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/experiment_options.h"
+#include "eval/idle_settings.h"
 #include "mapper/io/config.h"
 
 namespace depthgrid {
@@ -33,6 +34,9 @@ struct Study {
   std::vector<ExperimentOptions> experiments;  // one a case
   std::vector<std::string> warnings;           // what is likely not meant, a line each
 };
+
+// What has no effect in any case.
+IdleSettingList IdleInEveryCase(const Study& study);
 
 bool IsStudy(const Config& config);
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "eval/idle_settings.h"
 #include "eval/shipped.h"
 #include "mapper/core/error.h"
 #include "sim/mesh_file.h"
@@ -61,34 +62,32 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
                      fmt::join(kept, ", "), profile.front());
 }
 
-// A value that changes the settings and not the run.
-bool IsIdle(const std::string& name, const std::vector<std::string>& set, std::size_t position) {
-  const std::string key = set[position].substr(0, set[position].find('='));
-  // Without its scene or profile the rest of the line may make no sense.
-  if (key == "scene" || key == "slam.profile") return false;
-  std::vector<std::string> others = set;
-  if (key.ends_with("_seed")) {
-    // It may be said to be what it would be by the experiment's own seed: is another one the same?
-    others[position] = key + (set[position] == key + "=1" ? "=2" : "=1");
-  } else {
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(position));
-  }
-  const ExperimentOptions with = ExperimentNamed(name, set);
-  const ExperimentOptions without = ExperimentNamed(name, others);
-  return ToYaml(with) != ToYaml(without) &&
-         ToYaml(WithoutIdleSettings(with)) == ToYaml(WithoutIdleSettings(without));
-}
-
 }  // namespace
 
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set) {
   std::vector<std::string> doubts;
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    if (!IsIdle(name, set, i)) continue;
-    doubts.push_back(fmt::format("--set {}: has no effect beside the other settings", set[i]));
-  }
+  const IdleSettingList idle = IdleSettings(ExperimentNamed(name, set));
+  const auto add = [&](const std::vector<std::string>& more) {
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  };
+  add(DoubtsOfOverrides(set, idle, [&](const std::vector<std::string>& some) {
+    return ToYaml(ExperimentNamed(name, some));
+  }));
+  // The shipped ones are right, whatever --set makes of them.
+  if (!IsFileName(name)) return doubts;
+  Config overrides;
+  for (const std::string& assignment : set) overrides.Set(assignment);
+  const Config file = ExperimentFile(name);
+  add(DoubtsOfFile(
+      file, idle,
+      [&file] {
+        ExperimentOptions alone;
+        file.Read(alone);
+        return alone;
+      },
+      [&overrides](const std::string& key) { return overrides.Has(key); }));
   return doubts;
 }
 

@@ -6,6 +6,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/idle_settings.h"
 #include "eval/map_start.h"
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
@@ -14,6 +15,7 @@
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
 #include "eval/video_writer.h"
+#include "eval/view_check.h"
 #include "eval/way_check.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/cpu_clock.h"
@@ -48,7 +50,7 @@ struct MapSettings {
   }
 };
 
-Config ConfigOf(const MapArguments& arguments) {
+Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& overrides) {
   Config config;
   const auto set = [&config](const std::string& key, const std::string& option,
                              const std::string& value) {
@@ -57,20 +59,51 @@ Config ConfigOf(const MapArguments& arguments) {
   set("sequence.format", "--format", arguments.format);
   set("sequence.camera", "--camera", arguments.camera);
   set("sequence.world_up", "--up", arguments.world_up);
-  for (const std::string& assignment : arguments.common.set) config.Set(assignment);
+  for (const std::string& assignment : overrides) config.Set(assignment);
   return config;
+}
+
+// What was set beside what makes it mean nothing.
+void CheckSettings(const MapArguments& arguments, const MapSettings& settings,
+                   std::vector<std::string>& warnings) {
+  const SequenceFormat format = FormatOf(arguments.input, settings.sequence);
+  const std::string kind = NameOf(format);
+  const std::string input_is =
+      fmt::format("{} is {} {}", arguments.input, kind.starts_with('I') ? "an" : "a", kind);
+  IdleSettingList idle = IdleSettings(settings.mapper);
+  const IdleSettingList of_recording =
+      IdleSettings(settings.sequence, format, input_is, !arguments.loops.empty());
+  idle.insert(idle.end(), of_recording.begin(), of_recording.end());
+  const auto doubts =
+      DoubtsOfOverrides(arguments.common.set, idle, [&](const std::vector<std::string>& set) {
+        MapSettings others;
+        ConfigOf(arguments, set).Read(others);
+        return ToYaml(others);
+      });
+  warnings.insert(warnings.end(), doubts.begin(), doubts.end());
 }
 
 void Say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
 
+// A laser log brings its poses, which are level, and no images.
+void RefuseForLaserLog(const MapArguments& arguments) {
+  for (const std::string& file : {arguments.poses, arguments.final_poses}) {
+    if (!file.empty()) throw InputError(file, "a laser log brings its own poses");
+  }
+  if (!arguments.camera.empty()) {
+    throw InputError("--camera " + arguments.camera, "a laser log has no depth images");
+  }
+  if (!arguments.world_up.empty()) {
+    throw InputError("--up " + arguments.world_up, "a laser log's poses are level already");
+  }
+}
+
 // SLAM's files, when there are any.
 std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceOptions& options) {
   const bool laser = FormatOf(arguments.input, options) == SequenceFormat::kCarmen;
-  for (const std::string& file : {arguments.poses, arguments.final_poses}) {
-    if (laser && !file.empty()) throw InputError(file, "a laser log brings its own poses");
-  }
+  if (laser) RefuseForLaserLog(arguments);
   if (laser && !arguments.loops.empty()) {
     return ReadLoops(arguments.loops, SequenceFrames(arguments.input, options),
                      options.recording.max_stamp_difference_s);
@@ -132,10 +165,11 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
   const FoundPlace& place = start->place;
   prior.map_from_slam = place.map_from_slam;
   fmt::print(
-      "{}: {} scans; SLAM's frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
+      "{}: {} scans; {} frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
       "elsewhere {:.2f}\n",
-      arguments.map, prior.frames.size(), place.map_from_slam.x_m, place.map_from_slam.y_m,
-      DegFromRad(place.map_from_slam.yaw_rad), place.score, place.second_score);
+      arguments.map, prior.frames.size(), sequence.source->Camera() ? "SLAM's" : "odometry's",
+      place.map_from_slam.x_m, place.map_from_slam.y_m, DegFromRad(place.map_from_slam.yaw_rad),
+      place.score, place.second_score);
   if (start->trial && start->trial->places > 1) {
     fmt::print(
         "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "
@@ -157,8 +191,8 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
   if (fusion.TrustsSlamAlone()) return;
   if (const auto lost = FramesLost(run, arguments.localise)) {
     warnings.push_back(fmt::format(
-        "{}: lost, of {} of {} hardly anything they show lies on the map; the "
-        "sequence is of another place, or begins elsewhere in it",
+        "{}: lost: in {} of {} hardly anything that is seen lies on the map; the sequence is of "
+        "another place, or begins elsewhere in it",
         arguments.map, lost->lost, Counted(static_cast<std::size_t>(lost->frames), "frame")));
   } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
     warnings.push_back(fmt::format(
@@ -219,8 +253,20 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
 }
 
 // A map of poses that nothing checked looks like any other.
-void CheckMatches(const MapArguments& arguments, const FusionOptions& fusion, const MappingRun& run,
+void CheckMatches(const MapArguments& arguments, const MapSettings& settings, const MappingRun& run,
                   std::vector<std::string>& warnings) {
+  if (const auto doubt = DoubtOfView(run, settings.mapper)) {
+    warnings.push_back(arguments.input + ": " + *doubt);
+    return;
+  }
+  if (!run.camera && SawNothing(run)) {
+    const CarmenLogOptions& laser = settings.sequence.laser;
+    warnings.push_back(
+        fmt::format("{}: no scan has a return between {:g} and {:g} m (sequence.laser.min_range_m, "
+                    "max_range_m)",
+                    arguments.input, laser.min_range_m, laser.max_range_m));
+  }
+  const FusionOptions& fusion = settings.mapper.fusion;
   const auto& reports = run.reports;
   const bool any = std::any_of(reports.begin(), reports.end(),
                                [](const FrameReport& report) { return report.match.found; });
@@ -276,7 +322,7 @@ void SayResult(const MappingRun& run, bool localised) {
 void Map(const MapArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   MapSettings settings;
-  const Config config = ConfigOf(arguments);
+  const Config config = ConfigOf(arguments, arguments.common.set);
   config.Read(settings);
   settings.input = arguments.input;
   settings.poses = arguments.poses;
@@ -297,9 +343,10 @@ void Map(const MapArguments& arguments) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckPoses(arguments, input, warnings);
+  CheckSettings(arguments, settings, warnings);
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
-  CheckMatches(arguments, settings.mapper.fusion, run, warnings);
+  CheckMatches(arguments, settings, run, warnings);
   if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));

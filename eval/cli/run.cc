@@ -7,6 +7,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment.h"
+#include "eval/idle_settings.h"
 #include "eval/map_video.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
@@ -14,6 +15,7 @@
 #include "eval/study.h"
 #include "eval/study_run.h"
 #include "eval/video_writer.h"
+#include "eval/view_check.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -23,6 +25,9 @@ namespace depthgrid::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kPathsAxes =
+    "; the path's poses must be those of the camera's axes, x right, y down, z forward";
 
 void PrintScores(const RunScores& scores) {
   const auto row = [](const char* name, const std::optional<TrajectoryScore>& score) {
@@ -90,10 +95,9 @@ void RunOne(const RunArguments& arguments) {
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
-  if (SawNothing(run.mapping)) {
-    record.warnings.push_back(
-        "no frame sees anything in the obstacle band: the path's poses must be those of the "
-        "camera's axes, x right, y down, z forward");
+  if (const auto doubt = DoubtOfView(run.mapping, run.options.mapper)) {
+    // A shipped path's poses are right.
+    record.warnings.push_back(*doubt + (IsFileName(options.trajectory) ? kPathsAxes : ""));
   }
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
@@ -118,14 +122,22 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   }
   Config overrides;
   for (const std::string& assignment : arguments.common.set) overrides.Set(assignment);
-  const Study study =
-      ReadStudy(Config::FromFile(path), overrides, fs::path(path).parent_path().string());
+  const std::string base_folder = fs::path(path).parent_path().string();
+  const Study study = ReadStudy(Config::FromFile(path), overrides, base_folder);
+  std::vector<std::string> warnings = study.warnings;
+  const auto idle = DoubtsOfOverrides(
+      arguments.common.set, IdleInEveryCase(study), [&](const std::vector<std::string>& set) {
+        Config some;
+        for (const std::string& assignment : set) some.Set(assignment);
+        return ToYaml(ReadStudy(Config::FromFile(path), some, base_folder).experiments.front());
+      });
+  warnings.insert(warnings.end(), idle.begin(), idle.end());
   OutputFolder folder(arguments.common.output, arguments.common.force);
   ProgressBar bar("mapping");
   const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
   folder.Commit();
   bar.Clear();
-  Warn(study.warnings);
+  Warn(warnings);
   PrintCases(results);
   SayReport(arguments.common.output);
 }

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <sstream>
 #include <vector>
 
+#include "eval/cli/commands.h"
 #include "mapper/io/config.h"
 #include "mapper/io/number_rows.h"
 
@@ -37,9 +40,40 @@ std::vector<std::string> Options(const CLI::App& app) {
   return names;
 }
 
-std::string UnknownWord(const CLI::App& app, const std::string& word) {
+// The keys that --set of a command takes; none where it takes other ones than these two kinds.
+std::vector<std::string> KeysOf(const CLI::App& app) {
+  const bool has_set = app.get_option_no_throw("--set") != nullptr;
+  if (!has_set || app.get_name() == "slam") return {};
+  std::istringstream lines(app.get_name() == "map" ? MapKeys() : ExperimentKeys());
+  std::vector<std::string> keys;
+  for (std::string line; std::getline(lines, line);) keys.push_back(line.substr(0, line.find(' ')));
+  return keys;
+}
+
+// The key that an option would be: its whole path, or the end of no other's.
+std::string KeyMeant(const CLI::App& app, const std::string& option) {
+  const std::string word = option.substr(option.find_first_not_of('-'));
+  const std::vector<std::string> keys = KeysOf(app);
+  if (std::find(keys.begin(), keys.end(), word) != keys.end()) return word;
+  const auto ends_so = [&](const std::string& key) { return key.ends_with("." + word); };
+  if (std::count_if(keys.begin(), keys.end(), ends_so) != 1) return "";
+  return *std::find_if(keys.begin(), keys.end(), ends_so);
+}
+
+// `words`: what was not understood, from its first on.
+std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::string& word = words.front();
   if (word.starts_with('-')) {
-    const std::string name = word.substr(0, word.find('='));
+    const auto equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    const std::string key = name.starts_with("--") && name.size() > 2 ? KeyMeant(app, name) : "";
+    if (!key.empty()) {
+      const bool value_follows = words.size() > 1 && !words[1].starts_with('-');
+      const std::string value = equals != std::string::npos ? word.substr(equals + 1)
+                                : value_follows             ? words[1]
+                                                            : "VALUE";
+      return fmt::format("no option '{}': {} is a key, --set {}={}", name, key, key, value);
+    }
     return fmt::format("no option '{}'{}", name, DidYouMean(name, Options(app)));
   }
   const std::vector<std::string> commands = Commands(app);
@@ -58,7 +92,7 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error) {
   std::string name;
   const CLI::App& reached = Reached(app, name);
   const std::vector<std::string> unknown = reached.remaining();
-  const std::string what = unknown.empty() ? error.what() : UnknownWord(reached, unknown.front());
+  const std::string what = unknown.empty() ? error.what() : UnknownWord(reached, unknown);
   return fmt::format("{} (see {} --help)", what, name);
 }
 

@@ -6,13 +6,55 @@
 #include <set>
 #include <unordered_map>
 
+#include "eval/idle_settings.h"
+
 namespace depthgrid {
 namespace {
 
 // Reading the settings of a run takes a tenth of a millisecond.
 constexpr std::size_t kMostRuns = 5000;
 
+IdleSettingList IdleInEveryRun(const SweepPlan& plan) {
+  IdleSettingList idle;
+  for (std::size_t i = 0; i < std::min(kMostRuns, plan.runs.size()); ++i) {
+    const IdleSettingList here = IdleSettings(plan.OptionsOf(plan.runs[i]));
+    idle = i == 0 ? here : InBoth(idle, here);
+    if (idle.empty()) break;
+  }
+  return idle;
+}
+
 }  // namespace
+
+std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
+                                        bool is_shipped) {
+  IdleSettingList idle = IdleInEveryRun(plan);
+  // Of axes that do nothing it is said which runs repeat another.
+  std::erase_if(idle, [&](const IdleSetting& setting) {
+    const auto& axes = plan.parameter_keys;
+    return std::find(axes.begin(), axes.end(), setting.key) != axes.end();
+  });
+  const auto options_with = [&](const std::vector<std::string>& set) {
+    return ReadExperiment(layers.base_with(set), plan.base_folder);
+  };
+  std::vector<std::string> doubts = DoubtsOfOverrides(
+      layers.set, idle,
+      [&](const std::vector<std::string>& set) { return ToYaml(options_with(set)); });
+  const auto add = [&](const std::vector<std::string>& more) {
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  };
+  Config overrides;
+  for (const std::string& assignment : layers.set) overrides.Set(assignment);
+  const auto is_overridden = [&](const std::string& key) { return overrides.Has(key); };
+  add(DoubtsOfFile(
+      layers.fixed, idle, [&] { return options_with({}); }, is_overridden));
+  if (is_shipped) return doubts;
+  for (const ConfigEntry& entry : layers.fixed.Entries()) overrides.Set(entry.key, entry.text);
+  add(DoubtsOfFile(
+      layers.experiment, idle, [&] { return ReadExperiment(layers.experiment, plan.base_folder); },
+      is_overridden));
+  return doubts;
+}
 
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
   std::unordered_map<std::string, const PlannedRun*> known;

@@ -1,6 +1,7 @@
 // What of a sweep is likely not meant, found before its first run.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,20 @@ namespace depthgrid {
 // Runs that must give what an earlier one gives, as the settings in which they differ have no
 // effect there: one line, nothing when all differ. Of very many runs the first ones are looked at.
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
+
+// Where a sweep's settings come from, the later before the earlier.
+struct SweepLayers {
+  const Config& experiment;  // the file
+  const Config& fixed;       // what the sweep's file sets
+  const std::vector<std::string>& set;
+  // The experiment with what is fixed and some of `set`.
+  std::function<Config(const std::vector<std::string>& set)> base_with;
+};
+
+// Settings that have no effect in any run, a line each; of the experiment's file only where it is
+// the user's (`is_shipped`: it is not).
+std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
+                                        bool is_shipped);
 
 // Settings that the experiment's file holds for its own slam.profile, and that stay when `fixed` or
 // an axis chooses another: one line.

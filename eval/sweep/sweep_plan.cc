@@ -194,6 +194,22 @@ std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
   return text;
 }
 
+// A required key that is missing may stand there with a slip in it.
+void RequireKeys(const Config& config, const std::string& path) {
+  const std::vector<std::string> known = {"experiment", "axes", "set",        "mode",
+                                          "samples",    "stop", "sample_seed"};
+  for (const std::string required : {"axes", "experiment"}) {
+    if (config.Has(required)) continue;
+    for (const ConfigEntry& entry : config.Entries()) {
+      const bool is_known = std::find(known.begin(), known.end(), entry.key) != known.end();
+      if (is_known || NearestWord(entry.key, known) != required) continue;
+      throw InputError(entry.place,
+                       fmt::format("unknown key '{}'{}", entry.key, DidYouMean(entry.key, known)));
+    }
+    throw InputError(path, fmt::format("key '{}' is missing", required));
+  }
+}
+
 // Whether runs that differ in this key alone see the same scans.
 bool IsOfMapperOnly(const std::string& key) {
   return key.starts_with("mapper.") && !key.starts_with("mapper.scan");
@@ -218,8 +234,7 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
 
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
   Config config = Config::FromFile(path);
-  if (!config.Has("axes")) throw InputError(path, "key 'axes' is missing");
-  if (!config.Has("experiment")) throw InputError(path, "key 'experiment' is missing");
+  RequireKeys(config, path);
   SweepPlan plan;
   plan.title = fs::path(path).stem().string();
   plan.axes = ReadAxes(config.Take("axes"));
@@ -232,13 +247,16 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   plan.base_folder = fs::path(experiment).parent_path().string();
   const Config own = Config::FromFile(experiment);
   ReadExperiment(own, plan.base_folder);  // so that its own errors name its own file
-  plan.base = Config::FromText(own.ToYaml(), path + ", set");
   Config changes;
-  for (Config* target : {&plan.base, &changes}) {
-    for (const ConfigEntry& entry : fixed.Entries())
-      target->Set(entry.key, entry.text, entry.place);
-    for (const std::string& assignment : set) target->Set(assignment);
-  }
+  for (const ConfigEntry& entry : fixed.Entries()) changes.Set(entry.key, entry.text, entry.place);
+  for (const std::string& assignment : set) changes.Set(assignment);
+  const auto base_with = [&](const std::vector<std::string>& some) {
+    Config base = Config::FromText(own.ToYaml(), path + ", set");
+    for (const ConfigEntry& entry : fixed.Entries()) base.Set(entry.key, entry.text, entry.place);
+    for (const std::string& assignment : some) base.Set(assignment);
+    return base;
+  };
+  plan.base = base_with(set);
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
   CheckValues(plan);
   CheckStop(file.stop, path);
@@ -247,6 +265,9 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
        {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
     if (doubt) plan.warnings.push_back(*doubt);
   }
+  const auto idle =
+      DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment));
+  plan.warnings.insert(plan.warnings.end(), idle.begin(), idle.end());
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);

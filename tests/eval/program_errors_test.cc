@@ -114,7 +114,7 @@ TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   ExpectRefusal("map seq --poses b.txt -o out", {"pose"});
   ExpectRefusal("map seq --loops a.txt -o out", {"--poses", "a.txt"});
   std::filesystem::remove(Path("seq/groundtruth.txt"));
-  ExpectRefusal("map seq -o out", {"needs poses"});
+  ExpectRefusal("map seq -o out", {"needs poses", "--poses FILE"});
 }
 
 TEST_F(ProgramErrors, BadUsage) {
@@ -126,6 +126,26 @@ TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("run ./small.yaml more -o out", {"'more'"});
   ExpectRefusal("run ./small.yaml -o out --threads=-1", {"--threads"});
   ExpectRefusal("eval", {"--help"});
+}
+
+TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
+  ExpectRefusal("run ./small.yaml -o out --frames 30",
+                {"no option '--frames': frames is a key, --set frames=30 (see depthgrid run"});
+  ExpectRefusal("run ./small.yaml -o out --gain=0.3", {"--set mapper.fusion.gain=0.3 "});
+  ExpectRefusal("map seq -o out --mapper.fusion.gain", {"--set mapper.fusion.gain=VALUE "});
+  ExpectRefusal("map seq -o out --frames 30", {"no option '--frames', did you mean '--"});
+  ExpectRefusal("ablate ./small.yaml -o out --use --json",
+                {"no option '--use'"});  // of many groups
+  ExpectRefusal("slam seq -o out --frames 30", {"no option '--frames'"});
+}
+
+TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {
+  Write("many.yaml", "experiment: ./small.yaml\naxis: {seed: [1, 2]}\n");
+  ExpectRefusal("sweep ./many.yaml -o out",
+                {"many.yaml:2: unknown key 'axis', did you mean 'axes'?"});
+  Write("many.yaml", "experimnet: ./small.yaml\naxes: {seed: [1, 2]}\n");
+  ExpectRefusal("sweep ./many.yaml -o out",
+                {"unknown key 'experimnet', did you mean 'experiment'?"});
 }
 
 TEST_F(ProgramErrors, SettingsThatContradictEachOther) {

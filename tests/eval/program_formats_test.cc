@@ -138,6 +138,42 @@ TEST_F(ProgramFormats, ALaserLog) {
   EXPECT_EQ(Program("map robot.log --poses seq/groundtruth.txt -o out2").exit_code, 2);
 }
 
+TEST_F(ProgramFormats, WhatHasNoEffectIsSaid) {
+  Write("robot.log", "FLASER 5 2.0 2.1 2.2 2.1 2.0 0 0 0 0 0 0 1 host 0\n");
+  const auto said = [&](const std::string& arguments) {
+    const Outcome outcome = Program("map " + arguments + " -o out --force");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string of_log = ": has no effect because robot.log is a CARMEN laser log\n";
+  for (const char* set : {"mapper.scan.max_range_m=2", "mapper.scan.band_low_m=0.3",
+                          "sequence.recording.time_offset_s=5", "sequence.world_up=x"}) {
+    EXPECT_EQ(said(std::string("robot.log --set ") + set),
+              std::string("depthgrid: warning: --set ") + set + of_log);
+  }
+  const std::string of_gain =
+      "depthgrid: warning: --set mapper.fusion.gain=0.1: has no effect because "
+      "mapper.fusion.mode is learned\n";
+  EXPECT_EQ(said("robot.log --set mapper.fusion.gain=0.1"), of_gain);
+  EXPECT_EQ(said("seq --set mapper.fusion.gain=0.1"), of_gain);
+  EXPECT_EQ(ReadFile(Path("out/warnings.txt")), of_gain.substr(of_gain.find("--set")));
+  EXPECT_EQ(said("seq --set sequence.laser.max_range_m=2"),
+            "depthgrid: warning: --set sequence.laser.max_range_m=2: has no effect because seq is "
+            "a TUM RGB-D folder\n");
+  EXPECT_EQ(said("seq --set sequence.recording.max_interpolation_gap_s=1"),
+            "depthgrid: warning: --set sequence.recording.max_interpolation_gap_s=1: has no effect "
+            "because sequence.recording.interpolate_poses is false\n");
+  // With an effect, or what it would be anyway.
+  EXPECT_EQ(said("robot.log --set sequence.laser.max_range_m=20 --set mapper.scan.max_range_m=6"),
+            "");
+  EXPECT_EQ(said(std::string("seq --set mapper.scan.max_range_m=4") + kTrustPoses), "");
+  for (const char* option : {"--camera seq/camera.yaml", "--up x"}) {
+    const Outcome outcome = Program(std::string("map robot.log -o out2 ") + option);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(std::string("depthgrid: ") + option + ": a laser log"));
+  }
+}
+
 // There and back along a room of 6 x 4 m, its odometry in units of `odometry_scale` metres.
 std::string ThereAndBack(double odometry_scale) {
   const auto range_m = [](double x_m, double y_m, double angle_rad) {
@@ -155,6 +191,18 @@ std::string ThereAndBack(double odometry_scale) {
     log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", odometry_scale * x_m, i);
   }
   return log;
+}
+
+TEST_F(ProgramFormats, ALogInTheCoordinatesOfAMapGrid) {
+  std::string log;
+  for (int i = 0; i < 5; ++i) {
+    log += fmt::format("FLASER 5 2 2 2 2 2 {0} {1} 0 {0} {1} 0 {2} host 0\n", 400000.0 + 0.1 * i,
+                       5300000.0, i);
+  }
+  Write("utm.log", log);
+  Mapped("utm.log");
+  const Eigen::Vector2d origin_m = ReadMap(Path("out/map.yaml")).map.geometry.OriginM();
+  EXPECT_LT((origin_m - Eigen::Vector2d(400000.0, 5300000.0)).norm(), 5.0);
 }
 
 TEST_F(ProgramFormats, OdometryOfAnotherScaleIsSaid) {
@@ -372,7 +420,8 @@ TEST_F(ProgramFormats, WhereARunBeginsIsFoundWithPosesThatDrift) {
   Write("first.log", ThereAndBack(1.0));
   Succeed("map first.log -o first");
   Write("second.log", ThereAndBack(1.25));
-  Mapped("second.log --map first --localise");
+  EXPECT_THAT(Mapped("second.log --map first --localise"),
+              HasSubstr("; odometry's frame lies at ("));
   const Trajectory online = ReadTrajectory(Path("out/trajectory_online.txt"));
   ASSERT_EQ(online.size(), 41U);
   double worst_m = 0.0;

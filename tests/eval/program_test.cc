@@ -11,9 +11,11 @@
 namespace depthgrid {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
+using ::testing::Not;
 
 class ProgramRun : public ProgramTest {};
 
@@ -204,6 +206,7 @@ TEST_F(ProgramRun, ReportOfALaserLogHasItsHeadings) {
   const auto data =
       nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
   EXPECT_EQ(data["paths"]["slam"]["yaw"], (std::vector<double>{0.5, 0.5, 0.5}));
+  EXPECT_EQ(data["input_poses"], "odometry");
 }
 
 // Drift calibrated for one SLAM is another one's by mistake only.
@@ -237,16 +240,79 @@ TEST_F(ProgramRun, WhatHasNoEffectIsSaid) {
     return Program("run ./small.yaml -o out --force --set frames=3" + set).err;
   };
   EXPECT_EQ(said(" --set mapper.fusion.mode=learned --set mapper.fusion.gain=0.3"),
-            "depthgrid: warning: --set mapper.fusion.gain=0.3: has no effect beside the other "
-            "settings\n");
+            "depthgrid: warning: --set mapper.fusion.gain=0.3: has no effect because "
+            "mapper.fusion.mode is learned\n");
   EXPECT_EQ(said(" --set sensor.noise=none --set sensor.noise_scale=2"),
-            "depthgrid: warning: --set sensor.noise_scale=2: has no effect beside the other "
-            "settings\n");
+            "depthgrid: warning: --set sensor.noise_scale=2: has no effect because sensor.noise is "
+            "none\n");
   EXPECT_EQ(said(" --set mapper.fusion.gain=0.3 --set seed=4 --set slam.drift_scale=2"), "");
   // What is said to be as it would be anyway is no mistake, but where nothing errs a seed is one.
   EXPECT_EQ(said(" --set slam_seed=1 --set depth_seed=1"), "");
   EXPECT_EQ(said(" --set slam.profile=ground_truth --set slam_seed=2"),
-            "depthgrid: warning: --set slam_seed=2: has no effect beside the other settings\n");
+            "depthgrid: warning: --set slam_seed=2: has no effect because slam.profile is "
+            "ground_truth\n");
+  EXPECT_EQ(said(" --set 'mapper.fusion={mode: learned, gain: 0.3}'"),
+            "depthgrid: warning: --set mapper.fusion={mode: learned, gain: 0.3}: "
+            "mapper.fusion.gain has no effect because mapper.fusion.mode is learned\n");
+}
+
+// What a user's file states means something, or the user does not know.
+TEST_F(ProgramRun, WhatAFileStatesWithoutEffectIsSaid) {
+  Write("idle.yaml",
+        "scene: ./room.yaml\nframes: 3\nsensor: {width: 80, height: 60, noise_scale: 1}\n"
+        "slam: {profile: orb_slam2}\nmapper:\n  fusion:\n    gain: 0.1\n");
+  const auto said = [&](const std::string& arguments) {
+    return Program("run " + arguments + " -o out --force").err;
+  };
+  const std::string gain =
+      "depthgrid: warning: ./idle.yaml:7: mapper.fusion.gain has no effect because "
+      "mapper.fusion.mode is learned\n";
+  EXPECT_EQ(said("./idle.yaml"), gain);
+  EXPECT_EQ(ReadFile(Path("out/warnings.txt")), gain.substr(gain.find("./idle")));
+  EXPECT_EQ(said("./idle.yaml --set mapper.fusion.mode=fixed"), "");
+  EXPECT_EQ(said("./small.yaml --set mapper.fusion.mode=learned"), "");  // not the file's fault
+  EXPECT_EQ(Program("run out/run.yaml -o again").err, "");               // which states everything
+  Succeed("run ./idle.yaml -o idle");
+  EXPECT_EQ(Program("run idle/run.yaml -o idle2").err, "");
+  Write("study.yaml",
+        "frames: 3\nsensor: {width: 80, height: 60}\nscene: ./room.yaml\nslam_seed: 4\n"
+        "mapper: {fusion: {mode: fixed, gain: 0.3}}\ncases:\n"
+        "  - {name: a, slam: {profile: orb_slam2}}\n"
+        "  - {name: b, slam: {profile: planar_slam}, mapper: {fusion: {mode: learned}}}\n"
+        "  - {name: c, slam: {profile: ground_truth, drift_scale: 3}}\n");
+  EXPECT_EQ(said("./study.yaml --set mapper.fusion.adaptive_rate=0.1"),
+            "depthgrid: warning: ./study.yaml:9: slam.drift_scale has no effect because "
+            "slam.profile is ground_truth\n"
+            "depthgrid: warning: --set mapper.fusion.adaptive_rate=0.1: has no effect because "
+            "mapper.fusion.mode is fixed\n");
+}
+
+TEST_F(ProgramRun, AnEmptyMapIsSaidWithItsCause) {
+  const auto said = [&](const std::string& arguments) {
+    const Outcome outcome = Program(arguments + " -o out --force");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string band = " --set mapper.scan.band_low_m=5 --set mapper.scan.band_high_m=6";
+  const auto names_band =
+      AllOf(HasSubstr("no frame sees anything from 5 to 6 m above the floor"),
+            HasSubstr("and 0.4 to 6 m away"), HasSubstr("the images, 80x60 pixels and "),
+            HasSubstr("show depth from "), Not(HasSubstr("path")));
+  EXPECT_THAT(said("run ./small.yaml" + band), names_band);
+  EXPECT_THAT(said("run ./small.yaml --set sensor.max_range_m=0.1"),
+              AllOf(HasSubstr("degrees wide, hold no measurement"), Not(HasSubstr("path"))));
+  Succeed("render ./small.yaml --no-colour -o seq");
+  EXPECT_THAT(said("map seq" + band), AllOf(HasSubstr("warning: seq: "), names_band));
+  EXPECT_EQ(said("map seq"), "");
+}
+
+// Three rows of an image make an obstacle, but no slice of so few pixels has them.
+TEST_F(ProgramRun, ThatNothingCanBeMatchedIsSaidWithItsCause) {
+  const std::string said =
+      Program("run ./small.yaml -o out --set sensor.width=8 --set sensor.height=8").err;
+  EXPECT_THAT(said, AllOf(HasSubstr("nothing could be matched, the poses are those given"),
+                          HasSubstr("within 0.1 m of the camera's height"), HasSubstr("8x8 pixels"),
+                          Not(HasSubstr("path"))));
 }
 
 // A pose that turns nothing looks straight up.
@@ -255,10 +321,10 @@ TEST_F(ProgramRun, APathThatSeesNothingIsSaid) {
   const Outcome outcome =
       Program("run ./small.yaml -o out --set frames=0 --set trajectory=./up.txt");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(
-      outcome.err,
-      "depthgrid: warning: no frame sees anything in the obstacle band: the path's poses must "
-      "be those of the camera's axes, x right, y down, z forward\n");
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("warning: no frame sees anything from 0.1 to 1.8 m above the floor"),
+                    HasSubstr("; the path's poses must be those of the camera's axes, x right, y "
+                              "down, z forward\n")));
 }
 
 TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {

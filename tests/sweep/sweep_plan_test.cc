@@ -122,6 +122,30 @@ TEST_F(SweepPlanTest, TheSameSweepSaysTheSameOfItself) {
             PlanOf("axes: {mapper.fusion.gain: [0, 0.5, 1], seed: [1, 3]}\n").sweep_text);
 }
 
+// Of the experiment's file, of the sweep's and of the command line; once, and not where any run has
+// use for it.
+TEST_F(SweepPlanTest, SettingsWithoutEffectInAnyRunAreSaid) {
+  Write("idle.yaml",
+        "scene: living_room\nslam: {profile: orb_slam2}\nmapper: {fusion: {gain: 0.1}}\n");
+  const auto doubts = [&](const std::string& text, const std::vector<std::string>& set) {
+    Write("sweep.yaml", "experiment: ./idle.yaml\n" + text);
+    std::vector<std::string> said;
+    for (const std::string& warning : ReadSweepPlan(Path("sweep.yaml"), set).warnings) {
+      said.push_back(Short(warning));
+    }
+    return said;
+  };
+  const std::string seeds = "axes: {seed: {seeds: 3}}\n";
+  const std::string why = "has no effect because mapper.fusion.mode is learned";
+  EXPECT_THAT(doubts(seeds, {}), ElementsAre("~/./idle.yaml:3: mapper.fusion.gain " + why));
+  EXPECT_THAT(doubts(seeds + "set: {mapper.fusion.gain: 0.2}\n", {}),
+              ElementsAre("~/sweep.yaml:3: mapper.fusion.gain " + why));
+  EXPECT_THAT(doubts(seeds, {"mapper.fusion.gain=0.3"}),
+              ElementsAre("--set mapper.fusion.gain=0.3: " + why));
+  EXPECT_THAT(doubts("axes: {mapper.fusion.mode: [learned, fixed]}\n", {}), ElementsAre());
+  EXPECT_THAT(doubts(seeds, {"mapper.fusion.mode=fixed"}), ElementsAre());
+}
+
 TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
   const auto doubts = [&](const std::string& text) { return PlanOf(text).warnings; };
   EXPECT_THAT(

@@ -1,0 +1,205 @@
+#include "eval/idle_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace depthgrid {
+namespace {
+
+struct StatedKey {
+  std::string key;
+  std::string place;
+};
+
+// The single values of a tree, those in groups by their whole path.
+void AddStated(const Config& config, const std::string& prefix, std::vector<StatedKey>& stated) {
+  for (const ConfigEntry& entry : config.Entries()) {
+    if (entry.map) {
+      AddStated(*entry.map, prefix + entry.key + ".", stated);
+    } else {
+      stated.push_back({prefix + entry.key, entry.place});
+    }
+  }
+}
+
+std::vector<StatedKey> StatedKeys(const Config& config) {
+  std::vector<StatedKey> stated;
+  AddStated(config, "", stated);
+  return stated;
+}
+
+const IdleSetting* Find(const IdleSettingList& idle, const std::string& key) {
+  const auto found = std::find_if(idle.begin(), idle.end(), [&](const IdleSetting& setting) {
+    return key == setting.key || key.starts_with(setting.key + ".");
+  });
+  return found == idle.end() ? nullptr : &*found;
+}
+
+std::string SettingText(const std::string& yaml, const std::string& key) {
+  return fmt::format("{}", fmt::join(Config::FromText(yaml, "").List(key), ", "));
+}
+
+// "GROUP.KEY is VALUE" of one of the options' own keys.
+template <typename Options>
+std::string Stands(const Options& options, const std::string& group, const std::string& key) {
+  return fmt::format("{}.{} is {}", group, key, SettingText(ToYaml(options), key));
+}
+
+bool Drifts(const SlamOptions& slam) {
+  return slam.walk_translation_m > 0.0 || slam.walk_rotation_deg > 0.0 ||
+         slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
+}
+
+SlamOptions WithoutIdleSettings(SlamOptions slam) {
+  const SlamOptions usual = ProfileOptions(SlamProfile::kGroundTruth);
+  slam.profile = usual.profile;  // its values are all there
+  if (!Drifts(slam)) slam.drift_scale = usual.drift_scale;
+  return slam;
+}
+
+// Why SLAM's errors are the same for every seed; empty where they are not.
+std::string WhyExact(const SlamOptions& slam) {
+  const SlamOptions truth = ProfileOptions(SlamProfile::kGroundTruth);
+  if (ToYaml(WithoutIdleSettings(slam)) != ToYaml(truth)) return "";
+  return slam.profile == truth.profile ? Stands(slam, "slam", "profile")
+                                       : "SLAM's poses are the true ones";
+}
+
+// The same of the depth images.
+std::string WhyClean(const SensorOptions& sensor) {
+  const bool noisy = sensor.noise != DepthNoiseModel::kNone || sensor.flying_pixels > 0.0;
+  return noisy ? "" : Stands(sensor, "sensor", "noise");
+}
+
+void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
+  const std::string exact = WhyExact(options.slam);
+  const std::string clean = WhyClean(options.sensor);
+  if (!exact.empty()) idle.push_back({"slam_seed", exact});
+  if (!clean.empty()) idle.push_back({"depth_seed", clean});
+  // The two are all that the experiment's own is for.
+  const std::string depth = options.depth_seed != 0 ? "depth_seed is set" : clean;
+  const std::string slam = options.slam_seed != 0 ? "slam_seed is set" : exact;
+  if (!depth.empty() && !slam.empty()) idle.push_back({"seed", depth + " and " + slam});
+}
+
+}  // namespace
+
+IdleSettingList IdleSettings(const MapperOptions& mapper) {
+  const FusionOptions& fusion = mapper.fusion;
+  IdleSettingList idle;
+  const auto add = [&](const char* key) {
+    idle.push_back({key, Stands(fusion, "mapper.fusion", "mode")});
+  };
+  if (fusion.mode != FusionMode::kFixed && fusion.mode != FusionMode::kAdaptive) {
+    add("mapper.fusion.gain");
+  }
+  if (fusion.mode != FusionMode::kAdaptive) add("mapper.fusion.adaptive_rate");
+  return idle;
+}
+
+IdleSettingList IdleSettings(const ExperimentOptions& options) {
+  IdleSettingList idle = IdleSettings(options.mapper);
+  if (!Drifts(options.slam)) {
+    const std::string exact = WhyExact(options.slam);
+    idle.push_back({"slam.drift_scale", exact.empty() ? "SLAM does not drift" : exact});
+  }
+  if (options.sensor.noise == DepthNoiseModel::kNone) {
+    idle.push_back({"sensor.noise_scale", Stands(options.sensor, "sensor", "noise")});
+  }
+  AddSeeds(options, idle);
+  return idle;
+}
+
+IdleSettingList IdleSettings(const SequenceOptions& options, SequenceFormat format,
+                             const std::string& input_is, bool with_loops) {
+  IdleSettingList idle;
+  const std::string recording = "sequence.recording.";
+  const auto add = [&](const std::string& key) { idle.push_back({key, input_is}); };
+  if (format == SequenceFormat::kCarmen) {
+    for (const char* key : {"sequence.camera", "sequence.world_up", "mapper.scan"}) add(key);
+    for (const StatedKey& stated : StatedKeys(Config::FromText(ToYaml(RecordingOptions{}), ""))) {
+      const bool is_used = with_loops && stated.key == "max_stamp_difference_s";
+      if (!is_used) add(recording + stated.key);
+    }
+    return idle;
+  }
+  add("sequence.laser");
+  if (format != SequenceFormat::kTum) add(recording + "pose_stamp");
+  if (format != SequenceFormat::kFrames) add(recording + "frame_rate_hz");
+  if (!options.recording.interpolate_poses) {
+    idle.push_back({recording + "max_interpolation_gap_s",
+                    Stands(options.recording, "sequence.recording", "interpolate_poses")});
+  }
+  return idle;
+}
+
+IdleSettingList InBoth(const IdleSettingList& a, const IdleSettingList& b) {
+  IdleSettingList both;
+  std::copy_if(a.begin(), a.end(), std::back_inserter(both),
+               [&](const IdleSetting& setting) { return Find(b, setting.key) != nullptr; });
+  return both;
+}
+
+ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
+  const IdleSettingList idle = IdleSettings(options);
+  const auto is_idle = [&](const char* key) { return Find(idle, key) != nullptr; };
+  options.slam_seed = is_idle("slam_seed") ? 0 : options.SlamSeed();
+  options.depth_seed = is_idle("depth_seed") ? 0 : options.DepthSeed();
+  options.seed = 0;  // the two are all it is for
+  options.slam = WithoutIdleSettings(options.slam);
+  if (is_idle("sensor.noise_scale")) options.sensor.noise_scale = SensorOptions{}.noise_scale;
+  FusionOptions& fusion = options.mapper.fusion;
+  if (is_idle("mapper.fusion.gain")) fusion.gain = FusionOptions{}.gain;
+  if (is_idle("mapper.fusion.adaptive_rate")) {
+    fusion.adaptive_rate = FusionOptions{}.adaptive_rate;
+  }
+  return options;
+}
+
+std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,
+                                           const IdleSettingList& idle,
+                                           const SettingsWith& settings_with) {
+  std::vector<std::string> doubts;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    Config assignment;
+    assignment.Set(set[i]);
+    for (const StatedKey& stated : StatedKeys(assignment)) {
+      const IdleSetting* setting = Find(idle, stated.key);
+      if (setting == nullptr) continue;
+      std::vector<std::string> others = set;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      if (SettingText(settings_with(set), stated.key) ==
+          SettingText(settings_with(others), stated.key)) {
+        continue;
+      }
+      const bool is_all = set[i].starts_with(stated.key + "=");
+      doubts.push_back(fmt::format("--set {}: {}has no effect because {}", set[i],
+                                   is_all ? "" : stated.key + " ", setting->reason));
+    }
+  }
+  return doubts;
+}
+
+std::vector<std::string> DoubtsOfFile(const Config& file, const IdleSettingList& idle,
+                                      const std::function<ExperimentOptions()>& alone,
+                                      const IsOverridden& is_overridden) {
+  std::vector<StatedKey> stated = StatedKeys(file);
+  std::erase_if(stated, [&](const StatedKey& key) {
+    return Find(idle, key.key) == nullptr || is_overridden(key.key);
+  });
+  if (stated.empty() || file.Has("provenance")) return {};
+  const ExperimentOptions own = alone();
+  const IdleSettingList own_idle = IdleSettings(own);
+  const std::string values = ToYaml(own);
+  const std::string usual = ToYaml(ExperimentOptions{});
+  std::vector<std::string> doubts;
+  for (const auto& [key, place] : stated) {
+    const IdleSetting* setting = Find(own_idle, key);
+    if (setting == nullptr || SettingText(values, key) == SettingText(usual, key)) continue;
+    doubts.push_back(fmt::format("{}: {} has no effect because {}", place, key, setting->reason));
+  }
+  return doubts;
+}
+
+}  // namespace depthgrid

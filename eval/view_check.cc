@@ -1,0 +1,77 @@
+#include "eval/view_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mapper/core/angle.h"
+
+namespace depthgrid {
+namespace {
+
+bool HasHit(const Scan& scan) {
+  return std::any_of(scan.beams.begin(), scan.beams.end(),
+                     [](const Beam& beam) { return beam.hit; });
+}
+
+bool NoneToMatch(const MappingRun& run) {
+  return !run.reports.empty() &&
+         std::all_of(run.reports.begin(), run.reports.end(),
+                     [](const FrameReport& report) { return report.beams == 0; });
+}
+
+// What the frames that are kept whole show.
+std::string DepthSeen(const MappingRun& run) {
+  float least_m = std::numeric_limits<float>::infinity();
+  float most_m = 0.0F;
+  for (const SampleFrame& sample : run.samples) {
+    for (const float z_m : sample.depth->z_m) {
+      if (!(z_m > 0.0F) || !std::isfinite(z_m)) continue;
+      least_m = std::min(least_m, z_m);
+      most_m = std::max(most_m, z_m);
+    }
+  }
+  return most_m > 0.0F ? fmt::format("show depth from {:.3g} to {:.3g} m", least_m, most_m)
+                       : "hold no measurement";
+}
+
+std::string ImagesOf(const MappingRun& run) {
+  const PinholeCamera& camera = *run.camera;
+  const double width_rad = 2.0 * std::atan(0.5 * camera.width_px / camera.fx_px);
+  return fmt::format("the images, {}x{} pixels and {:.3g} degrees wide, {}", camera.width_px,
+                     camera.height_px, DegFromRad(width_rad), DepthSeen(run));
+}
+
+}  // namespace
+
+// The slice that is matched may have hits where the band that is drawn has none.
+bool SawNothing(const MappingRun& run) {
+  bool any_kept = false;
+  for (const MappedFrame& frame : run.result.mapped) {
+    if (frame.of_prior_map() || !frame.kept()) continue;
+    any_kept = true;
+    if (HasHit(*frame.obstacles)) return false;
+  }
+  return any_kept || NoneToMatch(run);
+}
+
+std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options) {
+  if (!run.camera) return {};
+  const ScanOptions& scan = options.scan;
+  if (SawNothing(run)) {
+    return fmt::format(
+        "no frame sees anything from {:g} to {:g} m above the floor (mapper.scan.band_low_m, "
+        "band_high_m) and {:g} to {:g} m away (mapper.scan.min_range_m, max_range_m); {}",
+        scan.band_low_m, scan.band_high_m, scan.min_range_m, scan.max_range_m, ImagesOf(run));
+  }
+  if (!NoneToMatch(run) || options.fusion.TrustsSlamAlone()) return {};
+  return fmt::format(
+      "nothing could be matched, the poses are those given: no frame sees anything within {:g} m "
+      "of the camera's height (mapper.scan.slice_half_height_m) in {} rows or more "
+      "(mapper.scan.min_returns); {}",
+      scan.slice_half_height_m, scan.min_returns, ImagesOf(run));
+}
+
+}  // namespace depthgrid

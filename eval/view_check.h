@@ -1,0 +1,19 @@
+// Whether a run's depth images showed anything to map or to match, and why they did not.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "eval/mapping_run.h"
+#include "mapper/mapper_options.h"
+
+namespace depthgrid {
+
+// Whether the run drew no wall: none of its own scans has a hit.
+bool SawNothing(const MappingRun& run);
+
+// What to say when the map is empty, or when nothing could be matched since no scan has a hit at
+// the camera's height: the band, the ranges, the images. Nothing of laser logs.
+std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options);
+
+}  // namespace depthgrid
