@@ -42,6 +42,9 @@ constexpr double kAgreeM = 0.1;
 constexpr double kAgreeShare = 0.5;
 // Where they do not, this many of the first ones say where the floor is, and which way is up.
 constexpr std::size_t kFirstViews = 3;
+// Or where these have it farther off than this, though the camera is as high above what they see as
+// later: in a few seconds SLAM's height drifts by less than kAgreeM for half of the images.
+constexpr double kFirstFloorOffM = 0.03;
 // Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
 // all that some see); more is SLAM's drift.
 constexpr double kDriftRad = RadFromDeg(0.8);
@@ -272,24 +275,37 @@ double MiddleOf(const std::vector<FloorOfViews>& floors, double FloorOfViews::*n
   return UpperMedian(numbers);
 }
 
-// The floor is the lowest of all surfaces where the images agree on it, and the camera's height is
-// that above it. With SLAM's height drifting it is where the first images have it, and the camera's
-// height is that above each image's own lowest surface.
+// As the first images have it; the camera's height is that above each image's own lowest surface.
+FloorOfViews FirstFloor(std::vector<FloorOfViews> first, const std::vector<FloorOfViews>& own) {
+  if (first.size() < kFirstViews) first = own;
+  first.resize(std::min(first.size(), kFirstViews));
+  return {MiddleOf(first, &FloorOfViews::height_m), MiddleOf(own, &FloorOfViews::camera_height_m)};
+}
+
+// Whether SLAM's height drifts: the images do not agree on the lowest of all surfaces, or the first
+// ones see theirs elsewhere, and it is no table.
+bool HeightDrifts(const std::vector<FloorOfViews>& first, const std::vector<FloorOfViews>& own,
+                  double lowest_m) {
+  if (own.empty()) return false;
+  const auto agreeing = std::count_if(own.begin(), own.end(), [&](const FloorOfViews& floor) {
+    return std::abs(floor.height_m - lowest_m) <= kAgreeM;
+  });
+  if (static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(own.size())) return true;
+  if (first.size() < kFirstViews) return false;
+  const FloorOfViews at_first = FirstFloor(first, first);
+  const double usual_m = MiddleOf(own, &FloorOfViews::camera_height_m);
+  return std::abs(at_first.height_m - lowest_m) > kFirstFloorOffM &&
+         std::abs(at_first.camera_height_m - usual_m) < kAgreeM;
+}
+
+// The floor is the lowest of all surfaces, and the camera's height is that above it. With SLAM's
+// height drifting it is where the first images have it.
 FloorOfViews FloorUnder(const Views& views, const Views& first_views,
                         const std::vector<Eigen::Vector3d>& level, const Eigen::Vector3d& up) {
   const double lowest_m = Levels(level, up).LowestM();
   const std::vector<FloorOfViews> own = OwnFloors(views, up);
-  const auto agreeing = std::count_if(own.begin(), own.end(), [&](const FloorOfViews& floor) {
-    return std::abs(floor.height_m - lowest_m) <= kAgreeM;
-  });
-  if (!own.empty() &&
-      static_cast<double>(agreeing) < kAgreeShare * static_cast<double>(own.size())) {
-    std::vector<FloorOfViews> first = OwnFloors(first_views, up);
-    if (first.size() < kFirstViews) first = own;
-    first.resize(std::min(first.size(), kFirstViews));
-    return {MiddleOf(first, &FloorOfViews::height_m),
-            MiddleOf(own, &FloorOfViews::camera_height_m)};
-  }
+  const std::vector<FloorOfViews> first = OwnFloors(first_views, up);
+  if (HeightDrifts(first, own, lowest_m)) return FirstFloor(first, own);
   const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
   std::vector<double> cameras_m;
   for (const SurfaceView& view : views) cameras_m.push_back(up.dot(view.camera) - floor_m);

@@ -79,6 +79,32 @@ TEST(Gravity, DriftInHeightTiltsNothing) {
 }
 
 // Up is where SLAM's world has it at its beginning; all views' mean was 3.1 degrees off.
+// Half of the images are within 10 cm of the lowest floor.
+TEST(Gravity, DriftInHeightOfAFewSecondsLeavesTheFirstFloor) {
+  for (const double drift_m : {-0.2, 0.2}) {
+    const auto gravity =
+        Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), 0.3, 0.01, drift_m, 0.0, 5).Find();
+    ASSERT_TRUE(gravity);
+    EXPECT_NEAR(gravity->floor_m, 6.0, 0.02) << drift_m;
+    EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.03) << drift_m;
+  }
+}
+
+TEST(Gravity, ATableThatTheFirstImagesSeeIsNoFloor) {
+  GravityFinder finder = Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), 0.3, 0.01);
+  AnalyticRoom table = FurnishedRoom();
+  table.boxes.push_back({{-3.0, -3.0, 0.0}, {3.0, 3.0, 0.45}});
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  for (int i = 0; i < 5; ++i) {
+    const Pose3 pose = TiltedCamera({0.1 * i, 0.0, 0.1 * i}, kHeightM, 0.5, 0.0);
+    const Pose3 told = Pose3{Eigen::Quaterniond::Identity(), Eigen::Vector3d(4, 5, 6)} * pose;
+    finder.AddFirst(table.Render(camera, pose), camera, told);
+  }
+  const auto gravity = finder.Find();
+  ASSERT_TRUE(gravity);
+  EXPECT_NEAR(gravity->floor_m, 6.0, 0.02);
+}
+
 TEST(Gravity, DriftInTiltLeavesTheFirstUp) {
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(RadFromDeg(26.0), Eigen::Vector3d::UnitY()));
   const Eigen::Vector3d up = turned * Eigen::Vector3d::UnitZ();
