@@ -11,11 +11,12 @@ namespace {
 // along, and what the first frames draw is never put right online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
-// follows the prior agrees with it). For so many motions, and again from where SLAM drifts more
-// than it was taken to until the next adjustment, the filter believes no less than this share of
-// the first walk. What is told of the errors is what was learnt: a filter that believes the matches
-// does not confirm itself.
+// follows the prior agrees with it). For so many motions that are seen along an axis, and again
+// from where SLAM drifts more than it was taken to until the next adjustment, the filter believes
+// no less than this share of the first walk along it. It does not confirm itself then, so what is
+// told of the errors is what was learnt, once some motions are seen.
 constexpr int kUnconfirmedMotions = 200;
+constexpr int kTellingMotions = 50;
 constexpr double kLeastOfFirstWalk = 0.5;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
@@ -33,15 +34,20 @@ constexpr double kLeastSigmas = 1.0;
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
 
+MotionNoise FirstNoise() {
+  MotionNoise noise;
+  noise.walk = kFirstWalk;
+  return noise;
+}
+
 }  // namespace
 
 DriftTracker::DriftTracker() { StartAnew(); }
 
 void DriftTracker::StartAnew() {
   learner_ = MotionNoiseLearner();
-  noise_ = MotionNoise();
-  noise_.walk = kFirstWalk;
-  learnt_ = noise_;
+  learnt_ = FirstNoise();
+  noise_ = learnt_;
   next_fit_ = kFirstFit;
   spread_.reset();
   evidence_ = DriftEvidence();
@@ -111,14 +117,19 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
 void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now) {
   learner_.AddMatches(motion, before, now);
   if (learner_.motions() < next_fit_) return;
-  learnt_ = learner_.Fit();
+  learnt_ = learner_.Fit(FirstNoise());
   noise_ = learnt_;
   noise_.walk *= kCaution;
   noise_.bias *= kCaution;
   Bound(noise_);
   Bound(learnt_);
-  if (!spread_ && (drifted_ || learner_.motions() < kUnconfirmedMotions)) {
-    noise_.walk = noise_.walk.cwiseMax(kLeastOfFirstWalk * kFirstWalk);
+  for (int axis = 0; !spread_ && axis < 3; ++axis) {
+    const int seen = learner_.seen()[static_cast<std::size_t>(axis)];
+    const double least = kLeastOfFirstWalk * kFirstWalk[axis];
+    if (drifted_ || seen < kUnconfirmedMotions) {
+      noise_.walk[axis] = std::max(noise_.walk[axis], least);
+    }
+    if (seen < kTellingMotions) learnt_.walk[axis] = std::max(learnt_.walk[axis], least);
   }
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }

@@ -80,7 +80,7 @@ void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d
       continue;
     }
     axis.match_variance += match_sigma[i] * match_sigma[i];
-    axis.matches += 1.0;
+    ++axis.matches;
     axis.summed_error[static_cast<std::size_t>(axis.run % kRing)] = axis.total;
     axis.total += error[i];
     ++axis.run;
@@ -108,7 +108,7 @@ void MotionNoiseLearner::Break() {
   for (Axis& axis : axes_) axis.run = 0;
 }
 
-MotionNoiseLearner::AxisNoise MotionNoiseLearner::FitAxis(const Axis& axis) const {
+std::optional<MotionNoiseLearner::AxisNoise> MotionNoiseLearner::FitAxis(const Axis& axis) const {
   std::vector<double> lags;
   std::vector<double> variances;
   std::vector<double> weights;
@@ -121,8 +121,8 @@ MotionNoiseLearner::AxisNoise MotionNoiseLearner::FitAxis(const Axis& axis) cons
     variances.push_back(variance);
     weights.push_back(stretches / (variance * variance));
   }
+  if (lags.empty()) return {};
   AxisNoise noise;
-  if (lags.empty()) return noise;
   Fit3 best;
   best.misfit = std::numeric_limits<double>::infinity();
   for (const double frames : kBiasFrames) {
@@ -133,21 +133,26 @@ MotionNoiseLearner::AxisNoise MotionNoiseLearner::FitAxis(const Axis& axis) cons
     noise.kept = kept;
   }
   // The matches jitter too.
-  const double match_variance = axis.match_variance / std::max(axis.matches, 1.0);
+  const double match_variance = axis.match_variance / std::max(axis.matches, 1);
   noise.jitter = std::sqrt(std::max(best.variance[0] - match_variance, 0.0));
   noise.walk = std::sqrt(best.variance[1]);
   noise.bias = std::sqrt(best.variance[2]);
   return noise;
 }
 
-MotionNoise MotionNoiseLearner::Fit() const {
-  MotionNoise noise;
+std::array<int, 3> MotionNoiseLearner::seen() const {
+  return {axes_[0].matches, axes_[1].matches, axes_[2].matches};
+}
+
+MotionNoise MotionNoiseLearner::Fit(const MotionNoise& unknown) const {
+  MotionNoise noise = unknown;
   for (int i = 0; i < 3; ++i) {
-    const AxisNoise axis = FitAxis(axes_[static_cast<std::size_t>(i)]);
-    noise.jitter[i] = axis.jitter;
-    noise.walk[i] = axis.walk;
-    noise.bias[i] = axis.bias;
-    noise.bias_kept[i] = axis.kept;
+    const std::optional<AxisNoise> axis = FitAxis(axes_[static_cast<std::size_t>(i)]);
+    if (!axis) continue;
+    noise.jitter[i] = axis->jitter;
+    noise.walk[i] = axis->walk;
+    noise.bias[i] = axis->bias;
+    noise.bias_kept[i] = axis->kept;
   }
   return noise;
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "mapper/frame_report.h"
@@ -41,7 +42,10 @@ class MotionNoiseLearner {
   void Break();
 
   int motions() const { return motions_; }
-  MotionNoise Fit() const;
+  // Of them, those that the matches saw along each axis.
+  std::array<int, 3> seen() const;
+  // `unknown`: of axes along which nothing was seen yet.
+  MotionNoise Fit(const MotionNoise& unknown = {}) const;
 
  private:
   static constexpr int kLags = 11;  // up to 1024 frames
@@ -54,12 +58,12 @@ class MotionNoiseLearner {
     double total = 0.0;
     int run = 0;  // motions without a break
     double match_variance = 0.0;
-    double matches = 0.0;
+    int matches = 0;
   };
   struct AxisNoise {
     double jitter = 0.0, walk = 0.0, bias = 0.0, kept = 0.0;
   };
-  AxisNoise FitAxis(const Axis& axis) const;
+  std::optional<AxisNoise> FitAxis(const Axis& axis) const;
 
   std::array<Axis, 3> axes_;
   int motions_ = 0;

@@ -105,6 +105,23 @@ TEST(DriftTracker, TellsErrorsAsLearntBeforeTheFirstAdjustment) {
   EXPECT_LT(tracker.step().walk.maxCoeff(), 0.001);
 }
 
+// A wall ahead: nothing is seen to the side, however long.
+TEST(DriftTracker, WhereNothingIsSeenSlamIsNotTakenForPerfect) {
+  DriftTracker tracker;
+  RandomStream random(5, RandomStage::kTest);
+  const Pose2 slam;
+  for (int i = 0; i < 1000; ++i) {
+    MatchResult match = NoisyMatch(random);
+    match.map_from_base.y_m = 0.0;
+    match.information(1, 1) = 0.0;
+    const FusedPose fused = tracker.Fuse(slam, match);
+    tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
+  }
+  EXPECT_LT(tracker.noise().walk.x(), 0.0015);
+  EXPECT_EQ(tracker.noise().walk.y(), 1.4 * 0.003);
+  EXPECT_EQ(tracker.step().walk.y(), 0.003);
+}
+
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   DriftTracker tracker;
   Pose2 slam;
