@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -45,8 +46,8 @@ CsvTable ReadCsv(const std::string& path) {
     }
     const std::string place = PlaceOfLine(path, line);
     if (cells.size() != names.size()) {
-      throw InputError(place,
-                       fmt::format("has {} cells, must have {}", cells.size(), names.size()));
+      throw InputError(
+          place, fmt::format("has {}, must have {}", Counted(cells.size(), "cell"), names.size()));
     }
     for (std::size_t i = 0; i < cells.size(); ++i) columns[i].push_back(CellValue(cells[i], place));
     ++table.rows;

@@ -11,6 +11,7 @@
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
 #include "eval/worst_frames_impl.h"
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/config.h"
@@ -168,7 +169,7 @@ std::string TitleOf(const Config& settings) {
 }
 
 std::string SubtitleOf(const Config& settings, std::size_t frames) {
-  std::string text = fmt::format("{} frames", frames);
+  std::string text = Counted(frames, "frame");
   const auto add = [&](const char* name, const char* key) {
     const std::string value = SettingOf(settings, key);
     if (!value.empty()) text += fmt::format(", {} {}", name, value);

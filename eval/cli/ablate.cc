@@ -31,8 +31,8 @@ void PrintShares(const ErrorShares& score) {
 }
 
 void PrintLegend(std::size_t seeds) {
-  fmt::print("{} seeds; owned: what the error falls by when the truth is put in, paired by seed\n",
-             seeds);
+  fmt::print("{}; owned: what the error falls by when the truth is put in, paired by seed\n",
+             Counted(seeds, "seed"));
   constexpr int kNameWidth = 10;
   for (const AblationVariant& variant : AblationVariants()) {
     if (variant.against.empty()) continue;

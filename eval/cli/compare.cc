@@ -58,11 +58,8 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
 }
 
 void PrintTable(const Comparison& comparison, const CompareArguments& arguments) {
-  const auto counted = [](auto count, const char* thing) {
-    return Counted(static_cast<std::size_t>(count), thing);
-  };
-  fmt::print("A: {} ({})\nB: {} ({})\n{}", arguments.a, counted(comparison.runs_a, "run"),
-             arguments.b, counted(comparison.runs_b, "run"), counted(comparison.pairs, "pair"));
+  fmt::print("A: {} ({})\nB: {} ({})\n{}", arguments.a, Counted(comparison.runs_a, "run"),
+             arguments.b, Counted(comparison.runs_b, "run"), Counted(comparison.pairs, "pair"));
   if (!comparison.paired_by.empty()) {
     fmt::print(", paired by {}", fmt::join(comparison.paired_by, ", "));
   }

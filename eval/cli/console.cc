@@ -78,10 +78,6 @@ std::string ShellWord(const std::string& text) {
   return word + "'";
 }
 
-std::string Counted(std::size_t count, std::string_view thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
 void SayReport(const std::string& folder) { fmt::print("look at {}/report.html\n", folder); }
 
 std::string Printable(std::string text) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eval/mapping_run.h"
+#include "mapper/core/counted.h"
 
 namespace depthgrid::cli {
 
@@ -47,9 +48,6 @@ class ProgressBar {
 
 // `text` as one word of a shell, in quotes if need be.
 std::string ShellWord(const std::string& text);
-
-// "1 run", "2 runs".
-std::string Counted(std::size_t count, std::string_view thing);
 
 // Where the page of what was done lies.
 void SayReport(const std::string& folder);

@@ -62,8 +62,8 @@ void Render(const RenderArguments& arguments) {
   WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(&world));
   folder.Commit();
   const std::string& output = arguments.common.output;
-  fmt::print("rendered {} frames in {}; the true map is {}/truth_map.yaml\n", sensor.FrameCount(),
-             output, output);
+  fmt::print("rendered {} in {}; the true map is {}/truth_map.yaml\n",
+             Counted(sensor.FrameCount(), "frame"), output, output);
   fmt::print("go on with: depthgrid slam {} -o POSES\n", ShellWord(output));
 }
 

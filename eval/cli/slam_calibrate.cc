@@ -21,9 +21,10 @@ void SlamCalibrate(const SlamCalibrateArguments& arguments) {
                                  arguments.target_m, found.drift_scale, found.mean_error_m));
   }
   fmt::print(
-      "# mean live error {:.4f} m in xy, not aligned, over {} frames and {} seeds\n"
+      "# mean live error {:.4f} m in xy, not aligned, over {} and {}\n"
       "slam: {{drift_scale: {:.4g}}}\n",
-      found.mean_error_m, world.trajectory.size(), seeds.count, found.drift_scale);
+      found.mean_error_m, Counted(world.trajectory.size(), "frame"), Counted(seeds.count, "seed"),
+      found.drift_scale);
 }
 
 }  // namespace depthgrid::cli

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "eval/idle_settings.h"
+#include "mapper/core/counted.h"
 
 namespace depthgrid {
 namespace {
@@ -72,8 +73,9 @@ std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
     }
   }
   if (repeats == 0) return {};
-  return fmt::format("{}: {} of {} runs repeat another: there {} {} no effect", plan.title, repeats,
-                     count, fmt::join(idle_keys, ", "), idle_keys.size() == 1 ? "has" : "have");
+  return fmt::format("{}: {} of {} {} another: there {} {} no effect", plan.title, repeats,
+                     Counted(count, "run"), repeats == 1 ? "repeats" : "repeat",
+                     fmt::join(idle_keys, ", "), idle_keys.size() == 1 ? "has" : "have");
 }
 
 std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config& experiment,

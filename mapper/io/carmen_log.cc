@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
@@ -112,9 +113,9 @@ class CarmenLogSource : public FrameSource {
     }
     if (names_.stamps_s.empty()) {
       if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
-      throw InputError(path_,
-                       fmt::format("no usable FLASER or ROBOTLASER1 line among {} lines{}", lines,
-                                   warnings_.empty() ? "" : "; first: " + warnings_[0]));
+      throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
+                                          Counted(lines, "line"),
+                                          warnings_.empty() ? "" : "; first: " + warnings_[0]));
     }
     Rewind();
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "mapper/core/counted.h"
+
 namespace depthgrid {
 namespace {
 
@@ -16,8 +18,10 @@ void Tally::Add(const std::string& what) {
 }
 
 void Tally::AppendTo(std::vector<std::string>& warnings, const std::string& name,
-                     std::string_view kind) const {
-  if (count > 0) warnings.push_back(fmt::format("{}: {} {} (first: {})", name, count, kind, first));
+                     std::string_view thing, std::string_view what) const {
+  if (count == 0) return;
+  warnings.push_back(
+      fmt::format("{}: {} {} (first: {})", name, Counted(count, thing), what, first));
 }
 
 void RowDamage::RequireMostGood(std::string_view text) {
@@ -30,7 +34,7 @@ void RowDamage::RequireAllGood() const {
 }
 
 void RowDamage::AppendTo(std::vector<std::string>& warnings, const std::string& place) const {
-  damaged_.AppendTo(warnings, place, "damaged rows left out");
+  damaged_.AppendTo(warnings, place, "damaged row", "left out");
   if (may_be_cut_) warnings.push_back(MayBeCut(place));
 }
 

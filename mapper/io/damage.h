@@ -16,9 +16,9 @@ struct Tally {
   std::string first;
 
   void Add(const std::string& what);
-  // "name: 3 kind (first: ...)", nothing when there was none.
-  void AppendTo(std::vector<std::string>& warnings, const std::string& name,
-                std::string_view kind) const;
+  // "name: 3 things what (first: ...)", nothing when there was none.
+  void AppendTo(std::vector<std::string>& warnings, const std::string& name, std::string_view thing,
+                std::string_view what) const;
 };
 
 // The rows of a text file, of which some may be damaged.

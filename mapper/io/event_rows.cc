@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/pose_track.h"
@@ -35,8 +36,9 @@ class CsvRow {
   CsvRow(std::string_view row, const std::string& place)
       : fields_(SplitAtCommas(row)), place_(place) {
     if (fields_.size() != kCsvColumns && fields_.size() != kCsvColumnsWithStamps) {
-      throw InputError(place_, fmt::format("has {} columns, must have {} or {}", fields_.size(),
-                                           kCsvColumns, kCsvColumnsWithStamps));
+      throw InputError(place_,
+                       fmt::format("has {}, must have {} or {}", Counted(fields_.size(), "column"),
+                                   kCsvColumns, kCsvColumnsWithStamps));
     }
   }
   CsvEvent Parse() const {

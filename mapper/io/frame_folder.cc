@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/damage.h"
@@ -98,7 +99,7 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
       damaged.Add(error.what());
     }
   }
-  damaged.AppendTo(recording.warnings, recording.name, "pose files damaged");
+  damaged.AppendTo(recording.warnings, recording.name, "pose file", "damaged");
   return poses;
 }
 
@@ -126,8 +127,8 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
   const auto same = [](const auto& a, const auto& b) { return a.number == b.number; };
   const auto end = std::unique(images.begin(), images.end(), same);
   if (end != images.end()) {
-    recording.warnings.push_back(fmt::format("{}: {} images with a number already given, ignored",
-                                             folder, images.end() - end));
+    recording.warnings.push_back(fmt::format("{}: {} with a number already given, ignored", folder,
+                                             Counted(images.end() - end, "image")));
     images.erase(end, images.end());
   }
   for (const NumberedImage& image : images) {

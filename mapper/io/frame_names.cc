@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "mapper/core/counted.h"
+
 namespace depthgrid {
 
 std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s) {
@@ -19,8 +21,9 @@ std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> 
   if (poses.size() == count || count == 0) return poses;
   const auto last = static_cast<std::size_t>(frames.NumberOf(count - 1));
   const bool by_number = poses.size() == last + 1;
-  warnings.push_back(fmt::format("{}: {} poses for {} frames, paired {}", place, poses.size(),
-                                 count, by_number ? "by the frames' numbers" : "from the first"));
+  warnings.push_back(fmt::format("{}: {} for {}, paired {}", place, Counted(poses.size(), "pose"),
+                                 Counted(count, "frame"),
+                                 by_number ? "by the frames' numbers" : "from the first"));
   std::vector<std::optional<Pose3>> paired(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pose = by_number ? static_cast<std::size_t>(frames.NumberOf(i)) : i;

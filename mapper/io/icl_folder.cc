@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/matrix_poses.h"
@@ -43,7 +44,8 @@ SlamOutput SlamOutputOf(std::vector<std::optional<Pose3>> poses, Recording& reco
   const bool lacks_first = poses.size() + 1 == images || poses.size() == last;
   if (poses.size() != images && lacks_first) poses.insert(poses.begin(), std::nullopt);
   if (poses.size() < images) {
-    throw InputError(path, fmt::format("holds {} poses for {} images", poses.size(), images));
+    throw InputError(path, fmt::format("holds {} for {}", Counted(poses.size(), "pose"),
+                                       Counted(images, "image")));
   }
   poses = PairInOrder(std::move(poses), NamesOf(recording, 0.0), path, recording.warnings);
   SlamOutput slam;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/event_rows.h"
@@ -167,8 +168,8 @@ SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
   damage.RequireMostGood(text);
   damage.AppendTo(result.warnings, place);
   if (missing > 0) {
-    result.warnings.push_back(
-        fmt::format("{}: {} events of frames that the recording does not have", place, missing));
+    result.warnings.push_back(fmt::format("{}: {} of frames that the recording does not have",
+                                          place, Counted(missing, "event")));
   }
   return result;
 }

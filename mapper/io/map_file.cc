@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -55,8 +56,8 @@ MapYaml ReadYaml(const std::string& path) {
   config.Read(yaml);
   if (yaml.image.empty()) throw InputError(path, "image is empty, must name a file");
   if (yaml.origin.size() != 2 && yaml.origin.size() != 3) {
-    throw InputError(path,
-                     fmt::format("origin has {} numbers, must be [x, y, yaw]", yaml.origin.size()));
+    throw InputError(path, fmt::format("origin has {}, must be [x, y, yaw]",
+                                       Counted(yaml.origin.size(), "number")));
   }
   yaml.origin.resize(3, 0.0);
   if (yaml.negate != "0" && yaml.negate != "1" && yaml.negate != "true" && yaml.negate != "false") {

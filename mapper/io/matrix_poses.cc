@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -65,9 +66,9 @@ Layout LayoutOf(const std::vector<TextRow>& rows, const std::string& place) {
   const auto first = std::find_if(rows.begin(), rows.end(), is_whole);
   if (first == rows.end()) {
     throw InputError(PlaceOfLine(place, rows.front().line),
-                     fmt::format("has {} columns, must be a row of a matrix (4) or a whole matrix "
+                     fmt::format("has {}, must be a row of a matrix (4) or a whole matrix "
                                  "(12 or 16)",
-                                 rows.front().fields.size()));
+                                 Counted(rows.front().fields.size(), "column")));
   }
   if (first->fields.size() != 4) return {1, first->fields.size()};
   // Four lines of four when the fourth (or, with that one damaged, the eighth) is 0 0 0 1, which

@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -77,8 +78,9 @@ void RequireText(const TextRow& row, const std::string& path) {
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path) {
   RequireText(row, path);
   if (row.fields.size() != count) {
-    throw InputError(PlaceOfLine(path, row.line),
-                     fmt::format("has {} columns, must have {}", row.fields.size(), count));
+    throw InputError(
+        PlaceOfLine(path, row.line),
+        fmt::format("has {}, must have {}", Counted(row.fields.size(), "column"), count));
   }
   std::vector<double> numbers;
   for (const std::string_view field : row.fields) {

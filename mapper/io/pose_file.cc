@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/matrix_poses.h"
@@ -45,7 +46,7 @@ Trajectory StampedMatrices(const std::string& text, const std::string& place,
   damage.AppendTo(warnings, place);
   if (empty > damage.damaged()) {
     warnings.push_back(
-        fmt::format("{}: {} poses with NaN ignored", place, empty - damage.damaged()));
+        fmt::format("{}: {} with NaN ignored", place, Counted(empty - damage.damaged(), "pose")));
   }
   poses = PairInOrder(std::move(poses), frames, place, warnings);
   Trajectory trajectory;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <optional>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/pose_track.h"
@@ -80,8 +81,9 @@ class RecordingSource final : public FrameSource {
   int FrameCount() const override { return static_cast<int>(recording_.images.size()); }
   std::vector<std::string> Warnings() const override {
     std::vector<std::string> warnings = recording_.warnings;
-    unreadable_.AppendTo(warnings, recording_.name, "depth images missing or damaged");
-    wrong_size_.AppendTo(warnings, recording_.name, "depth images of another size than the camera");
+    unreadable_.AppendTo(warnings, recording_.name, "depth image", "missing or damaged");
+    wrong_size_.AppendTo(warnings, recording_.name, "depth image",
+                         "of another size than the camera");
     return warnings;
   }
 
@@ -96,8 +98,9 @@ class RecordingSource final : public FrameSource {
     const std::size_t frames = recording_.images.size();
     if (without == frames) throw NoSharedStamps(slam, options);
     if (without > 0) {
-      recording_.warnings.push_back(fmt::format("{}: {} of {} frames have no pose{}",
-                                                recording_.name, without, frames,
+      recording_.warnings.push_back(fmt::format("{}: {} of {} {} no pose{}", recording_.name, without,
+                                                Counted(frames, "frame"),
+                                                without == 1 ? "has" : "have",
                                                 WhyWithout(slam, options, frames - without)));
     }
     int lost_loops = 0;

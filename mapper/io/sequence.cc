@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/gravity.h"
@@ -111,8 +112,8 @@ void FindCorrections(const std::string& path, DepthSequence& sequence,
     sequence.recording.warnings.push_back(path + ": " + *doubt);
   }
   if (jumps.empty()) return;
-  notes.push_back(fmt::format("the poses jump at {} frame{}: no motion is taken there",
-                              jumps.size(), jumps.size() == 1 ? "" : "s"));
+  notes.push_back(fmt::format("the poses jump at {}: no motion is taken there",
+                              Counted(jumps.size(), "frame")));
   StartEpochs(jumps, slam.live);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/loop_events.h"
@@ -31,8 +32,6 @@ std::string LoopRow(const LoopClosure& loop, int epoch, const std::vector<SlamPo
                      loop.sigma_rotation_rad, stamp_s(loop.reported_at_frame),
                      stamp_s(loop.first_frame), stamp_s(loop.second_frame));
 }
-
-const char* PluralS(std::size_t count) { return count == 1 ? "" : "s"; }
 
 struct FramedPose {
   std::size_t frame = 0;
@@ -81,11 +80,12 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& 
     throw InputError(path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
                                        RangesOf(frames, poses)));
   }
-  const auto warn = [&](int count, const char* what) {
-    if (count > 0) warnings.push_back(fmt::format("{}: {} {}", path, count, what));
+  const auto warn = [&](int count, const char* thing, const char* what) {
+    if (count == 0) return;
+    warnings.push_back(fmt::format("{}: {} {}", path, Counted(count, thing), what));
   };
-  warn(homeless, "poses have the stamp of no input frame, ignored");
-  warn(doubled, "poses beside a nearer one of the same input frame, ignored");
+  warn(homeless, "pose", "with the stamp of no input frame, ignored");
+  warn(doubled, "pose", "beside a nearer one of the same input frame, ignored");
   return framed;
 }
 
@@ -115,9 +115,8 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
   const std::vector<int> jumps = FindJumps(slam.live, revised);
   if (!jumps.empty()) {
-    input.notes.push_back(
-        fmt::format("SLAM corrected itself at {} frame{} (jumps of its live poses)", jumps.size(),
-                    PluralS(jumps.size())));
+    input.notes.push_back(fmt::format("SLAM corrected itself at {} (jumps of its live poses)",
+                                      Counted(jumps.size(), "frame")));
   }
   if (const auto doubt = DoubtOf(slam.live, jumps)) {
     input.warnings.push_back(paths.live + ": " + *doubt);
@@ -126,8 +125,8 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   if (!paths.loops.empty() || paths.final.empty()) return;
   slam.loops = LoopsFromRevision(slam.live, revised, jumps);
   if (!slam.loops.empty()) {
-    input.notes.push_back(fmt::format("{} loop closure{} read off the revised poses",
-                                      slam.loops.size(), PluralS(slam.loops.size())));
+    input.notes.push_back(
+        fmt::format("{} read off the revised poses", Counted(slam.loops.size(), "loop closure")));
   }
 }
 
@@ -157,7 +156,7 @@ SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double 
     if (event.loop) loops.push_back(*event.loop);
   }
   input.notes.push_back(
-      fmt::format("{} loop closure{} from {}", loops.size(), PluralS(loops.size()), events.kind));
+      fmt::format("{} from {}", Counted(loops.size(), "loop closure"), events.kind));
   return events;
 }
 

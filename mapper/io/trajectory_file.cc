@@ -7,6 +7,7 @@
 #include <iterator>
 #include <optional>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -49,12 +50,13 @@ Trajectory PosesOf(TrajectoryFile file, const std::string& path) {
 std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const {
   std::vector<std::string> warnings;
   damage.AppendTo(warnings, name);
-  const auto warn = [&](int count, const char* what) {
-    if (count > 0) warnings.push_back(fmt::format("{}: {} {}", name, count, what));
+  const auto warn = [&](int count, const char* thing, const char* what) {
+    if (count == 0) return;
+    warnings.push_back(fmt::format("{}: {} {}", name, Counted(count, thing), what));
   };
-  warn(invalid_poses, "poses with NaN or a zero quaternion ignored");
-  warn(unsorted_stamps, "rows earlier than the row before, sorted");
-  warn(duplicate_stamps, "rows with a stamp already given, ignored");
+  warn(invalid_poses, "pose", "with NaN or a zero quaternion ignored");
+  warn(unsorted_stamps, "row", "earlier than the row before, sorted");
+  warn(duplicate_stamps, "row", "with a stamp already given, ignored");
   return warnings;
 }
 

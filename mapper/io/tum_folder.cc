@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/damage.h"
@@ -137,11 +138,12 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   damage.RequireMostGood(text);
   damage.AppendTo(list.warnings, place);
   const int repeated = SortAndNumber(list.files);
-  const auto warn = [&](int count, const char* what) {
-    if (count > 0) list.warnings.push_back(fmt::format("{}: {} {}", place, count, what));
+  const auto warn = [&](int count, const char* thing, const char* what) {
+    if (count == 0) return;
+    list.warnings.push_back(fmt::format("{}: {} {}", place, Counted(count, thing), what));
   };
-  warn(unsorted, "rows earlier than the row before, sorted");
-  warn(repeated, "rows with a stamp already given, ignored");
+  warn(unsorted, "row", "earlier than the row before, sorted");
+  warn(repeated, "row", "with a stamp already given, ignored");
   return list;
 }
 

@@ -87,7 +87,7 @@ TEST_F(FrameFolderTest, ScanNetsFolders) {
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_FALSE(frames[1].slam_from_camera);                      // lost
   EXPECT_EQ(frames[2].slam_from_camera->translation.x(), 10.0);  // by number, not by name
-  EXPECT_THAT(WarningsOf(*source), ElementsAre("~: 1 of 3 frames have no pose"));
+  EXPECT_THAT(WarningsOf(*source), ElementsAre("~: 1 of 3 frames has no pose"));
 }
 
 TEST_F(FrameFolderTest, OneFileOfPoses) {
@@ -103,7 +103,7 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
   EXPECT_FALSE(frames[2].slam_from_camera);
   EXPECT_THAT(WarningsOf(*source),
               ElementsAre("~/poses.txt: 2 poses for 3 frames, paired from the first",
-                          "~: 1 of 3 frames have no pose"));
+                          "~: 1 of 3 frames has no pose"));
 }
 
 // An image that was taken away since leaves its pose behind.
@@ -137,12 +137,11 @@ TEST_F(FrameFolderTest, DamageIsCountedAndSurvived) {
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_FALSE(frames[1].slam_from_camera);
   EXPECT_FALSE(frames[2].depth);
-  EXPECT_THAT(
-      WarningsOf(*source),
-      ElementsAre(HasSubstr("~: 1 pose files damaged (first: ~/frame-000001.pose.txt:1: has "
-                            "3 columns"),
-                  "~: 1 of 3 frames have no pose",
-                  HasSubstr("~: 1 depth images missing or damaged")));
+  EXPECT_THAT(WarningsOf(*source),
+              ElementsAre(HasSubstr("~: 1 pose file damaged (first: ~/frame-000001.pose.txt:1: has "
+                                    "3 columns"),
+                          "~: 1 of 3 frames has no pose",
+                          HasSubstr("~: 1 depth image missing or damaged")));
 }
 
 TEST_F(FrameFolderTest, OneClearLineForEachFault) {

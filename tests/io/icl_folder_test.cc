@@ -110,7 +110,7 @@ TEST_F(IclFolderTest, PngAndFreiburgPosesFallOnTheWalls) {
   const auto source = OpenIclFolder(folder_);
   EXPECT_EQ(source->FrameCount(), 3);
   EXPECT_LT(WorstResidual(*source), 0.001);
-  EXPECT_THAT(source->Warnings(), testing::ElementsAre(HasSubstr("1 of 3 frames have no pose")));
+  EXPECT_THAT(source->Warnings(), testing::ElementsAre(HasSubstr("1 of 3 frames has no pose")));
 }
 
 // The counter-example: the same folder read with the other sign of fy does not fall together.
@@ -174,7 +174,7 @@ TEST_F(IclFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(error(), "~/scene_00_0000.depth:2: 'x' is not a number");
   Write("scene_00_0001.depth", "1");
   Write("scene_00_0002.depth", "1");
-  EXPECT_EQ(error(), "~/a.gt.sim: holds 1 poses for 3 images");
+  EXPECT_EQ(error(), "~/a.gt.sim: holds 1 pose for 3 images");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(LoopEvents, StampedLoopsWithAndWithoutSigmas) {
       "10.0 10.2 0 0 0 0 0 1 0\n"
       "10.0 17.0 0 0 0 0 0 0 1\n");
   EXPECT_EQ(events.kind, "stamped loops");
-  EXPECT_THAT(events.warnings, ElementsAre(HasSubstr("e.txt: 1 events of frames that the")));
+  EXPECT_THAT(events.warnings, ElementsAre(HasSubstr("e.txt: 1 event of frames that the")));
   ASSERT_EQ(events.events.size(), 2U);
   EXPECT_EQ(events.events[0].frame, 2);  // ordered by the frame that reports
   EXPECT_EQ(events.events[1].loop->first_frame, 1);

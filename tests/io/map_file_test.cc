@@ -143,7 +143,7 @@ TEST_F(MapFileTest, OneClearLineForEachFault) {
   EXPECT_EQ(ErrorOf(image, "resolution: 0.001\norigin: [0, 5300000, 0]\n"),
             "m.yaml: origin is 5.3e+09 cells of 0.001 m from zero, at most 2.1e+09 can be counted");
   EXPECT_EQ(ErrorOf(image, "resolution: 1\norigin: [0]\n"),
-            "m.yaml: origin has 1 numbers, must be [x, y, yaw]");
+            "m.yaml: origin has 1 number, must be [x, y, yaw]");
   EXPECT_EQ(ErrorOf(image, std::string(kYaml) + "mode: tertiary\n"),
             "m.yaml:7: mode is 'tertiary', must be one of trinary, scale, raw (did you mean "
             "'trinary'?)");

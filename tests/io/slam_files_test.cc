@@ -176,7 +176,7 @@ TEST_F(SlamFiles, PosesBesideTheFramesAreCountedAndSurvived) {
   EXPECT_EQ(read.slam.live.size(), 11U);
   EXPECT_EQ(read.slam.live[8].slam_from_camera, written.live[9].slam_from_camera);
   ASSERT_EQ(read.warnings.size(), 2U);
-  EXPECT_THAT(read.warnings[0], HasSubstr("slam.txt: 1 poses have the stamp of no input frame"));
+  EXPECT_THAT(read.warnings[0], HasSubstr("slam.txt: 1 pose with the stamp of no input frame"));
 }
 
 TEST_F(SlamFiles, MatricesTakeTheFramesStampsInOrder) {
@@ -188,7 +188,7 @@ TEST_F(SlamFiles, MatricesTakeTheFramesStampsInOrder) {
   EXPECT_EQ(read.slam.live[2].slam_from_camera->translation.x(), 0.3);
   EXPECT_FALSE(read.slam.live[3].slam_from_camera);
   ASSERT_EQ(read.warnings.size(), 2U);
-  EXPECT_THAT(read.warnings[0], HasSubstr("1 poses with NaN"));
+  EXPECT_THAT(read.warnings[0], HasSubstr("1 pose with NaN"));
   EXPECT_THAT(read.warnings[1], HasSubstr("3 poses for 4 frames"));
 }
 
@@ -242,7 +242,7 @@ TEST_F(SlamFiles, LoopsKeepTheirFramesWhenOthersAreDropped) {
     EXPECT_EQ(read.slam.loops[1].second_frame, 7);       // 9
     EXPECT_EQ(read.slam.live[6].epoch, 1);
     EXPECT_EQ(read.slam.live[7].epoch, 2);
-    EXPECT_THAT(read.warnings[0], HasSubstr("loops.csv: 1 events of frames that the recording"));
+    EXPECT_THAT(read.warnings[0], HasSubstr("loops.csv: 1 event of frames that the recording"));
   }
 }
 
@@ -278,7 +278,7 @@ TEST_F(SlamFiles, DamagedAndCutRowsOfLoopsAreCounted) {
   std::string csv = ReadFile(Paths().loops);
   WriteFile(Paths().loops, csv.substr(0, csv.size() - 60));
   EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(written)}).warnings,
-              ElementsAre(AllOf(HasSubstr("loops.csv: 1 damaged rows left out (first: "),
+              ElementsAre(AllOf(HasSubstr("loops.csv: 1 damaged row left out (first: "),
                                 HasSubstr("loops.csv:5: has "))));
   WriteFile(Paths().loops, csv.substr(0, csv.size() - 3));
   EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(written)}).warnings,

@@ -58,8 +58,8 @@ TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
   EXPECT_EQ(file.poses[0].stamp_s, 1.0);
   EXPECT_EQ(file.poses[1].world_from_camera.translation.x(), 0.0);  // the first of stamp 3
   EXPECT_THAT(file.Warnings("t"), ElementsAre("t: 4 poses with NaN or a zero quaternion ignored",
-                                              "t: 1 rows earlier than the row before, sorted",
-                                              "t: 1 rows with a stamp already given, ignored"));
+                                              "t: 1 row earlier than the row before, sorted",
+                                              "t: 1 row with a stamp already given, ignored"));
 }
 
 TEST(TrajectoryFile, SurvivesDamageInsideALongFile) {

@@ -155,7 +155,7 @@ TEST_F(TumFolderTest, DamagedFramesAreCountedAndSurvived) {
   EXPECT_THAT(warnings,
               ElementsAre("~: 2 depth images missing or damaged (first: ~/depth/0.125000.png: no "
                           "such file)",
-                          "~: 1 depth images of another size than the camera (first: "
+                          "~: 1 depth image of another size than the camera (first: "
                           "~/depth/0.375000.png: is 5x3 pixels, the camera 4x3)"));
 }
 
@@ -164,8 +164,8 @@ TEST_F(TumFolderTest, UnsortedAndRepeatedRowsAreCounted) {
       ParseFileList("# c\n2 depth/b.png\n1 depth/a.png\n2 depth/c.png\n", "depth.txt");
   ASSERT_EQ(list.files.size(), 2U);
   EXPECT_EQ(list.files[1].path, "depth/b.png");
-  EXPECT_THAT(list.warnings, ElementsAre("depth.txt: 1 rows earlier than the row before, sorted",
-                                         "depth.txt: 1 rows with a stamp already given, ignored"));
+  EXPECT_THAT(list.warnings, ElementsAre("depth.txt: 1 row earlier than the row before, sorted",
+                                         "depth.txt: 1 row with a stamp already given, ignored"));
 }
 
 TEST_F(TumFolderTest, NamesMayHaveSpaces) {
@@ -185,11 +185,11 @@ TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
   EXPECT_EQ(list.files[1].number, 2);
   EXPECT_EQ(list.files[3].number, 4);
   EXPECT_THAT(list.warnings,
-              ElementsAre("depth.txt: 1 damaged rows left out (first: depth.txt:3: must be a stamp "
+              ElementsAre("depth.txt: 1 damaged row left out (first: depth.txt:3: must be a stamp "
                           "and a file name)",
                           "depth.txt: the last line has no line end; it is used, but may be cut",
-                          "depth.txt: 1 rows earlier than the row before, sorted",
-                          "depth.txt: 1 rows with a stamp already given, ignored"));
+                          "depth.txt: 1 row earlier than the row before, sorted",
+                          "depth.txt: 1 row with a stamp already given, ignored"));
   WriteSequence();
   Write("rgb.txt", "0.005 rgb/a.png\n0.26 rgb/c.png\n0.38 rgb/d.png\n");
   Write("depth.txt", "0 depth/a.png\n0.01 depth/b.png\n0.25 depth/c.png\n0.375 depth/d.png\n");
