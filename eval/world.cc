@@ -7,6 +7,7 @@
 
 #include "eval/hash.h"
 #include "eval/shipped.h"
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
@@ -25,7 +26,7 @@ std::string HashOf(const Scene& scene) {
 
 const std::string& NamedTrajectory(const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
-  for (const auto& [candidate, spec] : scene.trajectories) names.push_back(candidate);
+  for (const auto& [candidate, path] : scene.trajectories) names.push_back(candidate);
   if (names.empty()) {
     throw InputError("trajectory", "the scene names none, must be a TUM file");
   }
@@ -44,7 +45,7 @@ Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
 
 Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentOptions& options) {
   const std::string& name = NamedTrajectory(scene, options.trajectory);
-  const TrajectoryOptions path = ReadTrajectoryOptions(scene.trajectories.at(name));
+  const TrajectoryOptions& path = scene.trajectories.at(name);
   const int whole = MinimumFrames(path);
   Trajectory trajectory =
       MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.trajectory_seed);
@@ -54,8 +55,8 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
   };
   // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
   constexpr double kFloatSlackM = 1e-5;
-  CheckInside(trajectory, BoundsOfMesh(scene.mesh), name);
-  CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, name);
+  CheckInside(trajectory, BoundsOfMesh(scene.mesh), path.place);
+  CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
   return trajectory;
 }
 
@@ -63,8 +64,8 @@ Trajectory FromFile(const ExperimentOptions& options) {
   Trajectory trajectory = ReadTrajectory(options.trajectory);
   const auto wanted = static_cast<std::size_t>(options.frames);
   if (wanted > trajectory.size()) {
-    throw InputError("frames", fmt::format("is {}, must be at most the {} poses of {}", wanted,
-                                           trajectory.size(), options.trajectory));
+    throw InputError("frames", fmt::format("is {}, must be at most the {} of {}", wanted,
+                                           Counted(trajectory.size(), "pose"), options.trajectory));
   }
   if (wanted > 0) trajectory.resize(wanted);
   return trajectory;
@@ -81,7 +82,10 @@ std::string WorldHash(const ExperimentOptions& options) {
   if (IsFile(options.trajectory)) {
     hash.Text(ReadFile(options.trajectory));
   } else {
-    hash.Text(scene.trajectories.at(NamedTrajectory(scene, options.trajectory)).ToYaml());
+    const TrajectoryOptions& path =
+        scene.trajectories.at(NamedTrajectory(scene, options.trajectory));
+    hash.Text(ToYaml(path));
+    for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
   }
   return hash.Hex();
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mapper/io/config.h"
 #include "sim/material.h"
+#include "sim/trajectory.h"
 #include "sim/triangle_mesh.h"
 
 namespace depthgrid {
@@ -32,7 +32,7 @@ struct Scene {
   double floor_z_m = 0.0;
   std::optional<double> ceiling_z_m;  // empty when there is none
   Lighting lighting;
-  std::map<std::string, Config> trajectories;  // read by sim/trajectory.h
+  std::map<std::string, TrajectoryOptions> trajectories;
 };
 
 // Reads a scene file (.yaml, docs/scenes.md) or a mesh file (.obj .ply .stl .gltf .glb .dae).

@@ -143,10 +143,7 @@ class SceneReader {
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
     ReadLighting(config.Take("lighting"));
-    Config trajectories = config.Take("trajectories");
-    for (const auto& name : trajectories.Keys()) {
-      scene_.trajectories.emplace(name, trajectories.Take(name));
-    }
+    ReadTrajectories(config.Take("trajectories"));
     scene_.mesh = BuildItems(config.TakeMaps("shapes"), 0);
     for (auto& material : scene_.mesh.material_of_triangle) {
       if (material == kInherited) material = 0;
@@ -228,6 +225,14 @@ class SceneReader {
     lighting.Read(options);
     scene_.lighting.ambient = LinearFrom255(options.ambient);
     scene_.lighting.sky = LinearFrom255(options.sky);
+  }
+
+  void ReadTrajectories(Config trajectories) {
+    for (const auto& name : trajectories.Keys()) {
+      Config spec = trajectories.Take(name);
+      spec.NameSubject(fmt::format("trajectory '{}'", name));
+      scene_.trajectories.emplace(name, ReadTrajectoryOptions(std::move(spec)));
+    }
   }
 
   TriangleMesh BuildItems(std::vector<Config> items, int depth) {

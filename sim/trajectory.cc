@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "sim/camera_path.h"
 #include "sim/hand_shake.h"
@@ -14,8 +15,8 @@ namespace {
 void RequireSize(const std::vector<double>& values, std::size_t size, const char* key,
                  const std::string& place) {
   if (values.size() != size) {
-    throw InputError(place,
-                     fmt::format("{} has {} numbers, must have {}", key, values.size(), size));
+    throw InputError(
+        place, fmt::format("{} has {}, must have {}", key, Counted(values.size(), "number"), size));
   }
 }
 
@@ -67,9 +68,8 @@ TrajectoryOptions ReadTrajectoryOptions(Config spec) {
     options.waypoints.push_back(waypoint);
   }
   if (options.waypoints.size() < 2) {
-    throw InputError(options.place,
-                     fmt::format("a trajectory has {} waypoints, must have at least 2",
-                                 options.waypoints.size()));
+    throw InputError(options.place, fmt::format("has {}, must have at least 2",
+                                                Counted(options.waypoints.size(), "waypoint")));
   }
   if (options.laps != 1.0 && !options.closed) {
     throw InputError(options.place, "laps needs closed: true");
@@ -99,10 +99,6 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
     trajectory.push_back({stamp_s, CameraPoseOf(pose) * shake.At(stamp_s)});
   }
   return trajectory;
-}
-
-Trajectory MakeTrajectory(const Config& spec, int frames, double rate_hz, std::uint64_t seed) {
-  return MakeTrajectory(ReadTrajectoryOptions(spec), frames, rate_hz, seed);
 }
 
 void CheckClearance(const Trajectory& trajectory,

@@ -42,7 +42,7 @@ struct TrajectoryOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// Reads and checks one entry of Scene::trajectories. Throws InputError.
+// Reads and checks one entry of a scene file's `trajectories`. Throws InputError.
 TrajectoryOptions ReadTrajectoryOptions(Config spec);
 
 // The least number of frames that keeps within the bounds.
@@ -52,7 +52,6 @@ int MinimumFrames(const TrajectoryOptions& options, double rate_hz = kFrameRateH
 // InputError for fewer frames than the bounds need.
 Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
                           std::uint64_t seed);
-Trajectory MakeTrajectory(const Config& spec, int frames, double rate_hz, std::uint64_t seed);
 
 // Throws InputError naming `place`, the first frame nearer to geometry than clearance_m, its
 // position and its distance.

@@ -34,8 +34,7 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
   std::string first_of_scene = name;
   std::string size = SizeText(scene.mesh);
   std::string triangles = fmt::format("{}", scene.mesh.triangles.size());
-  for (const auto& [path_name, spec] : scene.trajectories) {
-    const TrajectoryOptions path = ReadTrajectoryOptions(spec);
+  for (const auto& [path_name, path] : scene.trajectories) {
     const int frames = MinimumFrames(path);
     TrajectoryOptions still = path;  // the hand's shake is no way travelled
     still.shake_m = 0.0;
@@ -61,7 +60,7 @@ void ListScenes(const ScenesArguments&) {
     const Config config = Config::FromFile(path);
     if (IsStudy(config)) {
       const std::size_t cases = ReadStudyOutline(config).cases.size();
-      experiments.push_back({name, fmt::format("{} cases", cases), "", ""});
+      experiments.push_back({name, Counted(cases, "case"), "", ""});
       continue;
     }
     const ExperimentOptions options =

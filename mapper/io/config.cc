@@ -75,6 +75,7 @@ Config& Config::operator=(Config&&) noexcept = default;
 Config::Config(const Config& other) : tree_(std::make_unique<Tree>()) {
   tree_->root = YAML::Clone(other.tree_->root);
   tree_->place = other.tree_->place;
+  tree_->subject = other.tree_->subject;
   tree_->overrides = other.tree_->overrides;
 }
 Config& Config::operator=(const Config& other) {
@@ -134,8 +135,7 @@ Config Config::Take(const std::string& key) {
   taken->place = tree_->place;
   const YAML::Node node = Find(tree_->root, key);
   if (node.IsDefined()) {
-    if (!node.IsMap())
-      throw InputError(PlaceOf(tree_->place, node), "'" + key + "' must be a map of keys");
+    if (!node.IsMap()) throw InputError(tree_->At(node), "'" + key + "' must be a map of keys");
     taken->root = node;
     taken->overrides = tree_->OverridesBelow(key);
     tree_->root.remove(key);
@@ -143,19 +143,22 @@ Config Config::Take(const std::string& key) {
   return Config(std::move(taken));
 }
 
+void Config::NameSubject(const std::string& subject) { tree_->subject = subject; }
+
 std::vector<Config> Config::TakeMaps(const std::string& key) {
   std::vector<Config> maps;
   const YAML::Node node = Find(tree_->root, key);
   if (!node.IsDefined()) return maps;
   if (!node.IsSequence()) {
-    throw InputError(PlaceOf(tree_->place, node), "'" + key + "' must be a list");
+    throw InputError(tree_->At(node), "'" + key + "' must be a list");
   }
   for (const auto& item : node) {
     if (!YAML::Node(item).IsMap()) {
-      throw InputError(PlaceOf(tree_->place, item), "each item of '" + key + "' must be a map");
+      throw InputError(tree_->At(item), "each item of '" + key + "' must be a map");
     }
     auto taken = std::make_unique<Tree>();
     taken->place = tree_->place;
+    taken->subject = tree_->subject;
     taken->root = YAML::Node(item);
     maps.push_back(Config(std::move(taken)));
   }
@@ -163,7 +166,7 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
   return maps;
 }
 
-std::string Config::Place() const { return PlaceOf(tree_->place, tree_->root); }
+std::string Config::Place() const { return tree_->At(tree_->root); }
 
 bool Config::Has(const std::string& key_path) const {
   return Find(tree_->root, key_path).IsDefined();
@@ -172,6 +175,7 @@ bool Config::Has(const std::string& key_path) const {
 Config Config::Only(const std::vector<std::string>& keys) const {
   auto kept = std::make_unique<Tree>();
   kept->place = tree_->place;
+  kept->subject = tree_->subject;
   kept->overrides = tree_->overrides;
   for (const auto& entry : tree_->root) {
     if (std::find(keys.begin(), keys.end(), entry.first.Scalar()) != keys.end()) {

@@ -39,6 +39,8 @@ class Config {
   // Removes a top-level key whose value is a list of maps and returns them in order; none if
   // absent.
   std::vector<Config> TakeMaps(const std::string& key);
+  // What this tree is about, "trajectory 'tour'": errors name it behind file and line.
+  void NameSubject(const std::string& subject);
   bool Has(const std::string& key_path) const;
   // A copy with only these of the top-level keys: for files of other programs, which may hold more
   // than is read here.

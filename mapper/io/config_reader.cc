@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "mapper/core/error.h"
 #include "mapper/io/config_text.h"
@@ -32,7 +33,7 @@ class YamlReader final : public OptionsVisitor {
       std::uint64_t number = 0;
       const bool negative = node.IsScalar() && node.Scalar().starts_with('-');
       if (!node.IsScalar() || negative || !YAML::convert<std::uint64_t>::decode(node, number)) {
-        Fail(node, key, "a whole number, 0 or more");
+        Fail(node, key, fmt::format("a whole number from 0 to {}", UINT64_MAX));
       }
       value = number;
     }
@@ -192,7 +193,11 @@ std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::No
   for (auto set = overrides.rbegin(); set != overrides.rend(); ++set) {
     if (holds(set->key_path, key_path) || holds(key_path, set->key_path)) return set->place;
   }
-  return PlaceOf(place, node);
+  return At(node);
+}
+
+std::string Config::Tree::At(const YAML::Node& node) const {
+  return PlaceOf(place, node) + (subject.empty() ? "" : ": " + subject);
 }
 
 std::vector<ConfigOverride> Config::Tree::OverridesBelow(const std::string& key) const {

@@ -21,8 +21,11 @@ struct ConfigOverride {
 struct Config::Tree {
   YAML::Node root{YAML::NodeType::Map};
   std::string place;
+  std::string subject;  // what errors name behind file and line; may be empty
   std::vector<ConfigOverride> overrides;
 
+  // Where a node stands, for errors: "file:line", and the subject.
+  std::string At(const YAML::Node& node) const;
   // Where a value came from, for errors: the assignment that set it, or one that set the group of
   // keys it is in, else file and line.
   std::string PlaceOfKey(const std::string& key_path, const YAML::Node& node) const;

@@ -161,7 +161,8 @@ TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ErrorOf("frames: 0"), "run.yaml:1: frames is '0', must be from 1 to 1000000");
   EXPECT_EQ(ErrorOf("frames: 1.5"), "run.yaml:1: frames is '1.5', must be a whole number");
   EXPECT_EQ(ErrorOf("step_m: .nan"), "run.yaml:1: step_m is '.nan', must be from 0 to 1");
-  EXPECT_EQ(ErrorOf("seed: -1"), "run.yaml:1: seed is '-1', must be a whole number, 0 or more");
+  EXPECT_EQ(ErrorOf("seed: -1"),
+            "run.yaml:1: seed is '-1', must be a whole number from 0 to 18446744073709551615");
   EXPECT_EQ(ErrorOf("seed: 1\nseed: 2"), "run.yaml:2: key 'seed' is given twice");
   EXPECT_EQ(ErrorOf("fusion: {mode: kalmann}"),
             "run.yaml:1: fusion.mode is 'kalmann', must be one of fixed, kalman (did you mean "

@@ -61,8 +61,7 @@ TEST(ShippedScenes, AreFurnishedAndHaveRoomForTheirPaths) {
     EXPECT_LT(outside_m.maxCoeff(), 0.5F);
     const RayScene rays(scene.mesh);
     ASSERT_EQ(scene.trajectories.size(), 2U);
-    for (const auto& [path, spec] : scene.trajectories) {
-      const TrajectoryOptions options = ReadTrajectoryOptions(spec);
+    for (const auto& [path, options] : scene.trajectories) {
       const auto distance_m = [&](const Eigen::Vector3d& p) {
         return rays.DistanceToSurface(p.cast<float>(), 2.0F);
       };
@@ -90,6 +89,22 @@ TEST(ShippedScenes, RoomsAreClosed) {
     }
     EXPECT_EQ(escaped, 0) << name;
   }
+}
+
+TEST_F(SceneFiles, ErrorsOfTrajectoriesNameLineAndTrajectory) {
+  const auto error = [&](const std::string& path) {
+    return ErrorOf("shapes:\n" + kFloor + "trajectories:\n  tour:\n" + path);
+  };
+  EXPECT_EQ(error("    kind: plane\n"),
+            "~/s.yaml:5: trajectory 'tour': kind is 'plane', must be one of handheld, planar (did "
+            "you mean 'planar'?)");
+  EXPECT_EQ(error("    kind: planar\n    waypoints: [{at: [1, 1]}]\n"),
+            "~/s.yaml:5: trajectory 'tour': has 1 waypoint, must have at least 2");
+  EXPECT_EQ(
+      error("    kind: planar\n    waypoints:\n      - {at: [1, 1]}\n      - {at: [1, 1, 1]}\n"),
+      "~/s.yaml:8: trajectory 'tour': at has 3 numbers, must have 2");
+  EXPECT_EQ(error("    kind: planar\n    speed: 1\n    waypoints: [{at: [1, 1]}, {at: [2, 1]}]\n"),
+            "~/s.yaml:6: trajectory 'tour': unknown key 'speed', did you mean 'speed_mps'?");
 }
 
 TEST_F(SceneFiles, GroupsArePlacedTurnedScaledAndRepeated) {
@@ -136,7 +151,10 @@ TEST_F(SceneFiles, ColoursLightsAndPathsAreRead) {
       "name: hall\nmaterials:\n"
       "  m: {colour: [255, 0, 0], texture: tiles, scale_m: 0.3, grain: z, gloss: 0.5, glow: 2}\n"
       "lighting:\n  ambient: [0, 0, 0]\n  lights: [{at: [1, 2, 3], strength: 4}]\n"
-      "trajectories: {a: {kind: planar}, b: {kind: handheld}}\nshapes:\n" +
+      "trajectories:\n  a: {kind: planar, waypoints: [{at: [0, 0]}, {at: [1, 0]}]}\n"
+      "  b: {waypoints: [{at: [0, 0, 1], look_at: [1, 0, 1]}, {at: [1, 0, 1], look_at: [2, 0, "
+      "1]}]}\n"
+      "shapes:\n" +
       kFloor);
   EXPECT_EQ(scene.name, "hall");
   const Material& m = scene.materials.at(1);

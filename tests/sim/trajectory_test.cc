@@ -39,7 +39,7 @@ Trajectory AtTheBounds(const TrajectoryOptions& options, std::uint64_t seed = 1)
 
 std::string ErrorOf(const std::string& text, int frames = 5000) {
   try {
-    MakeTrajectory(Config::FromText(text, "scene.yaml"), frames, kFrameRateHz, 1);
+    MakeTrajectory(Options(text), frames, kFrameRateHz, 1);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -189,12 +189,13 @@ TEST(Trajectory, LapsOverlap) {
 }
 
 TEST(Trajectory, RefusesWhatItCannotDo) {
-  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml: frames is 100, must be at least "));
-  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}]"), HasSubstr("at least 2"));
+  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml:2: frames is 100, must be at least "));
+  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}]"),
+              HasSubstr("has 1 waypoint, must have at least 2"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [0, 0]}]"),
               HasSubstr("are the same, at (0.00, 0.00, 0.60)"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints:\n  - {at: [0, 0]}\n  - {at: [0, 0, 1]}"),
-              HasSubstr("scene.yaml: at has 3 numbers, must have 2"));
+              HasSubstr("scene.yaml:4: at has 3 numbers, must have 2"));
   EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, 0]}, {at: [0, 0]}]"),
               HasSubstr("turns on the spot near (2"));
   EXPECT_THAT(ErrorOf("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
