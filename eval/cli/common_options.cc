@@ -14,10 +14,9 @@ void AddSet(CLI::App& app, CommonArguments& common) {
       ->allow_extra_args(false);
 }
 
-void AddOutput(CLI::App& app, CommonArguments& common) {
+void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning) {
   app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
-  app.add_flag("--force", common.force,
-               "Write into a folder that is not empty: an earlier run's files go, all others stay");
+  app.add_flag("--force", common.force, force_meaning);
 }
 
 void AddThreads(CLI::App& app, CommonArguments& common) {
@@ -46,7 +45,8 @@ void AddMapMode(CLI::App& app, MapMode& mode) {
 
 void AddOutputForms(CLI::App& app, OutputArguments& output) {
   AddMapMode(app, output.map_mode);
-  app.add_option("--video", output.video, "Write a video of the map growing (MP4, by ffmpeg)")
+  app.add_option("--video", output.video,
+                 "Write a video of the map growing (MP4, by ffmpeg); --force replaces one")
       ->type_name("FILE");
 }
 

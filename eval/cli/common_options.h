@@ -9,7 +9,10 @@
 namespace depthgrid::cli {
 
 void AddSet(CLI::App& app, CommonArguments& common);
-void AddOutput(CLI::App& app, CommonArguments& common);
+constexpr const char* kForceMeaning =
+    "Write into a folder that is not empty: an earlier run's files go, all others stay";
+// `force_meaning`: what --force does, in --help.
+void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning = kForceMeaning);
 void AddThreads(CLI::App& app, CommonArguments& common);
 void AddCache(CLI::App& app, CommonArguments& common);
 void AddMapMode(CLI::App& app, MapMode& mode);

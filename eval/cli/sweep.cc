@@ -50,6 +50,7 @@ class SweepFolder {
     if (!force && fs::exists(path) && !fs::is_empty(path) && !IsSweep()) {
       throw InputError(path, "is not empty and no sweep; choose another folder, or --force");
     }
+    if (!SweepDatabase::Exists(path)) RequireNoOtherResult(path);
     std::error_code error;
     created_ = fs::create_directories(path, error);
     if (error) throw InputError(path, "cannot be created: " + error.message());
@@ -84,13 +85,14 @@ void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t p
   if (runs.size() < planned) fmt::print("; {} done already", planned - runs.size());
   if (failed > 0) fmt::print("; {} failed and tried again", failed);
   fmt::print("\n");
+  std::fflush(stdout);
   if (runs.empty()) return;
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
   const std::string time = estimate.cpu_s > 0.0
                                ? "about " + DurationText(estimate.cpu_s / context.threads)
                                : "the first points fail: nobody knows how long";
   fmt::print("{} with {} at a time, {} of scans\n", time, context.threads,
-             Counted(static_cast<std::size_t>(estimate.scan_sets), "different set"));
+             Counted(estimate.scan_sets, "different set"));
   std::fflush(stdout);
 }
 
@@ -234,7 +236,7 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
   });
   job.command = PartCommand(arguments, sweep_file, output, job.parts);
   fmt::print("{}: {}, {}; {}\n", plan.title, Counted(plan.runs.size(), "run"), plan.size_text,
-             Counted(static_cast<std::size_t>(job.parts), "task"));
+             Counted(job.parts, "task"));
   std::fflush(stdout);
   ProgressBar bar("runs");
   job.progress = [&](int done, int) { bar.Show(done, static_cast<int>(plan.runs.size())); };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include "eval/sweep/sweep_results.h"
 #include "mapper/core/error.h"
@@ -12,8 +13,6 @@
 
 namespace depthgrid {
 namespace {
-
-constexpr double kMaxValues = 1e6;  // of one axis: more is a slip of the pen
 
 // What an axis may say instead of listing its values.
 struct RangeOptions {
@@ -25,7 +24,7 @@ struct RangeOptions {
   void Visit(OptionsVisitor& v) {
     v.Number("from", from, {}, "first value");
     v.Number("to", to, {}, "last value");
-    v.Number("count", count, {1, kMaxValues}, "how many values");
+    v.Number("count", count, {1, kMostSweepRuns}, "how many values");
     v.Choice("scale", scale, {{RangeScale::kLinear, "linear"}, {RangeScale::kLog, "log"}},
              "equal differences or equal ratios");
   }
@@ -36,7 +35,7 @@ struct SeedOptions {
   std::uint64_t first = 1;
 
   void Visit(OptionsVisitor& v) {
-    v.Number("seeds", seeds, {1, kMaxValues}, "how many seeds");
+    v.Number("seeds", seeds, {1, kMostSweepRuns}, "how many seeds");
     v.Seed("first", first, "the first of them");
   }
 };
@@ -112,11 +111,11 @@ SweepAxis ReadAxis(const ConfigEntry& entry) {
   if ((axis.values.empty() && !axis.range) || nothing) {
     throw InputError(entry.place, fmt::format("axis '{}' has no values", entry.key));
   }
-  for (std::size_t i = 0; i < axis.values.size(); ++i) {
-    const auto end = axis.values.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find(axis.values.begin(), end, axis.values[i]) == end) continue;
+  std::set<std::vector<std::string>> seen;
+  for (const auto& value : axis.values) {
+    if (seen.insert(value).second) continue;
     throw InputError(entry.place, fmt::format("axis '{}' has the value {} twice", entry.key,
-                                              fmt::join(axis.values[i], ", ")));
+                                              fmt::join(value, ", ")));
   }
   return axis;
 }

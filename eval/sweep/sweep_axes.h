@@ -9,6 +9,10 @@
 
 namespace depthgrid {
 
+// Of one sweep, and so of one axis: more is a slip of the pen, or several sweeps. Reading the plan
+// of so many takes seconds.
+constexpr int kMostSweepRuns = 100'000;
+
 enum class RangeScale { kLinear, kLog };
 
 // A range without a count, from which a random sweep draws.

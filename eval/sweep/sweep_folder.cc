@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
@@ -53,7 +54,7 @@ std::string Difference(const std::string& a, const std::string& b) {
 
 // `there` must be what `here` is, in these respects.
 void RequireSame(const std::string& place, const Environment& there, const Environment& here,
-                 const std::vector<std::string>& respects) {
+                 const std::vector<std::string>& respects, const char* remedy) {
   for (const std::string& respect : respects) {
     const auto there_is = there.find(respect), here_is = here.find(respect);
     if (there_is == there.end() || here_is == here.end()) continue;  // of an earlier version
@@ -62,8 +63,8 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
                              : respect == "experiment" ? "a sweep of another experiment"
                              : respect == "rooms"      ? "runs in a scene or path that has changed"
                                                        : "a sweep of another " + respect;
-    throw InputError(
-        place, fmt::format("holds {}: {}", what, Difference(there_is->second, here_is->second)));
+    throw InputError(place, fmt::format("holds {}: {}; {}", what,
+                                        Difference(there_is->second, here_is->second), remedy));
   }
 }
 
@@ -126,6 +127,15 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 
 }  // namespace
 
+void RequireNoOtherResult(const std::string& folder) {
+  for (const auto& [mark, what] : {std::pair{"run.yaml", "a run"},
+                                   {"study.yaml", "a study"},
+                                   {"ablation.json", "an ablation"}}) {
+    if (!fs::exists(fs::path(folder) / mark)) continue;
+    throw InputError(folder, fmt::format("holds {}; choose another folder for the sweep", what));
+  }
+}
+
 SweepLock::SweepLock(const std::string& folder) {
   const std::string path = folder + kLockName;
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -146,7 +156,8 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
   if (SweepDatabase::Exists(folder)) {
     SweepDatabase database = SweepDatabase::Open(folder);
     RequireSame(folder, database.Environment(), here,
-                {"version", "instruction_set", "experiment", "sweep", "shard", "rooms"});
+                {"version", "instruction_set", "experiment", "sweep", "shard", "rooms"},
+                "choose another folder, or remove this one");
     return database;
   }
   if (!force && !IsEmptyFolder(folder)) {
@@ -165,7 +176,8 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
     parts.push_back(ReadSweep(folder));
     const SweepResults& part = parts.back();
     RequireSame(folder, part.environment, parts[0].environment,
-                {"version", "instruction_set", "experiment", "sweep", "rooms"});
+                {"version", "instruction_set", "experiment", "sweep", "rooms"},
+                "parts are of one sweep");
     const auto missing = part.planned_runs - static_cast<int>(part.rows());
     if (missing > 0) {
       throw InputError(folder, fmt::format("is not finished: {} of {} runs are missing", missing,

@@ -10,6 +10,7 @@
 #include "eval/shipped.h"
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_metrics.h"
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 
@@ -17,8 +18,6 @@ namespace depthgrid {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kMaxRuns = 1e7;
 
 // The top level of a sweep's file, `axes` and `set` apart.
 struct SweepFileOptions {
@@ -33,7 +32,7 @@ struct SweepFileOptions {
     v.Choice("mode", mode,
              {{SweepMode::kGrid, "grid"}, {SweepMode::kZip, "zip"}, {SweepMode::kRandom, "random"}},
              "how axes are combined");
-    v.Number("samples", samples, {1, kMaxRuns}, "points of a random sweep");
+    v.Number("samples", samples, {1, kMostSweepRuns}, "points of a random sweep");
     v.Seed("sample_seed", sample_seed, "of the draws of a random sweep");
     v.Group("stop", stop, "when a point needs no more seeds");
   }
@@ -45,10 +44,6 @@ using Combination = std::vector<std::string>;
 std::vector<Combination> Grid(const std::vector<const SweepAxis*>& axes) {
   std::vector<Combination> combinations = {{}};
   for (const SweepAxis* axis : axes) {
-    if (static_cast<double>(combinations.size()) * static_cast<double>(axis->values.size()) >
-        kMaxRuns) {
-      throw InputError(axis->place, fmt::format("the sweep has more than {:.0f} runs", kMaxRuns));
-    }
     std::vector<Combination> longer;
     for (const Combination& combination : combinations) {
       for (const auto& value : axis->values) {
@@ -137,8 +132,6 @@ void EnumerateRuns(const SweepFileOptions& file, const std::string& place, Sweep
   SweepFileOptions crossed = file;
   crossed.mode = SweepMode::kGrid;
   const std::vector<Combination> seeds = Points(seed_axes, crossed, place);
-  const double count = static_cast<double>(points.size()) * static_cast<double>(seeds.size());
-  if (count > kMaxRuns) throw InputError(place, fmt::format("has {:.0f} runs", count));
   const KeyOrder point_order(point_axes, plan.parameter_keys);
   const KeyOrder seed_order(seed_axes, plan.parameter_keys);
   plan.point_count = static_cast<int>(points.size());
@@ -153,24 +146,50 @@ void EnumerateRuns(const SweepFileOptions& file, const std::string& place, Sweep
       plan.runs.push_back(std::move(run));
     }
   }
-  plan.size_text =
-      fmt::format("{} point{} x {} seed{}", points.size(), points.size() == 1 ? "" : "s",
-                  seeds.size(), seeds.size() == 1 ? "" : "s");
+  plan.size_text = Counted(points.size(), "point") + " x " + Counted(seeds.size(), "seed");
+}
+
+// Before anything is made of the runs: from the sizes of the axes alone.
+void RequireFewEnough(const SweepFileOptions& file, const std::vector<SweepAxis>& axes,
+                      const std::string& place) {
+  double points = file.mode == SweepMode::kRandom ? file.samples : 1.0;
+  double seeds = 1.0;
+  for (const SweepAxis& axis : axes) {
+    const auto values = static_cast<double>(axis.values.size());
+    if (axis.IsSeed()) {
+      seeds *= values;
+    } else if (file.mode == SweepMode::kGrid) {
+      points *= values;
+    } else if (file.mode == SweepMode::kZip) {
+      points = std::max(points, values);
+    }
+  }
+  if (points * seeds <= kMostSweepRuns) return;
+  throw InputError(
+      place, fmt::format("has {:.0f} runs, must have at most {}", points * seeds, kMostSweepRuns));
 }
 
 // Each value alone, so that a slip is found before the first run and named with its line.
 void CheckValues(const SweepPlan& plan) {
+  const ExperimentOptions base = ReadExperiment(plan.base, plan.base_folder);
+  const auto names_scene = [](const SweepAxis& axis) {
+    return std::find(axis.keys.begin(), axis.keys.end(), "scene") != axis.keys.end();
+  };
+  if (std::none_of(plan.axes.begin(), plan.axes.end(), names_scene)) {
+    ResolveName(base.scene, ShippedKind::kScene);
+  }
   for (const SweepAxis& axis : plan.axes) {
     std::vector<std::vector<std::string>> values = axis.values;
     if (axis.range) {
       values = {{fmt::format("{}", axis.range->from)}, {fmt::format("{}", axis.range->to)}};
     }
     for (const auto& value : values) {
-      Config config = Config::FromText(plan.base.ToYaml(), axis.place);
+      Config own;
       for (std::size_t i = 0; i < axis.keys.size(); ++i)
-        config.Set(axis.keys[i], value[i], axis.place);
-      const ExperimentOptions options = ReadExperiment(std::move(config), plan.base_folder);
-      ResolveName(options.scene, ShippedKind::kScene);
+        own.Set(axis.keys[i], value[i], axis.place);
+      ExperimentOptions options = base;
+      own.Read(options);
+      if (own.Has("scene")) ResolveName(options.scene, ShippedKind::kScene, plan.base_folder);
     }
   }
 }
@@ -242,6 +261,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   const Config fixed = config.Take("set");
   SweepFileOptions file;
   config.Read(file);
+  RequireFewEnough(file, plan.axes, path);
   const std::string experiment =
       ResolveName(file.experiment, ShippedKind::kExperiment, fs::path(path).parent_path().string());
   plan.base_folder = fs::path(experiment).parent_path().string();

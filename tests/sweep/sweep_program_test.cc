@@ -298,6 +298,39 @@ TEST_F(ProgramSweep, GoesOnOnlyWithTheSameSweep) {
   EXPECT_EQ(FilesIn("mine"), std::vector<std::string>{"notes.txt"});
 }
 
+TEST_F(ProgramSweep, ForceMixesNoResults) {
+  std::filesystem::create_directory(Path("run"));
+  Write("run/run.yaml", "scene: ./room.yaml\n");
+  const Outcome into_run = Program("sweep ./sweep.yaml -o run --force");
+  EXPECT_EQ(into_run.exit_code, 2);
+  EXPECT_THAT(into_run.err, HasSubstr("run: holds a run; choose another folder"));
+  EXPECT_EQ(FilesIn("run"), std::vector<std::string>{"run.yaml"});
+  std::filesystem::create_directory(Path("mine"));
+  Write("mine/notes.txt", "mine");
+  Succeed("sweep ./sweep.yaml -o mine --force");
+  EXPECT_EQ(ReadFile(Path("mine/notes.txt")), "mine");
+  const Outcome other = Program("sweep ./sweep.yaml --set frames=11 -o mine --force");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("here; choose another folder, or remove this one"));
+}
+
+TEST_F(ProgramSweep, TooManyRunsAreRefusedAtOnce) {
+  const auto error = [&](const std::string& axes) {
+    Write("many.yaml", "experiment: ./small.yaml\n" + axes);
+    const Outcome outcome = Program("sweep ./many.yaml --dry-run -o out");
+    EXPECT_EQ(outcome.exit_code, 2) << axes;
+    return outcome.err;
+  };
+  EXPECT_EQ(
+      error("axes: {mapper.fusion.gain: {from: 0, to: 1, count: 1001}, seed: {seeds: 1000}}\n"),
+      "depthgrid: ./many.yaml: has 1001000 runs, must have at most 100000\n");
+  EXPECT_THAT(error("axes: {mapper.fusion.gain: {from: 0, to: 1, count: 1000000}}\n"),
+              HasSubstr("many.yaml:2: count is '1000000', must be from 1 to 100000"));
+  EXPECT_THAT(error("mode: random\nsamples: 2000\naxes: {mapper.fusion.gain: {from: 0, to: 1}, "
+                    "seed: {seeds: 100}}\n"),
+              HasSubstr("has 200000 runs"));
+}
+
 // Half of the runs in one room and half in another would be in one table.
 TEST_F(ProgramSweep, DoesNotGoOnInAChangedRoom) {
   Succeed("sweep ./sweep.yaml -o out");
@@ -345,7 +378,7 @@ TEST_F(ProgramSweep, OfAFolderThatMayNotBeWrittenThePageGoesElsewhere) {
   const Outcome compared = program("compare ../out ../out");
   EXPECT_EQ(compared.exit_code, 0) << compared.out;
   const Outcome in_place = program("report ../out");
-  EXPECT_EQ(in_place.exit_code, 1);
+  EXPECT_EQ(in_place.exit_code, 2);
   EXPECT_EQ(in_place.out,
             "depthgrid: ../out: cannot be written: Permission denied; -o names "
             "another folder for the page\n");
