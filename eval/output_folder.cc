@@ -141,7 +141,11 @@ void OutputFolder::RemoveSuperseded() const {
       superseded.push_back(entry.path());
     }
   }
-  for (const fs::path& file : superseded) fs::remove(file);
+  for (const fs::path& file : superseded) {
+    fs::remove(file);
+    std::error_code not_empty;  // a folder of such files goes with the last of them
+    if (file.parent_path() != target_) fs::remove(file.parent_path(), not_empty);
+  }
 }
 
 void OutputFolder::Commit() {

@@ -103,9 +103,6 @@ int Start(const std::vector<std::string>& command, int& pipe_end) {
 }  // namespace
 
 void RequireVideo(const std::string& path) {
-  if (fs::is_directory(path)) throw InputError(path, "is a folder, must be a video file (.mp4)");
-  const fs::path folder = fs::absolute(path).parent_path();
-  if (!fs::is_directory(folder)) throw InputError(path, "its folder does not exist");
   if (!path.ends_with(".mp4")) throw InputError(path, "must end in .mp4");
   if (!HasProgram("ffmpeg")) {
     throw InputError("--video", "needs the program ffmpeg (Debian: apt install ffmpeg)");

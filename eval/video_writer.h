@@ -8,7 +8,7 @@
 
 namespace depthgrid {
 
-// Throws InputError for a file that cannot be a video or when there is no ffmpeg to write it: said
+// Throws InputError for a name that is no video's or when there is no ffmpeg to write it: said
 // before hours of mapping, not after.
 void RequireVideo(const std::string& path);
 

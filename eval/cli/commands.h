@@ -37,6 +37,8 @@ struct OutputArguments {
   MapMode map_mode = MapMode::kTrinary;
   std::string video;  // empty: none
 };
+// That the video can be written, before the work.
+void RequireVideoFile(const OutputArguments& output, const CommonArguments& common);
 
 struct RunArguments {
   std::string experiment;
@@ -91,6 +93,7 @@ struct EvalTrajectoryArguments {
   std::string convention = "evo";
   double max_difference_s = -1.0;  // negative: the convention's
   std::string errors;              // CSV to write; empty: none
+  bool force = false;              // though that one is there
   bool json = false;
 };
 void EvalTrajectory(const EvalTrajectoryArguments& arguments);
@@ -145,7 +148,7 @@ void Report(const ReportArguments& arguments);
 
 struct RegridArguments {
   std::string folder;
-  double resolution_m = 0.05;
+  std::string resolution;  // as given, for the message; metres
   MapMode map_mode = MapMode::kTrinary;
 };
 void Regrid(const RegridArguments& arguments);

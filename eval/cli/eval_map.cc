@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -41,7 +42,7 @@ void AddRows(const std::string& name, const CellScores& scores, std::vector<Row>
   for (std::size_t tolerance = 0; tolerance < scores.occupied.size(); ++tolerance) {
     const StateScore& walls = scores.occupied[tolerance];
     const StateScore& free = scores.free[tolerance];
-    rows.push_back({fmt::format("{}, {} cells tolerance", name, tolerance),
+    rows.push_back({fmt::format("{}, {} tolerance", name, Counted(tolerance, "cell")),
                     Number(walls.precision, 4), Number(walls.recall, 4), Number(walls.f1, 4),
                     Number(walls.iou, 4), Number(free.precision, 4), Number(free.recall, 4),
                     Number(free.f1, 4), Number(free.iou, 4)});
@@ -97,12 +98,55 @@ void PrintOthers(const MapQuality& quality) {
   }
   if (quality.navigability) {
     const Navigability& drive = *quality.navigability;
-    rows.push_back({fmt::format("{} plans: success", drive.pairs), Number(drive.success_rate, 4)});
+    rows.push_back(
+        {fmt::format("{}: success", Counted(drive.pairs, "plan")), Number(drive.success_rate, 4)});
     rows.push_back({"  falsely blocked", Number(drive.falsely_blocked_rate, 4)});
     rows.push_back({"  collisions of the planned", Number(drive.collision_rate, 4)});
     rows.push_back({"  length ratio", Number(drive.length_ratio, 4)});
   }
   fmt::print("\n{}", Table(rows));
+}
+
+int KnownToBoth(const CellScores& scores) {
+  int known = 0;
+  for (const CellState truth : {CellState::kFree, CellState::kOccupied}) {
+    for (const CellState estimate : {CellState::kFree, CellState::kOccupied}) {
+      known +=
+          scores.confusion[static_cast<std::size_t>(truth)][static_cast<std::size_t>(estimate)];
+    }
+  }
+  return known;
+}
+
+// Of the cells that could be seen, those of which the truth knows nothing.
+double UnknownShare(const CellScores& observable) {
+  const auto& unknown = observable.confusion[static_cast<std::size_t>(CellState::kUnknown)];
+  return std::accumulate(unknown.begin(), unknown.end(), 0.0) /
+         std::max(1, observable.scored_cells);
+}
+
+// Scores of maps that have nothing to do with each other look like those of a bad map.
+std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapScore& score,
+                                  const std::string& observable_path) {
+  // What the truth's own poses see is known to it: in the shipped rooms all of it, of another room's
+  // 0.97 to 1.
+  constexpr double kMostUnknown = 0.01;
+  std::vector<std::string> doubts;
+  if (KnownToBoth(score.all) == 0) {
+    doubts.push_back(
+        fmt::format("{}: shares no known cell with {}: maps of other places, or in other "
+                    "frames",
+                    arguments.estimate, arguments.reference));
+  }
+  if (!score.observable) return doubts;
+  if (const double share = UnknownShare(*score.observable);
+      score.observable->scored_cells == 0 || share > kMostUnknown) {
+    doubts.push_back(
+        fmt::format("{}: of the cells that could be seen, {} does not know {:.0f} %: of "
+                    "another place, or in another frame",
+                    observable_path, arguments.reference, 100.0 * share));
+  }
+  return doubts;
 }
 
 void PrintTable(const MapScore& score) {
@@ -138,6 +182,7 @@ void EvalMap(const EvalMapArguments& arguments) {
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
   score.quality = ScoreMapQuality(truth, estimate, observable, {});
+  Warn(DoubtsOf(arguments, score, observable_path));
   if (!HoldsProbabilities(estimate)) score.quality->calibration.reset();
   if (arguments.json) {
     fmt::print("{}", MetricsJson({}, &score));

@@ -5,6 +5,7 @@
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
+#include "eval/output_file.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
@@ -89,6 +90,7 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
 }  // namespace
 
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
+  if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
   std::vector<std::string> warnings;
   const Trajectory reference = ReadTrajectory(arguments.reference, warnings);
   const Trajectory estimate = ReadTrajectory(arguments.estimate, warnings);

@@ -74,8 +74,10 @@ void AddMap(Program& program) {
       "  depthgrid map rgbd_folder --poses slam.txt -o /tmp/out\n"
       "  depthgrid map rgbd_folder --poses live.txt --loops loops.csv -o /tmp/out",
       &Map);
-  app->add_option("input", arguments->input,
-                  "A TUM, ICL-NUIM or frame-by-frame folder, or a CARMEN laser log")
+  app->add_option(
+         "input", arguments->input,
+         "A TUM, ICL-NUIM or frame-by-frame folder, a CARMEN laser log, or the run.yaml of a "
+         "map, which is made again")
       ->required();
   app->add_option("--poses", arguments->poses,
                   "SLAM's live poses, TUM format or a matrix a frame; default: the folder's own")
@@ -147,7 +149,9 @@ void AddSweep(Program& program) {
                   "Parts to make; 0 gives each at least 30 s of work")
       ->check(CLI::Range(0, 1000));
   app->add_flag("--dry-run", arguments->dry_run, "Say how many runs and how long, then stop");
-  AddOutput(*app, arguments->common);
+  AddOutput(*app, arguments->common,
+            "Begin in a folder that holds other files, which stay; never one with a run or another "
+            "sweep in it");
   AddSet(*app, arguments->common);
   AddCache(*app, arguments->common);
   AddKeys(*app, &ExperimentKeys);
@@ -216,6 +220,7 @@ void AddEval(Program& program) {
   trajectory
       ->add_option("--errors", t->errors, "Write the errors over time to this CSV, not aligned")
       ->type_name("FILE");
+  trajectory->add_flag("--force", t->force, "Replace that file if it is there already");
   trajectory->add_flag("--json", t->json, "Print JSON instead of a table");
   const auto [map, m] = program.Add<EvalMapArguments>(
       *eval, "map", "Agreement of a map with the true one, Nav2 YAML files",
@@ -289,9 +294,9 @@ void AddRegrid(Program& program) {
       "Draw a run's map again from its stored scans, as map_RESOLUTION.yaml beside the first",
       "depthgrid regrid /tmp/out --resolution 0.02", &Regrid);
   app->add_option("folder", arguments->folder, "Folder that `run` or `map` wrote")->required();
-  app->add_option("--resolution", arguments->resolution_m, "Cell size, metres")
+  app->add_option("--resolution", arguments->resolution, "Cell size, metres, from 0.005 to 1")
       ->required()
-      ->check(RefusalUnlessPositive);
+      ->type_name("FLOAT");
   AddMapMode(*app, arguments->map_mode);
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "eval/cli/commands.h"
+#include "eval/output_file.h"
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/config.h"
@@ -22,27 +23,30 @@ GridOptions GridOptionsOf(const std::string& run_yaml) {
 }
 
 // --resolution with the range of the key it stands for.
-void SetResolution(GridOptions& options, double resolution_m) {
+Config ResolutionOf(const RegridArguments& arguments) {
   Config config;
-  const std::string value = fmt::format("{}", resolution_m);
-  config.Set("resolution_m", value, "--resolution " + value);
-  config.Read(options);
+  config.Set("resolution_m", arguments.resolution, "--resolution " + arguments.resolution);
+  GridOptions only_checked;
+  config.Read(only_checked);
+  return config;
 }
 
 }  // namespace
 
 void Regrid(const RegridArguments& arguments) {
+  const Config resolution = ResolutionOf(arguments);
   const fs::path folder = arguments.folder;
   if (!fs::exists(folder / "run.yaml")) {
     throw InputError(arguments.folder, "is no run's folder: it has no run.yaml");
   }
+  RequireWritable(arguments.folder);
   GridOptions options = GridOptionsOf((folder / "run.yaml").string());
-  SetResolution(options, arguments.resolution_m);
+  resolution.Read(options);
   const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
   if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
   MapDrawing drawing(options);
   for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
-  const fs::path map = folder / fmt::format("map_{}.yaml", arguments.resolution_m);
+  const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
   WriteMap(map.string(), drawing.Map(), arguments.map_mode);
   fmt::print("{}\n", map.string());
 }

@@ -1,13 +1,11 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <filesystem>
-#include <system_error>
 
 #include "eval/ablation_report.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/output_file.h"
 #include "eval/output_folder.h"
 #include "eval/run_report.h"
 #include "eval/study_report.h"
@@ -33,11 +31,7 @@ void WriteReport(const std::string& folder, const ReportPlace& place) {
 }
 
 void WriteInPlace(const std::string& folder) {
-  if (::access(folder.c_str(), W_OK) != 0) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written: {}; -o names another folder for the page", folder,
-                    std::generic_category().message(errno)));
-  }
+  RequireWritable(folder, "; -o names another folder for the page");
   WriteReport(folder, {folder});
 }
 

@@ -50,6 +50,24 @@ TEST_F(EvalTrajectory, WritesTheErrorsOverTime) {
   EXPECT_THAT(csv, HasSubstr("\n5.000000,0.09999999999999964,0.09999999999999964,0\n"));
 }
 
+TEST_F(EvalTrajectory, AFileOfErrorsIsCheckedBeforeTheWork) {
+  Write("errors.csv", "mine");
+  const auto refusal = [&](const std::string& file) {
+    const Outcome outcome = Program("eval trajectory truth.txt estimate.txt --errors " + file);
+    EXPECT_EQ(outcome.exit_code, 2) << file;
+    EXPECT_EQ(outcome.out, "") << file;
+    return outcome.err;
+  };
+  EXPECT_EQ(refusal("errors.csv"),
+            "depthgrid: errors.csv: is there already; choose another name, or --force to replace "
+            "it\n");
+  EXPECT_EQ(ReadFile(Path("errors.csv")), "mine");
+  EXPECT_THAT(refusal("nowhere/x.csv"), HasSubstr("nowhere/x.csv: its folder does not exist"));
+  EXPECT_THAT(refusal("."), HasSubstr(".: is a folder"));
+  Succeed("eval trajectory truth.txt estimate.txt --errors errors.csv --force");
+  EXPECT_THAT(ReadFile(Path("errors.csv")), StartsWith("stamp_s,"));
+}
+
 // evo takes the nearest stamp within 0.01 s, TUM's scripts within 0.02 s.
 TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
   std::string late;

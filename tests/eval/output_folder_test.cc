@@ -98,6 +98,19 @@ TEST_F(OutputFolderTest, ForceReplacesItsOwnNamesAndKeepsOthers) {
   EXPECT_EQ(ReadFile(Path("out/mine.txt")), "precious");
 }
 
+TEST_F(OutputFolderTest, AFolderGoesWithTheLastOfItsSupersededFiles) {
+  fs::create_directories(Path("out/frames"));
+  fs::create_directories(Path("out/kept"));
+  for (const char* file : {"out/run.yaml", "out/frames/0.png", "out/kept/0.png", "out/kept/mine"}) {
+    WriteFile(Path(file), "old");
+  }
+  OutputFolder folder(Path("out"), true);
+  WriteFile(folder.File("run.yaml"), "new");
+  folder.Supersede("run.yaml", [](const fs::path& file) { return file.extension() == ".png"; });
+  folder.Commit();
+  EXPECT_EQ(Everything(), (Names{"out", "out/kept", "out/kept/mine", "out/run.yaml"}));
+}
+
 TEST_F(OutputFolderTest, FollowsALinkToAFolder) {
   fs::create_directory(Path("real"));
   fs::create_directory_symlink(Path("real"), Path("link"));

@@ -1,0 +1,32 @@
+#include "eval/output_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+
+namespace fs = std::filesystem;
+
+void RequireNewFile(const std::string& path, bool force) {
+  if (fs::is_directory(path)) throw InputError(path, "is a folder, must be a file");
+  const fs::path folder = fs::absolute(path).parent_path();
+  if (!fs::is_directory(folder)) throw InputError(path, "its folder does not exist");
+  if (!force && fs::exists(path)) {
+    throw InputError(path, "is there already; choose another name, or --force to replace it");
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    throw InputError(path, "cannot be written: " + std::generic_category().message(errno));
+  }
+}
+
+void RequireWritable(const std::string& folder, const std::string& remedy) {
+  if (::access(folder.c_str(), W_OK) == 0) return;
+  throw InputError(folder, "cannot be written: " + std::generic_category().message(errno) + remedy);
+}
+
+}  // namespace depthgrid
