@@ -44,9 +44,14 @@ std::string ShippedFolder(ShippedKind kind) {
 }
 
 std::vector<std::string> ShippedNames(ShippedKind kind) {
+  const std::string folder = ShippedFolder(kind);
+  if (!fs::is_directory(folder)) {
+    throw InputError(folder,
+                     "the shipped scenes were not found here; a copied program needs its "
+                     "share/depthgrid beside its folder");
+  }
   std::vector<std::string> names;
-  std::error_code missing;
-  for (const auto& entry : fs::directory_iterator(ShippedFolder(kind), missing)) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());

@@ -18,7 +18,7 @@ bool IsFileName(const std::string& name);
 std::string ResolveName(const std::string& name, ShippedKind kind,
                         const std::string& base_folder = "");
 
-// Names of all shipped files of a kind, sorted.
+// Names of all shipped files of a kind, sorted. Throws InputError when nothing shipped is there.
 std::vector<std::string> ShippedNames(ShippedKind kind);
 
 // ../share/depthgrid/scenes beside the folder of the running executable: the build tree links it to

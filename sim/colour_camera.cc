@@ -11,14 +11,15 @@
 #include "mapper/core/error.h"
 #include "sim/colour_shaders.h"
 #include "sim/gl_context.h"
+#include "sim/sensor_options.h"
 #include "sim/shading_mesh.h"
 
 namespace depthgrid {
 namespace {
 
 constexpr float kNearM = 0.01F;
-constexpr int kSamples = 4;            // all that llvmpipe has
-constexpr int kMaxImageSidePx = 8192;  // llvmpipe's limit is 16384; this is 1 GB already
+constexpr int kSamples = 4;  // all that llvmpipe has
+static_assert(kMaxImageSidePx <= 16384, "llvmpipe's limit");
 
 // Uniform and storage locations of sim/colour_shaders.cc, which states sizes as numbers.
 static_assert(kMaxLights == 32);

@@ -84,8 +84,8 @@ void SensorOptions::Visit(OptionsVisitor& v) {
             {CameraPreset::kAzure, "azure"},
             {CameraPreset::kTof540x360, "tof_540x360"}},
            "the camera whose size and intrinsics are taken");
-  v.Number("width", width_px, {0, 16384}, "image width in pixels, 0: the camera's");
-  v.Number("height", height_px, {0, 16384}, "image height in pixels, 0: the camera's");
+  v.Number("width", width_px, {0, kMaxImageSidePx}, "image width in pixels, 0: the camera's");
+  v.Number("height", height_px, {0, kMaxImageSidePx}, "image height in pixels, 0: the camera's");
   v.Number("fx", fx_px, {0, 1e6}, "focal length in pixels, 0: the camera's");
   v.Number("fy", fy_px, {0, 1e6}, "focal length in pixels, 0: the camera's");
   v.Number("cx", cx_px, {-1, 1e6}, "principal point in pixels, -1: the camera's");

@@ -32,6 +32,10 @@ enum class DepthNoiseModel {
   kAzure,     // time of flight, Azure Kinect-like
 };
 
+// Of an image: what the colour camera draws in memory that most have (1 GB); each run
+// makes some such pictures.
+constexpr int kMaxImageSidePx = 8192;
+
 struct SensorOptions {
   CameraPreset camera = CameraPreset::kIclNuim;  // the paper's data set
   // Overrides of the preset; 0 keeps it. A new size alone scales the intrinsics, so that the field

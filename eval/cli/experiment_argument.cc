@@ -41,6 +41,9 @@ Config ExperimentFile(const std::string& path) {
   if (config.Has("shapes") && !config.Has("scene")) {
     throw InputError(path, "is a scene; an experiment is a YAML file that names it as its scene");
   }
+  if (config.Has("input") && !config.Has("scene")) {
+    throw InputError(path, "is the run.yaml of a map; `depthgrid map` takes it");
+  }
   if (config.Has("axes") && !config.Has("scene")) {
     throw InputError(path, "is a sweep; `depthgrid sweep` takes it");
   }
@@ -97,7 +100,8 @@ ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std
 }
 
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set) {
-  const auto shipped = ShippedNames(ShippedKind::kExperiment);
+  const auto shipped =
+      IsFileName(name) ? std::vector<std::string>{} : ShippedNames(ShippedKind::kExperiment);
   if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) {
     return ExperimentNamed(name, set);
   }

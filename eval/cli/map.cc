@@ -14,7 +14,6 @@
 #include "eval/place_check.h"
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
-#include "eval/video_writer.h"
 #include "eval/view_check.h"
 #include "eval/way_check.h"
 #include "mapper/core/angle.h"
@@ -50,8 +49,20 @@ struct MapSettings {
   }
 };
 
+// The settings of a map's run.yaml, given in place of an input: that map is made again.
+Config SettingsOf(const std::string& run_yaml) {
+  Config config = Config::FromFile(run_yaml);
+  if (config.Has("scene")) throw InputError(run_yaml, "is an experiment; `depthgrid run` takes it");
+  if (!config.Has("input"))
+    throw InputError(run_yaml, "key 'input' is missing: is no map's run.yaml");
+  config.Take("provenance");
+  return config;
+}
+
+bool IsSettingsFile(const std::string& input) { return input.ends_with(".yaml"); }
+
 Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& overrides) {
-  Config config;
+  Config config = IsSettingsFile(arguments.input) ? SettingsOf(arguments.input) : Config();
   const auto set = [&config](const std::string& key, const std::string& option,
                              const std::string& value) {
     if (!value.empty()) config.Set(key, value, option + " " + value);
@@ -63,9 +74,10 @@ Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& o
   return config;
 }
 
-// What was set beside what makes it mean nothing.
-void CheckSettings(const MapArguments& arguments, const MapSettings& settings,
-                   std::vector<std::string>& warnings) {
+// What was set beside what makes it mean nothing. `arguments`: with the files of a run.yaml that
+// was `given`.
+void CheckSettings(const MapArguments& given, const MapArguments& arguments,
+                   const MapSettings& settings, std::vector<std::string>& warnings) {
   const SequenceFormat format = FormatOf(arguments.input, settings.sequence);
   const std::string kind = NameOf(format);
   const std::string input_is =
@@ -77,10 +89,28 @@ void CheckSettings(const MapArguments& arguments, const MapSettings& settings,
   const auto doubts =
       DoubtsOfOverrides(arguments.common.set, idle, [&](const std::vector<std::string>& set) {
         MapSettings others;
-        ConfigOf(arguments, set).Read(others);
+        ConfigOf(given, set).Read(others);
         return ToYaml(others);
       });
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+}
+
+// With the files of the run.yaml that the command line does not name anew.
+MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
+  if (!IsSettingsFile(arguments.input)) return arguments;
+  arguments.input = settings.input;
+  if (arguments.poses.empty()) arguments.poses = settings.poses;
+  if (arguments.final_poses.empty()) arguments.final_poses = settings.final_poses;
+  if (arguments.loops.empty()) arguments.loops = settings.loops;
+  if (arguments.map.empty()) arguments.map = settings.map;
+  arguments.localise = arguments.localise || settings.localise;
+  return arguments;
+}
+
+// Absolute, so that run.yaml means the same from everywhere.
+std::string FromEverywhere(const std::string& path) {
+  namespace fs = std::filesystem;
+  return path.empty() ? path : fs::weakly_canonical(fs::absolute(path)).string();
 }
 
 void Say(const std::vector<std::string>& lines) {
@@ -135,7 +165,8 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   if (!config.Has("mapper.scan.floor_z_m") && sequence.floor_z_m) {
     settings.mapper.scan.floor_z_m = *sequence.floor_z_m;
   }
-  fmt::print("{}: {}, {} frames\n", arguments.input, sequence.kind, sequence.source->FrameCount());
+  fmt::print("{}: {}, {}\n", arguments.input, sequence.kind,
+             Counted(sequence.source->FrameCount(), "frame"));
   Say(sequence.notes);
   if (slam) {
     Say(slam->notes);
@@ -165,17 +196,18 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
   const FoundPlace& place = start->place;
   prior.map_from_slam = place.map_from_slam;
   fmt::print(
-      "{}: {} scans; {} frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
+      "{}: {}; {} frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
       "elsewhere {:.2f}\n",
-      arguments.map, prior.frames.size(), sequence.source->Camera() ? "SLAM's" : "odometry's",
-      place.map_from_slam.x_m, place.map_from_slam.y_m, DegFromRad(place.map_from_slam.yaw_rad),
-      place.score, place.second_score);
+      arguments.map, Counted(prior.frames.size(), "scan"),
+      sequence.source->Camera() ? "SLAM's" : "odometry's", place.map_from_slam.x_m,
+      place.map_from_slam.y_m, DegFromRad(place.map_from_slam.yaw_rad), place.score,
+      place.second_score);
   if (start->trial && start->trial->places > 1) {
     fmt::print(
         "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "
         "{:.2f}\n",
-        start->trial->places, Counted(static_cast<std::size_t>(start->trial->frames), "frame"),
-        start->trial->agreement, start->trial->agreement_next);
+        start->trial->places, Counted(start->trial->frames, "frame"), start->trial->agreement,
+        start->trial->agreement_next);
   }
   if (start->uncertain()) {
     warnings.push_back(arguments.map +
@@ -293,9 +325,9 @@ void SayResult(const MappingRun& run, bool localised) {
   const auto added =
       std::count_if(mapped.begin(), mapped.end(), [](const auto& m) { return m.frame >= 0; });
   if (localised) {
-    fmt::print("placed {} of {} frames", posed, run.reports.size());
+    fmt::print("placed {} of {}", posed, Counted(run.reports.size(), "frame"));
   } else {
-    fmt::print("mapped {} of {} frames", added + well_seen, run.reports.size());
+    fmt::print("mapped {} of {}", added + well_seen, Counted(run.reports.size(), "frame"));
     if (well_seen > 0) fmt::print(", the scans of {} kept", added);
   }
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
@@ -313,24 +345,26 @@ void SayResult(const MappingRun& run, bool localised) {
   if (!run.loops.empty()) {
     fmt::print("; {} of {} taken", taken, Counted(run.loops.size(), "loop closure"));
   }
-  if (found > 0) fmt::print("; {} found", Counted(static_cast<std::size_t>(found), "loop closure"));
+  if (found > 0) fmt::print("; {} found", Counted(found, "loop closure"));
   fmt::print("\n");
 }
 
 }  // namespace
 
-void Map(const MapArguments& arguments) {
+void Map(const MapArguments& given) {
   const auto start = std::chrono::steady_clock::now();
   MapSettings settings;
-  const Config config = ConfigOf(arguments, arguments.common.set);
+  const Config config = ConfigOf(given, given.common.set);
   config.Read(settings);
-  settings.input = arguments.input;
-  settings.poses = arguments.poses;
-  settings.final_poses = arguments.final_poses;
-  settings.loops = arguments.loops;
-  settings.map = arguments.map;
+  const MapArguments arguments = WithFilesOf(settings, given);
+  settings.input = FromEverywhere(arguments.input);
+  settings.poses = FromEverywhere(arguments.poses);
+  settings.final_poses = FromEverywhere(arguments.final_poses);
+  settings.loops = FromEverywhere(arguments.loops);
+  settings.map = FromEverywhere(arguments.map);
+  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
   settings.localise = arguments.localise;
-  if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
+  RequireVideoFile(arguments.output, arguments.common);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
@@ -343,7 +377,7 @@ void Map(const MapArguments& arguments) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckPoses(arguments, input, warnings);
-  CheckSettings(arguments, settings, warnings);
+  CheckSettings(given, arguments, settings, warnings);
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckMatches(arguments, settings, run, warnings);

@@ -9,6 +9,7 @@
 #include "eval/experiment.h"
 #include "eval/idle_settings.h"
 #include "eval/map_video.h"
+#include "eval/output_file.h"
 #include "eval/output_folder.h"
 #include "eval/run_folder.h"
 #include "eval/shipped.h"
@@ -88,7 +89,7 @@ RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
 void RunOne(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
-  if (!arguments.output.video.empty()) RequireVideo(arguments.output.video);
+  RequireVideoFile(arguments.output, arguments.common);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
@@ -123,7 +124,8 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   Config overrides;
   for (const std::string& assignment : arguments.common.set) overrides.Set(assignment);
   const std::string base_folder = fs::path(path).parent_path().string();
-  const Study study = ReadStudy(Config::FromFile(path), overrides, base_folder);
+  Study study = ReadStudy(Config::FromFile(path), overrides, base_folder);
+  study.overrides = arguments.common.set;
   std::vector<std::string> warnings = study.warnings;
   const auto idle = DoubtsOfOverrides(
       arguments.common.set, IdleInEveryCase(study), [&](const std::vector<std::string>& set) {
@@ -143,6 +145,12 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
 }
 
 }  // namespace
+
+void RequireVideoFile(const OutputArguments& output, const CommonArguments& common) {
+  if (output.video.empty()) return;
+  RequireNewFile(output.video, common.force);
+  RequireVideo(output.video);
+}
 
 void Run(const RunArguments& arguments) {
   const std::string path = ResolveName(arguments.experiment, ShippedKind::kExperiment);

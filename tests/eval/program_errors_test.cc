@@ -210,7 +210,11 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
   ExpectRefusal("map . --format carmen -o out", {".: is a folder"});
   ExpectRefusal("slam . --profile orb -o out", {"--profile orb: ", "orb_slam2"});
   // CLI11's own words for these are 300 digits long.
-  ExpectRefusal("regrid . --resolution 0", {"--resolution: is '0', must be a number above 0"});
+  for (const char* resolution : {"0", "0.001", "2", "fine"}) {
+    ExpectRefusal(std::string("regrid . --resolution ") + resolution,
+                  {std::string("--resolution ") + resolution + ": resolution_m is "});
+  }
+  ExpectRefusal("regrid . --resolution 0", {"must be from 0.005 to 1"});
   ExpectRefusal("eval trajectory a b --max-difference=-1",
                 {"is '-1', must be a number, 0 or more"});
 }
@@ -225,13 +229,58 @@ TEST_F(ProgramErrors, AShippedNameOfAnotherKindIsSaidToBeOne) {
             "'living_room'?\n");
 }
 
+TEST_F(ProgramErrors, AProgramWithoutWhatIsShippedSaysSo) {
+  std::filesystem::create_directories(Path("copy/bin"));
+  std::filesystem::copy_file(kProgramFile, Path("copy/bin/depthgrid"));
+  for (const char* arguments : {"scenes", "run living_room -o out", "render living_room -o out"}) {
+    const std::string command =
+        "cd '" + root_.string() + "' && copy/bin/depthgrid " + arguments + " >said.txt 2>&1";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2) << arguments;
+    EXPECT_THAT(ReadFile(Path("said.txt")),
+                HasSubstr("copy/share/depthgrid/scenes: the shipped scenes were not found"))
+        << arguments;
+  }
+  const std::string own = "cd '" + root_.string() +
+                          "' && copy/bin/depthgrid render ./room.yaml --no-colour --set frames=1 "
+                          "--set sensor.width=80 --set sensor.height=60 -o out >said.txt 2>&1";
+  EXPECT_EQ(std::system(own.c_str()), 0) << ReadFile(Path("said.txt"));
+}
+
+TEST_F(ProgramErrors, ImagesThatCannotBeDrawnAreRefusedAtOnce) {
+  ExpectRefusal("run ./small.yaml --set sensor.width=8193 -o out",
+                {"sensor.width is '8193', must be from 0 to 8192"});
+}
+
+// Scores of zero would be taken for those of a bad map.
+TEST_F(ProgramErrors, MapsOfOtherPlacesAreWarnedOf) {
+  const auto map = [&](const std::string& name, const std::string& x) {
+    Write(name + ".yaml", "image: " + name + ".pgm\nresolution: 0.05\norigin: [" + x +
+                              ", 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n");
+    Write(name + ".pgm", std::string("P5 3 2 255\n\xfe\xfe\xfe\x00\x00\x00", 17));
+  };
+  map("a", "0");
+  map("b", "10");
+  const auto warnings = [&](const std::string& arguments) {
+    const Outcome outcome = Program("eval map " + arguments);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("all, 1 cell tolerance"));
+    return outcome.err;
+  };
+  EXPECT_EQ(warnings("a.yaml a.yaml --observable a.yaml"), "");
+  EXPECT_THAT(warnings("a.yaml b.yaml"), HasSubstr("b.yaml: shares no known cell with a.yaml"));
+  EXPECT_THAT(warnings("a.yaml a.yaml --observable b.yaml"),
+              HasSubstr("b.yaml: of the cells that could be seen, a.yaml does not know 100 %"));
+}
+
 TEST_F(ProgramErrors, SeedsAreWholeNumbers) {
   for (const std::string seed : {"-3", "1.5", "nan", "abc", "99999999999999999999", "''"}) {
     for (const char* command : {"slam seq -o out --seed", "ablate ./small.yaml -o out --first-seed",
                                 "slam-calibrate ./small.yaml --target 0.1 --first-seed"}) {
-      ExpectRefusal(std::string(command) + " " + seed, {"seed"});
+      ExpectRefusal(std::string(command) + " " + seed, {"seed", "from 0 to 18446744073709551615"});
     }
-    ExpectRefusal("run ./small.yaml -o out --set seed=" + seed, {"seed", "whole number"});
+    ExpectRefusal("run ./small.yaml -o out --set seed=" + seed,
+                  {"seed", "whole number from 0 to 18446744073709551615"});
   }
 }
 

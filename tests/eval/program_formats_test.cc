@@ -265,7 +265,7 @@ TEST_F(ProgramFormats, ALaserLogWithLoops) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("2 loop closures from stamped loops\n"),
                     HasSubstr("mapped 41 of 41 frames; 1 of 2 loop closures taken\n")));
-  EXPECT_THAT(outcome.err, HasSubstr("loops.txt: 1 events of frames that the recording does not"));
+  EXPECT_THAT(outcome.err, HasSubstr("loops.txt: 1 event of frames that the recording does not"));
 }
 
 TEST_F(ProgramFormats, AForcedKindThatDoesNotFitIsRefused) {
@@ -296,18 +296,18 @@ TEST_F(ProgramFormats, DamageIsCountedAtTheEnd) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("mapped 9 of 12 frames, 1 without a pose\n"));
   EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("poses.txt: 1 poses with NaN"), HasSubstr("rows earlier than"),
-                    HasSubstr("1 rows with a stamp already given"),
+              AllOf(HasSubstr("poses.txt: 1 pose with NaN"), HasSubstr("rows earlier than"),
+                    HasSubstr("1 row with a stamp already given"),
                     HasSubstr("2 depth images missing or damaged"),
-                    HasSubstr("1 of 12 frames have no pose")));
+                    HasSubstr("1 of 12 frames has no pose")));
   // The folder keeps what was said, and its page shows it.
   const std::string kept = ReadFile(Path("out/warnings.txt"));
   EXPECT_EQ(std::count(kept.begin(), kept.end(), '\n'),
             std::count(outcome.err.begin(), outcome.err.end(), '\n'));
-  EXPECT_THAT(kept, HasSubstr("seq: 1 of 12 frames have no pose\n"));
-  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr("seq: 1 of 12 frames have no pose"));
+  EXPECT_THAT(kept, HasSubstr("seq: 1 of 12 frames has no pose\n"));
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr("seq: 1 of 12 frames has no pose"));
   Mapped("seq");
-  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), Not(HasSubstr("have no pose")));
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), Not(HasSubstr("no pose")));
 }
 
 // Rows of lists and poses; what is cut, empty or mostly damaged.
@@ -322,7 +322,7 @@ TEST_F(ProgramFormats, DamagedRowsAreCountedAtTheEnd) {
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("seq/depth.txt: 2 damaged rows left out (first: seq/depth.txt:1: "),
                     HasSubstr("slam.txt: the last line has no line end"),
-                    HasSubstr("slam.txt: 1 poses have the stamp of no input frame")));
+                    HasSubstr("slam.txt: 1 pose with the stamp of no input frame")));
   Write("empty.csv", "");
   Write("rows.txt", "1 2 3\n4 5 6\n" + poses.substr(0, 100));
   for (const char* bad : {"slam.txt --loops empty.csv", "rows.txt", "empty.csv"}) {
@@ -382,6 +382,11 @@ TEST_F(ProgramFormats, AVideoTheSameEachTime) {
   EXPECT_GT(ReadFile(Path("one.mp4")).size(), 1000U);
   EXPECT_EQ(ReadFile(Path("one.mp4")).substr(4, 4), "ftyp");
   EXPECT_TRUE(SameFile("one.mp4", "two.mp4"));
+  const std::string first = ReadFile(Path("one.mp4"));
+  const Outcome again = Program("map seq --video one.mp4 -o out2");
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("one.mp4: is there already; choose another name, or --force"));
+  EXPECT_TRUE(ReadFile(Path("one.mp4")) == first);
   const Outcome outcome = Program("map seq --video nowhere/one.mp4 -o out2");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_FALSE(fs::exists(Path("out2")));

@@ -96,6 +96,22 @@ TEST_F(ProgramRun, ItsOwnSettingsGiveItAgain) {
   ExpectSameBytes("out", "again");
 }
 
+TEST_F(ProgramRun, AMapsOwnSettingsGiveItAgain) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Succeed("slam seq -o slam");
+  Succeed("map seq --poses slam/slam.txt --loops slam/loops.csv --up z -o out");
+  Succeed("map out/run.yaml -o again");
+  ExpectSameBytes("out", "again");
+  Succeed("map out/run.yaml --set mapper.grid.resolution_m=0.1 -o coarse");
+  EXPECT_THAT(ReadFile(Path("coarse/map.yaml")), HasSubstr("resolution: 0.1"));
+  const Outcome mistaken = Program("run out/run.yaml -o other");
+  EXPECT_EQ(mistaken.exit_code, 2);
+  EXPECT_THAT(mistaken.err, HasSubstr("is the run.yaml of a map; `depthgrid map` takes it"));
+  const Outcome other_way = Program("map ./small.yaml -o other");
+  EXPECT_EQ(other_way.exit_code, 2);
+  EXPECT_THAT(other_way.err, HasSubstr("is an experiment; `depthgrid run` takes it"));
+}
+
 TEST_F(ProgramRun, SaysWhichInstructionSetCastItsRays) {
   const auto says = [&](const std::string& folder, const std::string& isa) {
     EXPECT_THAT(ReadFile(Path(folder + "/run.yaml")), HasSubstr("ray_instruction_set: " + isa));
