@@ -4,6 +4,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/slam_settings.h"
 #include "eval/output_folder.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -37,18 +38,12 @@ Trajectory TrueFrames(const std::string& folder) {
   return frames;
 }
 
-// Keys as in an experiment: slam.profile, slam.loops.recall ...
-struct SlamSettings {
-  SlamOptions slam;
-  void Visit(OptionsVisitor& v) { v.Group("slam", slam, "how SLAM errs"); }
-};
-
 void SayNext(const SlamArguments& arguments, const SlamOutput& slam) {
   const std::string& output = arguments.common.output;
   const auto posed = std::count_if(slam.live.begin(), slam.live.end(),
                                    [](const SlamPose& pose) { return pose.slam_from_camera; });
-  fmt::print("SLAM gives {} of {} frames a pose and closes {}: {}/slam.txt\n", posed,
-             slam.live.size(), Counted(slam.loops.size(), "loop"), output);
+  fmt::print("SLAM gives {} of {} a pose and closes {}: {}/slam.txt\n", posed,
+             Counted(slam.live.size(), "frame"), Counted(slam.loops.size(), "loop"), output);
   fmt::print("go on with: depthgrid map {} --poses {} --loops {} -o OUT\n",
              ShellWord(arguments.sequence), ShellWord(output + "/slam.txt"),
              ShellWord(output + "/loops.csv"));

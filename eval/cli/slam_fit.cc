@@ -4,6 +4,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/slam_settings.h"
 #include "eval/metrics/association.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -85,12 +86,13 @@ void FitSlam(const SlamFitArguments& arguments) {
   SlamOptions with_loops = fit.options;
   with_loops.loops = WithScenario(with_loops.loops, LoopScenario::kTrue);
   PrintComments(fmt::format(
-      "{:.1f} s of tracking: {} jumps, {} losses, {} corrections (left out of the fit)\n"
+      "{:.1f} s of tracking: {}, lost {}, {} (left out of the fit)\n"
       "turning about the pivot explains {:.0f} % of the sideways error from frame to frame\n",
-      fit.tracked_s, fit.jumps, fit.lost_bursts, fit.corrections, 100.0 * fit.pivot_explains));
+      fit.tracked_s, Counted(fit.jumps, "jump"), Counted(fit.lost_bursts, "time"),
+      Counted(fit.corrections, "correction"), 100.0 * fit.pivot_explains));
   PrintComments(
       LagTable(ErrorOverLag(runs, Lags()), ErrorOverLag(Imitated(runs, with_loops), Lags())));
-  fmt::print("{}", ToYaml(fit.options));
+  fmt::print("{}", ToYaml(SlamSettings{fit.options}));
 }
 
 }  // namespace depthgrid::cli

@@ -98,13 +98,19 @@ TEST_F(SlamCommands, FitFindsWhatSlamDid) {
   const Outcome fit = Program("slam-fit seq/groundtruth.txt out/slam.txt");
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   const auto value = [&](const std::string& key) {
-    const auto at = fit.out.find("\n" + key + ": ");
+    const auto at = fit.out.find("\n  " + key + ": ");
     EXPECT_NE(at, std::string::npos) << key << "\n" << fit.out;
-    return at == std::string::npos ? -1.0 : std::stod(fit.out.substr(at + key.size() + 3));
+    return at == std::string::npos ? -1.0 : std::stod(fit.out.substr(at + key.size() + 5));
   };
   EXPECT_NEAR(value("jitter_translation_m"), 0.004, 0.0004);
   EXPECT_NEAR(value("jitter_rotation_deg"), 0.1, 0.015);
   EXPECT_NEAR(value("walk_translation_m"), 0.0, 0.001);
+  // It can be put into an experiment as it stands.
+  Write("fitted.yaml", "scene: ./room.yaml\n" + fit.out);
+  EXPECT_EQ(Program("run ./fitted.yaml -o fitted --set frames=2 --set sensor.width=80 --set "
+                    "sensor.height=60")
+                .exit_code,
+            0);
 }
 
 TEST_F(SlamCommands, FitRefusesBadInput) {
