@@ -32,6 +32,7 @@ struct StudyOutline {
 struct Study {
   StudyOutline outline;
   std::vector<ExperimentOptions> experiments;  // one a case
+  std::vector<std::string> overrides;          // as given on the command line, for the page
   std::vector<std::string> warnings;           // what is likely not meant, a line each
 };
 

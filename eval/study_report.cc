@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "eval/map_picture.h"
 #include "eval/report_json_impl.h"
@@ -89,14 +90,25 @@ Json CaseJson(const CaseFiles& c, const GridGeometry& part, const Json& metrics)
   return json;
 }
 
-Json StudyJson(const StudyOutline& study, const std::vector<CaseFiles>& cases,
-               const Json& metrics) {
+// What the command line changed, a line each; folders of earlier versions do not say.
+std::vector<std::string> OverridesIn(const std::string& folder) {
+  const std::string path = folder + "/overrides.txt";
+  std::vector<std::string> overrides;
+  if (!fs::exists(path)) return overrides;
+  std::istringstream lines(ReadFile(path));
+  for (std::string line; std::getline(lines, line);) overrides.push_back(line);
+  return overrides;
+}
+
+Json StudyJson(const StudyOutline& study, const std::vector<std::string>& overrides,
+               const std::vector<CaseFiles>& cases, const Json& metrics) {
   const std::map<std::string, GridGeometry> parts = RoomParts(cases);
   Json json;
   json["notes"] = Json::array();
   for (const StudyNote& note : study.notes) {
     json["notes"].push_back({{"title", note.title}, {"text", note.text}});
   }
+  json["overrides"] = overrides;
   json["rooms"] = Json::array();
   json["cases"] = Json::array();
   for (const CaseFiles& c : cases) {
@@ -120,9 +132,11 @@ void WriteStudyReport(const std::string& folder, const ReportPlace& place) {
   for (const StudyCase& head : outline.cases) cases.push_back(ReadCase(folder, head));
   try {
     const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
-    Json json = StudyJson(outline, cases, metrics);
+    Json json = StudyJson(outline, OverridesIn(folder), cases, metrics);
     json["back"] = place.back;
-    WriteFile(place.into + "/report.html", FillPage("study.html", outline.title, json.dump()));
+    WriteFile(place.into + "/report.html",
+              FillPage("study.html", outline.title,
+                       json.dump(-1, ' ', false, Json::error_handler_t::replace)));
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "does not hold the study's scores");
   }

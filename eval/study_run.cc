@@ -94,6 +94,9 @@ std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
     }
   }
   WriteFile(folder.File("study.yaml"), text);
+  std::string overrides;
+  for (const std::string& override : study.overrides) overrides += override + "\n";
+  WriteFile(folder.File("overrides.txt"), overrides);
   WriteFile(folder.File("metrics.json"), SummaryJson(results));
   WriteStudyReport(folder.work().string(), {folder.work().string()});
   return results;

@@ -18,8 +18,8 @@ struct CaseResult {
 };
 
 // Runs the cases that share room and images jointly and writes into the folder's work area: a
-// folder a case, metrics.json, study.yaml (`text`, the study as it was given) and report.html. The
-// caller commits. Results are in the order of the cases.
+// folder a case, metrics.json, study.yaml (`text`, the study as it was given), overrides.txt and
+// report.html. The caller commits. Results are in the order of the cases.
 std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
                                  const OutputFolder& folder, const RunContext& context);
 

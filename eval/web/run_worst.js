@@ -54,6 +54,8 @@ function scanPicture(worst, size) {
     }
     for (const [name, , tone, shape] of MARKS) if (worst[name]) drawMark(context, shape, ...at(worst[name][0], worst[name][1]), MAP_COLOURS[tone]);
     const metre = cell / map.resolution;
+    context.fillStyle = "rgba(255,255,255,0.85)";
+    context.fillRect(4, size - 26, Math.max(metre, context.measureText("1 m").width) + 8, 22);
     context.fillStyle = "#111";
     context.fillRect(8, size - 10, metre, 3);
     context.fillText("1 m", 8, size - 14);

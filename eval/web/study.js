@@ -6,6 +6,13 @@ const nameOf = (word) => NAMES[word] ?? word.charAt(0).toUpperCase() + word.slic
 const casesIn = (room) => STUDY.cases.filter((c) => c.scene === room.scene);
 // The maps are light in both themes, so what is drawn on them keeps its colours.
 const PATH_COLOURS = { truth: "#009e73", input: "#d98c00", output: "#0072b2" };
+// By room and poses, and by its own name where several share them.
+function labelOf(c) {
+  const label = `${nameOf(c.scene)}, ${nameOf(c.pose_source)}`;
+  const alone = STUDY.cases.filter((one) => one.scene === c.scene && one.pose_source === c.pose_source).length === 1;
+  return alone ? label : `${label} (${c.name})`;
+}
+const millimetres = (value) => fixed(isNumber(value) ? 1000 * value : value, 1);
 const seen = (map) => map?.observable ?? map?.all;
 
 // Without alignment, and aligned.
@@ -14,11 +21,12 @@ const linkTo = (c, text) => make("a", { href: `${STUDY.back}${c.name}/report.htm
 
 // Rooms above what the errors are of, above how they are taken.
 function tableHead() {
-  const group = (text, columns, rows = 1) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, rowspan: rows }, text);
-  const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5));
-  const what = STUDY.rooms.flatMap(() => [group("paper", 1), group("input", 2), group("output", 2)]);
-  const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned", "mean", "aligned"].map((text) => group(text, 1)));
-  return make("thead", {}, make("tr", {}, group("Poses from", 1, 3), ...rooms), make("tr", {}, ...what), make("tr", {}, ...how));
+  const group = (text, columns, first) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, class: first ? "room" : "" }, text);
+  const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5, true));
+  const what = STUDY.rooms.flatMap(() => [group("paper", 1, true), group("input", 2), group("output", 2)]);
+  const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned", "mean", "aligned"].map((text, i) => group(text, 1, i === 0)));
+  const source = make("th", { scope: "col", rowspan: 3 }, "Poses from");
+  return make("thead", {}, make("tr", {}, source, ...rooms), make("tr", {}, ...what), make("tr", {}, ...how));
 }
 
 function initTable() {
@@ -31,6 +39,7 @@ function initTable() {
   })]);
   const table = tableOf([], rows);
   table.tHead.replaceWith(tableHead());
+  for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, i) => cell.classList.toggle("room", i % 5 === 1));
   byId("table").append(table);
   byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
 }
@@ -88,11 +97,18 @@ function initPaths() {
 function initMapTable() {
   const values = (map) => {
     const s = seen(map);
-    return s ? [s.occupied.precision, s.occupied.recall, s.occupied.f1].map((v) => fixed(v, 3)).concat(metres(s.chamfer_m)) : ["–", "–", "–", "–"];
+    return s ? [s.occupied.precision, s.occupied.recall, s.occupied.f1].map((v) => fixed(v, 3)).concat(millimetres(s.chamfer_m)) : ["–", "–", "–", "–"];
   };
   byId("map-table").append(tableOf(
-    ["Case", "Input map: precision", "recall", "F1", "chamfer", "Output map: precision", "recall", "F1", "chamfer"],
-    STUDY.cases.map((c) => [linkTo(c, nameOf(c.name)), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
+    ["Case", "Input map: precision", "recall", "F1", "chamfer (mm)", "Output map: precision", "recall", "F1", "chamfer (mm)"],
+    STUDY.cases.map((c) => [linkTo(c, labelOf(c)), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
+}
+
+// What the command line changed: published figures and notes are of the file as it stands.
+function initOverrides() {
+  if (STUDY.overrides.length === 0) { byId("overrides").remove(); return; }
+  byId("overrides").append("Changed on the command line: ", ...STUDY.overrides.flatMap((text, i) => [i > 0 ? ", " : "", make("code", {}, text)]),
+    ". Notes and published figures are those of the study as it is written.");
 }
 
 function initNotes() {
@@ -101,6 +117,7 @@ function initNotes() {
 }
 
 initTheme();
+initOverrides();
 initTable();
 initMaps();
 initPaths();

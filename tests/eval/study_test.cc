@@ -47,6 +47,16 @@ TEST_F(StudyRun, EachCaseIsWhatItWouldBeAlone) {
   }
 }
 
+TEST_F(StudyRun, ThePageShowsWhatTheCommandLineChanged) {
+  Succeed("run ./study.yaml -o as_written");
+  EXPECT_THAT(ReadFile(Path("as_written/report.html")), HasSubstr("\"overrides\":[]"));
+  Succeed("run ./study.yaml -o out --set frames=4 --set seed=2");
+  const std::string shown = "\"overrides\":[\"frames=4\",\"seed=2\"]";
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr(shown));
+  Succeed("report out");
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr(shown));
+}
+
 TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
   Succeed("run ./study.yaml -o out");
   const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
