@@ -46,7 +46,7 @@ std::string ShippedFolder(ShippedKind kind) {
 std::vector<std::string> ShippedNames(ShippedKind kind) {
   const std::string folder = ShippedFolder(kind);
   if (!fs::is_directory(folder)) {
-    throw InputError(folder,
+    throw InputError(ShippedFolder(ShippedKind::kScene),
                      "the shipped scenes were not found here; a copied program needs its "
                      "share/depthgrid beside its folder");
   }

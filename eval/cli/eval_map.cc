@@ -128,8 +128,8 @@ double UnknownShare(const CellScores& observable) {
 // Scores of maps that have nothing to do with each other look like those of a bad map.
 std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapScore& score,
                                   const std::string& observable_path) {
-  // What the truth's own poses see is known to it: in the shipped rooms all of it, of another room's
-  // 0.97 to 1.
+  // What the truth's own poses see is known to it: in the shipped rooms all of it, of another
+  // room's 0.97 to 1.
   constexpr double kMostUnknown = 0.01;
   std::vector<std::string> doubts;
   if (KnownToBoth(score.all) == 0) {

@@ -104,10 +104,12 @@ TEST_F(OutputFolderTest, AFolderGoesWithTheLastOfItsSupersededFiles) {
   for (const char* file : {"out/run.yaml", "out/frames/0.png", "out/kept/0.png", "out/kept/mine"}) {
     WriteFile(Path(file), "old");
   }
-  OutputFolder folder(Path("out"), true);
-  WriteFile(folder.File("run.yaml"), "new");
-  folder.Supersede("run.yaml", [](const fs::path& file) { return file.extension() == ".png"; });
-  folder.Commit();
+  {
+    OutputFolder folder(Path("out"), true);
+    WriteFile(folder.File("run.yaml"), "new");
+    folder.Supersede("run.yaml", [](const fs::path& file) { return file.extension() == ".png"; });
+    folder.Commit();
+  }
   EXPECT_EQ(Everything(), (Names{"out", "out/kept", "out/kept/mine", "out/run.yaml"}));
 }
 
