@@ -6,7 +6,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
-#include "eval/idle_settings.h"
+#include "eval/cli/map_settings.h"
 #include "eval/map_start.h"
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
@@ -26,92 +26,6 @@ namespace depthgrid::cli {
 namespace {
 
 constexpr int kAllScansInOneSubmap = 1'000'000;
-
-struct MapSettings {
-  std::string input;
-  std::string poses;
-  std::string final_poses;
-  std::string loops;
-  std::string map;
-  bool localise = false;
-  SequenceOptions sequence;
-  MapperOptions mapper;
-
-  void Visit(OptionsVisitor& v) {
-    v.Text("input", input, "the recorded sequence");
-    v.Text("poses", poses, "SLAM's live poses");
-    v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
-    v.Text("loops", loops, "SLAM's events");
-    v.Text("map", map, "the finished run it went on from");
-    v.Flag("localise", localise, "whether that map was left as it is");
-    v.Group("sequence", sequence, "how the recorded sequence is read");
-    v.Group("mapper", mapper, "the mapper");
-  }
-};
-
-// The settings of a map's run.yaml, given in place of an input: that map is made again.
-Config SettingsOf(const std::string& run_yaml) {
-  Config config = Config::FromFile(run_yaml);
-  if (config.Has("scene")) throw InputError(run_yaml, "is an experiment; `depthgrid run` takes it");
-  if (!config.Has("input"))
-    throw InputError(run_yaml, "key 'input' is missing: is no map's run.yaml");
-  config.Take("provenance");
-  return config;
-}
-
-bool IsSettingsFile(const std::string& input) { return input.ends_with(".yaml"); }
-
-Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& overrides) {
-  Config config = IsSettingsFile(arguments.input) ? SettingsOf(arguments.input) : Config();
-  const auto set = [&config](const std::string& key, const std::string& option,
-                             const std::string& value) {
-    if (!value.empty()) config.Set(key, value, option + " " + value);
-  };
-  set("sequence.format", "--format", arguments.format);
-  set("sequence.camera", "--camera", arguments.camera);
-  set("sequence.world_up", "--up", arguments.world_up);
-  for (const std::string& assignment : overrides) config.Set(assignment);
-  return config;
-}
-
-// What was set beside what makes it mean nothing. `arguments`: with the files of a run.yaml that
-// was `given`.
-void CheckSettings(const MapArguments& given, const MapArguments& arguments,
-                   const MapSettings& settings, std::vector<std::string>& warnings) {
-  const SequenceFormat format = FormatOf(arguments.input, settings.sequence);
-  const std::string kind = NameOf(format);
-  const std::string input_is =
-      fmt::format("{} is {} {}", arguments.input, kind.starts_with('I') ? "an" : "a", kind);
-  IdleSettingList idle = IdleSettings(settings.mapper);
-  const IdleSettingList of_recording =
-      IdleSettings(settings.sequence, format, input_is, !arguments.loops.empty());
-  idle.insert(idle.end(), of_recording.begin(), of_recording.end());
-  const auto doubts =
-      DoubtsOfOverrides(arguments.common.set, idle, [&](const std::vector<std::string>& set) {
-        MapSettings others;
-        ConfigOf(given, set).Read(others);
-        return ToYaml(others);
-      });
-  warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-}
-
-// With the files of the run.yaml that the command line does not name anew.
-MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
-  if (!IsSettingsFile(arguments.input)) return arguments;
-  arguments.input = settings.input;
-  if (arguments.poses.empty()) arguments.poses = settings.poses;
-  if (arguments.final_poses.empty()) arguments.final_poses = settings.final_poses;
-  if (arguments.loops.empty()) arguments.loops = settings.loops;
-  if (arguments.map.empty()) arguments.map = settings.map;
-  arguments.localise = arguments.localise || settings.localise;
-  return arguments;
-}
-
-// Absolute, so that run.yaml means the same from everywhere.
-std::string FromEverywhere(const std::string& path) {
-  namespace fs = std::filesystem;
-  return path.empty() ? path : fs::weakly_canonical(fs::absolute(path)).string();
-}
 
 void Say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
@@ -353,22 +267,14 @@ void SayResult(const MappingRun& run, bool localised) {
 
 void Map(const MapArguments& given) {
   const auto start = std::chrono::steady_clock::now();
-  MapSettings settings;
-  const Config config = ConfigOf(given, given.common.set);
-  config.Read(settings);
-  const MapArguments arguments = WithFilesOf(settings, given);
-  settings.input = FromEverywhere(arguments.input);
-  settings.poses = FromEverywhere(arguments.poses);
-  settings.final_poses = FromEverywhere(arguments.final_poses);
-  settings.loops = FromEverywhere(arguments.loops);
-  settings.map = FromEverywhere(arguments.map);
-  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
-  settings.localise = arguments.localise;
+  MapRequest request = ReadMapRequest(given);
+  const MapArguments& arguments = request.arguments;
+  MapSettings& settings = request.settings;
   RequireVideoFile(arguments.output, arguments.common);
   OutputFolder folder(arguments.common.output, arguments.common.force);
   std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
-  const Sequence input = OpenInput(arguments, config, settings, warnings);
+  const Sequence input = OpenInput(arguments, request.config, settings, warnings);
   std::optional<FoundPlace> begin;
   if (prior) begin = FindStartIn(*prior, arguments, settings, warnings);
   ProgressBar bar("mapping");
@@ -377,7 +283,8 @@ void Map(const MapArguments& given) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckPoses(arguments, input, warnings);
-  CheckSettings(given, arguments, settings, warnings);
+  const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
+  warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckMatches(arguments, settings, run, warnings);

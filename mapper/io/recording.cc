@@ -98,10 +98,9 @@ class RecordingSource final : public FrameSource {
     const std::size_t frames = recording_.images.size();
     if (without == frames) throw NoSharedStamps(slam, options);
     if (without > 0) {
-      recording_.warnings.push_back(fmt::format("{}: {} of {} {} no pose{}", recording_.name, without,
-                                                Counted(frames, "frame"),
-                                                without == 1 ? "has" : "have",
-                                                WhyWithout(slam, options, frames - without)));
+      recording_.warnings.push_back(fmt::format(
+          "{}: {} of {} {} no pose{}", recording_.name, without, Counted(frames, "frame"),
+          without == 1 ? "has" : "have", WhyWithout(slam, options, frames - without)));
     }
     int lost_loops = 0;
     loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);

@@ -125,19 +125,6 @@ TEST_F(ProgramFormats, AWorldInCameraAxesIsMadeLevel) {
   EXPECT_GT(found, 20.0);
 }
 
-TEST_F(ProgramFormats, ALaserLog) {
-  std::string log = "# made by hand\nPARAM laser_front_laser_resolution 1\n";
-  for (int i = 0; i < 5; ++i) {
-    log += "FLASER 5 2.0 2.1 2.2 2.1 2.0 0 0 0 0 0 0 " + std::to_string(i) + ".0 host 0\n";
-  }
-  Write("robot.log", log + "FLASER 5 2.0 2.1\n");
-  const Outcome outcome = Program("map robot.log -o out");
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("robot.log: CARMEN laser log, 5 frames\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("warning: robot.log:8: FLASER with damaged readings"));
-  EXPECT_EQ(Program("map robot.log --poses seq/groundtruth.txt -o out2").exit_code, 2);
-}
-
 TEST_F(ProgramFormats, WhatHasNoEffectIsSaid) {
   Write("robot.log", "FLASER 5 2.0 2.1 2.2 2.1 2.0 0 0 0 0 0 0 1 host 0\n");
   const auto said = [&](const std::string& arguments) {
@@ -174,49 +161,6 @@ TEST_F(ProgramFormats, WhatHasNoEffectIsSaid) {
   }
 }
 
-// There and back along a room of 6 x 4 m, its odometry in units of `odometry_scale` metres.
-std::string ThereAndBack(double odometry_scale) {
-  const auto range_m = [](double x_m, double y_m, double angle_rad) {
-    const double c = std::cos(angle_rad);
-    const double s = std::sin(angle_rad);
-    const double along_x_m = (c > 0.0 ? 6.0 - x_m : x_m) / std::max(std::abs(c), 1e-9);
-    return std::min(along_x_m, (s > 0.0 ? 4.0 - y_m : y_m) / std::max(std::abs(s), 1e-9));
-  };
-  std::string log;
-  for (int i = 0; i <= 40; ++i) {
-    const double x_m = 1.0 + 0.1 * (i <= 20 ? i : 40 - i);
-    log += "FLASER 181";
-    for (int k = 0; k <= 180; ++k)
-      log += fmt::format(" {:.3f}", range_m(x_m, 1.0, (k - 90) * kPi / 180.0));
-    log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", odometry_scale * x_m, i);
-  }
-  return log;
-}
-
-TEST_F(ProgramFormats, ALogInTheCoordinatesOfAMapGrid) {
-  std::string log;
-  for (int i = 0; i < 5; ++i) {
-    log += fmt::format("FLASER 5 2 2 2 2 2 {0} {1} 0 {0} {1} 0 {2} host 0\n", 400000.0 + 0.1 * i,
-                       5300000.0, i);
-  }
-  Write("utm.log", log);
-  Mapped("utm.log");
-  const Eigen::Vector2d origin_m = ReadMap(Path("out/map.yaml")).map.geometry.OriginM();
-  EXPECT_LT((origin_m - Eigen::Vector2d(400000.0, 5300000.0)).norm(), 5.0);
-}
-
-TEST_F(ProgramFormats, OdometryOfAnotherScaleIsSaid) {
-  Write("robot.log", ThereAndBack(1.5));
-  const Outcome outcome = Program("map robot.log -o out");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(
-      outcome.err,
-      HasSubstr("robot.log: over the same stretches the given poses go 6.0 m, the map's 4."));
-  EXPECT_THAT(outcome.err, HasSubstr("the odometry's scale or the laser's is wrong"));
-  Write("right.log", ThereAndBack(1.0));
-  EXPECT_EQ(Program("map right.log -o out2").err, "");
-}
-
 TEST_F(ProgramFormats, PosesThatMeanSomethingElseAreNamed) {
   Succeed("render ./small.yaml --no-colour --set frames=150 -o long");
   const Trajectory truth = ReadTrajectory(Path("long/groundtruth.txt"));
@@ -242,30 +186,6 @@ TEST_F(ProgramFormats, PosesThatMeanSomethingElseAreNamed) {
   EXPECT_NEAR(std::stod(remedy.substr(remedy.find('=') + 1)), 0.5, 0.05);
   EXPECT_THAT(said("--poses late.txt " + remedy), Not(HasSubstr("do not fit")));
   EXPECT_EQ(said("--poses long/groundtruth.txt"), "");
-}
-
-TEST_F(ProgramFormats, ThatNothingWasMatchedIsSaid) {
-  std::string log;
-  for (int i = 0; i < 5; ++i) {
-    log += fmt::format("FLASER 5 81 81 81 81 81 {0} 0 0 {0} 0 0 {0} host 0\n", i);
-  }
-  Write("open.log", log);
-  const char* said = "open.log: no scan could be matched, the poses are those given";
-  EXPECT_THAT(Program("map open.log -o out").err, HasSubstr(said));
-  const std::string trusting = std::string("map open.log -o out2") + kTrustPoses;
-  EXPECT_THAT(Program(trusting).err, Not(HasSubstr(said)));
-}
-
-// Its odometry is right; then told loops.
-TEST_F(ProgramFormats, ALaserLogWithLoops) {
-  Write("robot.log", ThereAndBack(1.0));
-  Write("loops.txt", "0 40 0 0 0 0 0 0 1\n2 38 0.8 0 0 0 0 0 1\n3 99 0 0 0 0 0 0 1\n");
-  const Outcome outcome = Program("map robot.log --loops loops.txt -o out");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out,
-              AllOf(HasSubstr("2 loop closures from stamped loops\n"),
-                    HasSubstr("mapped 41 of 41 frames; 1 of 2 loop closures taken\n")));
-  EXPECT_THAT(outcome.err, HasSubstr("loops.txt: 1 event of frames that the recording does not"));
 }
 
 TEST_F(ProgramFormats, AForcedKindThatDoesNotFitIsRefused) {
@@ -417,25 +337,6 @@ TEST_F(ProgramFormats, AFinishedMapIsLocalisedInAndExtended) {
   }
   EXPECT_EQ(Program("map seq --map seq -o out2").exit_code, 2);
   EXPECT_EQ(Program("map seq --localise -o out2").exit_code, 2);
-}
-
-// Odometry a quarter too long: laid over the map, its first metres say where the robot was in the
-// middle of them, the first views where it began.
-TEST_F(ProgramFormats, WhereARunBeginsIsFoundWithPosesThatDrift) {
-  Write("first.log", ThereAndBack(1.0));
-  Succeed("map first.log -o first");
-  Write("second.log", ThereAndBack(1.25));
-  EXPECT_THAT(Mapped("second.log --map first --localise"),
-              HasSubstr("; odometry's frame lies at ("));
-  const Trajectory online = ReadTrajectory(Path("out/trajectory_online.txt"));
-  ASSERT_EQ(online.size(), 41U);
-  double worst_m = 0.0;
-  for (std::size_t i = 0; i < online.size(); ++i) {
-    const double x_m = 1.0 + 0.1 * static_cast<double>(i <= 20 ? i : 40 - i);
-    const Eigen::Vector3d& at = online[i].world_from_camera.translation;
-    worst_m = std::max(worst_m, std::hypot(at.x() - x_m, at.y() - 1.0));
-  }
-  EXPECT_LT(worst_m, 0.05);
 }
 
 }  // namespace

@@ -1,0 +1,103 @@
+#include "eval/cli/map_settings.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "eval/idle_settings.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid::cli {
+namespace {
+
+// The settings of a map's run.yaml, given in place of an input: that map is made again.
+Config SettingsOf(const std::string& run_yaml) {
+  Config config = Config::FromFile(run_yaml);
+  if (config.Has("scene")) throw InputError(run_yaml, "is an experiment; `depthgrid run` takes it");
+  if (!config.Has("input"))
+    throw InputError(run_yaml, "key 'input' is missing: is no map's run.yaml");
+  config.Take("provenance");
+  return config;
+}
+
+bool IsSettingsFile(const std::string& input) { return input.ends_with(".yaml"); }
+
+Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& overrides) {
+  Config config = IsSettingsFile(arguments.input) ? SettingsOf(arguments.input) : Config();
+  const auto set = [&config](const std::string& key, const std::string& option,
+                             const std::string& value) {
+    if (!value.empty()) config.Set(key, value, option + " " + value);
+  };
+  set("sequence.format", "--format", arguments.format);
+  set("sequence.camera", "--camera", arguments.camera);
+  set("sequence.world_up", "--up", arguments.world_up);
+  for (const std::string& assignment : overrides) config.Set(assignment);
+  return config;
+}
+
+// With the files of the run.yaml that the command line does not name anew.
+MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
+  if (!IsSettingsFile(arguments.input)) return arguments;
+  arguments.input = settings.input;
+  if (arguments.poses.empty()) arguments.poses = settings.poses;
+  if (arguments.final_poses.empty()) arguments.final_poses = settings.final_poses;
+  if (arguments.loops.empty()) arguments.loops = settings.loops;
+  if (arguments.map.empty()) arguments.map = settings.map;
+  arguments.localise = arguments.localise || settings.localise;
+  return arguments;
+}
+
+std::string FromEverywhere(const std::string& path) {
+  namespace fs = std::filesystem;
+  return path.empty() ? path : fs::weakly_canonical(fs::absolute(path)).string();
+}
+
+}  // namespace
+
+void MapSettings::Visit(OptionsVisitor& v) {
+  v.Text("input", input, "the recorded sequence");
+  v.Text("poses", poses, "SLAM's live poses");
+  v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
+  v.Text("loops", loops, "SLAM's events");
+  v.Text("map", map, "the finished run it went on from");
+  v.Flag("localise", localise, "whether that map was left as it is");
+  v.Group("sequence", sequence, "how the recorded sequence is read");
+  v.Group("mapper", mapper, "the mapper");
+}
+
+MapRequest ReadMapRequest(const MapArguments& given) {
+  MapRequest request;
+  request.config = ConfigOf(given, given.common.set);
+  MapSettings& settings = request.settings;
+  request.config.Read(settings);
+  request.arguments = WithFilesOf(settings, given);
+  const MapArguments& arguments = request.arguments;
+  settings.input = FromEverywhere(arguments.input);
+  settings.poses = FromEverywhere(arguments.poses);
+  settings.final_poses = FromEverywhere(arguments.final_poses);
+  settings.loops = FromEverywhere(arguments.loops);
+  settings.map = FromEverywhere(arguments.map);
+  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
+  settings.localise = arguments.localise;
+  return request;
+}
+
+std::vector<std::string> DoubtsOfSettings(const MapArguments& given, const MapRequest& request) {
+  const MapArguments& arguments = request.arguments;
+  const MapSettings& settings = request.settings;
+  const SequenceFormat format = FormatOf(arguments.input, settings.sequence);
+  const std::string kind = NameOf(format);
+  const std::string input_is =
+      fmt::format("{} is {} {}", arguments.input, kind.starts_with('I') ? "an" : "a", kind);
+  IdleSettingList idle = IdleSettings(settings.mapper);
+  const IdleSettingList of_recording =
+      IdleSettings(settings.sequence, format, input_is, !arguments.loops.empty());
+  idle.insert(idle.end(), of_recording.begin(), of_recording.end());
+  return DoubtsOfOverrides(given.common.set, idle, [&](const std::vector<std::string>& set) {
+    MapSettings others;
+    ConfigOf(given, set).Read(others);
+    return ToYaml(others);
+  });
+}
+
+}  // namespace depthgrid::cli

@@ -1,0 +1,38 @@
+// What `depthgrid map` maps and how: its options and settings, or a map's run.yaml in place of an
+// input, which makes that map again.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/cli/commands.h"
+#include "mapper/io/config.h"
+#include "mapper/io/sequence.h"
+#include "mapper/mapper_options.h"
+
+namespace depthgrid::cli {
+
+struct MapSettings {
+  std::string input;
+  std::string poses;
+  std::string final_poses;
+  std::string loops;
+  std::string map;
+  bool localise = false;
+  SequenceOptions sequence;
+  MapperOptions mapper;
+
+  void Visit(OptionsVisitor& v);
+};
+
+struct MapRequest {
+  MapArguments arguments;  // with the files of a run.yaml that the command line does not name anew
+  Config config;
+  MapSettings settings;  // files by absolute paths, so that run.yaml means the same from everywhere
+};
+MapRequest ReadMapRequest(const MapArguments& given);
+
+// What was set beside what makes it mean nothing.
+std::vector<std::string> DoubtsOfSettings(const MapArguments& given, const MapRequest& request);
+
+}  // namespace depthgrid::cli
