@@ -4,10 +4,10 @@
 
 #include "eval/ablation.h"
 #include "eval/ablation_report.h"
+#include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
-#include "eval/output_folder.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 
@@ -49,7 +49,7 @@ void Ablate(const AblateArguments& arguments) {
   Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);

@@ -4,13 +4,13 @@
 #include <chrono>
 #include <filesystem>
 
+#include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/map_settings.h"
 #include "eval/map_start.h"
 #include "eval/map_video.h"
 #include "eval/mapping_run.h"
-#include "eval/output_folder.h"
 #include "eval/place_check.h"
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
@@ -271,7 +271,7 @@ void Map(const MapArguments& given) {
   const MapArguments& arguments = request.arguments;
   MapSettings& settings = request.settings;
   RequireVideoFile(arguments.output, arguments.common);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, request.config, settings, warnings);

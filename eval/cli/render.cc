@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment.h"
-#include "eval/output_folder.h"
 #include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
 #include "eval/world.h"
@@ -38,7 +38,7 @@ void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFold
 
 void Render(const RenderArguments& arguments) {
   const ExperimentOptions given = ExperimentOrScene(arguments.scene, arguments.common.set);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   const int threads = ThreadsOr(arguments.common.threads);
   const std::string cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
@@ -10,7 +11,6 @@
 #include "eval/idle_settings.h"
 #include "eval/map_video.h"
 #include "eval/output_file.h"
-#include "eval/output_folder.h"
 #include "eval/run_folder.h"
 #include "eval/shipped.h"
 #include "eval/study.h"
@@ -90,7 +90,7 @@ void RunOne(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
   RequireVideoFile(arguments.output, arguments.common);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
@@ -134,7 +134,7 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
         return ToYaml(ReadStudy(Config::FromFile(path), some, base_folder).experiments.front());
       });
   warnings.insert(warnings.end(), idle.begin(), idle.end());
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   ProgressBar bar("mapping");
   const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
   folder.Commit();

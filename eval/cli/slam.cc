@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
-#include "eval/output_folder.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -58,7 +58,7 @@ void Slam(const SlamArguments& arguments) {
   SlamSettings settings;
   config.Read(settings);
   const Trajectory truth = TrueFrames(arguments.sequence);
-  OutputFolder folder(arguments.common.output, arguments.common.force);
+  OutputFolder folder = OpenOutput(arguments.common);
   const SlamOutput slam = DisturbTrajectory(truth, settings.slam, arguments.seed);
   WriteSlamFiles(folder.work().string(), slam);
   WriteFile(folder.File("slam.yaml"), ToYaml(settings));

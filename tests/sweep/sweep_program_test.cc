@@ -312,6 +312,7 @@ TEST_F(ProgramSweep, ForceMixesNoResults) {
   const Outcome other = Program("sweep ./sweep.yaml --set frames=11 -o mine --force");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("here; choose another folder, or remove this one"));
+  EXPECT_THAT(Program("run ./small.yaml -o mine --force").err, HasSubstr("mine: holds a sweep"));
 }
 
 TEST_F(ProgramSweep, TooManyRunsAreRefusedAtOnce) {
