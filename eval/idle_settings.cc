@@ -95,6 +95,7 @@ IdleSettingList IdleSettings(const MapperOptions& mapper) {
     add("mapper.fusion.gain");
   }
   if (fusion.mode != FusionMode::kAdaptive) add("mapper.fusion.adaptive_rate");
+  if (fusion.mode != FusionMode::kLearned) add("mapper.fusion.judge_innovations");
   return idle;
 }
 
@@ -153,6 +154,9 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   if (is_idle("mapper.fusion.gain")) fusion.gain = FusionOptions{}.gain;
   if (is_idle("mapper.fusion.adaptive_rate")) {
     fusion.adaptive_rate = FusionOptions{}.adaptive_rate;
+  }
+  if (is_idle("mapper.fusion.judge_innovations")) {
+    fusion.judge_innovations = FusionOptions{}.judge_innovations;
   }
   return options;
 }
