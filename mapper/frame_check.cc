@@ -8,9 +8,6 @@
 namespace depthgrid {
 namespace {
 
-// Farther from the origin a pose is wrong: on Earth, in metres, nothing lies farther from the
-// origin of its UTM zone. Cells of 5 mm are still numbered.
-constexpr double kFarthestM = 1e7;
 // What rounding to floats, or to four digits, leaves of a unit quaternion's norm.
 constexpr double kNormSlack = 1e-3;
 
@@ -23,7 +20,8 @@ void RequirePose(const Frame& frame, const Pose3& pose, const std::string& name)
   if (!(std::abs(norm - 1.0) <= kNormSlack)) {
     Refuse(frame, name + "'s quaternion has the norm " + std::to_string(norm) + ", must be 1");
   }
-  if (!(pose.translation.cwiseAbs().maxCoeff() <= kFarthestM) || !pose.translation.allFinite()) {
+  if (!(pose.translation.cwiseAbs().maxCoeff() <= kFarthestPoseM) ||
+      !pose.translation.allFinite()) {
     const Eigen::Vector3d& at = pose.translation;
     Refuse(frame, name + " lies at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) +
                       ", " + std::to_string(at.z()) + "), must lie within 10,000 km");

@@ -139,7 +139,7 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
     warnings.push_back(fmt::format(
         "{}: lost: in {} of {} hardly anything that is seen lies on the map; the sequence is of "
         "another place, or begins elsewhere in it",
-        arguments.map, lost->lost, Counted(static_cast<std::size_t>(lost->frames), "frame")));
+        arguments.map, lost->lost, Counted(lost->frames, "frame")));
   } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
     warnings.push_back(fmt::format(
         "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "

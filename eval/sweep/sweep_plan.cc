@@ -215,8 +215,8 @@ std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
 
 // A required key that is missing may stand there with a slip in it.
 void RequireKeys(const Config& config, const std::string& path) {
-  const std::vector<std::string> known = {"experiment", "axes", "set",        "mode",
-                                          "samples",    "stop", "sample_seed"};
+  std::vector<std::string> known = Config::FromText(ToYaml(SweepFileOptions{}), "").Keys();
+  known.insert(known.end(), {"axes", "set"});
   for (const std::string required : {"axes", "experiment"}) {
     if (config.Has(required)) continue;
     for (const ConfigEntry& entry : config.Entries()) {

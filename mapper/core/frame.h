@@ -13,6 +13,12 @@
 
 namespace depthgrid {
 
+// Farther from the origin a pose is wrong: on Earth, in metres, nothing lies farther from the
+// origin of its UTM zone. Cells of 5 mm are still numbered.
+constexpr double kFarthestPoseM = 1e7;
+// Nor does the map lie farther, with room for how far an estimate goes from poses that drift.
+constexpr double kFarthestMapM = 1.05 * kFarthestPoseM;
+
 // At most one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
 // image).
 struct Frame {

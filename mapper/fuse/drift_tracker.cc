@@ -13,11 +13,12 @@ const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
 // follows the prior agrees with it). For so many motions that are seen along an axis, and again
 // from where SLAM drifts more than it was taken to until the next adjustment, the filter believes
-// no less than this share of the first walk along it. It does not confirm itself then, so what is
-// told of the errors is what was learnt, once some motions are seen.
+// no less than this share of the first walk along it.
 constexpr int kUnconfirmedMotions = 200;
-constexpr int kTellingMotions = 50;
 constexpr double kLeastOfFirstWalk = 0.5;
+// With that it does not confirm itself, so what is told of the errors is what was learnt, once so
+// many motions are seen (docs/tried.md, "Consistency").
+constexpr int kTellingMotions = 50;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
 // (docs/tried.md, "Settings on laser logs"). What is told of the errors has the map's in it.

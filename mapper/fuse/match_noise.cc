@@ -6,7 +6,8 @@
 namespace depthgrid {
 namespace {
 
-// So many innovations that are twice as large as they should be make the factor e times larger.
+// So many innovations that are twice as large as they should be make the factor e times larger; 50
+// do the same (docs/tried.md, "Consistency").
 constexpr double kInnovations = 100.0;
 // A single one counts as so many times too large at most: it may be a wrong match.
 constexpr double kMostTimes = 4.0;

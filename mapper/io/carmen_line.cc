@@ -9,13 +9,13 @@
 #include <iterator>
 #include <optional>
 
+#include "mapper/core/frame.h"
+
 namespace depthgrid {
 namespace {
 
 constexpr int kMaxReadings = 20000;
-// What the mapper takes (frame_check.h), which has room for UTM; beyond it is a damaged number.
-constexpr double kMaxCoordinateM = 1e7;
-constexpr double kMaxYawRad = 1e6;
+constexpr double kMaxYawRad = 1e6;  // beyond is a damaged number
 constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
 constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
 
@@ -82,7 +82,7 @@ std::optional<Pose2> ReadPose(Tokens& tokens) {
   const auto sane = [](const std::optional<double>& v, double most) {
     return v && std::abs(*v) <= most;
   };
-  if (!sane(x_m, kMaxCoordinateM) || !sane(y_m, kMaxCoordinateM) || !sane(yaw_rad, kMaxYawRad)) {
+  if (!sane(x_m, kFarthestPoseM) || !sane(y_m, kFarthestPoseM) || !sane(yaw_rad, kMaxYawRad)) {
     return std::nullopt;
   }
   return Pose2{*x_m, *y_m, WrapAngle(*yaw_rad)};

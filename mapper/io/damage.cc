@@ -24,6 +24,11 @@ void Tally::AppendTo(std::vector<std::string>& warnings, const std::string& name
       fmt::format("{}: {} {} (first: {})", name, Counted(count, thing), what, first));
 }
 
+void WarnOfCount(std::vector<std::string>& warnings, const std::string& name, int count,
+                 std::string_view thing, std::string_view what) {
+  if (count > 0) warnings.push_back(fmt::format("{}: {} {}", name, Counted(count, thing), what));
+}
+
 void RowDamage::RequireMostGood(std::string_view text) {
   if (damaged_.count >= good_) RequireAllGood();
   may_be_cut_ = last_is_good_ && !text.ends_with('\n');

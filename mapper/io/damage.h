@@ -21,6 +21,10 @@ struct Tally {
                 std::string_view what) const;
 };
 
+// "name: 3 things what", nothing when there was none.
+void WarnOfCount(std::vector<std::string>& warnings, const std::string& name, int count,
+                 std::string_view thing, std::string_view what);
+
 // The rows of a text file, of which some may be damaged.
 class RowDamage {
  public:

@@ -7,6 +7,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_image.h"
@@ -21,7 +22,6 @@ using internal::ShadeRule;
 // Origins are printed with six decimals or more; a smaller offset from the lattice of cells is
 // rounding.
 constexpr double kOriginRoundingM = 1e-6;
-constexpr double kMaxOriginM = 1.05e7;     // a map around a pose as far as the mapper takes them
 constexpr double kMaxOriginCells = 2.1e9;  // so that indices are within int
 
 struct MapYaml {
@@ -34,7 +34,7 @@ struct MapYaml {
   void Visit(OptionsVisitor& v) {
     v.Text("image", image, "image file, relative to this one");
     v.Number("resolution", resolution_m, {1e-6, 1e4}, "metres a pixel");
-    v.Numbers("origin", origin, {-kMaxOriginM, kMaxOriginM},
+    v.Numbers("origin", origin, {-kFarthestMapM, kFarthestMapM},
               "x, y, yaw of the lower left pixel's corner");
     v.Text("negate", negate, "white is occupied");
     v.Number("occupied_thresh", rule.thresholds.occupied_prob, {0.0, 1.0}, "occupied above");

@@ -8,6 +8,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/loop_events.h"
 #include "mapper/io/pose_file.h"
@@ -81,8 +82,7 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& 
                                        RangesOf(frames, poses)));
   }
   const auto warn = [&](int count, const char* thing, const char* what) {
-    if (count == 0) return;
-    warnings.push_back(fmt::format("{}: {} {}", path, Counted(count, thing), what));
+    WarnOfCount(warnings, path, count, thing, what);
   };
   warn(homeless, "pose", "with the stamp of no input frame, ignored");
   warn(doubled, "pose", "beside a nearer one of the same input frame, ignored");

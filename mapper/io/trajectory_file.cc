@@ -7,8 +7,8 @@
 #include <iterator>
 #include <optional>
 
-#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 
@@ -51,8 +51,7 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
   std::vector<std::string> warnings;
   damage.AppendTo(warnings, name);
   const auto warn = [&](int count, const char* thing, const char* what) {
-    if (count == 0) return;
-    warnings.push_back(fmt::format("{}: {} {}", name, Counted(count, thing), what));
+    WarnOfCount(warnings, name, count, thing, what);
   };
   warn(invalid_poses, "pose", "with NaN or a zero quaternion ignored");
   warn(unsorted_stamps, "row", "earlier than the row before, sorted");

@@ -73,8 +73,8 @@ void PairWithColour(const std::string& folder, const RecordingOptions& options,
   }
   if (unpaired > 0) {
     recording.warnings.push_back(
-        fmt::format("{}: {} depth images have no colour image within {} s and keep their own stamp",
-                    folder, unpaired, options.max_stamp_difference_s));
+        fmt::format("{}: {} without a colour image within {} s, with a stamp of its own", folder,
+                    Counted(unpaired, "depth image"), options.max_stamp_difference_s));
   }
 }
 
@@ -87,8 +87,8 @@ void DropRepeatedStamps(const std::string& folder, Recording& recording) {
   images.erase(end, images.end());
   if (dropped > 0) {
     recording.warnings.push_back(
-        fmt::format("{}: {} depth images share their colour image with the one before, ignored",
-                    folder, dropped));
+        fmt::format("{}: {} with the colour image of the one before, ignored", folder,
+                    Counted(dropped, "depth image")));
   }
 }
 
@@ -139,8 +139,7 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   damage.AppendTo(list.warnings, place);
   const int repeated = SortAndNumber(list.files);
   const auto warn = [&](int count, const char* thing, const char* what) {
-    if (count == 0) return;
-    list.warnings.push_back(fmt::format("{}: {} {}", place, Counted(count, thing), what));
+    WarnOfCount(list.warnings, place, count, thing, what);
   };
   warn(unsorted, "row", "earlier than the row before, sorted");
   warn(repeated, "row", "with a stamp already given, ignored");

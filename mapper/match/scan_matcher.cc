@@ -2,13 +2,14 @@
 
 #include <cmath>
 
+#include "mapper/core/frame.h"
+
 namespace depthgrid {
 namespace {
 
-// False for NaN too. The limit, that of frames, keeps cell indices within int.
+// False for NaN too. The limit keeps cell indices within int.
 bool IsUsable(const Pose2& pose) {
-  constexpr double kFarthestM = 1.05e7;
-  return std::abs(pose.x_m) < kFarthestM && std::abs(pose.y_m) < kFarthestM &&
+  return std::abs(pose.x_m) < kFarthestMapM && std::abs(pose.y_m) < kFarthestMapM &&
          std::isfinite(pose.yaw_rad);
 }
 

@@ -7,7 +7,8 @@ namespace depthgrid {
 namespace {
 
 // A surfel seen again so many frames after those that drew it was found by a match against it. What
-// is drawn there from then on errs as it does, so it is theirs still.
+// is drawn there from then on errs as it does, so it is theirs still (docs/tried.md,
+// "Consistency").
 constexpr float kVisitFrames = 400.0F;
 // A surfel that moved stays in the cell it was added to; so much is looked beyond the gate for it.
 constexpr double kMovedM = 0.02;
