@@ -172,9 +172,9 @@ BearingReturns ImageReturns::At(std::size_t k, const std::vector<BlockHits>& hit
   return returns;
 }
 
-const ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
-                                const ReturnLimits& limits, const std::optional<SliceBand>& slice,
-                                const NoiseWindow& window, ReturnsMemory& memory) {
+ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
+                          const ReturnLimits& limits, const std::optional<SliceBand>& slice,
+                          const NoiseWindow& window, ReturnsMemory& memory) {
   ImageReturns& all = memory.returns;
   all.size = lines.size();
   all.views.resize(lines.blocks.size());

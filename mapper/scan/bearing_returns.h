@@ -129,8 +129,8 @@ struct ReturnsMemory {
 
 // All of the above for every line at once, vectorised; the same values bit for bit. The result is
 // good until the memory is used again.
-const ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
-                                const ReturnLimits& limits, const std::optional<SliceBand>& slice,
-                                const NoiseWindow& window, ReturnsMemory& memory);
+ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines,
+                          const ReturnLimits& limits, const std::optional<SliceBand>& slice,
+                          const NoiseWindow& window, ReturnsMemory& memory);
 
 }  // namespace depthgrid

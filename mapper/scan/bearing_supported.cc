@@ -100,21 +100,21 @@ class NearestLanes {
     return {high, high, hn::Zero(d), hn::Zero(d)};
   }
   HWY_INLINE Running<false> Second(const Running<true>& first) {
-    const Floats d;
-    const Vec half = hn::Mul(hn::Set(d, 0.5F), width_);
-    centre_ = first.MeanOr(d, nearest_);
-    const Vec high = hn::Min(hn::Add(centre_, half), max_range_);
-    mattered_ = hn::Max(first.to, high);
+    mattered_ = first.to;
     count_ = first.count;
-    return {hn::Sub(centre_, half), high, hn::Zero(d), hn::Zero(d)};
+    return Around(first.MeanOr(Floats(), nearest_));
   }
-  HWY_INLINE void Take(const Running<false>& second, BlockHits& hits, NearestOfBlock& of) const {
+  HWY_INLINE void Keep(const Running<false>& of) { range_ = of.MeanOr(Floats(), centre_); }
+  HWY_INLINE bool AnyNarrow() const { return !hn::AllFalse(Floats(), Narrow()); }
+  // Around what was kept, where windows are narrow; the others' stay.
+  HWY_INLINE Running<false> Again() { return Around(hn::IfThenElse(Narrow(), range_, centre_)); }
+  HWY_INLINE void Take(BlockHits& hits, NearestOfBlock& of) const {
     const Floats d;
     const Mask any = hn::Le(nearest_, max_range_);
     const auto enough = hn::Set(d, static_cast<float>(limits_.min_returns));
     const Mask is_hit = hn::And(any, hn::Ge(count_, enough));
     hn::Store(hn::IfThenElseZero(is_hit, hn::Set(d, 1.0F)), d, &hits.is_hit[at_]);
-    hn::Store(hn::IfThenElseZero(is_hit, second.MeanOr(d, centre_)), d, &hits.range_m[at_]);
+    hn::Store(hn::IfThenElseZero(is_hit, range_), d, &hits.range_m[at_]);
     const Vec skipped_from = hn::Load(d, &found_.skipped_from[at_]);
     of.doubtful |= BitsOf(hn::And(is_hit, hn::Ge(mattered_, skipped_from)));
     of.alone |= BitsOf(hn::AndNot(is_hit, any));
@@ -127,10 +127,23 @@ class NearestLanes {
     return bits << at_;
   }
 
+  HWY_INLINE Mask Narrow() const {
+    const Vec most = hn::Set(Floats(), static_cast<float>(NoiseWindow::kMaxWindowM));
+    return hn::And(hn::Ge(width_, most), hn::Le(nearest_, max_range_));
+  }
+  HWY_INLINE Running<false> Around(Vec centre) {
+    const Floats d;
+    const Vec half = hn::Mul(hn::Set(d, 0.5F), width_);
+    const Vec high = hn::Min(hn::Add(centre, half), max_range_);
+    centre_ = centre;
+    mattered_ = hn::Max(mattered_, high);
+    return {hn::Sub(centre, half), high, hn::Zero(d), hn::Zero(d)};
+  }
+
   const BandFound& found_;
   const ReturnLimits& limits_;
   std::size_t at_;
-  Vec nearest_, width_, max_range_, centre_, mattered_, count_;
+  Vec nearest_, width_, max_range_, centre_, range_, mattered_, count_;
 };
 
 void FindLanes(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
@@ -146,10 +159,18 @@ void FindLanes(const BandFound& found, std::size_t rows, const ReturnLimits& lim
     std::array<Running<true>, kTogether> first;
     for (std::size_t k = 0; k < kTogether; ++k) first[k] = nearest[k].First();
     AddAll(found.samples, rows, i, first);
-    std::array<Running<false>, kTogether> second;
-    for (std::size_t k = 0; k < kTogether; ++k) second[k] = nearest[k].Second(first[k]);
-    AddAll(found.samples, rows, i, second);
-    for (std::size_t k = 0; k < kTogether; ++k) nearest[k].Take(second[k], hits, of);
+    std::array<Running<false>, kTogether> around;
+    for (std::size_t k = 0; k < kTogether; ++k) around[k] = nearest[k].Second(first[k]);
+    for (int mean = 1;; ++mean) {
+      AddAll(found.samples, rows, i, around);
+      for (std::size_t k = 0; k < kTogether; ++k) nearest[k].Keep(around[k]);
+      if (mean == NoiseWindow::kMeansOfNarrow) break;
+      bool any_narrow = false;
+      for (const NearestLanes& lane : nearest) any_narrow = any_narrow || lane.AnyNarrow();
+      if (!any_narrow) break;
+      for (std::size_t k = 0; k < kTogether; ++k) around[k] = nearest[k].Again();
+    }
+    for (const NearestLanes& lane : nearest) lane.Take(hits, of);
   }
 }
 

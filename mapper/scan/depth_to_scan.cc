@@ -40,11 +40,14 @@ Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera, const Ca
   return reading;
 }
 
+// Samples count up to a noise window beyond the reach: of those short of it alone the mean would
+// lie before a surface near it.
 ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, bool transposed,
-                      double camera_height_m) {
+                      double camera_height_m, const NoiseWindow& window) {
   ReturnLimits limits;
+  const auto reach_m = static_cast<float>(options.max_range_m);
   limits.min_depth_m = static_cast<float>(options.min_range_m);
-  limits.max_range_m = static_cast<float>(options.max_range_m);
+  limits.max_range_m = reach_m + window.At(reach_m);
   limits.low_m = static_cast<float>(options.band_low_m - camera_height_m);
   limits.high_m = static_cast<float>(options.band_high_m - camera_height_m);
   const int rows = transposed ? camera.width_px : camera.height_px;
@@ -62,8 +65,20 @@ ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, b
   return limits;
 }
 
-Scan ScanOf(ScanMemory& memory, const std::vector<BlockHits>& hits, double camera_height_m,
+void DropBeyond(double reach_m, std::vector<BlockHits>& hits) {
+  const auto reach = static_cast<float>(reach_m);
+  for (BlockHits& block : hits) {
+    for (std::size_t i = 0; i < kBlockBearings; ++i) {
+      const bool is_within = block.range_m[i] <= reach;
+      block.is_hit[i] = is_within ? block.is_hit[i] : 0.0F;
+      block.range_m[i] = is_within ? block.range_m[i] : 0.0F;
+    }
+  }
+}
+
+Scan ScanOf(ScanMemory& memory, std::vector<BlockHits>& hits, double camera_height_m,
             const ScanOptions& options, Scan scan = {}) {
+  DropBeyond(options.max_range_m, hits);
   return ScanOf(memory.fan.bearings, memory.views, hits, camera_height_m, options, memory.beams,
                 std::move(scan));
 }
@@ -107,9 +122,11 @@ DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options
 Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) const {
   ScanMemory memory;
   const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
-  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
-  const ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits, std::nullopt,
-                                            NoiseWindow(depth, memory.noise), memory.returns);
+  const NoiseWindow window(depth, memory.noise);
+  const ReturnLimits limits =
+      LimitsOf(options_, camera_, reading.transposed, stand.height_m, window);
+  ImageReturns& returns =
+      FindReturns(*reading.image, memory.lines, limits, std::nullopt, window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
   return ScanOf(memory, returns.obstacles, stand.height_m, options_);
 }
@@ -118,15 +135,16 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
                                   double slice_half_height_m, ScanMemory& memory,
                                   ScanPair scans) const {
   const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
-  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
+  const NoiseWindow window(depth, memory.noise);
+  const ReturnLimits limits =
+      LimitsOf(options_, camera_, reading.transposed, stand.height_m, window);
   const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
   const ReturnLimits slice_limits =
-      LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m);
-  const ImageReturns& returns =
-      FindReturns(*reading.image, memory.lines, limits,
-                  SliceBand{slice_limits.low_m, slice_limits.high_m,
-                            static_cast<float>(options_.slice_agree_sigmas)},
-                  NoiseWindow(depth, memory.noise), memory.returns);
+      LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m, window);
+  ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
+                                      SliceBand{slice_limits.low_m, slice_limits.high_m,
+                                                static_cast<float>(options_.slice_agree_sigmas)},
+                                      window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
   return {
       ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
@@ -139,7 +157,8 @@ std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,
   ScanMemory memory;
   const Reading reading =
       ReadingOf(depth, camera_, stand, static_cast<int>(scan.beams.size()), memory);
-  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m);
+  const ReturnLimits limits = LimitsOf(options_, camera_, reading.transposed, stand.height_m,
+                                       NoiseWindow(depth, memory.noise));
   std::vector<Eigen::Vector2d> pixels(scan.beams.size(), {-1.0, -1.0});
   for (std::size_t k = 0; k < scan.beams.size(); ++k) {
     if (!scan.beams[k].hit) continue;

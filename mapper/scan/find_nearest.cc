@@ -107,10 +107,15 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
       const float width_m = window.At(smallest);
       if (sorted[last] > smallest + width_m) continue;
       const float half_m = 0.5F * width_m;
-      const float centre_m = MeanWithin(samples, smallest, smallest + width_m, smallest);
+      float mattered_m = smallest + width_m;
       returns.hit = true;
-      returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
-      return std::max(smallest + width_m, centre_m + half_m);
+      returns.range_m = MeanWithin(samples, smallest, mattered_m, smallest);
+      for (int mean = 0; mean < NoiseWindow::MeansOf(width_m); ++mean) {
+        const float centre_m = returns.range_m;
+        mattered_m = std::max(mattered_m, centre_m + half_m);
+        returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
+      }
+      return mattered_m;
     }
   }
 }

@@ -27,6 +27,8 @@ class NoiseWindow {
   NoiseWindow(const DepthImage& image, Memory& differences);
 
   static constexpr double kWindowSigmas = 6.0;
+  // Wider than this, the window would join a chair with the wall behind it.
+  static constexpr double kMaxWindowM = 0.4;
   // A standard deviation as a share of the width.
   static constexpr float kSigmaShare = static_cast<float>(1.0 / kWindowSigmas);
 
@@ -38,6 +40,13 @@ class NoiseWindow {
 
   // The same of many ranges.
   void At(std::span<const float> ranges_m, float* widths_m) const;
+
+  // The mean over a window moves nearer to the surface the window is centred on: one is enough of
+  // six sigma. Where sigma is so large that the window is narrower, each leaves a share (.37 of 3.3
+  // sigma, .6 of 2).
+  static constexpr int kMeansOfNarrow = 7;
+  static bool IsNarrow(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
+  static int MeansOf(float width_m) { return IsNarrow(width_m) ? kMeansOfNarrow : 1; }
 
   // Standard deviation of depth as estimated for a class of depth.
   double SigmaM(double z_m) const {
@@ -52,8 +61,6 @@ class NoiseWindow {
  private:
   static constexpr double kClassM = 0.5;  // classes of depth are this wide, from 0
   static constexpr double kMinWindowM = 0.01;
-  // Wider than this, the window would join a chair with the wall behind it.
-  static constexpr double kMaxWindowM = 0.4;
 
   std::array<double, kClasses> inverse_sigma_{};  // of 1/z, 1/m
 };

@@ -99,6 +99,12 @@ struct AnalyticRoom {
   }
 };
 
+inline AnalyticRoom RoomWithWallAt(double x_m) {
+  AnalyticRoom room;
+  room.walls = {{-3.0, -6.0, 0.0}, {x_m, 6.0, 2.5}};
+  return room;
+}
+
 // A camera at the base pose, pitched (positive looks down) and rolled about its optical axis.
 inline Pose3 TiltedCamera(const Pose2& world_from_base, double height_m, double pitch_down_rad,
                           double roll_rad) {

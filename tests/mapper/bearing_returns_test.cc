@@ -101,7 +101,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   RandomStream random(11, RandomStage::kTest);
   ReturnsMemory memory;
   BearingFan fan;
-  int cases = 0, hits = 0, slice_hits = 0, gaps = 0, unsteady = 0;
+  int cases = 0, hits = 0, slice_hits = 0, gaps = 0, unsteady = 0, narrow = 0;
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     Choose(target);
@@ -112,7 +112,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       const Pose3 pose =
           TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15, pitch_rad, roll_rad);
       DepthImage image = room.Render(camera, pose);
-      if (i % 4 != 3) AddNoise(image, 0.004, random);
+      if (i % 4 != 3) AddNoise(image, i % 8 == 2 ? 0.1 : 0.004, random);
       if (i % 4 == 1) AddStrays(image, 0.001, random);
       if (i % 4 > 1) Damage(image, random);
       const Eigen::Quaterniond level = LevelFromCamera(pose);
@@ -155,6 +155,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         slice_hits += plain_slice.hit ? 1 : 0;
         ++cases;
         hits += plain.hit ? 1 : 0;
+        narrow += plain.hit && NoiseWindow::IsNarrow(window.At(plain.range_m)) ? 1 : 0;
         gaps += plain.gap_below.last > 0 || plain.gap_above.last > 0 ? 1 : 0;
       }
     }
@@ -163,6 +164,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   EXPECT_GE(hits, 2000);
   EXPECT_GE(slice_hits, 2000);
   EXPECT_GE(unsteady, 50);
+  EXPECT_GE(narrow, 100);
   EXPECT_GE(gaps, 600);
 }
 
