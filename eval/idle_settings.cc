@@ -83,11 +83,36 @@ void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
   if (!depth.empty() && !slam.empty()) idle.push_back({"seed", depth + " and " + slam});
 }
 
+// What only the other method reads. (The report's pictures are of submaps with either.)
+void AddOtherMethod(const MapperOptions& mapper, IdleSettingList& idle) {
+  const std::string chosen = Stands(mapper, "mapper", "method");
+  const bool is_surfel = mapper.method == MapperMethod::kSurfel;
+  for (const char* key : {"mapper.match", "mapper.graph"}) {
+    if (is_surfel) idle.push_back({key, chosen});
+  }
+  for (const char* key : {"mapper.surfel", "mapper.rounds"}) {
+    if (!is_surfel) idle.push_back({key, chosen});
+  }
+}
+
+MapperOptions WithoutOtherMethod(MapperOptions mapper) {
+  const MapperOptions usual;
+  if (mapper.method == MapperMethod::kSurfel) {
+    mapper.match = usual.match;
+    mapper.graph = usual.graph;
+  } else {
+    mapper.surfel = usual.surfel;
+    mapper.rounds = usual.rounds;
+  }
+  return mapper;
+}
+
 }  // namespace
 
 IdleSettingList IdleSettings(const MapperOptions& mapper) {
   const FusionOptions& fusion = mapper.fusion;
   IdleSettingList idle;
+  AddOtherMethod(mapper, idle);
   const auto add = [&](const char* key) {
     idle.push_back({key, Stands(fusion, "mapper.fusion", "mode")});
   };
@@ -150,6 +175,7 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   options.seed = 0;  // the two are all it is for
   options.slam = WithoutIdleSettings(options.slam);
   if (is_idle("sensor.noise_scale")) options.sensor.noise_scale = SensorOptions{}.noise_scale;
+  options.mapper = WithoutOtherMethod(options.mapper);
   FusionOptions& fusion = options.mapper.fusion;
   if (is_idle("mapper.fusion.gain")) fusion.gain = FusionOptions{}.gain;
   if (is_idle("mapper.fusion.adaptive_rate")) {

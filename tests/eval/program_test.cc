@@ -261,6 +261,10 @@ TEST_F(ProgramRun, WhatHasNoEffectIsSaid) {
   EXPECT_EQ(said(" --set sensor.noise=none --set sensor.noise_scale=2"),
             "depthgrid: warning: --set sensor.noise_scale=2: has no effect because sensor.noise is "
             "none\n");
+  EXPECT_EQ(said(" --set mapper.match.min_score=0.3"),
+            "depthgrid: warning: --set mapper.match.min_score=0.3: has no effect because "
+            "mapper.method is surfel\n");
+  EXPECT_EQ(said(" --set mapper.method=paper --set mapper.match.min_score=0.3"), "");
   EXPECT_EQ(said(" --set mapper.fusion.gain=0.3 --set seed=4 --set slam.drift_scale=2"), "");
   // What is said to be as it would be anyway is no mistake, but where nothing errs a seed is one.
   EXPECT_EQ(said(" --set slam_seed=1 --set depth_seed=1"), "");

@@ -159,6 +159,9 @@ TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
   EXPECT_THAT(
       doubts("axes: {sensor.noise: [none, handa], sensor.noise_scale: [1, 2]}\n"),
       ElementsAre("sweep: 1 of 4 runs repeats another: there sensor.noise_scale has no effect"));
+  EXPECT_THAT(doubts("axes: {mapper.method: [paper, surfel], mapper.surfel.stay_m: [0.05, 0.1]}\n"),
+              ElementsAre("sweep: 1 of 4 runs repeats another: there mapper.surfel.stay_m has no "
+                          "effect"));
   EXPECT_THAT(doubts("axes: {slam.drift_scale: [1, 2], slam.drift_speed_mps: [0.1]}\n"),
               ElementsAre());
   EXPECT_THAT(doubts("axes: {seed: {seeds: 3}, mapper.fusion.mode: [fixed, learned]}\n"
