@@ -77,8 +77,9 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 
 // The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself. `sorted` is memory. Returns up to where samples
-// mattered: more of them beyond would change nothing.
+// supported sample, once more centred on itself (more often where NoiseWindow::MeansOf says so).
+// `sorted` is memory. Returns up to where samples mattered: more of them beyond would change
+// nothing.
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                   const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns);
 
