@@ -148,7 +148,7 @@ constexpr std::size_t kKills = 50;
 #endif
 
 TEST_F(ProgramSweep, KilledFiftyTimesItIsTheSameTable) {
-  constexpr std::size_t kRuns = 8 * kKills;
+  constexpr std::size_t kRuns = 4 * kKills;
   Write("many.yaml", fmt::format(R"(
 experiment: ./small.yaml
 axes:
