@@ -87,12 +87,8 @@ void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
 void AddOtherMethod(const MapperOptions& mapper, IdleSettingList& idle) {
   const std::string chosen = Stands(mapper, "mapper", "method");
   const bool is_surfel = mapper.method == MapperMethod::kSurfel;
-  for (const char* key : {"mapper.match", "mapper.graph"}) {
-    if (is_surfel) idle.push_back({key, chosen});
-  }
-  for (const char* key : {"mapper.surfel", "mapper.rounds"}) {
-    if (!is_surfel) idle.push_back({key, chosen});
-  }
+  idle.push_back({is_surfel ? "mapper.match" : "mapper.surfel", chosen});
+  idle.push_back({is_surfel ? "mapper.graph" : "mapper.rounds", chosen});
 }
 
 MapperOptions WithoutOtherMethod(MapperOptions mapper) {

@@ -41,9 +41,10 @@ class NoiseWindow {
   // The same of many ranges.
   void At(std::span<const float> ranges_m, float* widths_m) const;
 
-  // The mean over a window moves nearer to the surface the window is centred on: one is enough of
-  // six sigma. Where sigma is so large that the window is narrower, each leaves a share (.37 of 3.3
-  // sigma, .6 of 2).
+  // The mean over a window lies nearer to the surface than the window's centre: of one six sigma
+  // wide .03 of the way is left. Where sigma is so large that the window is narrower, w sigma, each
+  // mean leaves w phi(w/2) / (2 Phi(w/2) - 1) of it (.37 of 3.3 sigma, .71 of 2), seven of the
+  // latter a tenth.
   static constexpr int kMeansOfNarrow = 7;
   static bool IsNarrow(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
   static int MeansOf(float width_m) { return IsNarrow(width_m) ? kMeansOfNarrow : 1; }
