@@ -19,10 +19,6 @@ constexpr double kMostStretch = 2.0;
 // Where the newest scans already lie on what was seen long ago, the adjustment sees it too.
 constexpr double kKnownShare = 0.5;
 
-const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)].map_from_base;
-}
-
 bool IsSmall(const Pose2& pose, double within_m, double within_deg) {
   return pose.translation().norm() < within_m && std::abs(pose.yaw_rad) < RadFromDeg(within_deg);
 }

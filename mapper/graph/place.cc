@@ -10,10 +10,6 @@
 namespace depthgrid {
 namespace {
 
-const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)].map_from_base;
-}
-
 // The last frame on one side that is still within reach, from `begin` to before `end`.
 int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
                   const PlaceOptions& options, int begin, int end) {

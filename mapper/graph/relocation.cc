@@ -22,10 +22,6 @@ constexpr std::size_t kMostPoints = 400;
 // Old frames that a new one is compared with.
 constexpr std::size_t kOldForEach = 2;
 
-const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)].map_from_base;
-}
-
 // Frames before `end` around a pose that together show what can be seen there.
 std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,
                            double reach_m) {

@@ -4,17 +4,13 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
 
-std::string ErrorOf(const std::string& text) {
-  try {
-    ParseCameraFile(text, "camera.yaml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string CameraFileRefusal(const std::string& text) {
+  return RefusalOf([&] { ParseCameraFile(text, "camera.yaml"); });
 }
 
 constexpr const char* kText =
@@ -32,14 +28,14 @@ TEST(CameraFile, ReadsAndWrites) {
 }
 
 TEST(CameraFile, NamesKeyAndRule) {
-  EXPECT_EQ(ErrorOf("width: 640\n"), "camera.yaml: key 'height' is missing");
-  EXPECT_EQ(ErrorOf(std::string(kText) + "distortion: [1,2,3,4,5,6]\n"),
+  EXPECT_EQ(CameraFileRefusal("width: 640\n"), "camera.yaml: key 'height' is missing");
+  EXPECT_EQ(CameraFileRefusal(std::string(kText) + "distortion: [1,2,3,4,5,6]\n"),
             "camera.yaml: distortion has more than the five plumb-bob numbers k1 k2 p1 p2 k3");
-  EXPECT_EQ(ErrorOf(std::string(kText) + "fz: 1\n"),
+  EXPECT_EQ(CameraFileRefusal(std::string(kText) + "fz: 1\n"),
             "camera.yaml:7: unknown key 'fz', did you mean 'fx'?");
-  EXPECT_EQ(ErrorOf("width: 0\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
+  EXPECT_EQ(CameraFileRefusal("width: 0\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
             "camera.yaml:1: width is '0', must be from 1 to 16384");
-  EXPECT_EQ(ErrorOf("width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 31.5\ncy: 549\n"),
+  EXPECT_EQ(CameraFileRefusal("width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 31.5\ncy: 549\n"),
             "camera.yaml: cy is 549.000000, must be within ten focal lengths of the image");
 }
 

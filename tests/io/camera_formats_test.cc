@@ -3,17 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/error.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
 
-std::string ErrorOf(const std::string& text) {
-  try {
-    ParseCameraDescription(text, "c");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string DescriptionRefusal(const std::string& text) {
+  return RefusalOf([&] { ParseCameraDescription(text, "c"); });
 }
 
 TEST(CameraFormats, OurYamlWithEitherSignOfFy) {
@@ -81,19 +77,21 @@ TEST(CameraFormats, MatrixTexts) {
 }
 
 TEST(CameraFormats, OneClearLineForEachFault) {
-  EXPECT_EQ(ErrorOf(""), "c: is empty, must describe a camera");
-  EXPECT_EQ(ErrorOf("1 2\n3 4\n"), "c: the camera matrix must have three rows of three numbers");
-  EXPECT_EQ(ErrorOf("500 0 320\n0 500 240\n0 0\n"), "c:3: has 2 columns, must have 3");
-  EXPECT_EQ(ErrorOf("500 0 320\n1 500 240\n0 0 1\n"),
+  EXPECT_EQ(DescriptionRefusal(""), "c: is empty, must describe a camera");
+  EXPECT_EQ(DescriptionRefusal("1 2\n3 4\n"),
+            "c: the camera matrix must have three rows of three numbers");
+  EXPECT_EQ(DescriptionRefusal("500 0 320\n0 500 240\n0 0\n"), "c:3: has 2 columns, must have 3");
+  EXPECT_EQ(DescriptionRefusal("500 0 320\n1 500 240\n0 0 1\n"),
             "c: the camera matrix must be [fx 0 cx; 0 fy cy; 0 0 1]");
-  EXPECT_EQ(ErrorOf("Camera.fx: 500\n"), "c: key 'Camera.fy' is missing");
-  EXPECT_EQ(ErrorOf("K: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"), "c: key 'image_width' is missing");
-  EXPECT_EQ(ErrorOf("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
-                    "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"),
+  EXPECT_EQ(DescriptionRefusal("Camera.fx: 500\n"), "c: key 'Camera.fy' is missing");
+  EXPECT_EQ(DescriptionRefusal("K: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"),
+            "c: key 'image_width' is missing");
+  EXPECT_EQ(DescriptionRefusal("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
+                               "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"),
             "c: distortion_model is equidistant, must be plumb_bob");
-  EXPECT_EQ(ErrorOf("what: ever\n"), "c: key 'width' is missing");
+  EXPECT_EQ(DescriptionRefusal("what: ever\n"), "c: key 'width' is missing");
   // A matrix does not say the image's size: what fits some image is no error yet.
-  EXPECT_EQ(ErrorOf("5000 0 1920\n0 5000 1080\n0 0 1\n"), "no error");
+  EXPECT_EQ(DescriptionRefusal("5000 0 1920\n0 5000 1080\n0 0 1\n"), "no error");
 }
 
 TEST(FlipY, IsConjugationWithTheReflection) {

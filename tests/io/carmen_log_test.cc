@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -222,14 +223,9 @@ std::string WarningsOf(const std::string& text) {
   return all;
 }
 
-std::string RefusalOf(const std::string& text) {
+std::string LogRefusal(const std::string& text) {
   const TextFile file(text);
-  try {
-    OpenCarmenLog(file.path());
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "taken";
+  return RefusalOf([&] { OpenCarmenLog(file.path()); });
 }
 
 std::string ScanAt(double x_m, double y_m, int stamp_s) {
@@ -243,7 +239,7 @@ TEST(CarmenLog, TakesCoordinatesOfAMapGrid) {
   const TextFile utm(ScanAt(400000.5, 5300000.25, 1));
   const auto frame = OpenCarmenLog(utm.path())->Next();
   EXPECT_EQ(BaseOf(*frame->slam_from_camera).translation(), Eigen::Vector2d(400000.5, 5300000.25));
-  EXPECT_THAT(RefusalOf(ScanAt(2e7, 0, 1)),
+  EXPECT_THAT(LogRefusal(ScanAt(2e7, 0, 1)),
               testing::HasSubstr("damaged pose (no numbers, or beyond 10,000 km)"));
 }
 
@@ -268,9 +264,9 @@ TEST(CarmenLog, OdometryFasterThanACarIsSaid) {
 }
 
 TEST(CarmenLog, SaysThatAFileIsNoText) {
-  EXPECT_THAT(RefusalOf("\x1F\x8B\x08 packed"),
+  EXPECT_THAT(LogRefusal("\x1F\x8B\x08 packed"),
               testing::HasSubstr("is compressed by gzip: gunzip it first"));
-  EXPECT_THAT(RefusalOf(std::string("#BAG\n\0\1\n", 8)), testing::HasSubstr("has zero bytes"));
+  EXPECT_THAT(LogRefusal(std::string("#BAG\n\0\1\n", 8)), testing::HasSubstr("has zero bytes"));
   // Those that a crash left at the end do no harm.
   const TextFile crashed(std::string(kFlaser) + std::string(100, '\0'));
   EXPECT_EQ(OpenCarmenLog(crashed.path())->FrameCount(), 1);

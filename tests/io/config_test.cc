@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/error.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -41,14 +42,9 @@ struct Outer {
   }
 };
 
-std::string ErrorOf(const std::string& text) {
+std::string ConfigRefusal(const std::string& text) {
   Outer outer;
-  try {
-    Config::FromText(text, "run.yaml").Read(outer);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return RefusalOf([&] { Config::FromText(text, "run.yaml").Read(outer); });
 }
 
 TEST(Config, ReadsEveryKind) {
@@ -102,13 +98,8 @@ TEST(Config, SetOverridesAndCreatesPaths) {
 std::string ErrorAfterSet(const std::string& assignment) {
   Config config = Config::FromText("frames: 10\nfusion: {mode: kalman}\n", "run.yaml");
   config.Set(assignment);
-  try {
-    Outer outer;
-    config.Read(outer);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  Outer outer;
+  return RefusalOf([&] { config.Read(outer); });
 }
 
 TEST(Config, ErrorsOfASetKeyNameTheAssignment) {
@@ -152,25 +143,25 @@ TEST(Config, ErrorsOfACopyDoNotInventALine) {
 }
 
 TEST(Config, ErrorsNameFileLineValueAndRule) {
-  EXPECT_EQ(ErrorOf(""), "run.yaml: is empty");
-  EXPECT_EQ(ErrorOf("- 1"), "run.yaml: must be a map of keys");
-  EXPECT_EQ(ErrorOf("seed: 1\nframs: 3"),
+  EXPECT_EQ(ConfigRefusal(""), "run.yaml: is empty");
+  EXPECT_EQ(ConfigRefusal("- 1"), "run.yaml: must be a map of keys");
+  EXPECT_EQ(ConfigRefusal("seed: 1\nframs: 3"),
             "run.yaml:2: unknown key 'frams', did you mean 'frames'?");
-  EXPECT_EQ(ErrorOf("fusion: {gian: 3}"),
+  EXPECT_EQ(ConfigRefusal("fusion: {gian: 3}"),
             "run.yaml:1: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
-  EXPECT_EQ(ErrorOf("frames: 0"), "run.yaml:1: frames is '0', must be from 1 to 1000000");
-  EXPECT_EQ(ErrorOf("frames: 1.5"), "run.yaml:1: frames is '1.5', must be a whole number");
-  EXPECT_EQ(ErrorOf("step_m: .nan"), "run.yaml:1: step_m is '.nan', must be from 0 to 1");
-  EXPECT_EQ(ErrorOf("seed: -1"),
+  EXPECT_EQ(ConfigRefusal("frames: 0"), "run.yaml:1: frames is '0', must be from 1 to 1000000");
+  EXPECT_EQ(ConfigRefusal("frames: 1.5"), "run.yaml:1: frames is '1.5', must be a whole number");
+  EXPECT_EQ(ConfigRefusal("step_m: .nan"), "run.yaml:1: step_m is '.nan', must be from 0 to 1");
+  EXPECT_EQ(ConfigRefusal("seed: -1"),
             "run.yaml:1: seed is '-1', must be a whole number from 0 to 18446744073709551615");
-  EXPECT_EQ(ErrorOf("seed: 1\nseed: 2"), "run.yaml:2: key 'seed' is given twice");
-  EXPECT_EQ(ErrorOf("fusion: {mode: kalmann}"),
+  EXPECT_EQ(ConfigRefusal("seed: 1\nseed: 2"), "run.yaml:2: key 'seed' is given twice");
+  EXPECT_EQ(ConfigRefusal("fusion: {mode: kalmann}"),
             "run.yaml:1: fusion.mode is 'kalmann', must be one of fixed, kalman (did you mean "
             "'kalman'?)");
-  EXPECT_EQ(ErrorOf("fusion: 3"), "run.yaml:1: fusion is '3', must be a map of keys");
-  EXPECT_EQ(ErrorOf("fusion: {gain: [1, 1]}"),
+  EXPECT_EQ(ConfigRefusal("fusion: 3"), "run.yaml:1: fusion is '3', must be a map of keys");
+  EXPECT_EQ(ConfigRefusal("fusion: {gain: [1, 1]}"),
             "run.yaml:1: fusion.gain is '[1, 1]', must be one number or [forward, left, yaw]");
-  EXPECT_THAT(ErrorOf("a: [1"), HasSubstr("not valid YAML"));
+  EXPECT_THAT(ConfigRefusal("a: [1"), HasSubstr("not valid YAML"));
 }
 
 TEST(Config, ListsOfMapsKeepTheirLines) {
@@ -201,14 +192,9 @@ TEST(Config, ReadsTuplesAndRows) {
   EXPECT_EQ(geometry.outline, (std::vector<double>{0, 0.5, 1, 0}));
   EXPECT_EQ(ToYaml(geometry), "at: [1, 2, 3]\noutline: [[0, 0.5], [1, 0]]\n");
 
-  const auto error_of = [](const std::string& text) -> std::string {
+  const auto error_of = [](const std::string& text) {
     Geometry target;
-    try {
-      Config::FromText(text, "x").Read(target);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return RefusalOf([&] { Config::FromText(text, "x").Read(target); });
   };
   EXPECT_EQ(error_of("at: [1, 2]"), "x:1: at is '[1, 2]', must be a list of 3 numbers");
   EXPECT_EQ(error_of("at: [1, 2, 11]"), "x:1: at is '11', must be from -10 to 10");

@@ -9,6 +9,7 @@
 
 #include "mapper/core/error.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -44,12 +45,7 @@ class FrameFolderTest : public TemporaryFolderTest {
     return frames;
   }
   std::string OpenError() const {
-    try {
-      OpenFrameFolder(folder_);
-    } catch (const InputError& error) {
-      return Short(error.what());
-    }
-    return "no error";
+    return Short(RefusalOf([&] { OpenFrameFolder(folder_); }));
   }
   std::vector<std::string> WarningsOf(const FrameSource& source) const {
     std::vector<std::string> warnings;

@@ -9,6 +9,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/png.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -155,14 +156,7 @@ TEST_F(IclFolderTest, WithoutACameraFileItIsIclNuims) {
 }
 
 TEST_F(IclFolderTest, OneClearLineForEachFault) {
-  const auto error = [&] {
-    try {
-      OpenIclFolder(folder_);
-    } catch (const InputError& e) {
-      return Short(e.what());
-    }
-    return std::string("no error");
-  };
+  const auto error = [&] { return Short(RefusalOf([&] { OpenIclFolder(folder_); })); };
   EXPECT_FALSE(IsIclFolder(folder_));
   EXPECT_EQ(error(), "~: holds neither depth/<n>.png nor *_<n>.depth");
   WriteCamera(-kF);

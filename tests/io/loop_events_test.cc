@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/error.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -17,13 +18,8 @@ SlamEvents Parse(const std::string& text) {
   return ParseSlamEvents(text, "e.txt", {kStamps}, 0.02);
 }
 
-std::string ErrorOf(const std::string& text) {
-  try {
-    Parse(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string EventsRefusal(const std::string& text) {
+  return RefusalOf([&] { Parse(text); });
 }
 
 // Tcm carries points of the matched camera into the current one: a camera that went 0.5 m along its
@@ -71,15 +67,16 @@ TEST(LoopEvents, RotationsOfFewDigitsAreRotations) {
 }
 
 TEST(LoopEvents, OneClearLineForEachFault) {
-  EXPECT_THAT(ErrorOf("LOOP 1 10.0 0 10.1 Tcm 1 0 0\n"),
+  EXPECT_THAT(EventsRefusal("LOOP 1 10.0 0 10.1 Tcm 1 0 0\n"),
               HasSubstr("e.txt:1: a LOOP must end with"));
-  EXPECT_THAT(ErrorOf("GBA_DONE kf 1\nLOST 3\n"), HasSubstr("e.txt:2: 'LOST' must be LOOP"));
-  EXPECT_THAT(ErrorOf("RELOC frame 3\n"), HasSubstr("field 5 must be a finite number"));
-  EXPECT_THAT(ErrorOf("LOOP 1 10.0 0 10.1 Tcm 2 0 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("rotation"));
-  EXPECT_THAT(ErrorOf("10.0 10.1 0 0 0 0 0 0 1 0.1\n"), HasSubstr("10 columns, must have 9"));
-  EXPECT_THAT(ErrorOf("10.0 10.1 0 0 0 0 0 0 3\n"), HasSubstr("norm 3, must be 1"));
-  EXPECT_THAT(ErrorOf("10.0 nan 0 0 0 0 0 0 1\n"), HasSubstr("finite"));
-  EXPECT_THAT(ErrorOf("leap,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14 or 17"));
+  EXPECT_THAT(EventsRefusal("GBA_DONE kf 1\nLOST 3\n"), HasSubstr("e.txt:2: 'LOST' must be LOOP"));
+  EXPECT_THAT(EventsRefusal("RELOC frame 3\n"), HasSubstr("field 5 must be a finite number"));
+  EXPECT_THAT(EventsRefusal("LOOP 1 10.0 0 10.1 Tcm 2 0 0 0 0 1 0 0 0 0 1 0\n"),
+              HasSubstr("rotation"));
+  EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 1 0.1\n"), HasSubstr("10 columns, must have 9"));
+  EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 3\n"), HasSubstr("norm 3, must be 1"));
+  EXPECT_THAT(EventsRefusal("10.0 nan 0 0 0 0 0 0 1\n"), HasSubstr("finite"));
+  EXPECT_THAT(EventsRefusal("leap,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14 or 17"));
 }
 
 }  // namespace

@@ -3,20 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/error.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
 
 constexpr const char* kQuarterTurn = "0 -1 0 1\n1 0 0 2\n0 0 1 3\n";
 
-std::string ErrorOf(const std::string& text) {
-  try {
-    RowDamage damage;
-    ParseMatrixPoses(text, "p", damage);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string MatrixPosesRefusal(const std::string& text) {
+  RowDamage damage;
+  return RefusalOf([&] { ParseMatrixPoses(text, "p", damage); });
 }
 
 void ExpectQuarterTurn(const std::optional<Pose3>& pose) {
@@ -70,16 +66,16 @@ TEST(MatrixPoses, DamagedOnesKeepTheirPlace) {
 }
 
 TEST(MatrixPoses, OneClearLineForEachFault) {
-  EXPECT_EQ(ErrorOf("1 2 3\n"),
+  EXPECT_EQ(MatrixPosesRefusal("1 2 3\n"),
             "p:1: has 3 columns, must be a row of a matrix (4) or a whole matrix (12 or 16)");
-  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n"), "p:2: the last matrix is incomplete");
-  EXPECT_EQ(ErrorOf("2 0 0 0\n0 2 0 0\n0 0 2 0\n"),
+  EXPECT_EQ(MatrixPosesRefusal("1 0 0 0\n0 1 0 0\n"), "p:2: the last matrix is incomplete");
+  EXPECT_EQ(MatrixPosesRefusal("2 0 0 0\n0 2 0 0\n0 0 2 0\n"),
             "p:3: the matrix's upper left 3x3 must be a rotation");
-  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n0 0 -1 0\n"),
+  EXPECT_EQ(MatrixPosesRefusal("1 0 0 0\n0 1 0 0\n0 0 -1 0\n"),
             "p:3: the matrix's upper left 3x3 must be a rotation");
-  EXPECT_EQ(ErrorOf("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"),
+  EXPECT_EQ(MatrixPosesRefusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"),
             "p:4: the matrix's last row must be 0 0 0 1");
-  EXPECT_EQ(ErrorOf("1 0 0 0 0 1 0 0 0 0 1 x\n"), "p:1: 'x' is not a number");
+  EXPECT_EQ(MatrixPosesRefusal("1 0 0 0 0 1 0 0 0 0 1 x\n"), "p:1: 'x' is not a number");
 }
 
 }  // namespace

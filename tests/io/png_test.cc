@@ -8,6 +8,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -23,13 +24,8 @@ DepthImage Ramp() {
   return image;
 }
 
-std::string ErrorOfDepth(std::string_view png) {
-  try {
-    DecodeDepthPng(png, {}, "d.png");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string DepthPngRefusal(std::string_view png) {
+  return RefusalOf([&] { DecodeDepthPng(png, {}, "d.png"); });
 }
 
 TEST(DepthPng, ReadsBackExactlyTheQuantisedImage) {
@@ -68,14 +64,14 @@ TEST(DepthPng, EveryTruncationIsOneError) {
   const std::string png = EncodeDepthPng(Ramp(), 5000.0);
   int errors = 0;
   for (std::size_t size = 0; size < png.size(); ++size) {
-    const std::string error = ErrorOfDepth(std::string_view(png).substr(0, size));
+    const std::string error = DepthPngRefusal(std::string_view(png).substr(0, size));
     EXPECT_THAT(error, HasSubstr("d.png: is "));
     EXPECT_EQ(error.find('\n'), std::string::npos);
     ++errors;
   }
   EXPECT_EQ(errors, static_cast<int>(png.size()));
-  EXPECT_EQ(ErrorOfDepth(""), "d.png: is empty, must be a PNG image");
-  EXPECT_EQ(ErrorOfDepth("P5 1 1 255\n"), "d.png: is not a PNG image");
+  EXPECT_EQ(DepthPngRefusal(""), "d.png: is empty, must be a PNG image");
+  EXPECT_EQ(DepthPngRefusal("P5 1 1 255\n"), "d.png: is not a PNG image");
 }
 
 TEST(DepthPng, DamagedBytesNeverCrash) {
@@ -86,17 +82,17 @@ TEST(DepthPng, DamagedBytesNeverCrash) {
   for (int i = 0; i < kCases; ++i) {
     std::string damaged = png;
     damaged[random.Below(png.size())] ^= static_cast<char>(1U << random.Below(8));
-    refused += ErrorOfDepth(damaged) != "no error" ? 1 : 0;
+    refused += DepthPngRefusal(damaged) != "no error" ? 1 : 0;
   }
   EXPECT_GE(refused, kCases * 9 / 10);  // the rest: bits of ancillary fields that nothing reads
 }
 
 TEST(DepthPng, RefusesOtherKinds) {
   GreyImage grey{2, 1, {1, 2}};
-  EXPECT_EQ(ErrorOfDepth(EncodeGreyPng(grey)),
+  EXPECT_EQ(DepthPngRefusal(EncodeGreyPng(grey)),
             "d.png: is a PNG of 8-bit grey, must be 16-bit grey");
   RgbImage rgb(2, 1);
-  EXPECT_EQ(ErrorOfDepth(EncodeRgbPng(rgb)),
+  EXPECT_EQ(DepthPngRefusal(EncodeRgbPng(rgb)),
             "d.png: is a PNG of 8-bit colour, must be 16-bit grey");
 }
 

@@ -14,6 +14,7 @@
 #include "mapper/io/tum_folder.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/mapper/analytic_room.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -50,13 +51,8 @@ class SequenceTest : public TemporaryFolderTest {
     return turned;
   }
   template <typename Action>
-  std::string ErrorOf(Action action) const {
-    try {
-      action();
-    } catch (const InputError& error) {
-      return Short(error.what());
-    }
-    return "no error";
+  std::string ErrorOf(const Action& action) const {
+    return Short(RefusalOf(action));
   }
 };
 

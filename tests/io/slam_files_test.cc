@@ -10,6 +10,7 @@
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
 #include "mapper/io/trajectory_file.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -73,12 +74,7 @@ class SlamFiles : public ::testing::Test {
     const SlamOutput example = Example();
     WriteSlamFiles(folder_, example);
     WriteFile(folder_ + "/loops.csv", loops);
-    try {
-      ReadSlamFiles(Paths(), {Stamps(example)});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return RefusalOf([&] { ReadSlamFiles(Paths(), {Stamps(example)}); });
   }
   std::string folder_;
 };

@@ -5,19 +5,15 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
 
 using ::testing::ElementsAre;
 
-std::string ErrorOf(const std::string& text) {
-  try {
-    ParseTrajectory(text, "t.txt");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string TrajectoryFileRefusal(const std::string& text) {
+  return RefusalOf([&] { ParseTrajectory(text, "t.txt"); });
 }
 
 TEST(TrajectoryFile, ReadsCommentsTabsCommasAndWindowsLines) {
@@ -70,19 +66,21 @@ TEST(TrajectoryFile, SurvivesDamageInsideALongFile) {
                                               "columns, must have 8)"));
   EXPECT_THAT(ParseTrajectory(good + "4 0 0 0 0 0 0 1", "t").Warnings("t"),
               ElementsAre("t: the last line has no line end; it is used, but may be cut"));
-  EXPECT_EQ(ErrorOf("0 1\n0 1\n0 1\n" + good), "t.txt:1: has 2 columns, must have 8");
+  EXPECT_EQ(TrajectoryFileRefusal("0 1\n0 1\n0 1\n" + good), "t.txt:1: has 2 columns, must have 8");
 }
 
 TEST(TrajectoryFile, NamesTheBadLine) {
-  EXPECT_EQ(ErrorOf("# c\n1 2 3\n"), "t.txt:2: has 3 columns, must have 8");
-  EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 1\n1 0 x 0 0 0 0 1\n"), "t.txt:2: 'x' is not a number");
-  EXPECT_EQ(ErrorOf("nan 0 0 0 0 0 0 1\n"), "t.txt:1: the stamp must be finite");
-  EXPECT_EQ(ErrorOf(std::string("\xFF\xFE"
-                                "1\0 \0"
-                                "0\0\n",
-                                9)),
+  EXPECT_EQ(TrajectoryFileRefusal("# c\n1 2 3\n"), "t.txt:2: has 3 columns, must have 8");
+  EXPECT_EQ(TrajectoryFileRefusal("1 0 0 0 0 0 0 1\n1 0 x 0 0 0 0 1\n"),
+            "t.txt:2: 'x' is not a number");
+  EXPECT_EQ(TrajectoryFileRefusal("nan 0 0 0 0 0 0 1\n"), "t.txt:1: the stamp must be finite");
+  EXPECT_EQ(TrajectoryFileRefusal(std::string("\xFF\xFE"
+                                              "1\0 \0"
+                                              "0\0\n",
+                                              9)),
             "t.txt:1: has zero bytes (UTF-16?), must be UTF-8 text");
-  EXPECT_EQ(ErrorOf("1 0 0 0 0 0 0 2\n"), "t.txt:1: quaternion qx qy qz qw has norm 2, must be 1");
+  EXPECT_EQ(TrajectoryFileRefusal("1 0 0 0 0 0 0 2\n"),
+            "t.txt:1: quaternion qx qy qz qw has norm 2, must be 1");
 }
 
 TEST(TrajectoryFile, RoundedQuaternionsAreNormalised) {

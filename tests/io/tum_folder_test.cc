@@ -9,6 +9,7 @@
 #include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -50,13 +51,8 @@ class TumFolderTest : public TemporaryFolderTest {
     return frames;
   }
   template <typename Action>
-  std::string ErrorOf(Action action) const {
-    try {
-      action();
-    } catch (const InputError& error) {
-      return Short(error.what());
-    }
-    return "no error";
+  std::string ErrorOf(const Action& action) const {
+    return Short(RefusalOf(action));
   }
   std::string OpenError(const Trajectory& poses) const {
     return ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(poses)); });

@@ -63,14 +63,14 @@ TEST(Allocation, MatchingHasNoneInSteadyState) {
   EXPECT_EQ(counted, 0);
 }
 
-constexpr int kRound = 300;
+constexpr int kFramesOfARound = 300;
 
 // A walk that goes round and round, seen by a laser.
 std::vector<Frame> LaserRound() {
   const PlanarWorld room = FurnishedRoom();
-  std::vector<Frame> round(kRound);
-  for (int k = 0; k < kRound; ++k) {
-    const double turn_rad = 2.0 * kPi * k / kRound;
+  std::vector<Frame> round(kFramesOfARound);
+  for (int k = 0; k < kFramesOfARound; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kFramesOfARound;
     const Pose2 pose{3.0 + 0.3 * std::cos(turn_rad), 1.8 + 0.3 * std::sin(turn_rad),
                      WrapAngle(turn_rad)};
     const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
@@ -90,9 +90,9 @@ std::vector<Frame> DepthRound() {
   room.boxes.push_back({{0.9, -1.0, 0.0}, {1.5, -0.3, 0.5}});
   room.cylinders.push_back({{1.4, 0.5}, 0.04, 0.0, 2.5});
   RandomStream random(12, RandomStage::kTest);
-  std::vector<Frame> round(kRound);
-  for (int k = 0; k < kRound; ++k) {
-    const double turn_rad = 2.0 * kPi * k / kRound;
+  std::vector<Frame> round(kFramesOfARound);
+  for (int k = 0; k < kFramesOfARound; ++k) {
+    const double turn_rad = 2.0 * kPi * k / kFramesOfARound;
     const Pose2 base{-0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), WrapAngle(turn_rad)};
     Frame& frame = round[static_cast<std::size_t>(k)];
     frame.slam_from_camera = TiltedCamera(base, 1.15, 0.2, 0.05);
@@ -114,7 +114,7 @@ double AllocationsAFrame(const MapperOptions& options, std::vector<Frame> round)
   long before = 0;
   for (int k = 0; k < kWarm + kCounted; ++k) {
     if (k == kWarm) before = allocations;
-    Frame& frame = round[static_cast<std::size_t>(k % kRound)];
+    Frame& frame = round[static_cast<std::size_t>(k % kFramesOfARound)];
     frame.index = k;
     frame.stamp_s = k / 30.0;
     mapper.AddFrame(frame);

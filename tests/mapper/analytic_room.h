@@ -15,6 +15,9 @@
 
 namespace depthgrid {
 
+// Above the floor, of the camera in ICL-NUIM's living room.
+inline constexpr double kCameraHeightM = 1.15;
+
 struct AnalyticRoom {
   struct Box {
     Eigen::Vector3d low, high;

@@ -6,10 +6,10 @@ namespace depthgrid {
 namespace {
 
 // Camera at 1.1 m, band 0.1 to 1.8 m: the lower edge is 1 m below, the upper 0.7 m above.
-constexpr double kHeightM = 1.1;
+constexpr double kLowCameraM = 1.1;
 constexpr SlopeRange kHalfDown{-0.5F, 0.5F};
 
-Distances Clear(const BearingView& view, double limit_m = 6.0, double height_m = kHeightM) {
+Distances Clear(const BearingView& view, double limit_m = 6.0, double height_m = kLowCameraM) {
   return ClearInterval(view, height_m, limit_m, ScanOptions{});
 }
 
@@ -64,13 +64,13 @@ TEST(ClearInterval, AGapHidesWhereItIsTallerThanAllowedAndInsideTheBand) {
 TEST(LaserClearInterval, IsFreeUpToTheLimitOrWhereTheRayLeavesTheBand) {
   const ScanOptions options;
   const auto clear = [&](float slope, double limit_m) {
-    return LaserClearInterval({SlopeRange{slope, slope}, {}, {}}, kHeightM, limit_m, options);
+    return LaserClearInterval({SlopeRange{slope, slope}, {}, {}}, kLowCameraM, limit_m, options);
   };
   EXPECT_EQ(clear(0.0F, 3.0).from_m, 0.0);
   EXPECT_EQ(clear(0.0F, 3.0).to_m, 3.0);
   EXPECT_NEAR(clear(-0.5F, 6.0).to_m, 2.0, 1e-6);
   EXPECT_NEAR(clear(0.35F, 6.0).to_m, 2.0, 1e-6);
-  EXPECT_EQ(LaserClearInterval({}, kHeightM, 3.0, options).to_m, 0.0);
+  EXPECT_EQ(LaserClearInterval({}, kLowCameraM, 3.0, options).to_m, 0.0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace depthgrid {
 namespace {
 
 // A hand-held walk round the room, turning, looking down a little, pitching and rolling.
-std::vector<Pose3> Walk(int count) {
+std::vector<Pose3> CameraWalk(int count) {
   std::vector<Pose3> poses;
   for (int i = 0; i < count; ++i) {
     const double angle_rad = 2.0 * kPi * i / count;
@@ -34,7 +34,7 @@ TEST(DepthMapping, DrawsTheRoomAsItIs) {
   const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
   IncrementalMapper mapper(SlamAlone(), camera);
   Frame frame;
-  for (const Pose3& pose : Walk(120)) {
+  for (const Pose3& pose : CameraWalk(120)) {
     frame.depth = std::make_shared<DepthImage>(room.Render(camera, pose));
     frame.slam_from_camera = pose;
     mapper.AddFrame(frame);

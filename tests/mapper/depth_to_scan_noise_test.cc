@@ -1,4 +1,4 @@
-// Noisy depth images: walls stay where they are.
+// WithNoise depth images: walls stay where they are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,11 +11,9 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kHeightM = 1.15;
-
 // z noise of standard deviation(z), independent in each pixel.
 template <typename Sigma>
-DepthImage Noisy(const DepthImage& image, RandomStream& random, Sigma sigma_m) {
+DepthImage WithNoise(const DepthImage& image, RandomStream& random, Sigma sigma_m) {
   DepthImage noisy = image;
   for (float& z_m : noisy.z_m) z_m += static_cast<float>(sigma_m(z_m) * random.Normal());
   return noisy;
@@ -55,9 +53,9 @@ TEST(DepthToScan, NoiseDoesNotPullWallsNearer) {
   const auto check = [&](const auto& sigma_m) {
     for (const double wall_m : {1.0, 2.0, 3.0, 4.0, 5.2}) {
       for (const double pitch_deg : {0.0, 15.0}) {
-        const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(pitch_deg), 0.0);
+        const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(pitch_deg), 0.0);
         const DepthImage image =
-            Noisy(RoomWithWallAt(wall_m).Render(camera, pose), random, sigma_m);
+            WithNoise(RoomWithWallAt(wall_m).Render(camera, pose), random, sigma_m);
         const Bias bias = BiasOf(converter.Convert(image, pose), wall_m);
         EXPECT_GT(bias.beams, 500);
         // 1 mm is a fiftieth of a cell; the scatter is that of a mean over tens of pixels. At the
@@ -85,9 +83,9 @@ TEST(DepthToScan, NoiseDoesNotPullWallsIntoTheReach) {
   RandomStream random(3, RandomStage::kTest);
   const auto sigma_m = [](double z) { return 0.0015 * z * z; };
   const double wall_m = options.max_range_m + sigma_m(options.max_range_m);
-  const Pose3 pose = TiltedCamera({}, kHeightM, 0.0, 0.0);
-  const Scan scan =
-      converter.Convert(Noisy(RoomWithWallAt(wall_m).Render(camera, pose), random, sigma_m), pose);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, 0.0, 0.0);
+  const Scan scan = converter.Convert(
+      WithNoise(RoomWithWallAt(wall_m).Render(camera, pose), random, sigma_m), pose);
   int hits = 0, clear = 0;
   for (const Beam& beam : scan.beams) {
     hits += beam.hit ? 1 : 0;
@@ -104,7 +102,7 @@ TEST(DepthToScan, RoundedDepthIsAveraged) {
   const PinholeCamera camera;
   const DepthToScan converter(camera, {});
   RandomStream random(2, RandomStage::kTest);
-  const Pose3 pose = TiltedCamera({0.0, 0.0, 0.2}, kHeightM, 0.05, 0.0);
+  const Pose3 pose = TiltedCamera({0.0, 0.0, 0.2}, kCameraHeightM, 0.05, 0.0);
   DepthImage image = RoomWithWallAt(3.0).Render(camera, pose);
   for (float& z_m : image.z_m) {
     const double disparity = std::floor(351.30 / z_m + random.Normal() / 6.0 + 0.5);

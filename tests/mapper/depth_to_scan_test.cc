@@ -6,11 +6,10 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "tests/mapper/analytic_room.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
-
-constexpr double kHeightM = 1.15;  // ICL-NUIM's living room
 
 AnalyticRoom RoomWithPillars() {
   AnalyticRoom room;
@@ -18,7 +17,7 @@ AnalyticRoom RoomWithPillars() {
   return room;
 }
 
-struct Errors {
+struct RangeErrors {
   int beams = 0;
   int hits = 0;
   double sum_squares = 0.0;
@@ -29,12 +28,12 @@ struct Errors {
 // Against the level scan in closed form, for beams below 60 degrees of incidence and away from
 // silhouettes, where a beam may fall on either side of an edge.
 void Compare(const Scan& scan, const AnalyticRoom& room, const Pose2& world_from_base,
-             Errors& errors) {
+             RangeErrors& errors) {
   constexpr double kPixelRad = 1.0 / 480.0;
   for (const Beam& beam : scan.beams) {
-    const auto truth = room.Level(world_from_base, beam.bearing_rad, kHeightM);
-    const auto left = room.Level(world_from_base, beam.bearing_rad + kPixelRad, kHeightM);
-    const auto right = room.Level(world_from_base, beam.bearing_rad - kPixelRad, kHeightM);
+    const auto truth = room.Level(world_from_base, beam.bearing_rad, kCameraHeightM);
+    const auto left = room.Level(world_from_base, beam.bearing_rad + kPixelRad, kCameraHeightM);
+    const auto right = room.Level(world_from_base, beam.bearing_rad - kPixelRad, kCameraHeightM);
     const bool silhouette = std::abs(left.range_m - right.range_m) > 0.05 * truth.range_m;
     if (truth.incidence_rad > RadFromDeg(60.0) || silhouette) continue;
     ++errors.beams;
@@ -54,8 +53,9 @@ TEST(DepthToScan, AgreesWithTheLevelScanAtAnyTiltAndRoll) {
   for (const double pitch_deg : {-15.0, -7.0, 0.0, 8.0, 15.0}) {
     for (const double roll_deg : {-15.0, -3.0, 0.0, 10.0}) {
       const Pose2 base{-1.5, 0.3, RadFromDeg(10.0 * cases)};
-      const Pose3 pose = TiltedCamera(base, kHeightM, RadFromDeg(pitch_deg), RadFromDeg(roll_deg));
-      Errors errors;
+      const Pose3 pose =
+          TiltedCamera(base, kCameraHeightM, RadFromDeg(pitch_deg), RadFromDeg(roll_deg));
+      RangeErrors errors;
       Compare(converter.Convert(room.Render(camera, pose), pose), room, BaseOf(pose), errors);
       EXPECT_LT(errors.Rms(), 0.0005) << pitch_deg << " " << roll_deg;
       EXPECT_LT(errors.worst_m, 0.003) << pitch_deg << " " << roll_deg;
@@ -71,7 +71,7 @@ TEST(DepthToScan, AgreesWithTheLevelScanAtAnyTiltAndRoll) {
 TEST(DepthToScan, NoBeamIsEmptyWhenLevel) {
   AnalyticRoom room;
   const PinholeCamera camera;
-  const Pose3 pose = CameraOf({0, 0, 0.3}, kHeightM);
+  const Pose3 pose = CameraOf({0, 0, 0.3}, kCameraHeightM);
   const Scan scan = DepthToScan(camera, {}).Convert(room.Render(camera, pose), pose);
   ASSERT_EQ(scan.beams.size(), 640U);
   for (const Beam& beam : scan.beams) EXPECT_TRUE(beam.hit);
@@ -86,9 +86,9 @@ TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
   int cases = 0;
   for (const double roll_deg : {90.0, -90.0, 180.0, 80.0, -130.0}) {
     const Pose3 pose =
-        TiltedCamera({-1.5, 0.3, 0.1}, kHeightM, RadFromDeg(5.0), RadFromDeg(roll_deg));
+        TiltedCamera({-1.5, 0.3, 0.1}, kCameraHeightM, RadFromDeg(5.0), RadFromDeg(roll_deg));
     const Scan scan = converter.Convert(room.Render(camera, pose), pose);
-    Errors errors;
+    RangeErrors errors;
     Compare(scan, room, BaseOf(pose), errors);
     EXPECT_LT(errors.Rms(), 0.001) << roll_deg;
     EXPECT_GE(errors.hits, errors.beams * 0.9) << roll_deg;
@@ -103,7 +103,7 @@ TEST(DepthToScan, ThinThingsAreFoundAndStrayPixelsAreNot) {
   room.boxes.push_back({{2.0, -0.5, 0.70}, {2.02, 0.5, 0.73}});  // a 3 cm board
   room.cylinders.push_back({{2.5, 0.9}, 0.01, 0.0, 1.5});        // a 2 cm pole
   const PinholeCamera camera;
-  const Pose3 pose = CameraOf({}, kHeightM);
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
   DepthImage image = room.Render(camera, pose);
   image.Row(240)[500] = 1.0F;
   image.Row(200)[520] = 0.7F;
@@ -129,10 +129,10 @@ TEST(DepthToScan, AFarHitDoesNotErasetheNearTable) {
   AnalyticRoom room = RoomWithWallAt(4.0);
   room.boxes.push_back({{0.4, -0.8, 0.0}, {1.2, 0.8, 0.45}});
   const PinholeCamera camera;
-  const Pose3 pose = CameraOf({}, kHeightM);
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
   const Scan scan = DepthToScan(camera, {}).Convert(room.Render(camera, pose), pose);
   // The lowest pixel's ray falls 239.5 / 480 a metre: it reaches the band's edge at 2.10 m ahead.
-  const double from_m = (kHeightM - 0.1) / (239.5 / 480.0);
+  const double from_m = (kCameraHeightM - 0.1) / (239.5 / 480.0);
   int seen_over = 0;
   for (const Beam& beam : scan.beams) {
     ASSERT_TRUE(beam.hit);
@@ -146,7 +146,7 @@ TEST(DepthToScan, AFarHitDoesNotErasetheNearTable) {
 
 TEST(DepthToScan, TooNearTooFarAndInvalidAreThreeThings) {
   const PinholeCamera camera;
-  const Pose3 pose = CameraOf({}, kHeightM);
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
   ScanOptions options;
   options.max_range_m = 3.0;
   const DepthToScan converter(camera, options);
@@ -180,7 +180,7 @@ TEST(DepthToScan, FloorAndCeilingOnlyClear) {
   AnalyticRoom hall;
   hall.walls = {{-50.0, -50.0, 0.0}, {50.0, 50.0, 2.5}};
   const PinholeCamera camera;
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(40.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(40.0), 0.0);
   const Scan scan = DepthToScan(camera, {}).Convert(hall.Render(camera, pose), pose);
   const Beam& middle = scan.beams[320];
   EXPECT_FALSE(middle.hit);
@@ -193,7 +193,7 @@ TEST(DepthToScan, RowModesReadLikeALaser) {
   AnalyticRoom room = RoomWithWallAt(4.0);
   room.boxes.push_back({{2.0, -0.5, 0.0}, {2.5, 0.5, 0.9}});  // below the optical axis
   const PinholeCamera camera;
-  const Pose3 pose = CameraOf({}, kHeightM);
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
   const DepthImage image = room.Render(camera, pose);
   ScanOptions options;
   options.mode = ScanMode::kCentreRow;
@@ -217,7 +217,7 @@ TEST(DepthToScan, HitPixelsLeadBackToTheHits) {
   const DepthToScan converter(camera, {});
   int hits = 0;
   for (const double roll_deg : {5.0, 90.0}) {
-    const Pose3 pose = TiltedCamera({-1.5, 0.3, 0.1}, kHeightM, 0.2, RadFromDeg(roll_deg));
+    const Pose3 pose = TiltedCamera({-1.5, 0.3, 0.1}, kCameraHeightM, 0.2, RadFromDeg(roll_deg));
     const DepthImage image = room.Render(camera, pose);
     const Scan scan = converter.Convert(image, pose);
     const auto pixels = converter.HitPixels(image, StandOf(pose, 0.0), scan);
@@ -238,12 +238,7 @@ TEST(DepthToScan, HitPixelsLeadBackToTheHits) {
 
 TEST(DepthToScan, ContradictingOptionsAreRefused) {
   const auto error_of = [](const ScanOptions& options) {
-    try {
-      DepthToScan converter(PinholeCamera{}, options);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    return RefusalOf([&] { DepthToScan converter(PinholeCamera{}, options); });
   };
   ScanOptions band;
   band.band_low_m = 2.0;
@@ -257,7 +252,7 @@ TEST(DepthToScan, ContradictingOptionsAreRefused) {
 TEST(DepthToScan, SeesNothingStraightBelow) {
   const PinholeCamera camera{
       .width_px = 64, .height_px = 48, .fx_px = 5000, .fy_px = 5000, .cx_px = 31.5, .cy_px = 23.5};
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(90.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(90.0), 0.0);
   DepthImage depth(camera.width_px, camera.height_px);
   std::fill(depth.z_m.begin(), depth.z_m.end(), 1.0F);
   const Scan scan = DepthToScan(camera, {}).Convert(depth, pose);
@@ -283,7 +278,8 @@ TEST(DepthToScan, ReadsWithinTheImageWhateverTheCamera) {
     camera.fx_px = camera.fy_px = std::pow(10.0, 6.0 * random.Uniform() - 2.0);
     camera.cx_px = far();
     camera.cy_px = far();
-    const Pose3 pose = TiltedCamera({}, kHeightM, 0.6 * random.Normal(), 0.6 * random.Normal());
+    const Pose3 pose =
+        TiltedCamera({}, kCameraHeightM, 0.6 * random.Normal(), 0.6 * random.Normal());
     const CameraStand stand = StandOf(pose, 0.0);
     const ScanPair scans = DepthToScan(camera, {}).ConvertBoth(depth, stand, 0.1, memory);
     ASSERT_FALSE(scans.obstacles.beams.empty());

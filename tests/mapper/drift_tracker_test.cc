@@ -53,7 +53,8 @@ MatchResult NoisyMatch(RandomStream& random) {
 }
 
 // The camera stands still; SLAM creeps forward by `creep_m` a frame. Mean error over the frames.
-double ErrorM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m, std::uint64_t seed) {
+double ErrorAfterM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m,
+                   std::uint64_t seed) {
   RandomStream random(seed, RandomStage::kTest);
   double sum_m = 0.0;
   for (int i = 0; i < frames; ++i) {
@@ -71,15 +72,15 @@ const MotionSpread kNearlyPerfect{.sigma = {1e-5, 1e-5, 2e-6}, .frames = 6.0};
 TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   DriftTracker free, bound;
   Pose2 slam;
-  ErrorM(free, slam, 30, 0.0, 1);
-  ErrorM(bound, slam, 30, 0.0, 1);
+  ErrorAfterM(free, slam, 30, 0.0, 1);
+  ErrorAfterM(bound, slam, 30, 0.0, 1);
   const MotionNoise before = bound.noise();
   bound.BoundMotion(kNearlyPerfect);
   EXPECT_GT(before.walk.maxCoeff() + before.bias.maxCoeff(), 1e-4);
   EXPECT_LE(bound.noise().bias.x(), 2e-5);
   EXPECT_LT(bound.noise().walk.x(), 2.1e-5 * std::sqrt(6.0));
   // And what is learnt later is bounded too.
-  ErrorM(bound, slam, 100, 0.0, 2);
+  ErrorAfterM(bound, slam, 100, 0.0, 2);
   EXPECT_LT(bound.noise().walk.x(), 2.1e-5 * std::sqrt(6.0));
 }
 
@@ -100,7 +101,7 @@ TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
 TEST(DriftTracker, TellsErrorsAsLearntBeforeTheFirstAdjustment) {
   DriftTracker tracker;
   Pose2 slam;
-  ErrorM(tracker, slam, 150, 0.0, 6);
+  ErrorAfterM(tracker, slam, 150, 0.0, 6);
   EXPECT_EQ(tracker.noise().walk.minCoeff(), 0.0015);  // believed no less
   EXPECT_LT(tracker.step().walk.maxCoeff(), 0.001);
 }
@@ -125,22 +126,22 @@ TEST(DriftTracker, WhereNothingIsSeenSlamIsNotTakenForPerfect) {
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   DriftTracker tracker;
   Pose2 slam;
-  ErrorM(tracker, slam, 100, 0.0, 1);
+  ErrorAfterM(tracker, slam, 100, 0.0, 1);
   tracker.BoundMotion(kNearlyPerfect);
-  ErrorM(tracker, slam, 200, 0.0, 2);
+  ErrorAfterM(tracker, slam, 200, 0.0, 2);
   EXPECT_LE(tracker.noise().bias.x(), 2e-5);
   // SLAM begins to drift by 3 mm a frame. Until that is certain the estimate drifts along.
-  ErrorM(tracker, slam, 100, 0.003, 3);
+  ErrorAfterM(tracker, slam, 100, 0.003, 3);
   EXPECT_GT(tracker.noise().walk.x() + tracker.noise().bias.x(), 1e-3);
-  EXPECT_LT(ErrorM(tracker, slam, 100, 0.003, 4), 0.02);
+  EXPECT_LT(ErrorAfterM(tracker, slam, 100, 0.003, 4), 0.02);
 }
 
 TEST(DriftTracker, BelievesAPriorThatDriftedOnlyAfterTheNextAdjustment) {
   DriftTracker tracker;
   Pose2 slam;
-  ErrorM(tracker, slam, 100, 0.0, 1);
+  ErrorAfterM(tracker, slam, 100, 0.0, 1);
   tracker.BoundMotion(kNearlyPerfect);
-  ErrorM(tracker, slam, 200, 0.003, 2);  // lifts the bound
+  ErrorAfterM(tracker, slam, 200, 0.003, 2);  // lifts the bound
   // However long matches agree with SLAM.
   const Pose2 drifted = slam;
   for (int i = 0; i < 1000; ++i) {

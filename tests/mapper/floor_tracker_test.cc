@@ -8,8 +8,6 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kHeightM = 1.15;
-
 // Small, so that rendering is quick; the field of view of ICL-NUIM's.
 PinholeCamera SmallCamera() { return {160, 120, 120.3, 120.0, 79.5, 59.5, {}}; }
 
@@ -20,7 +18,7 @@ AnalyticRoom RoomWithTable() {
   return room;
 }
 
-DepthImage Noisy(DepthImage image, RandomStream& random, double sigma_at_1_m = 0.002) {
+DepthImage WithFloorNoise(DepthImage image, RandomStream& random, double sigma_at_1_m = 0.002) {
   for (float& z_m : image.z_m) {
     z_m += static_cast<float>(sigma_at_1_m * z_m * z_m * random.Normal());
   }
@@ -39,8 +37,8 @@ TEST(FloorTracker, HeightAndTiltOfTheFloorOutweighSlamsDrift) {
   int cases = 0;
   for (const double pitch_deg : {5.0, 15.0, 30.0}) {
     FloorTracker tracker(camera, {});
-    const Pose3 truth = TiltedCamera({}, kHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
-    const DepthImage image = Noisy(RoomWithTable().Render(camera, truth), random);
+    const Pose3 truth = TiltedCamera({}, kCameraHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
+    const DepthImage image = WithFloorNoise(RoomWithTable().Render(camera, truth), random);
     // 40 cm of height and 4 degrees of tilt, a little more each frame.
     for (int frame = 0; frame <= 40; ++frame) {
       Pose3 drifted = truth;
@@ -48,7 +46,7 @@ TEST(FloorTracker, HeightAndTiltOfTheFloorOutweighSlamsDrift) {
       drifted.rotation =
           ExpRotation(RadFromDeg(0.1 * frame) * Eigen::Vector3d(0.6, 0.8, 0.0)) * drifted.rotation;
       const CameraStand stand = tracker.Follow(image, drifted, 0);
-      EXPECT_NEAR(stand.height_m, kHeightM, 0.01) << pitch_deg << " " << frame;
+      EXPECT_NEAR(stand.height_m, kCameraHeightM, 0.01) << pitch_deg << " " << frame;
       EXPECT_LT(TiltErrorDeg(stand, truth), 0.5) << pitch_deg << " " << frame;
       ++cases;
     }
@@ -60,26 +58,26 @@ TEST(FloorTracker, WhereNoFloorIsSeenThePoseCounts) {
   const PinholeCamera camera = SmallCamera();
   // Walls and ceiling only: nothing level lies below the camera.
   for (const double pitch_deg : {-15.0, -25.0, -40.0}) {
-    const Pose3 pose = TiltedCamera({-1.5, 0.3, 0.1}, kHeightM, RadFromDeg(pitch_deg), 0.1);
+    const Pose3 pose = TiltedCamera({-1.5, 0.3, 0.1}, kCameraHeightM, RadFromDeg(pitch_deg), 0.1);
     const DepthImage image = AnalyticRoom{}.Render(camera, pose);
     const CameraStand stand = FloorTracker(camera, {}).Follow(image, pose, 0);
-    EXPECT_EQ(stand.height_m, kHeightM) << pitch_deg;
+    EXPECT_EQ(stand.height_m, kCameraHeightM) << pitch_deg;
     EXPECT_NEAR(TiltErrorDeg(stand, pose), 0.0, 1e-5) << pitch_deg;
   }
   // A wall that ends at the image's edge, 17 cm above the floor.
   AnalyticRoom near_wall;
   near_wall.walls = {{-3.0, -6.0, 0.0}, {2.5, 6.0, 2.5}};
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(-5.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(-5.0), 0.0);
   const CameraStand stand =
       FloorTracker(camera, {}).Follow(near_wall.Render(camera, pose), pose, 0);
-  EXPECT_EQ(stand.height_m, kHeightM);
+  EXPECT_EQ(stand.height_m, kCameraHeightM);
 }
 
 TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
   const PinholeCamera camera = SmallCamera();
   FloorTracker tracker(camera, {});
-  const Pose3 down = TiltedCamera({}, kHeightM, RadFromDeg(15.0), 0.0);
-  const Pose3 up = TiltedCamera({}, kHeightM + 0.05, RadFromDeg(-20.0), 0.0);
+  const Pose3 down = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+  const Pose3 up = TiltedCamera({}, kCameraHeightM + 0.05, RadFromDeg(-20.0), 0.0);
   // SLAM's z is off by 30 cm all along.
   const auto off = [](Pose3 pose) {
     pose.translation.z() += 0.3;
@@ -87,10 +85,10 @@ TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
   };
   tracker.Follow(RoomWithTable().Render(camera, down), off(down), 0);
   const CameraStand stand = tracker.Follow(RoomWithTable().Render(camera, up), off(up), 0);
-  EXPECT_NEAR(stand.height_m, kHeightM + 0.05, 0.005);
+  EXPECT_NEAR(stand.height_m, kCameraHeightM + 0.05, 0.005);
   // In a new epoch SLAM has corrected itself; the camera did not move for that.
-  EXPECT_NEAR(tracker.Follow(RoomWithTable().Render(camera, up), up, 1).height_m, kHeightM + 0.05,
-              0.005);
+  EXPECT_NEAR(tracker.Follow(RoomWithTable().Render(camera, up), up, 1).height_m,
+              kCameraHeightM + 0.05, 0.005);
 }
 
 TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
@@ -98,24 +96,24 @@ TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
   FloorTracker tracker(camera, {});
   AnalyticRoom table = RoomWithTable();
   table.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, 0.45}}};
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(15.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
   const DepthImage hidden = table.Render(camera, pose);
   // Neither at the first sight, as the pose says how high the camera is, nor later.
-  EXPECT_EQ(tracker.Follow(hidden, pose, 0).height_m, kHeightM);
+  EXPECT_EQ(tracker.Follow(hidden, pose, 0).height_m, kCameraHeightM);
   const DepthImage seen = RoomWithTable().Render(camera, pose);
-  EXPECT_NEAR(tracker.Follow(seen, pose, 0).height_m, kHeightM, 0.005);
+  EXPECT_NEAR(tracker.Follow(seen, pose, 0).height_m, kCameraHeightM, 0.005);
   for (int frame = 0; frame < 30; ++frame) {
-    EXPECT_NEAR(tracker.Follow(hidden, pose, 0).height_m, kHeightM, 0.005) << frame;
+    EXPECT_NEAR(tracker.Follow(hidden, pose, 0).height_m, kCameraHeightM, 0.005) << frame;
   }
   // A pose whose z says nothing of heights leaves only the image.
   Pose3 from_zero = pose;
   from_zero.translation.z() = 0.0;
-  EXPECT_NEAR(FloorTracker(camera, {}).Follow(seen, from_zero, 0).height_m, kHeightM, 0.005);
+  EXPECT_NEAR(FloorTracker(camera, {}).Follow(seen, from_zero, 0).height_m, kCameraHeightM, 0.005);
 }
 
 TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
   const PinholeCamera camera = SmallCamera();
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(15.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
   const DepthImage image = RoomWithTable().Render(camera, pose);
   for (const double jump_m : {-0.3, 0.3}) {
     FloorTracker tracker(camera, {});
@@ -124,7 +122,7 @@ TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
     jumped.translation.z() += jump_m;
     double height_m = 0.0;
     for (int frame = 0; frame < 70; ++frame) height_m = tracker.Follow(image, jumped, 0).height_m;
-    EXPECT_NEAR(height_m, kHeightM, 0.005) << jump_m;
+    EXPECT_NEAR(height_m, kCameraHeightM, 0.005) << jump_m;
   }
 }
 
@@ -135,7 +133,7 @@ TEST(FloorTracker, ATiltThatRunsAwayIsCaught) {
   for (const double pitch_deg : {0.0, 2.0}) {
     RandomStream random(7, RandomStage::kTest);
     FloorTracker tracker(camera, {});
-    const Pose3 truth = TiltedCamera({}, kHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
+    const Pose3 truth = TiltedCamera({}, kCameraHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
     const DepthImage exact = RoomWithTable().Render(camera, truth);
     double worst_deg = 0.0;
     for (int frame = 0; frame < 120; ++frame) {
@@ -143,7 +141,7 @@ TEST(FloorTracker, ATiltThatRunsAwayIsCaught) {
       drifted.translation.z() += 0.03 * frame;
       drifted.rotation =
           ExpRotation(RadFromDeg(0.1 * frame) * Eigen::Vector3d(0.6, 0.8, 0.0)) * drifted.rotation;
-      const CameraStand stand = tracker.Follow(Noisy(exact, random, 0.006), drifted, 0);
+      const CameraStand stand = tracker.Follow(WithFloorNoise(exact, random, 0.006), drifted, 0);
       worst_deg = std::max(worst_deg, TiltErrorDeg(stand, truth));
     }
     EXPECT_LT(worst_deg, 4.0) << pitch_deg;  // of the 12 that SLAM's tilt changed by
@@ -155,9 +153,9 @@ TEST(FloorTracker, WithHeightsFromThePoseTheImageIsNotLookedAt) {
   ScanOptions options;
   options.floor = FloorSource::kPose;
   options.floor_z_m = 0.2;
-  const Pose3 pose = TiltedCamera({}, kHeightM, RadFromDeg(15.0), 0.0);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
   const CameraStand stand = FloorTracker(camera, options).Follow({}, pose, 0);
-  EXPECT_DOUBLE_EQ(stand.height_m, kHeightM - 0.2);
+  EXPECT_DOUBLE_EQ(stand.height_m, kCameraHeightM - 0.2);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 const PinholeCamera kCamera{64, 48, 60.0, 60.0, 31.5, 23.5, {}};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-Frame FrameAt(int index) {
+Frame CheckedFrame(int index) {
   Frame frame;
   frame.index = index;
   frame.stamp_s = index / 30.0;
@@ -85,9 +85,9 @@ const std::vector<Case>& Cases() {
 }
 
 TEST(FrameCheck, SaysWhichFrameAndWhatIsWrongWithIt) {
-  EXPECT_EQ(WhyRefused(FrameAt(10)), "");
+  EXPECT_EQ(WhyRefused(CheckedFrame(10)), "");
   for (const Case& c : Cases()) {
-    Frame frame = FrameAt(10);
+    Frame frame = CheckedFrame(10);
     c.spoil(frame);
     const std::string why = WhyRefused(frame);
     EXPECT_THAT(why, HasSubstr(c.why));
@@ -96,7 +96,7 @@ TEST(FrameCheck, SaysWhichFrameAndWhatIsWrongWithIt) {
 }
 
 TEST(FrameCheck, PosesOfFloatsAndFramesThatLackAllButANumberAreSound) {
-  Frame frame = FrameAt(3);
+  Frame frame = CheckedFrame(3);
   frame.slam_from_camera->rotation = frame.slam_from_camera->rotation.cast<float>().cast<double>();
   EXPECT_EQ(WhyRefused(frame), "");
   EXPECT_EQ(WhyRefused(Frame{}), "");
@@ -109,12 +109,12 @@ TEST(FrameCheck, ARefusedFrameLeavesNoTrace) {
   IncrementalMapper undisturbed({}, kCamera), disturbed({}, kCamera);
   for (int i = 0; i < 30; ++i) {
     for (const Case& c : Cases()) {
-      Frame spoilt = FrameAt(i);
+      Frame spoilt = CheckedFrame(i);
       c.spoil(spoilt);
       EXPECT_THROW(disturbed.AddFrame(spoilt), InputError);
     }
-    EXPECT_EQ(undisturbed.AddFrame(FrameAt(i)).map_from_camera,
-              disturbed.AddFrame(FrameAt(i)).map_from_camera);
+    EXPECT_EQ(undisturbed.AddFrame(CheckedFrame(i)).map_from_camera,
+              disturbed.AddFrame(CheckedFrame(i)).map_from_camera);
   }
   const MapperResult expected = undisturbed.Finish(), result = disturbed.Finish();
   EXPECT_EQ(result.map_from_camera, expected.map_from_camera);
@@ -129,7 +129,7 @@ TEST(IncrementalMapper, EndsWithoutAnythingMapped) {
     options.method = method;
     IncrementalMapper mapper(options, kCamera);
     EXPECT_TRUE(mapper.Finish().map_from_camera.empty());
-    Frame no_image = FrameAt(0), no_pose = FrameAt(1);
+    Frame no_image = CheckedFrame(0), no_pose = CheckedFrame(1);
     no_image.depth.reset();
     no_pose.slam_from_camera.reset();
     mapper.AddFrame(no_image);
@@ -170,9 +170,9 @@ TEST(IncrementalMapper, IsNotMadeOfOptionsOutOfRangeNorOfACameraThatIsNone) {
 
 TEST(IncrementalMapper, AnotherOneTakesItsPlace) {
   IncrementalMapper mapper({}, kCamera);
-  mapper.AddFrame(FrameAt(0));
+  mapper.AddFrame(CheckedFrame(0));
   mapper = IncrementalMapper({}, kCamera);
-  EXPECT_NO_THROW(mapper.AddFrame(FrameAt(0)));
+  EXPECT_NO_THROW(mapper.AddFrame(CheckedFrame(0)));
   EXPECT_EQ(mapper.Finish().map_from_camera.size(), 1U);
 }
 

@@ -13,7 +13,6 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kCameraHeightM = 1.15;
 constexpr double kWallM = 4.0;
 constexpr double kTableM = 2.0;
 constexpr double kTableTopM = 0.9;

@@ -8,15 +8,10 @@
 
 #include "mapper/core/rng.h"
 #include "mapper/fuse/correction_filter.h"
+#include "tests/mapper/poses.h"
 
 namespace depthgrid {
 namespace {
-
-void ExpectNear(const Pose2& a, const Pose2& b, double tolerance) {
-  EXPECT_NEAR(a.x_m, b.x_m, tolerance);
-  EXPECT_NEAR(a.y_m, b.y_m, tolerance);
-  EXPECT_NEAR(WrapAngle(a.yaw_rad - b.yaw_rad), 0.0, tolerance);
-}
 
 MatchResult MatchAt(const Pose2& pose, const Eigen::Matrix3d& information) {
   MatchResult match;
@@ -30,10 +25,6 @@ Eigen::Matrix3d RandomCovariance(RandomStream& random) {
   Eigen::Matrix3d root;
   for (int i = 0; i < 9; ++i) root(i / 3, i % 3) = random.Normal();
   return 0.01 * (root * root.transpose() + 0.1 * Eigen::Matrix3d::Identity());
-}
-
-Pose2 RandomPose(RandomStream& random) {
-  return {random.Uniform(-5, 5), random.Uniform(-5, 5), random.Uniform(-kPi, kPi)};
 }
 
 TEST(Innovation, IsInBaseAxesAndWraps) {

@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kCameraHeightM = 1.15;
+constexpr double kHeldAtM = 1.15;
 
 // Once round a circle of radius 1 m, looking across its centre.
 std::vector<Frame> FramesOf(const PlanarWorld& world, int count, const PlanarLaser& laser) {
@@ -21,7 +21,7 @@ std::vector<Frame> FramesOf(const PlanarWorld& world, int count, const PlanarLas
     Frame frame;
     frame.index = i;
     frame.stamp_s = i / 30.0;
-    frame.slam_from_camera = CameraOf(base, kCameraHeightM);
+    frame.slam_from_camera = CameraOf(base, kHeldAtM);
     frame.scan = std::make_shared<Scan>(ScanOf(world, base, laser));
     frames.push_back(frame);
   }
@@ -149,7 +149,7 @@ class Drifting : public ::testing::Test {
     frame.index = i;
     frame.stamp_s = i / 30.0;
     frame.scan = scans_[static_cast<std::size_t>(i)];
-    frame.slam_from_camera = CameraOf(slam_from_base, kCameraHeightM);
+    frame.slam_from_camera = CameraOf(slam_from_base, kHeldAtM);
     frame.slam_epoch = epoch;
     return frame;
   }
@@ -157,8 +157,7 @@ class Drifting : public ::testing::Test {
     LoopClosure loop;
     loop.reported_at_frame = loop.second_frame = second;
     loop.first_frame = first;
-    loop.first_from_second =
-        Between(CameraOf({}, kCameraHeightM), CameraOf(first_from_second, kCameraHeightM));
+    loop.first_from_second = Between(CameraOf({}, kHeldAtM), CameraOf(first_from_second, kHeldAtM));
     return loop;
   }
   Pose2 TrueBetween(int first, int second) const {

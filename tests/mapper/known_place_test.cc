@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-const PlanarLaser kLaser{
+const PlanarLaser kNarrowLaser{
     .beams = 160, .field_of_view_rad = RadFromDeg(58.0), .sigma_of_range = 0.01};
 
 std::vector<MappedFrame> StraightOn(int count, ScanArchive& archive) {
@@ -18,8 +18,8 @@ std::vector<MappedFrame> StraightOn(int count, ScanArchive& archive) {
     frame.frame = i;
     frame.stamp_s = i / 30.0;
     frame.map_from_base = {1.0 + 0.02 * i, 1.0, 0.3};
-    frame.scan = archive.Keep(
-        ScanOf(FurnishedRoom(), frame.map_from_base, kLaser, 1, static_cast<std::uint32_t>(i)));
+    frame.scan = archive.Keep(ScanOf(FurnishedRoom(), frame.map_from_base, kNarrowLaser, 1,
+                                     static_cast<std::uint32_t>(i)));
     frame.obstacles = frame.scan;
     frames.push_back(frame);
   }

@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr PlanarLaser kLaser{
+constexpr PlanarLaser kWideLaser{
     .beams = 160, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
 constexpr double kOtherCorridorM = 100.0;  // to the left of the first
 
@@ -40,9 +40,9 @@ PlanarWorld TwoCorridors(double differing_from_m, double differing_to_m) {
 
 // Along the first corridor for 22 m, 18 m around in the open, and along a corridor again: poses as
 // estimated, the second corridor's (true: `second`) off from those of the first by `slip`.
-class Walk {
+class CorridorWalk {
  public:
-  Walk(const PlanarWorld& world, const Pose2& second, const Pose2& slip) {
+  CorridorWalk(const PlanarWorld& world, const Pose2& second, const Pose2& slip) {
     for (int i = 0; i < kSteps; ++i) Add(world, Along(i), Along(i));
     for (int i = 0; i < kAround; ++i) {
       Add({}, {0.0, -50.0, 0.0}, {22.0 - 22.0 * i / kAround, -3.0 + 0.01 * i, kPi});
@@ -82,7 +82,7 @@ class Walk {
     frame.frame = i;
     frame.stamp_s = i / 30.0;
     frame.map_from_base = estimate;
-    frame.scan = archive_.Keep(ScanOf(world, truth, kLaser, 1, static_cast<std::uint32_t>(i)));
+    frame.scan = archive_.Keep(ScanOf(world, truth, kWideLaser, 1, static_cast<std::uint32_t>(i)));
     frame.obstacles = frame.scan;
     frames_.push_back(frame);
   }
@@ -92,7 +92,7 @@ class Walk {
 };
 
 // 44 m of way may be off by 1.8 m.
-LoopSearchOptions Options() {
+LoopSearchOptions SearchOptions() {
   LoopSearchOptions options;
   options.drift_share = 0.04;
   return options;
@@ -103,10 +103,10 @@ const Pose2 kSlip{1.4, 0.2, 0.02};
 
 // Searches that were put off while none waited are made up for.
 TEST(LookAlikes, TheSamePlacesAreFoundWhenFewAreLookedFor) {
-  const Walk walk(TwoCorridors(100.0, 100.0), {}, kSlip);
+  const CorridorWalk walk(TwoCorridors(100.0, 100.0), {}, kSlip);
   std::vector<std::vector<PlanarLoop>> found;
   for (const int idle_searches : {1, 2, 3}) {
-    LoopSearchOptions options = Options();
+    LoopSearchOptions options = SearchOptions();
     options.idle_searches = idle_searches;
     found.push_back(walk.Found(options));
   }
@@ -122,28 +122,29 @@ TEST(LookAlikes, TheSamePlacesAreFoundWhenFewAreLookedFor) {
 }
 
 TEST(LookAlikes, ACorridorThatIsAlikeForAFewMetresIsNotTakenForTheOther) {
-  const Walk walk(TwoCorridors(14.0, 30.0), kOther, kSlip);
-  EXPECT_TRUE(walk.Found(Options()).empty());
+  const CorridorWalk walk(TwoCorridors(14.0, 30.0), kOther, kSlip);
+  EXPECT_TRUE(walk.Found(SearchOptions()).empty());
   // It would be, were a few places in a row enough.
-  LoopSearchOptions few = Options();
+  LoopSearchOptions few = SearchOptions();
   few.consent_ways = 0.0;
   EXPECT_FALSE(walk.Found(few).empty());
 }
 
 TEST(LookAlikes, OrIsAlikeAgainFartherOn) {
-  const Walk walk(TwoCorridors(14.0, 15.0), kOther, kSlip);
-  EXPECT_TRUE(walk.Found(Options()).empty());
-  LoopSearchOptions lenient = Options();
+  const CorridorWalk walk(TwoCorridors(14.0, 15.0), kOther, kSlip);
+  EXPECT_TRUE(walk.Found(SearchOptions()).empty());
+  LoopSearchOptions lenient = SearchOptions();
   lenient.most_unanswered = 100;
   EXPECT_FALSE(walk.Found(lenient).empty());
 }
 
 TEST(LookAlikes, TheSameCorridorIsFoundAgain) {
-  const Walk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
-  const std::vector<PlanarLoop> found = walk.Found(Options());
+  const CorridorWalk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
+  const std::vector<PlanarLoop> found = walk.Found(SearchOptions());
   ASSERT_GE(found.size(), 5U);
   for (const PlanarLoop& loop : found) {
-    const double way_m = 0.1 * (loop.second - Walk::kAround - Walk::kSteps - loop.first);
+    const double way_m =
+        0.1 * (loop.second - CorridorWalk::kAround - CorridorWalk::kSteps - loop.first);
     EXPECT_NEAR(loop.first_from_second.x_m, way_m, 0.03);
     EXPECT_NEAR(loop.first_from_second.y_m, 0.0, 0.03);
     EXPECT_NEAR(loop.first_from_second.yaw_rad, 0.0, 0.01);
@@ -152,15 +153,15 @@ TEST(LookAlikes, TheSameCorridorIsFoundAgain) {
 
 // After a loop the estimate is known to within the way since.
 TEST(LookAlikes, AKnownLoopLeavesLittleToSearch) {
-  const Walk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
+  const CorridorWalk walk(TwoCorridors(0.0, 30.0), {}, kSlip);
   std::vector<PlanarLoop> known;
-  for (int i = 0; i < Walk::kSteps; i += 20) {
+  for (int i = 0; i < CorridorWalk::kSteps; i += 20) {
     PlanarLoop loop;
     loop.first = i;
-    loop.second = i + Walk::kSteps + Walk::kAround;
+    loop.second = i + CorridorWalk::kSteps + CorridorWalk::kAround;
     known.push_back(loop);
   }
-  EXPECT_TRUE(walk.Found(Options(), known).empty());
+  EXPECT_TRUE(walk.Found(SearchOptions(), known).empty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "mapper/core/error.h"
 #include "mapper/paper_reference.h"
 #include "tests/mapper/match_world.h"
+#include "tests/mapper/poses.h"
 
 namespace depthgrid {
 namespace {
@@ -82,12 +83,6 @@ LoopClosure CameraLoop(int first, int second, const Pose2& first_from_second) {
   return loop;
 }
 
-void ExpectNear(const Pose2& a, const Pose2& b) {
-  EXPECT_NEAR(a.x_m, b.x_m, 1e-12);
-  EXPECT_NEAR(a.y_m, b.y_m, 1e-12);
-  EXPECT_NEAR(WrapAngle(a.yaw_rad - b.yaw_rad), 0.0, 1e-12);
-}
-
 TEST(ProjectLoop, JoinsMappedFramesDirectly) {
   FrameHistory history;
   for (int i = 0; i < 5; ++i) {
@@ -99,7 +94,7 @@ TEST(ProjectLoop, JoinsMappedFramesDirectly) {
   ASSERT_TRUE(loop);
   EXPECT_EQ(loop->first, 0);
   EXPECT_EQ(loop->second, 3);
-  ExpectNear(loop->first_from_second, measured);
+  ExpectNear(loop->first_from_second, measured, 1e-12);
   // The newest frame, which is about to be mapped.
   history.Start(PosedFrame(5, {0.5, 0, 0}, 1));
   EXPECT_FALSE(ProjectLoop(CameraLoop(0, 5, measured), history, -1));
@@ -121,7 +116,7 @@ TEST(ProjectLoop, MovesToTheNearestMappedFrameWithinAnEpoch) {
   const auto loop = ProjectLoop(CameraLoop(2, 3, measured), history, -1);
   ASSERT_TRUE(loop);
   EXPECT_EQ(loop->first, 0);
-  ExpectNear(loop->first_from_second, Between(slam[1], slam[2]) * measured);
+  ExpectNear(loop->first_from_second, Between(slam[1], slam[2]) * measured, 1e-12);
   // Both ends at one mapped frame say nothing.
   EXPECT_FALSE(ProjectLoop(CameraLoop(0, 2, measured), history, -1));
   EXPECT_FALSE(ProjectLoop(CameraLoop(0, 17, measured), history, -1));
@@ -162,9 +157,10 @@ TEST(FinalPoses, UnmappedFramesFollowTheNearestMappedOne) {
   const auto poses = FinalPoses(history, {{0.1, 0.3, 0.0}}, StandBlend(0.0));
   ASSERT_EQ(poses.size(), 5U);
   for (int i = 0; i < 4; ++i) {
-    ExpectNear(BaseOf(*poses[static_cast<std::size_t>(i)]), {0.1 * i, 0.3, 0.0});
+    ExpectNear(BaseOf(*poses[static_cast<std::size_t>(i)]), {0.1 * i, 0.3, 0.0}, 1e-12);
   }
-  ExpectNear(BaseOf(*poses[4]), {0.4, 0.0, 0.0});  // another epoch: the correction known then
+  ExpectNear(BaseOf(*poses[4]), {0.4, 0.0, 0.0},
+             1e-12);  // another epoch: the correction known then
 }
 
 }  // namespace

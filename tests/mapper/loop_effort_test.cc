@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr int kRound = 200;
+constexpr int kLoopFrames = 200;
 
 // Once round a furnished room and on to where it began, at drifting poses.
 struct DriftingRound {
@@ -20,8 +20,8 @@ struct DriftingRound {
     const PlanarWorld room = FurnishedRoom();
     ScanArchive archive;
     Pose2 drifted;
-    for (int i = 0; i <= kRound; ++i) {
-      const double turn_rad = 2.0 * kPi * i / kRound;
+    for (int i = 0; i <= kLoopFrames; ++i) {
+      const double turn_rad = 2.0 * kPi * i / kLoopFrames;
       truth.push_back({3.0 + 0.8 * std::cos(turn_rad), 1.5 + 0.8 * std::sin(turn_rad),
                        WrapAngle(turn_rad + 0.5 * kPi)});
       const PlanarLaser laser{.beams = 160, .sigma_of_range = 0.005};
@@ -44,13 +44,13 @@ struct DriftingRound {
   PlanarLoop TrueLoop() const {
     PlanarLoop loop;
     loop.first = 0;
-    loop.second = kRound;
+    loop.second = kLoopFrames;
     loop.first_from_second = Between(truth.front(), truth.back());
     return loop;
   }
 };
 
-double ErrorM(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth, std::size_t i) {
+double ErrorAtM(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth, std::size_t i) {
   return Between(truth[i], poses[i]).translation().norm();
 }
 
@@ -62,7 +62,7 @@ TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
   const double before_m =
       Between(round.truth.back(), round.frames.back().map_from_base).translation().norm();
   EXPECT_GT(before_m, 0.05);
-  EXPECT_LT(ErrorM(bent.map_from_base, round.truth, kRound), 0.02);
+  EXPECT_LT(ErrorAtM(bent.map_from_base, round.truth, kLoopFrames), 0.02);
   for (std::size_t i = 1; i < round.frames.size(); ++i) {
     const Pose2 was = Between(round.frames[i - 1].map_from_base, round.frames[i].map_from_base);
     const Pose2 is = Between(bent.map_from_base[i - 1], bent.map_from_base[i]);
@@ -71,8 +71,8 @@ TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
   // Looking at what was seen as well is better in the middle of the way.
   const auto adjusted =
       round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kCloseLoops);
-  EXPECT_LT(ErrorM(adjusted.map_from_base, round.truth, kRound / 2),
-            ErrorM(bent.map_from_base, round.truth, kRound / 2));
+  EXPECT_LT(ErrorAtM(adjusted.map_from_base, round.truth, kLoopFrames / 2),
+            ErrorAtM(bent.map_from_base, round.truth, kLoopFrames / 2));
 }
 
 TEST(LoopEffort, ALongRunIsBent) {
@@ -86,9 +86,9 @@ TEST(LoopEffort, ALongRunIsBent) {
     return outcome.map_from_base;
   };
   const auto loop = round.TrueLoop();
-  EXPECT_EQ(poses_with(kRound),
+  EXPECT_EQ(poses_with(kLoopFrames),
             round.map.Adjust(round.frames, {loop}, AdjustEffort::kBend).map_from_base);
-  EXPECT_EQ(poses_with(kRound + 1),
+  EXPECT_EQ(poses_with(kLoopFrames + 1),
             round.map.Adjust(round.frames, {loop}, AdjustEffort::kCloseLoops).map_from_base);
 }
 

@@ -13,7 +13,7 @@ MatchPoints PointsOf(const Scan& scan) {
 }
 
 // Every cell drawn at random from a few values, some never seen: ties are common.
-OccupancyMap RandomMap(RandomStream& random, double resolution_m) {
+OccupancyMap MapWithTies(RandomStream& random, double resolution_m) {
   GridGeometry geometry;
   geometry.resolution_m = resolution_m;
   geometry.min_cell = {static_cast<int>(random.Below(80)) - 40,
@@ -28,7 +28,7 @@ OccupancyMap RandomMap(RandomStream& random, double resolution_m) {
   return map;
 }
 
-MatchPoints RandomPoints(RandomStream& random, int count) {
+MatchPoints PointsInView(RandomStream& random, int count) {
   MatchPoints points;
   for (int i = 0; i < count; ++i) {
     const double range_m = random.Uniform(0.4, 6.0);
@@ -65,8 +65,8 @@ TEST(CorrelativeSearch, FastEqualsExhaustiveOnRandomMaps) {
   int cases = 0;
   for (; cases < 300; ++cases) {
     const double resolution_m = cases % 3 == 0 ? 0.1 : 0.05;
-    const OccupancyMap map = RandomMap(random, resolution_m);
-    const MatchPoints points = RandomPoints(random, 1 + static_cast<int>(random.Below(300)));
+    const OccupancyMap map = MapWithTies(random, resolution_m);
+    const MatchPoints points = PointsInView(random, 1 + static_cast<int>(random.Below(300)));
     const Pose2 predicted{random.Uniform(-6.0, 6.0), random.Uniform(-6.0, 6.0),
                           random.Uniform(-kPi, kPi)};
     CorrelativeOptions options;
@@ -126,7 +126,7 @@ TEST(CorrelativeSearch, TiesGoToTheSmallestMotion) {
       {.resolution_m = 0.05, .min_cell = {-500, -500}, .width_cells = 1000, .height_cells = 1000});
   std::fill(map.occupied_prob.begin(), map.occupied_prob.end(), 0.3F);
   RandomStream random(13, RandomStage::kTest);
-  const MatchPoints points = RandomPoints(random, 50);
+  const MatchPoints points = PointsInView(random, 50);
   for (const SearchMethod method : {SearchMethod::kFast, SearchMethod::kReference}) {
     CorrelativeSearch search({.method = method});
     const CorrelativeMatch match = search.Search(points, ViewOf(map), {0.3, 0.2, 3.0});

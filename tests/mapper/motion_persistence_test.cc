@@ -16,14 +16,14 @@ const Eigen::Vector3d kAllSeen = Eigen::Vector3d::Ones();
 
 // Motions of a metre whose errors forward keep `kept` of the one before; to the left and in yaw
 // they are independent.
-struct Drive {
+struct BiasedDrive {
   std::vector<Pose2> map_from_group = std::vector<Pose2>(1);
   std::vector<GroupLink> links;
 };
 
-Drive DriveOf(int motions, double kept) {
+BiasedDrive DriveOf(int motions, double kept) {
   RandomStream random(4, RandomStage::kTest);
-  Drive drive;
+  BiasedDrive drive;
   double forward_m = 0.0;
   for (int i = 1; i <= motions; ++i) {
     forward_m = kept * forward_m + std::sqrt(1.0 - kept * kept) * 0.01 * random.Normal();
@@ -36,7 +36,7 @@ Drive DriveOf(int motions, double kept) {
 
 TEST(MotionPersistence, IsThatOfTheErrors) {
   for (const double kept : {0.7, 0.9}) {
-    const Drive drive = DriveOf(4000, kept);
+    const BiasedDrive drive = DriveOf(4000, kept);
     const Eigen::Vector3d told = MotionPersistence(drive.links, drive.map_from_group, kAllSeen);
     EXPECT_NEAR(told.x(), kept, 0.03);
     EXPECT_LT(told.y(), 0.3);
@@ -45,7 +45,7 @@ TEST(MotionPersistence, IsThatOfTheErrors) {
 }
 
 TEST(MotionPersistence, IsNoneWhereLittleWasSeenOrLinksAreFew) {
-  const Drive drive = DriveOf(400, 0.9);
+  const BiasedDrive drive = DriveOf(400, 0.9);
   for (const Eigen::Vector3d& seen : {Eigen::Vector3d{0.2, 1.0, 1.0}, {1.0, 1.0, 0.2}}) {
     EXPECT_TRUE(MotionPersistence(drive.links, drive.map_from_group, seen).isZero(0.0));
   }
@@ -99,8 +99,8 @@ TEST(AddMotions, NormalEquationsAreThoseOfNumericDerivatives) {
   EXPECT_LT((g + jacobian.transpose() * residuals(poses)).norm(), 1e-3);
 }
 
-constexpr int kGroups = 100;
-constexpr double kStepM = 0.2;
+constexpr int kManyGroups = 100;
+constexpr double kGroupStepM = 0.2;
 constexpr int kFirstBlind = 50;
 constexpr int kLastBlind = 68;
 
@@ -122,7 +122,7 @@ std::vector<Surfel> SeenFrom(double at_m) {
   }
   for (int post = 0; post < 30; ++post) {
     const double ahead_m = post - at_m;
-    const bool blind = at_m > kFirstBlind * kStepM && at_m < kLastBlind * kStepM;
+    const bool blind = at_m > kFirstBlind * kGroupStepM && at_m < kLastBlind * kGroupStepM;
     if (blind || ahead_m < 0.5 || ahead_m > 3.0) continue;
     for (const double y_m : {-0.9, -0.8, 0.8, 0.9}) {
       surfels.push_back(WallAt(ahead_m, y_m, {-1.0, 0.0}));
@@ -135,17 +135,17 @@ std::vector<Surfel> SeenFrom(double at_m) {
 // true distance; SLAM says 1.5 mm too much with each frame.
 double OffOverBlindStretch(bool learn_persistence) {
   constexpr int kFrames = 5;
-  const double slam_m = kStepM + kFrames * 0.0015;
+  const double slam_m = kGroupStepM + kFrames * 0.0015;
   std::vector<SurfelGroup> groups;
   std::vector<GroupMotion> motions;
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kManyGroups; ++g) {
     SurfelGroup group;
     group.first_frame = g * kFrames;
     group.frames = kFrames;
-    group.surfels = SeenFrom(g * kStepM);
+    group.surfels = SeenFrom(g * kGroupStepM);
     // As online: true while posts are seen, by SLAM without them.
     const int blind = std::clamp(g - kFirstBlind, 0, kLastBlind - kFirstBlind);
-    group.map_from_group = {g * kStepM + blind * (slam_m - kStepM), 0.0, 0.0};
+    group.map_from_group = {g * kGroupStepM + blind * (slam_m - kGroupStepM), 0.0, 0.0};
     groups.push_back(group);
     motions.push_back({true, {slam_m, 0.0, 0.0}, kFrames});
   }
@@ -154,7 +154,7 @@ double OffOverBlindStretch(bool learn_persistence) {
   const JointResult result = AdjustJointly(groups, motions, {}, options);
   const double moved_m =
       Between(result.map_from_group[kFirstBlind], result.map_from_group[kLastBlind]).x_m;
-  return std::abs(moved_m - (kLastBlind - kFirstBlind) * kStepM);
+  return std::abs(moved_m - (kLastBlind - kFirstBlind) * kGroupStepM);
 }
 
 // The posts of the far side were not seen before: nothing but SLAM says how far they are.

@@ -5,19 +5,10 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/graph/scan_submap_graph.h"
+#include "tests/mapper/poses.h"
 
 namespace depthgrid {
 namespace {
-
-void ExpectNear(const Pose2& a, const Pose2& b, double tolerance) {
-  EXPECT_NEAR(a.x_m, b.x_m, tolerance);
-  EXPECT_NEAR(a.y_m, b.y_m, tolerance);
-  EXPECT_NEAR(WrapAngle(a.yaw_rad - b.yaw_rad), 0.0, tolerance);
-}
-
-Pose2 RandomPose(RandomStream& random) {
-  return {random.Uniform(-5, 5), random.Uniform(-5, 5), random.Uniform(-kPi, kPi)};
-}
 
 TEST(ConstraintError, IsZeroAtTheMeasuredPoseAndByHandElsewhere) {
   ExpectNear(Pose2::FromVector(ConstraintError({1, 2, kPi / 2}, {1, 3, kPi}, {1, 0, kPi / 2})), {},

@@ -11,8 +11,8 @@
 namespace depthgrid {
 namespace {
 
-constexpr int kRound = 298;  // so that it does not end where a group of frames does
-constexpr PlanarLaser kLaser{
+constexpr int kPriorRound = 298;  // so that it does not end where a group of frames does
+constexpr PlanarLaser kPriorLaser{
     .beams = 160, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
 // SLAM's motions are off by this, a frame: over a round by 0.3 m.
 const Pose2 kDrift{1.6e-3, 1e-3, 1.2e-3};
@@ -21,24 +21,24 @@ const Pose2 kStartOff{0.03, -0.02, 0.01};
 
 // Once round a furnished room.
 Pose2 TruthAt(int i) {
-  const double turn_rad = 2.0 * kPi * i / kRound;
+  const double turn_rad = 2.0 * kPi * i / kPriorRound;
   return {3.0 + 0.8 * std::cos(turn_rad), 1.5 + 0.8 * std::sin(turn_rad),
           WrapAngle(turn_rad + 0.5 * kPi)};
 }
 
-Scan ScanAt(int i, std::uint64_t seed) {
-  return ScanOf(FurnishedRoom(), TruthAt(i), kLaser, seed, static_cast<std::uint32_t>(i));
+Scan PriorScanAt(int i, std::uint64_t seed) {
+  return ScanOf(FurnishedRoom(), TruthAt(i), kPriorLaser, seed, static_cast<std::uint32_t>(i));
 }
 
 // A round's map, as good as it can be.
 PriorMap FinishedRound() {
   ScanArchive archive;
   PriorMap prior;
-  for (int i = 0; i < kRound; ++i) {
+  for (int i = 0; i < kPriorRound; ++i) {
     MappedFrame frame;
-    frame.frame = i - kRound;
+    frame.frame = i - kPriorRound;
     frame.stamp_s = i / 30.0;
-    frame.scan = frame.obstacles = archive.Keep(ScanAt(i, 1));
+    frame.scan = frame.obstacles = archive.Keep(PriorScanAt(i, 1));
     frame.map_from_base = TruthAt(i);
     prior.frames.push_back(frame);
   }
@@ -46,61 +46,61 @@ PriorMap FinishedRound() {
   return prior;
 }
 
-double ErrorM(const Pose2& pose, const Pose2& truth) {
+double PoseErrorM(const Pose2& pose, const Pose2& truth) {
   return Between(truth, pose).translation().norm();
 }
 
 // SLAM's pose of each frame of another round.
 std::vector<Pose2> DriftingRound() {
   std::vector<Pose2> slam_from_base = {TruthAt(0)};
-  for (int i = 1; i < kRound; ++i) {
+  for (int i = 1; i < kPriorRound; ++i) {
     slam_from_base.push_back(slam_from_base.back() * Between(TruthAt(i - 1), TruthAt(i)) * kDrift);
   }
   return slam_from_base;
 }
 
-Frame FrameAt(int i, const Pose2& slam_from_base) {
+Frame PriorFrameAt(int i, const Pose2& slam_from_base) {
   Frame frame;
   frame.index = i;
   frame.stamp_s = i / 30.0;
   frame.slam_from_camera = CameraOf(slam_from_base, 0.0);
-  frame.scan = std::make_shared<Scan>(ScanAt(i, 2));
+  frame.scan = std::make_shared<Scan>(PriorScanAt(i, 2));
   return frame;
 }
 
-struct Errors {
+struct RoundErrors {
   double worst_online_m = 0.0;
   double worst_m = 0.0;
   double prior_m = 0.0;  // the worst of the prior map's frames
 };
 
 // Begun where the first round ended.
-Errors ErrorsOfASecondRound(const MapperOptions& options, int frames = kRound) {
+RoundErrors ErrorsOfASecondRound(const MapperOptions& options, int frames = kPriorRound) {
   IncrementalMapper mapper(options, std::nullopt);
   mapper.StartFrom(FinishedRound());
-  Errors errors;
+  RoundErrors errors;
   const std::vector<Pose2> slam_from_base = DriftingRound();
-  EXPECT_GT(ErrorM(slam_from_base.back(), TruthAt(kRound - 1)), 0.2);
+  EXPECT_GT(PoseErrorM(slam_from_base.back(), TruthAt(kPriorRound - 1)), 0.2);
   for (int i = 0; i < frames; ++i) {
     const FrameReport report =
-        mapper.AddFrame(FrameAt(i, slam_from_base[static_cast<std::size_t>(i)]));
-    const double online_m = ErrorM(BaseOf(*report.map_from_camera), TruthAt(i));
+        mapper.AddFrame(PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]));
+    const double online_m = PoseErrorM(BaseOf(*report.map_from_camera), TruthAt(i));
     errors.worst_online_m = std::max(errors.worst_online_m, online_m);
   }
   const MapperResult result = mapper.Finish();
   for (int i = 0; i < frames; ++i) {
     const Pose3& pose = *result.map_from_camera[static_cast<std::size_t>(i)];
-    errors.worst_m = std::max(errors.worst_m, ErrorM(BaseOf(pose), TruthAt(i)));
+    errors.worst_m = std::max(errors.worst_m, PoseErrorM(BaseOf(pose), TruthAt(i)));
   }
-  for (int i = 0; i < kRound; ++i) {
+  for (int i = 0; i < kPriorRound; ++i) {
     const Pose2& pose = result.mapped[static_cast<std::size_t>(i)].map_from_base;
-    errors.prior_m = std::max(errors.prior_m, ErrorM(pose, TruthAt(i)));
+    errors.prior_m = std::max(errors.prior_m, PoseErrorM(pose, TruthAt(i)));
   }
   return errors;
 }
 
 TEST(PriorMap, ASecondRunThatDriftsIsPlacedInItAndHardlyMovesIt) {
-  const Errors errors = ErrorsOfASecondRound({});
+  const RoundErrors errors = ErrorsOfASecondRound({});
   EXPECT_LT(errors.worst_online_m, 0.04);
   EXPECT_LT(errors.worst_m, 0.015);
   EXPECT_LT(errors.prior_m, 0.005);
@@ -110,7 +110,7 @@ TEST(PriorMap, SoIsOneWhoseScansAreNotAllKept) {
   MapperOptions options;
   options.keep.first_frames = 100;
   options.keep.scans_per_place = 10;
-  const Errors errors = ErrorsOfASecondRound(options);
+  const RoundErrors errors = ErrorsOfASecondRound(options);
   EXPECT_LT(errors.worst_m, 0.03);
 }
 
@@ -124,7 +124,7 @@ TEST(PriorMap, ItsLastFramesAreNotOneGroupWithTheFirstNewOnes) {
   MapperOptions options;
   options.fusion.mode = FusionMode::kFixed;
   options.fusion.gain = {0.01, 0.01, 0.01};
-  const Errors errors = ErrorsOfASecondRound(options, 20);
+  const RoundErrors errors = ErrorsOfASecondRound(options, 20);
   EXPECT_GT(errors.worst_online_m, 0.03);
   EXPECT_LT(errors.worst_m, 0.005);
   EXPECT_LT(errors.prior_m, 0.0025);
@@ -143,7 +143,7 @@ TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
     mapper.StartFrom(FinishedRound());
     for (int i = 0; i <= kFirst; ++i) {
       reports[with_rounds].push_back(
-          mapper.AddFrame(FrameAt(i, slam_from_base[static_cast<std::size_t>(i)])));
+          mapper.AddFrame(PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)])));
     }
   }
   for (std::size_t i = 0; i < kFirst; ++i) {
@@ -156,9 +156,10 @@ TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
   IncrementalMapper mapper({}, std::nullopt);
   mapper.StartFrom(FinishedRound());
   const MapperResult result = mapper.Finish();
-  ASSERT_EQ(result.mapped.size(), static_cast<std::size_t>(kRound));
-  for (int i = 0; i < kRound; ++i) {
-    EXPECT_LT(ErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, TruthAt(i)), 0.005);
+  ASSERT_EQ(result.mapped.size(), static_cast<std::size_t>(kPriorRound));
+  for (int i = 0; i < kPriorRound; ++i) {
+    EXPECT_LT(PoseErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, TruthAt(i)),
+              0.005);
   }
 }
 

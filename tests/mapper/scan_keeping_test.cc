@@ -20,7 +20,7 @@ KeepOptions Few() {
   return options;
 }
 
-MappedFrame FrameAt(const Pose2& pose) {
+MappedFrame MappedAt(const Pose2& pose) {
   MappedFrame frame;
   frame.map_from_base = pose;
   return frame;
@@ -29,7 +29,7 @@ MappedFrame FrameAt(const Pose2& pose) {
 // So many frames in a row, seen from x = 0.01 m, 0.02 m ...
 std::vector<MappedFrame> RowOf(int count) {
   std::vector<MappedFrame> frames;
-  for (int i = 0; i < count; ++i) frames.push_back(FrameAt({0.01 * (i + 1), 0.1, 0.1}));
+  for (int i = 0; i < count; ++i) frames.push_back(MappedAt({0.01 * (i + 1), 0.1, 0.1}));
   return frames;
 }
 
@@ -82,7 +82,7 @@ TEST(MappedFrames, TiedOnesLoseTheirScansAfterAWhile) {
   FrameScans scans;
   scans.matched = scans.obstacles =
       std::make_shared<const Scan>(ScanOf(room, {3.0, 1.5, 0.0}, {.beams = 20}));
-  for (int i = 0; i < 8; ++i) frames.Add(FrameAt({0.01 * i, 0.1, 0.1}), scans, 1.0);
+  for (int i = 0; i < 8; ++i) frames.Add(MappedAt({0.01 * i, 0.1, 0.1}), scans, 1.0);
   int kept = 0, with_scan = 0;
   for (const MappedFrame& frame : frames.all()) {
     kept += frame.kept() ? 1 : 0;
@@ -133,7 +133,7 @@ TEST(KeptFrames, LoopsMoveToThemAndStayTheSameLoop) {
   EXPECT_EQ(AmongKept({moved}, frames)[0].second, 2);
 }
 
-constexpr int kRound = 200;
+constexpr int kRoundFrames = 200;
 
 // A laser that goes round and round in a room, with odometry that drifts.
 struct Rounds {
@@ -150,13 +150,13 @@ struct Rounds {
   }
 };
 
-Rounds Drive(const MapperOptions& options, int rounds,
-             const std::function<PlanarWorld(int)>& world_at, std::uint32_t seed = 8) {
+Rounds DriveRounds(const MapperOptions& options, int rounds,
+                   const std::function<PlanarWorld(int)>& world_at, std::uint32_t seed = 8) {
   IncrementalMapper mapper(options, std::nullopt);
   Rounds drive;
   Pose2 odometry;
-  for (int i = 0; i < rounds * kRound; ++i) {
-    const double angle_rad = 2.0 * kPi * i / kRound;
+  for (int i = 0; i < rounds * kRoundFrames; ++i) {
+    const double angle_rad = 2.0 * kPi * i / kRoundFrames;
     const Pose2 truth{3.0 + 0.5 * std::cos(angle_rad), 1.8 + 0.5 * std::sin(angle_rad),
                       WrapAngle(angle_rad + 0.5 * kPi)};
     const Pose2 drift{2e-4, 0.0, 2e-4};
@@ -175,7 +175,7 @@ Rounds Drive(const MapperOptions& options, int rounds,
   return drive;
 }
 
-MapperOptions Options(MapperMethod method, int first_frames) {
+MapperOptions KeepingOptions(MapperMethod method, int first_frames) {
   MapperOptions options;
   options.method = method;
   options.fusion.mode = method == MapperMethod::kSurfel ? FusionMode::kLearned : FusionMode::kFixed;
@@ -186,18 +186,18 @@ MapperOptions Options(MapperMethod method, int first_frames) {
 TEST(KeptScans, ARobotThatGoesRoundKeepsNoMoreAndIsAsWellPlaced) {
   const auto room = [](int) { return FurnishedRoom(); };
   for (const MapperMethod method : {MapperMethod::kSurfel, MapperMethod::kPaper}) {
-    MapperOptions options = Options(method, kRound);
+    MapperOptions options = KeepingOptions(method, kRoundFrames);
     options.keep.scans_per_place = 7;
     double sum_all_m = 0.0, sum_few_m = 0.0;
     for (const std::uint32_t seed : {9U, 10U}) {
-      sum_all_m += Drive(Options(method, 0), 5, room, seed).MeanErrorM();
-      sum_few_m += Drive(options, 5, room, seed).MeanErrorM();
+      sum_all_m += DriveRounds(KeepingOptions(method, 0), 5, room, seed).MeanErrorM();
+      sum_few_m += DriveRounds(options, 5, room, seed).MeanErrorM();
     }
-    const Rounds all = Drive(Options(method, 0), 5, room);
-    const Rounds few = Drive(options, 5, room);
-    EXPECT_EQ(all.result.mapped.size(), 5U * kRound);
+    const Rounds all = DriveRounds(KeepingOptions(method, 0), 5, room);
+    const Rounds few = DriveRounds(options, 5, room);
+    EXPECT_EQ(all.result.mapped.size(), 5U * kRoundFrames);
     // The first round and about one more; 362 to 400 were seen, by compiler.
-    EXPECT_LT(few.result.mapped.size(), 5U * kRound / 2U);
+    EXPECT_LT(few.result.mapped.size(), 5U * kRoundFrames / 2U);
     ASSERT_EQ(few.result.map_from_camera.size(), all.truths.size());
     // A third of the scans averages noise less: 1.7 times the error, and 2.0 to 2.4 were measured,
     // of frames kept and not kept alike. A way lost would be hundreds of times.
@@ -209,7 +209,7 @@ TEST(KeptScans, ARobotThatGoesRoundKeepsNoMoreAndIsAsWellPlaced) {
       well_seen += report.well_seen ? 1 : 0;
     }
     EXPECT_EQ(inserted, static_cast<int>(few.result.mapped.size()));
-    EXPECT_EQ(inserted + well_seen, 5 * kRound);
+    EXPECT_EQ(inserted + well_seen, 5 * kRoundFrames);
   }
 }
 
@@ -218,7 +218,7 @@ TEST(KeptScans, ADoorThatOpensLaterIsOpen) {
   const auto room = [](int frame) {
     PlanarWorld world = FurnishedRoom();
     const Eigen::Vector2d low(4.6, 0.0), high(4.6, 2.4), from(4.6, 0.9), to(4.6, 1.9);
-    if (frame < 2 * kRound) {
+    if (frame < 2 * kRoundFrames) {
       world.push_back({low, high});
     } else {
       world.push_back({low, from});
@@ -226,11 +226,11 @@ TEST(KeptScans, ADoorThatOpensLaterIsOpen) {
     }
     return world;
   };
-  for (const int first_frames : {0, kRound}) {
+  for (const int first_frames : {0, kRoundFrames}) {
     // Counts are of all time, log-odds forget.
-    MapperOptions options = Options(MapperMethod::kSurfel, first_frames);
+    MapperOptions options = KeepingOptions(MapperMethod::kSurfel, first_frames);
     options.grid.raster = RasterRule::kLogOdds;
-    const Rounds drive = Drive(options, 10, room);
+    const Rounds drive = DriveRounds(options, 10, room);
     const OccupancyMap& map = drive.result.map;
     const Eigen::Vector2d door(4.6, 1.4), wall(4.6, 0.4);
     EXPECT_LT(map.At(CellOf(door, map.geometry.resolution_m)), 0.196F) << first_frames;

@@ -87,7 +87,7 @@ std::vector<Surfel> Wall() {
   return wall;
 }
 
-SurfelStore MapOf(const std::vector<Surfel>& pieces) {
+SurfelStore MapOfPieces(const std::vector<Surfel>& pieces) {
   SurfelStore map;
   for (const Surfel& piece : pieces) map.Merge(piece, {0.03, 0.05, 0.7});
   return map;
@@ -96,7 +96,7 @@ SurfelStore MapOf(const std::vector<Surfel>& pieces) {
 // Sixteen pieces of one wall that all err alike tell as much as one, in the same place.
 TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
   const std::vector<Surfel> wall = Wall();
-  const SurfelStore map = MapOf(wall);
+  const SurfelStore map = MapOfPieces(wall);
   Prediction prediction;
   prediction.map_from_base = {0.01, 0.0, 0.0};
   prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
@@ -117,7 +117,7 @@ TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
 // Far from the minimum all residuals are large, and none of that is misfit.
 TEST(SurfelMatcher, AWrongPredictionIsNoMisfit) {
   const std::vector<Surfel> wall = Wall();
-  const SurfelStore map = MapOf(wall);
+  const SurfelStore map = MapOfPieces(wall);
   Prediction prediction;
   prediction.map_from_base = {0.05, 0.0, 0.0};  // five sigmas off
   prediction.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal();

@@ -20,7 +20,7 @@ struct Said {
 
 // The floor errs by a few millimetres and hundredths of a degree, SLAM's height by up to `rise_m`
 // and its tilt by up to `lean_rad`, more and more.
-std::vector<Said> Walk(double rise_m, double lean_rad) {
+std::vector<Said> WalkOf(double rise_m, double lean_rad) {
   RandomStream random(6, RandomStage::kTest);
   std::vector<Said> frames;
   for (int i = 0; i < kFrames; ++i) {
@@ -39,16 +39,16 @@ std::vector<Said> Walk(double rise_m, double lean_rad) {
 }
 
 // Largest errors over the walk, once all of it is known.
-struct Errors {
+struct StandErrors {
   double height_m = 0.0;
   double tilt_rad = 0.0;
   double slams_own = 0.0;  // share of the poses that are SLAM's, bit for bit
 };
 
-Errors ErrorsOf(const std::vector<Said>& frames) {
+StandErrors ErrorsOf(const std::vector<Said>& frames) {
   StandBlend blend(kFloorZM);
   for (const Said& said : frames) blend.Add(said.slam, said.floor);
-  Errors errors;
+  StandErrors errors;
   for (const Said& said : frames) {
     const Pose3 placed = blend.Placed(said.slam, said.floor);
     const Pose2 base = BaseOf(placed), slam_base = BaseOf(said.slam);
@@ -65,28 +65,28 @@ Errors ErrorsOf(const std::vector<Said>& frames) {
 }
 
 TEST(StandBlend, TheFloorOutweighsDrift) {
-  const Errors errors = ErrorsOf(Walk(0.5, 0.06));
+  const StandErrors errors = ErrorsOf(WalkOf(0.5, 0.06));
   EXPECT_LT(errors.height_m, 0.02);
   EXPECT_LT(errors.tilt_rad, 0.006);
   EXPECT_EQ(errors.slams_own, 0.0);
 }
 
 TEST(StandBlend, PosesAsGoodAsTheFloorStayAsTheyAre) {
-  const Errors errors = ErrorsOf(Walk(0.02, 0.005));
+  const StandErrors errors = ErrorsOf(WalkOf(0.02, 0.005));
   EXPECT_NEAR(errors.slams_own, 1.0, 1e-9);
 }
 
 TEST(StandBlend, HeightAndTiltAreJudgedApart) {
-  const Errors rises = ErrorsOf(Walk(0.5, 0.0));
+  const StandErrors rises = ErrorsOf(WalkOf(0.5, 0.0));
   EXPECT_LT(rises.height_m, 0.02);
   EXPECT_LT(rises.tilt_rad, 1e-9);
-  const Errors leans = ErrorsOf(Walk(0.0, 0.06));
+  const StandErrors leans = ErrorsOf(WalkOf(0.0, 0.06));
   EXPECT_EQ(leans.height_m, 0.0);
   EXPECT_LT(leans.tilt_rad, 0.006);
 }
 
 TEST(StandBlend, BeforeAnythingIsKnownThePoseCounts) {
-  const Said said = Walk(0.5, 0.06).back();
+  const Said said = WalkOf(0.5, 0.06).back();
   EXPECT_EQ(StandBlend(kFloorZM).Placed(said.slam, said.floor), said.slam);
 }
 

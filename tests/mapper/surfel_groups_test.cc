@@ -20,7 +20,7 @@ std::vector<Surfel> WallFrom(double x_m) {
 }
 
 // Twelve frames 0.1 m apart, a group each.
-SurfelGroups Walk() {
+SurfelGroups WalkInGroups() {
   SurfelGroupOptions options;
   options.length_m = 0.08;
   SurfelGroups groups(options);
@@ -31,14 +31,14 @@ SurfelGroups Walk() {
 const std::vector<bool> kTogether(12, false);
 
 TEST(SurfelGroups, FewAreLeftAsTheyAre) {
-  const SurfelGroups groups = Walk();
+  const SurfelGroups groups = WalkInGroups();
   EXPECT_EQ(groups.groups().size(), 12U);
   EXPECT_EQ(groups.Joined(12, kTogether).groups().size(), 12U);
 }
 
 // Groups may reach 0.24 m then: frames 0-2, 3-5 ...
 TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
-  const SurfelGroups walk = Walk();
+  const SurfelGroups walk = WalkInGroups();
   const SurfelGroups joined = walk.Joined(4, kTogether);
   ASSERT_EQ(joined.groups().size(), 4U);
   EXPECT_EQ(joined.groups()[1].first_frame, 3);
@@ -51,7 +51,7 @@ TEST(SurfelGroups, ManyAreJoinedWithTheirNeighbours) {
 }
 
 TEST(SurfelGroups, PosesAloneAreJoinedTheSame) {
-  const SurfelGroups walk = Walk();
+  const SurfelGroups walk = WalkInGroups();
   for (const int most : {12, 4}) {
     const SurfelGroups joined = walk.Joined(most, kTogether);
     const SurfelGroups bare = walk.Joined(most, kTogether, GroupContent::kPosesOnly);
@@ -73,7 +73,7 @@ TEST(SurfelGroups, PosesAloneAreJoinedTheSame) {
 TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
   std::vector<bool> apart = kTogether;
   apart[4] = true;
-  const SurfelGroups joined = Walk().Joined(5, apart);
+  const SurfelGroups joined = WalkInGroups().Joined(5, apart);
   EXPECT_EQ(joined.groups().size(), 5U);
   EXPECT_EQ(joined.groups()[2].first_frame, 4);
 }

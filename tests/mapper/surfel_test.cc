@@ -25,7 +25,7 @@ PlanarWorld Room() {
   return world;
 }
 
-PlanarLaser Noisy(double sigma_of_range) {
+PlanarLaser NoisyLaser(double sigma_of_range) {
   PlanarLaser laser;
   laser.sigma_of_range = sigma_of_range;
   return laser;
@@ -41,7 +41,7 @@ TEST(RangeNoise, LearnsSigmaInSpiteOfCorners) {
   for (const double sigma : {0.003, 0.01, 0.03}) {
     RangeNoise noise;
     for (int frame = 0; frame < 20; ++frame) {
-      noise.Add(ScanOf(Room(), {0.0, 0.0, 0.3 * frame}, Noisy(sigma), 7,
+      noise.Add(ScanOf(Room(), {0.0, 0.0, 0.3 * frame}, NoisyLaser(sigma), 7,
                        static_cast<std::uint32_t>(frame)));
     }
     EXPECT_NEAR(noise.RelativeSigma(2.5) / sigma, 1.0, 0.1) << sigma;
@@ -70,7 +70,7 @@ TEST(ScanSurfels, ErrHasTheDeclaredSigma) {
   double squares = 0.0;
   double count = 0.0;
   for (std::uint32_t frame = 0; frame < 300; ++frame) {
-    const Scan scan = ScanOf(wall, {0.0, 0.0, 0.4}, Noisy(0.01), 3, frame);
+    const Scan scan = ScanOf(wall, {0.0, 0.0, 0.4}, NoisyLaser(0.01), 3, frame);
     noise.Add(scan);
     for (const Surfel& surfel : maker.Make(scan, noise)) {
       const Eigen::Vector2d in_world = Motion2({0.0, 0.0, 0.4}) * surfel.point_m;
@@ -96,7 +96,7 @@ TEST(ScanSurfels, OfWhatIsNoLineAreBelievedLess) {
   std::vector<double> on_wall;
   std::vector<double> on_post;
   for (std::uint32_t frame = 0; frame < 40; ++frame) {
-    const Scan scan = ScanOf(world, {}, Noisy(0.0005), 5, frame);
+    const Scan scan = ScanOf(world, {}, NoisyLaser(0.0005), 5, frame);
     noise.Add(scan);
     const std::vector<Surfel> judged = judging.Make(scan, noise);
     const std::vector<Surfel> claimed = blind.Make(scan, noise);
@@ -211,7 +211,7 @@ TEST(SurfelMatcher, FindsTheWayBackAndIsAsSureAsItSays) {
   RangeNoise noise;
   ScanSurfelMaker maker({});
   const Scan clean = ScanOf(Room(), {}, {});
-  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(Room(), {}, Noisy(0.01), 5, i));
+  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(Room(), {}, NoisyLaser(0.01), 5, i));
   SurfelStore map = MapOf(maker.Make(clean, noise), {});
   // A map much better than the scan: the same surfel many times.
   for (int i = 0; i < 100; ++i) {
@@ -224,7 +224,8 @@ TEST(SurfelMatcher, FindsTheWayBackAndIsAsSureAsItSays) {
   double chi2 = 0.0;
   int cases = 0;
   for (std::uint32_t frame = 0; frame < 200; ++frame, ++cases) {
-    const std::vector<Surfel> pieces = maker.Make(ScanOf(Room(), {}, Noisy(0.01), 6, frame), noise);
+    const std::vector<Surfel> pieces =
+        maker.Make(ScanOf(Room(), {}, NoisyLaser(0.01), 6, frame), noise);
     const MatchResult match = matcher.Match(pieces, map, prediction);
     ASSERT_TRUE(match.found);
     const Eigen::Vector3d error = match.map_from_base.vector();
@@ -239,13 +240,14 @@ TEST(SurfelMatcher, InACorridorTheAxisStaysUnseen) {
   const PlanarWorld corridor = {{{-20, 1}, {20, 1}}, {{-20, -1}, {20, -1}}};
   RangeNoise noise;
   ScanSurfelMaker maker({});
-  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(corridor, {}, Noisy(0.01), 5, i));
-  const SurfelStore map = MapOf(maker.Make(ScanOf(corridor, {}, Noisy(0.01), 5, 9), noise), {});
+  for (std::uint32_t i = 0; i < 5; ++i) noise.Add(ScanOf(corridor, {}, NoisyLaser(0.01), 5, i));
+  const SurfelStore map =
+      MapOf(maker.Make(ScanOf(corridor, {}, NoisyLaser(0.01), 5, 9), noise), {});
   Prediction prediction;
   prediction.map_from_base = {0.3, 0.02, 0.0};
   prediction.covariance = Eigen::Vector3d(0.04, 0.01, 0.001).asDiagonal();
   const MatchResult match = SurfelMatcher({}).Match(
-      maker.Make(ScanOf(corridor, {}, Noisy(0.01), 5, 10), noise), map, prediction);
+      maker.Make(ScanOf(corridor, {}, NoisyLaser(0.01), 5, 10), noise), map, prediction);
   ASSERT_TRUE(match.found);
   EXPECT_GT(match.information(1, 1), 100.0 * match.information(0, 0));
   EXPECT_NEAR(match.map_from_base.y_m, 0.0, 0.02);
@@ -370,7 +372,7 @@ TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
     frame.stamp_s = i / 30.0;
     frame.slam_from_camera = CameraOf(odometry, 0.0);
     frame.scan = std::make_shared<Scan>(
-        ScanOf(Room(), truth.back(), Noisy(0.01), 8, static_cast<std::uint32_t>(i)));
+        ScanOf(Room(), truth.back(), NoisyLaser(0.01), 8, static_cast<std::uint32_t>(i)));
     mapper.AddFrame(frame);
   }
   const MapperResult result = mapper.Finish();

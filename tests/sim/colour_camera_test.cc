@@ -14,8 +14,6 @@
 namespace depthgrid {
 namespace {
 
-const std::string kScenes = std::string(kSourceFolder) + "/scenes/";
-
 // Unlike focal lengths, principal point off the middle, sides that are not multiples of a tile.
 PinholeCamera OddCamera() {
   PinholeCamera camera;
@@ -72,7 +70,7 @@ Agreement Compare(const DepthImage& expected, const DepthImage& actual) {
 TEST(ColourCamera, DepthIsThatOfTheDepthCamera) {
   int frames = 0;
   for (const char* name : {"living_room", "office_room"}) {
-    const Scene scene = LoadScene(kScenes + name + ".yaml");
+    const Scene scene = LoadScene(ShippedSceneFile(name));
     const RayScene rays(scene.mesh);
     for (const PinholeCamera& camera : {PinholeCamera{}, OddCamera()}) {
       ColourCamera colour(scene, camera);

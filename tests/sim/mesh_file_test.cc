@@ -8,6 +8,7 @@
 #include "mapper/core/error.h"
 #include "sim/scene.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -280,13 +281,8 @@ TEST_F(MeshFiles, FilesCutOffAnywhereAreSurvived) {
 TEST_F(MeshFiles, AMeshFileIsASceneWhenItHasAFloor) {
   const std::string room = "v 0 0 1\nv 4 0 1\nv 4 3 1\nv 0 3 1\nf 1 2 3 4\n";
   EXPECT_EQ(LoadScene(Write("room.obj", room)).floor_z_m, 1.0);
-  const auto error_of = [&](const std::string& text) -> std::string {
-    try {
-      LoadScene(Write("s.obj", text));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+  const auto error_of = [&](const std::string& text) {
+    return RefusalOf([&] { LoadScene(Write("s.obj", text)); });
   };
   EXPECT_THAT(error_of("v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\nf 1 2 3 4\n"), HasSubstr("no floor"));
   EXPECT_THAT(error_of("v 0 0 0\nv 4000 0 0\nv 4000 3000 0\nf 1 2 3\n"),

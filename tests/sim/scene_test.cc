@@ -16,7 +16,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kScenes = std::string(kSourceFolder) + "/scenes/";
 // A floor for scenes whose point is something else.
 const std::string kFloor = "  - {shape: box, size: [4, 4, 0.5], at: [0, 0, -0.5]}\n";
 
@@ -49,7 +48,7 @@ TEST(ShippedScenes, AreFurnishedAndHaveRoomForTheirPaths) {
         Expected{"office_room", {5.0F, 7.0F, 2.4F}, 50'000},
         Expected{"office_floor", {30.0F, 20.0F, 2.6F}, 300'000}}) {
     SCOPED_TRACE(name);
-    const Scene scene = LoadScene(kScenes + name + ".yaml");
+    const Scene scene = LoadScene(ShippedSceneFile(name));
     EXPECT_EQ(scene.name, name);
     EXPECT_EQ(scene.floor_z_m, 0.0);
     ASSERT_TRUE(scene.ceiling_z_m.has_value());
@@ -77,7 +76,7 @@ TEST(ShippedScenes, RoomsAreClosed) {
   for (const auto& [name, middle] : {std::pair{"living_room", Eigen::Vector3f(2.5F, 3.6F, 1.3F)},
                                      {"office_room", Eigen::Vector3f(2.5F, 4.6F, 1.3F)},
                                      {"office_floor", Eigen::Vector3f(6.0F, 10.0F, 1.3F)}}) {
-    const RayScene rays(LoadScene(kScenes + name + ".yaml").mesh);
+    const RayScene rays(LoadScene(ShippedSceneFile(name)).mesh);
     int escaped = 0;
     constexpr int kRays = 20000;
     for (int i = 0; i < kRays; ++i) {  // a Fibonacci sphere
@@ -258,7 +257,7 @@ TEST_F(SceneFiles, AFloorIsStatedOrFound) {
 TEST(Files, OfOtherKindsAreNotScenes) {
   EXPECT_THROW(LoadScene("nowhere.yaml"), InputError);
   EXPECT_THROW(LoadScene("scene.txt"), InputError);
-  EXPECT_THROW(LoadScene(kScenes), InputError);
+  EXPECT_THROW(LoadScene(std::string(kSourceFolder) + "/scenes/"), InputError);
 }
 
 TriangleMesh Plate(double width, double depth, double z, bool facing_up) {

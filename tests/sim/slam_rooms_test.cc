@@ -17,7 +17,7 @@ namespace {
 constexpr int kFrames = 900;
 
 Trajectory HandHeld(const std::string& room) {
-  const Scene scene = LoadScene(std::string(kSourceFolder) + "/scenes/" + room + ".yaml");
+  const Scene scene = LoadScene(ShippedSceneFile(room));
   return MakeTrajectory(scene.trajectories.at("handheld"), kFrames, kFrameRateHz, 1);
 }
 

@@ -5,6 +5,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -37,13 +38,8 @@ Trajectory AtTheBounds(const TrajectoryOptions& options, std::uint64_t seed = 1)
   return MakeTrajectory(options, MinimumFrames(options), kFrameRateHz, seed);
 }
 
-std::string ErrorOf(const std::string& text, int frames = 5000) {
-  try {
-    MakeTrajectory(Options(text), frames, kFrameRateHz, 1);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+std::string TrajectoryRefusal(const std::string& text, int frames = 5000) {
+  return RefusalOf([&] { MakeTrajectory(Options(text), frames, kFrameRateHz, 1); });
 }
 
 TEST(Trajectory, KeepsWithinItsBoundsAndReachesThem) {
@@ -189,19 +185,23 @@ TEST(Trajectory, LapsOverlap) {
 }
 
 TEST(Trajectory, RefusesWhatItCannotDo) {
-  EXPECT_THAT(ErrorOf(kHandheld, 100), HasSubstr("scene.yaml:2: frames is 100, must be at least "));
-  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}]"),
+  EXPECT_THAT(TrajectoryRefusal(kHandheld, 100),
+              HasSubstr("scene.yaml:2: frames is 100, must be at least "));
+  EXPECT_THAT(TrajectoryRefusal("kind: planar\nwaypoints: [{at: [0, 0]}]"),
               HasSubstr("has 1 waypoint, must have at least 2"));
-  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [0, 0]}]"),
+  EXPECT_THAT(TrajectoryRefusal("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [0, 0]}]"),
               HasSubstr("are the same, at (0.00, 0.00, 0.60)"));
-  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints:\n  - {at: [0, 0]}\n  - {at: [0, 0, 1]}"),
+  EXPECT_THAT(TrajectoryRefusal("kind: planar\nwaypoints:\n  - {at: [0, 0]}\n  - {at: [0, 0, 1]}"),
               HasSubstr("scene.yaml:4: at has 3 numbers, must have 2"));
-  EXPECT_THAT(ErrorOf("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, 0]}, {at: [0, 0]}]"),
-              HasSubstr("turns on the spot near (2"));
-  EXPECT_THAT(ErrorOf("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
-                      "[5, 0, 1]}]"),
-              HasSubstr("must look less than 80 degrees"));
-  EXPECT_THAT(ErrorOf("speed_mp: 3\nwaypoints: []"), HasSubstr("did you mean 'speed_mps'?"));
+  EXPECT_THAT(
+      TrajectoryRefusal("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, 0]}, {at: [0, 0]}]"),
+      HasSubstr("turns on the spot near (2"));
+  EXPECT_THAT(
+      TrajectoryRefusal("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
+                        "[5, 0, 1]}]"),
+      HasSubstr("must look less than 80 degrees"));
+  EXPECT_THAT(TrajectoryRefusal("speed_mp: 3\nwaypoints: []"),
+              HasSubstr("did you mean 'speed_mps'?"));
 }
 
 Trajectory Line(std::initializer_list<double> xs) {
