@@ -74,12 +74,16 @@ Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   // Grazing beams are not believed to be exact across the wall.
   constexpr double kMinCosine = 0.05;
   const double line_inverse_range = line.coefficients.dot(direction);
-  const double inverse_range = share * line_inverse_range;
-  const double cosine = std::max(line_inverse_range / line.coefficients.norm(), kMinCosine);
+  const double line_range_m = 1.0 / line_inverse_range;
+  const double cosine = line_inverse_range / line.coefficients.norm();
   Surfel surfel;
-  surfel.point_m = direction / inverse_range;
   surfel.normal = -line.coefficients.normalized();
-  const double sigma_m = std::sqrt(variance) * cosine / inverse_range;
+  // Noise along the beam moves the piece along the normal only. Were it moved along the wall as
+  // well, a match would find what is off and how far it is to the side to go together, and turn too
+  // little; nor does a piece look more precise that noise drew nearer.
+  const double before_line_m = cosine * (line_range_m - line_range_m / share);
+  surfel.point_m = line_range_m * direction + before_line_m * surfel.normal;
+  const double sigma_m = std::sqrt(variance) * std::max(cosine, kMinCosine) * line_range_m;
   surfel.information = 1.0 / (sigma_m * sigma_m);
   surfel.normal_information = 1.0 / (factor * line.sigma_normal_rad * line.sigma_normal_rad);
   return surfel;

@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 constexpr double kFloorZM = 0.3;
-constexpr int kFrames = 200;
+constexpr int kStandFrames = 200;
 
 // How a frame truly is, and what is said of it.
 struct Said {
@@ -23,8 +23,8 @@ struct Said {
 std::vector<Said> WalkOf(double rise_m, double lean_rad) {
   RandomStream random(6, RandomStage::kTest);
   std::vector<Said> frames;
-  for (int i = 0; i < kFrames; ++i) {
-    const double share = static_cast<double>(i) / (kFrames - 1);
+  for (int i = 0; i < kStandFrames; ++i) {
+    const double share = static_cast<double>(i) / (kStandFrames - 1);
     Said said;
     said.truth = TiltedCamera({share, -share, 3.0 * share}, kFloorZM + 1.2, 0.2 + 0.1 * share, 0.1);
     said.slam = said.truth;
@@ -59,7 +59,7 @@ StandErrors ErrorsOf(const std::vector<Said>& frames) {
     errors.tilt_rad = std::max(errors.tilt_rad, up.head<2>().norm());
     errors.height_m =
         std::max(errors.height_m, std::abs(placed.translation.z() - said.truth.translation.z()));
-    errors.slams_own += (placed == said.slam ? 1.0 : 0.0) / kFrames;
+    errors.slams_own += (placed == said.slam ? 1.0 : 0.0) / kStandFrames;
   }
   return errors;
 }
