@@ -17,7 +17,7 @@ const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 constexpr int kUnconfirmedMotions = 200;
 constexpr double kLeastOfFirstWalk = 0.5;
 // With that it does not confirm itself, so what is told of the errors is what was learnt, once so
-// many motions are seen (docs/tried.md, "Consistency").
+// many motions are seen (docs/tried.md, "Consistency"); not where SLAM began to drift.
 constexpr int kTellingMotions = 50;
 // The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
 // SLAM's motion is believed this much less than learnt, so that it does not drag the map along
@@ -130,7 +130,9 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
     if (drifted_ || seen < kUnconfirmedMotions) {
       noise_.walk[axis] = std::max(noise_.walk[axis], least);
     }
-    if (seen < kTellingMotions) learnt_.walk[axis] = std::max(learnt_.walk[axis], least);
+    if (drifted_ || seen < kTellingMotions) {
+      learnt_.walk[axis] = std::max(learnt_.walk[axis], least);
+    }
   }
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }

@@ -153,6 +153,7 @@ TEST(DriftTracker, BelievesAPriorThatDriftedOnlyAfterTheNextAdjustment) {
     tracker.Commit(drifted, fused.map_from_base, fused.covariance, match);
   }
   EXPECT_GE(tracker.noise().walk.minCoeff(), 0.0015);
+  EXPECT_GE(tracker.step().walk.minCoeff(), 0.0015);  // nor are errors told for smaller
   tracker.BoundMotion(kNearlyPerfect);
   EXPECT_LT(tracker.noise().walk.maxCoeff(), 1e-4);
 }
