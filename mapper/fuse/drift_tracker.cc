@@ -26,11 +26,6 @@ constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
-// What is learnt from the matches is kept between these many times what the adjustments find. While
-// the prior is believed the map follows it, and the matches, made against that map, agree with it;
-// while the matches are believed the map wanders with them (docs/tried.md, "Laser logs").
-constexpr double kBoundSigmas = 2.0;
-constexpr double kLeastSigmas = 1.0;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
@@ -122,8 +117,7 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
   noise_ = learnt_;
   noise_.walk *= kCaution;
   noise_.bias *= kCaution;
-  Bound(noise_);
-  Bound(learnt_);
+  BoundLearnt();
   for (int axis = 0; !spread_ && axis < 3; ++axis) {
     const int seen = learner_.seen()[static_cast<std::size_t>(axis)];
     const double least = kLeastOfFirstWalk * kFirstWalk[axis];
@@ -141,26 +135,15 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
   drifted_ = false;
   evidence_ = DriftEvidence();
-  Bound(noise_);
-  Bound(learnt_);
+  BoundLearnt();
 }
 
-// A bias sums up with the number of frames, a walk with its root.
-void DriftTracker::Bound(MotionNoise& noise) const {
+// While the prior is believed the map follows it, and the matches, made against that map, agree
+// with it; while the matches are believed the map wanders with them (docs/tried.md, "Laser logs").
+void DriftTracker::BoundLearnt() {
   if (!spread_) return;
-  const double root = std::sqrt(spread_->frames);
-  const Eigen::Vector3d most = kBoundSigmas * spread_->sigma;
-  noise.bias = noise.bias.cwiseMin(most);
-  noise.walk = noise.walk.cwiseMin(root * most);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double least = kLeastSigmas * spread_->sigma[axis];
-    const double walked = noise.walk[axis] / root;
-    const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
-    if (noise.bias[axis] >= bias) continue;
-    // With no bias learnt there is nothing to tell how fast it changes.
-    if (noise.bias[axis] == 0.0) noise.bias_kept[axis] = MotionNoise().bias_kept[axis];
-    noise.bias[axis] = bias;
-  }
+  Bound(*spread_, noise_);
+  Bound(*spread_, learnt_);
 }
 
 // When SLAM begins to drift all that was learnt of it is wrong.

@@ -40,7 +40,7 @@ class DriftTracker {
   DriftState StateAt(const Pose2& slam_from_base) const;
   FilterStep StepTo(const Pose2& predicted) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
-  void Bound(MotionNoise& noise) const;  // by the spread, if that is known
+  void BoundLearnt();  // by the spread, if that is known
   void TestBound(const Prediction& prediction, const MatchResult& match);
   void StartAnew();
 

@@ -17,6 +17,8 @@ constexpr std::array<double, 4> kBiasFrames = {10.0, 40.0, 160.0, 640.0};
 // A lag counts when at least so many independent stretches of it were seen.
 constexpr double kMinStretches = 3.0;
 constexpr int kParts = 3;
+// How much more than the spread is learnt at most (docs/tried.md, "A nearly perfect prior").
+constexpr double kMostOfSpread = 2.0;
 
 // The variance that each part, at unit size, gives the error summed over `lag` frames.
 std::array<double, kParts> UnitVariances(double lag, double kept) {
@@ -70,6 +72,23 @@ Fit3 FitParts(const std::vector<double>& lag, const std::vector<double>& varianc
 }
 
 }  // namespace
+
+// A bias sums up with the number of frames, a walk with its root.
+void Bound(const MotionSpread& spread, MotionNoise& noise) {
+  const double root = std::sqrt(spread.frames);
+  const Eigen::Vector3d most = kMostOfSpread * spread.sigma;
+  noise.bias = noise.bias.cwiseMin(most);
+  noise.walk = noise.walk.cwiseMin(root * most);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double least = spread.sigma[axis];
+    const double walked = noise.walk[axis] / root;
+    const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
+    if (noise.bias[axis] >= bias) continue;
+    // With no bias learnt there is nothing to tell how fast it changes.
+    if (noise.bias[axis] == 0.0) noise.bias_kept[axis] = MotionNoise().bias_kept[axis];
+    noise.bias[axis] = bias;
+  }
+}
 
 void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma) {
   ++motions_;

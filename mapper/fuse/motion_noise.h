@@ -28,6 +28,10 @@ struct MotionSpread {
   double frames = 1.0;
 };
 
+// Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds
+// on what is learnt").
+void Bound(const MotionSpread& spread, MotionNoise& noise);
+
 // Variances of the summed error over 1, 2, 4, ... frames tell the three parts apart: jitter's stays
 // the same, that of a walk grows with the number of frames, that of a bias with its square until
 // the bias has changed.

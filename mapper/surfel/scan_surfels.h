@@ -15,7 +15,7 @@ struct ScanSurfelOptions {
   // Nor is it longer than this, so that coarse scanners keep details.
   double max_length_m = 0.2;
   double jump_sigmas = 5.0;
-  double split_chi2 = 20.0;
+  double split_chi2 = 12.0;
   int min_line_beams = 4;
   // Surfels of a line that fits its beams badly are believed less.
   bool judge_fit = true;

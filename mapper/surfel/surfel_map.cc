@@ -208,9 +208,10 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
         static_cast<double>(frames.size() - static_cast<std::size_t>(first_new)) /
             static_cast<double>(new_groups)};
   }
-  adjustment.map_from_base = effort == AdjustEffort::kFinish
-                                 ? SmoothedOver(frames, groups, result.map_from_group)
-                                 : PosesOf(groups.places(), result.map_from_group);
+  adjustment.map_from_base =
+      effort == AdjustEffort::kFinish
+          ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)
+          : PosesOf(groups.places(), result.map_from_group);
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;
@@ -249,7 +250,8 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups)
 // when it was made, and stay where they are in their groups.
 std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
                                            const SurfelGroups& groups,
-                                           const std::vector<Pose2>& map_from_group) {
+                                           const std::vector<Pose2>& map_from_group,
+                                           const std::optional<MotionSpread>& spread) {
   SurfelStore map;
   for (std::size_t g = 0; g < groups.groups().size(); ++g) {
     InsertInto(map, groups.groups()[g].surfels, map_from_group[g], 0.0);
@@ -268,7 +270,9 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     }
     smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
-  const std::vector<Pose2> smoothed = Smoothed(smoother, NoiseOf(smoother), options_.stay_m);
+  MotionNoise noise = NoiseOf(smoother);
+  if (spread) Bound(*spread, noise);
+  const std::vector<Pose2> smoothed = Smoothed(smoother, noise, options_.stay_m);
   std::copy(smoothed.begin(), smoothed.end(), poses.begin() + first_new);
   return poses;
 }

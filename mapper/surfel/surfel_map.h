@@ -67,7 +67,8 @@ class SurfelMap : public ReferenceMap {
   JointOptions JointOptionsFor(AdjustEffort effort, std::size_t groups) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,
-                                  const std::vector<Pose2>& map_from_group);
+                                  const std::vector<Pose2>& map_from_group,
+                                  const std::optional<MotionSpread>& spread);
   const std::vector<Surfel>& PiecesOf(const std::shared_ptr<const Scan>& scan);
 
   SurfelOptions options_;

@@ -55,6 +55,8 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Flag("judge_sharing", judge_sharing,
          "whether it is when neighbours err alike, as the joint adjustment found");
   v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
+  v.Number("normal_floor_share", normal_floor_share, {0.0, 1.0},
+           "nor than this share of the variance that one scan's line has");
   v.Number("debias", debias, {0.0, 100.0},
            "a direction with less than this times the information that noisy normals feign is "
            "not seen; 0 believes all");
@@ -62,8 +64,12 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
 }
 
 PairGates SurfelMatcher::Gates() const {
-  return {options_.along_m, options_.gate_m, std::cos(RadFromDeg(options_.max_angle_deg)),
-          options_.huber_sigmas, options_.normal_floor_rad};
+  return {options_.along_m,
+          options_.gate_m,
+          std::cos(RadFromDeg(options_.max_angle_deg)),
+          options_.huber_sigmas,
+          options_.normal_floor_rad,
+          options_.normal_floor_share};
 }
 
 PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base,

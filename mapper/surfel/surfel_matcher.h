@@ -10,14 +10,15 @@
 namespace depthgrid {
 
 struct SurfelMatchOptions {
-  double gate_m = 0.15;            // farther along the normal nothing is associated
-  double along_m = 0.075;          // nor farther along the wall: the map's surfels are 5 cm apart
-  double max_angle_deg = 45.0;     // nor with normals farther apart
-  double huber_sigmas = 2.5;       // larger residuals count linearly
-  bool judge_misfit = true;        // information over the Misfit of the matched surfels
-  bool judge_sharing = true;       // and over what neighbours share of their errors
-  double normal_floor_rad = 0.01;  // no normal is known better
-  double debias = 3.0;             // threshold of Debiased()
+  double gate_m = 0.15;             // farther along the normal nothing is associated
+  double along_m = 0.075;           // nor farther along the wall: the map's surfels are 5 cm apart
+  double max_angle_deg = 45.0;      // nor with normals farther apart
+  double huber_sigmas = 2.5;        // larger residuals count linearly
+  bool judge_misfit = true;         // information over the Misfit of the matched surfels
+  bool judge_sharing = true;        // and over what neighbours share of their errors
+  double normal_floor_rad = 0.01;   // no normal is known better
+  double normal_floor_share = 0.3;  // nor than this share of the variance that its piece's line has
+  double debias = 3.0;              // threshold of Debiased()
   int max_iterations = 10;
 
   void Visit(OptionsVisitor& v);

@@ -114,7 +114,8 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   block.mapped[lane] = map.FrameOf(found.index);
   block.noise_share[lane] = 1.0 / (surfel.information * variance);
   block.normal_variance[lane] =
-      std::max(1.0 / surfel.normal_information, gates.normal_floor_rad * gates.normal_floor_rad);
+      std::max({1.0 / surfel.normal_information, gates.normal_floor_rad * gates.normal_floor_rad,
+                gates.normal_floor_share / piece.normal_information});
 }
 
 void SurfelPairs::PartsOf(const PairGates& gates, const Pose2& map_from_base,

@@ -45,6 +45,7 @@ double ShortOfWall(double wall_m, double max_range_m, bool correct) {
   const PlanarWorld wall = {{{wall_m, -8.0}, {wall_m, 8.0}}};
   ScanSurfelOptions options;
   options.correct_cutoff = correct;
+  options.split_chi2 = 1000.0;  // what is cut off looks bent, and short lines are corrected by less
   ScanSurfelMaker maker(options);
   RangeNoise noise;
   double weighted = 0.0;

@@ -188,6 +188,26 @@ TEST(SurfelMatcher, InACorridorTheAxisStaysUnseen) {
   EXPECT_NEAR(match.map_from_base.y_m, 0.0, 0.02);
 }
 
+// What many scans agree on may be what noise hides from each, such as a shallow recess.
+TEST(SurfelMatcher, BelievesNoNormalMuchMoreThanOneScanTellsIt) {
+  SurfelStore map;
+  std::vector<Surfel> pieces;
+  for (int i = 0; i < 40; ++i) {
+    const double x_m = 0.1 * i;
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const Eigen::Vector2d point(x_m, side);
+    const Eigen::Vector2d askew = Eigen::Vector2d(-0.05, -side).normalized();
+    map.Add({point, askew, 1e6, 1e6});
+    pieces.push_back({point, askew, 1e4, 1.0 / (0.1 * 0.1)});
+  }
+  Prediction prediction;
+  prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
+  SurfelMatchOptions options;
+  EXPECT_LT(SurfelMatcher(options).Match(pieces, map, prediction).information(0, 0), 10.0);
+  options.normal_floor_share = 0.0;
+  EXPECT_GT(SurfelMatcher(options).Match(pieces, map, prediction).information(0, 0), 500.0);
+}
+
 TEST(Debias, TakesAwayWhatNormalsFeignAndNothingElse) {
   NormalEquations equations;
   equations.h = Eigen::Vector3d(1000.0, 2.0, 500.0).asDiagonal();
@@ -283,6 +303,25 @@ TEST(MotionNoiseLearner, TellsJitterWalkAndBiasApart) {
   EXPECT_NEAR(noise.jitter[2], 0.003, 3e-4);
   EXPECT_LT(noise.walk[2], 3e-4);
   EXPECT_LT(noise.jitter[1], 5e-4);
+}
+
+TEST(MotionNoise, IsBoundBySpread) {
+  const MotionSpread spread{{0.001, 0.001, 0.001}, 4.0};
+  MotionNoise noise;
+  noise.walk = {0.0, 0.0012, 0.1};
+  noise.bias = {0.0, 0.0001, 0.1};
+  noise.bias_kept.setConstant(0.5);
+  Bound(spread, noise);
+  // Called perfect: all of it bias, which lasts as long as any before one is learnt.
+  EXPECT_EQ(noise.bias[0], 0.001);
+  EXPECT_EQ(noise.walk[0], 0.0);
+  EXPECT_EQ(noise.bias_kept[0], MotionNoise().bias_kept[0]);
+  // Called too good: over four frames the walk makes 0.6 of it.
+  EXPECT_NEAR(noise.bias[1], 0.0008, 1e-12);
+  EXPECT_EQ(noise.bias_kept[1], 0.5);
+  // Called too bad.
+  EXPECT_EQ(noise.bias[2], 0.002);
+  EXPECT_EQ(noise.walk[2], 0.004);
 }
 
 // Once round the room with an odometry that turns a little too much.
