@@ -64,7 +64,8 @@ bool IsNamed(int folder, const fs::path& name) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const std::string& path, bool force) : target_(Resolved(path)) {
+OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
+    : target_(Resolved(path)), superseded_(std::move(superseded)) {
   RequireUsable(target_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);
@@ -125,19 +126,14 @@ void OutputFolder::Clean() const {
   }
 }
 
-void OutputFolder::Supersede(const std::string& mark,
-                             std::function<bool(const fs::path& relative)> is_part) {
-  if (fs::exists(target_ / mark)) is_part_ = std::move(is_part);
-}
-
 void OutputFolder::RemoveSuperseded() const {
-  if (!is_part_) return;
+  if (!superseded_) return;
   std::vector<fs::path> superseded;
   const auto options = fs::directory_options::skip_permission_denied;
   for (const auto& entry : fs::recursive_directory_iterator(target_, options)) {
     const fs::path relative = entry.path().lexically_relative(target_);
     const bool is_file = entry.is_regular_file() && !entry.is_symlink();
-    if (is_file && is_part_(relative) && !fs::exists(work_ / relative)) {
+    if (is_file && superseded_(relative) && !fs::exists(work_ / relative)) {
       superseded.push_back(entry.path());
     }
   }

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
+#include "eval/result_files.h"
 #include "mapper/io/end_task.h"
 
 namespace depthgrid {
@@ -14,8 +14,9 @@ namespace depthgrid {
 class OutputFolder {
  public:
   // Throws InputError when `path` is a file, a folder that is not empty unless `force`, or one that
-  // another program is about to write.
-  OutputFolder(const std::string& path, bool force);
+  // another program is about to write. `superseded`: which files there an earlier result left;
+  // those go that are not written again, so that no two results are mixed.
+  OutputFolder(const std::string& path, bool force, FileRule superseded = {});
   // Removes everything again unless committed.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -25,11 +26,6 @@ class OutputFolder {
   const std::filesystem::path& work() const { return work_; }
   std::string File(const std::string& name) const { return (work_ / name).string(); }
 
-  // Which files below the folder, by their relative paths, are parts of a result of this kind. Of
-  // an earlier one, which has the file `mark`, those go that are not written again, so that no two
-  // results are mixed.
-  void Supersede(const std::string& mark,
-                 std::function<bool(const std::filesystem::path& relative)> is_part);
   // Puts the written files in place. In a folder that has files already (`force`), files of the
   // same name are replaced, superseded ones go and all others stay: what a user put there is never
   // deleted.
@@ -45,7 +41,7 @@ class OutputFolder {
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
   int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;
-  std::function<bool(const std::filesystem::path&)> is_part_;
+  FileRule superseded_;
   std::optional<EndTask> clean_;
 };
 

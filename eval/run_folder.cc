@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
 #include "eval/run_graph.h"
@@ -109,25 +107,6 @@ std::string Provenance(const World* world) {
                         world->rays.isa() == RayIsa::kAvx512 ? "avx512" : "avx2");
   }
   return yaml;
-}
-
-bool IsRunFile(const std::filesystem::path& relative) {
-  static const std::set<std::string> names = {
-      "run.yaml",       "warnings.txt",          "map.yaml",
-      "map.pgm",        "map.scale.png",         "map.png",
-      "truth_map.yaml", "truth_map.pgm",         "observable.yaml",
-      "observable.pgm", "trajectory_truth.txt",  "trajectory_slam.txt",
-      "frames.csv",     "trajectory_online.txt", "trajectory_est.txt",
-      "loops.csv",      "metrics.json",          "trajectory_est_kitti.txt",
-      "scans.bin",      "pose_graph.g2o",        "matched.bin",
-      "timing.csv",     "timing.json",           "timing.js",
-      "report.html",    "input_map.yaml",        "input_map.pgm"};
-  const std::string name = relative.filename().string();
-  if (relative.parent_path().empty()) return names.contains(name);
-  const std::size_t digits = name.find_first_not_of("0123456789");
-  if (relative.parent_path() != "frames" || digits == 0 || digits == std::string::npos)
-    return false;
-  return name.substr(digits) == "_depth.png" || name.substr(digits) == "_colour.png";
 }
 
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {

@@ -1,7 +1,6 @@
 // The folder of a run (docs/run_folder.md): all that `run` and `map` leave behind.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "eval/experiment.h"
@@ -28,10 +27,6 @@ struct RunRecord {
 // The record of a run in a simulated room. It borrows; times are still to be filled in.
 RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,
                    const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores);
-
-// Whether a run's folder has a file of this relative path, whatever kind of run it is; those of
-// `regrid` are no part of it.
-bool IsRunFile(const std::filesystem::path& relative);
 
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);

@@ -49,7 +49,8 @@ void Ablate(const AblateArguments& arguments) {
   Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
-  OutputFolder folder = OpenOutput(arguments.common);
+  OutputFolder folder = OpenOutput(arguments.common, ResultKind::kAblation,
+                                   InputsOf(arguments.experiment, {plan.experiment}));
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);

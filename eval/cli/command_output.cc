@@ -1,15 +1,18 @@
 #include "eval/cli/command_output.h"
 
-#include "eval/sweep/sweep_database.h"
-#include "mapper/core/error.h"
+#include "eval/kept_inputs.h"
 
 namespace depthgrid::cli {
 
-OutputFolder OpenOutput(const CommonArguments& arguments) {
-  if (SweepDatabase::Exists(arguments.output)) {
-    throw InputError(arguments.output, "holds a sweep; choose another folder");
-  }
-  return OutputFolder(arguments.output, arguments.force);
+OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
+                        const std::vector<std::string>& inputs) {
+  const std::string& folder = arguments.output;
+  RequireNoOtherResult(folder, kind);
+  const FileRule written = FilesOf(kind);
+  const FileRule removed = FilesLeftBy(kind, folder);
+  RequireInputsKept(
+      folder, [&](const auto& file) { return written(file) || removed(file); }, inputs);
+  return OutputFolder(folder, arguments.force, removed);
 }
 
 }  // namespace depthgrid::cli

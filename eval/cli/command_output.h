@@ -1,13 +1,19 @@
 // The folder of a command's result.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "eval/cli/commands.h"
 #include "eval/output_folder.h"
+#include "eval/result_files.h"
 
 namespace depthgrid::cli {
 
-// Throws InputError for what OutputFolder does not take, and for a sweep's folder: its page and
-// table would be mixed with the result.
-OutputFolder OpenOutput(const CommonArguments& arguments);
+// The folder for a result of this kind; what an earlier one left there goes. `inputs`: files and
+// folders that the command reads. Throws InputError, before anything is done, for what OutputFolder
+// does not take, for a folder of another result, and when an input would be overwritten or removed.
+OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
+                        const std::vector<std::string>& inputs);
 
 }  // namespace depthgrid::cli

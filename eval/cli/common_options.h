@@ -10,7 +10,8 @@ namespace depthgrid::cli {
 
 void AddSet(CLI::App& app, CommonArguments& common);
 constexpr const char* kForceMeaning =
-    "Write into a folder that is not empty: an earlier run's files go, all others stay";
+    "Write into a folder that is not empty: what an earlier such command wrote there goes, all "
+    "other names stay; never over a file that this one reads";
 // `force_meaning`: what --force does, in --help.
 void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning = kForceMeaning);
 void AddThreads(CLI::App& app, CommonArguments& common);

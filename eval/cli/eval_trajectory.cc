@@ -2,6 +2,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/kept_inputs.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
@@ -90,6 +91,7 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
 }  // namespace
 
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
+  RequireInputsKept(arguments.errors, "--errors", {arguments.reference, arguments.estimate});
   if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
   std::vector<std::string> warnings;
   const Trajectory reference = ReadTrajectory(arguments.reference, warnings);

@@ -114,6 +114,17 @@ ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<s
   return Read(std::move(config), set, "");
 }
 
+std::vector<std::string> InputsOf(const std::string& name,
+                                  const std::vector<ExperimentOptions>& experiments) {
+  std::vector<std::string> names = {name};
+  for (const ExperimentOptions& experiment : experiments) {
+    names.push_back(experiment.scene);
+    names.push_back(experiment.trajectory);
+  }
+  std::erase_if(names, [](const std::string& some) { return !IsFileName(some); });
+  return names;
+}
+
 std::string CacheFolder(const CommonArguments& arguments) {
   if (arguments.no_cache) return "";
   if (!arguments.cache.empty()) return arguments.cache;

@@ -26,6 +26,10 @@ ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std
 // scene or mesh file).
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set);
 
+// The files that these experiments, which are of this file or shipped name, are read from.
+std::vector<std::string> InputsOf(const std::string& name,
+                                  const std::vector<ExperimentOptions>& experiments);
+
 // Where rendered depth is kept: --cache, or else $DEPTHGRID_CACHE, unless --no-cache.
 std::string CacheFolder(const CommonArguments& arguments);
 

@@ -149,9 +149,10 @@ void AddSweep(Program& program) {
                   "Parts to make; 0 gives each at least 30 s of work")
       ->check(CLI::Range(0, 1000));
   app->add_flag("--dry-run", arguments->dry_run, "Say how many runs and how long, then stop");
-  AddOutput(*app, arguments->common,
-            "Begin in a folder that holds other files, which stay; never one with a run or another "
-            "sweep in it");
+  AddOutput(
+      *app, arguments->common,
+      "Begin in a folder that holds other files, which stay; never one with another result or "
+      "a file of a sweep's names in it");
   AddSet(*app, arguments->common);
   AddCache(*app, arguments->common);
   AddKeys(*app, &ExperimentKeys);
@@ -220,7 +221,8 @@ void AddEval(Program& program) {
   trajectory
       ->add_option("--errors", t->errors, "Write the errors over time to this CSV, not aligned")
       ->type_name("FILE");
-  trajectory->add_flag("--force", t->force, "Replace that file if it is there already");
+  trajectory->add_flag("--force", t->force,
+                       "Replace that file if it is there already, but neither trajectory");
   trajectory->add_flag("--json", t->json, "Print JSON instead of a table");
   const auto [map, m] = program.Add<EvalMapArguments>(
       *eval, "map", "Agreement of a map with the true one, Nav2 YAML files",

@@ -270,8 +270,9 @@ void Map(const MapArguments& given) {
   MapRequest request = ReadMapRequest(given);
   const MapArguments& arguments = request.arguments;
   MapSettings& settings = request.settings;
-  RequireVideoFile(arguments.output, arguments.common);
-  OutputFolder folder = OpenOutput(arguments.common);
+  const std::vector<std::string> inputs = InputsOf(given, request);
+  RequireVideoFile(arguments.output, arguments.common, inputs);
+  OutputFolder folder = OpenOutput(arguments.common, ResultKind::kMap, inputs);
   std::optional<PriorMap> prior = OpenPrior(arguments);
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, request.config, settings, warnings);
@@ -298,7 +299,6 @@ void Map(const MapArguments& given) {
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
-  folder.Supersede("run.yaml", IsRunFile);
   WriteRunFolder(folder, record);
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run, settings.mapper.grid);

@@ -82,6 +82,20 @@ MapRequest ReadMapRequest(const MapArguments& given) {
   return request;
 }
 
+std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& request) {
+  namespace fs = std::filesystem;
+  const MapArguments& named = request.arguments;
+  std::vector<std::string> inputs = {given.input, named.input,
+                                     named.poses, named.final_poses,
+                                     named.loops, request.settings.sequence.camera};
+  if (!named.map.empty()) {
+    for (const char* name : {"run.yaml", "scans.bin", "matched.bin"}) {
+      inputs.push_back((fs::path(named.map) / name).string());
+    }
+  }
+  return inputs;
+}
+
 std::vector<std::string> DoubtsOfSettings(const MapArguments& given, const MapRequest& request) {
   const MapArguments& arguments = request.arguments;
   const MapSettings& settings = request.settings;

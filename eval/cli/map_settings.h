@@ -32,6 +32,9 @@ struct MapRequest {
 };
 MapRequest ReadMapRequest(const MapArguments& given);
 
+// The files and folders that it is read from, as they are named.
+std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& request);
+
 // What was set beside what makes it mean nothing.
 std::vector<std::string> DoubtsOfSettings(const MapArguments& given, const MapRequest& request);
 

@@ -38,7 +38,8 @@ void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFold
 
 void Render(const RenderArguments& arguments) {
   const ExperimentOptions given = ExperimentOrScene(arguments.scene, arguments.common.set);
-  OutputFolder folder = OpenOutput(arguments.common);
+  OutputFolder folder =
+      OpenOutput(arguments.common, ResultKind::kRender, InputsOf(arguments.scene, {given}));
   const int threads = ThreadsOr(arguments.common.threads);
   const std::string cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);

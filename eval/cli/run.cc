@@ -9,6 +9,7 @@
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment.h"
 #include "eval/idle_settings.h"
+#include "eval/kept_inputs.h"
 #include "eval/map_video.h"
 #include "eval/output_file.h"
 #include "eval/run_folder.h"
@@ -89,8 +90,9 @@ RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
 void RunOne(const RunArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ExperimentOptions options = ExperimentNamed(arguments.experiment, arguments.common.set);
-  RequireVideoFile(arguments.output, arguments.common);
-  OutputFolder folder = OpenOutput(arguments.common);
+  const std::vector<std::string> inputs = InputsOf(arguments.experiment, {options});
+  RequireVideoFile(arguments.output, arguments.common, inputs);
+  OutputFolder folder = OpenOutput(arguments.common, ResultKind::kRun, inputs);
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
@@ -105,7 +107,6 @@ void RunOne(const RunArguments& arguments) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
   bar.Say("writing the folder and the report");
-  folder.Supersede("run.yaml", IsRunFile);
   WriteRunFolder(folder, record);
   if (!arguments.output.video.empty()) {
     WriteMapVideo(arguments.output.video, run.mapping, run.options.mapper.grid);
@@ -134,7 +135,8 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
         return ToYaml(ReadStudy(Config::FromFile(path), some, base_folder).experiments.front());
       });
   warnings.insert(warnings.end(), idle.begin(), idle.end());
-  OutputFolder folder = OpenOutput(arguments.common);
+  OutputFolder folder =
+      OpenOutput(arguments.common, ResultKind::kStudy, InputsOf(path, study.experiments));
   ProgressBar bar("mapping");
   const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
   folder.Commit();
@@ -146,8 +148,10 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
 
 }  // namespace
 
-void RequireVideoFile(const OutputArguments& output, const CommonArguments& common) {
+void RequireVideoFile(const OutputArguments& output, const CommonArguments& common,
+                      const std::vector<std::string>& inputs) {
   if (output.video.empty()) return;
+  RequireInputsKept(output.video, "--video", inputs);
   RequireNewFile(output.video, common.force);
   RequireVideo(output.video);
 }

@@ -58,7 +58,7 @@ void Slam(const SlamArguments& arguments) {
   SlamSettings settings;
   config.Read(settings);
   const Trajectory truth = TrueFrames(arguments.sequence);
-  OutputFolder folder = OpenOutput(arguments.common);
+  OutputFolder folder = OpenOutput(arguments.common, ResultKind::kSlam, {arguments.sequence});
   const SlamOutput slam = DisturbTrajectory(truth, settings.slam, arguments.seed);
   WriteSlamFiles(folder.work().string(), slam);
   WriteFile(folder.File("slam.yaml"), ToYaml(settings));

@@ -127,15 +127,6 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 
 }  // namespace
 
-void RequireNoOtherResult(const std::string& folder) {
-  for (const auto& [mark, what] : {std::pair{"run.yaml", "a run"},
-                                   {"study.yaml", "a study"},
-                                   {"ablation.json", "an ablation"}}) {
-    if (!fs::exists(fs::path(folder) / mark)) continue;
-    throw InputError(folder, fmt::format("holds {}; choose another folder for the sweep", what));
-  }
-}
-
 SweepLock::SweepLock(const std::string& folder) {
   const std::string path = folder + kLockName;
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

@@ -20,10 +20,6 @@ class SweepLock {
   int file_ = -1;
 };
 
-// Throws InputError when the folder holds a run or another result with a report.html of its own:
-// one of the two pages would take the other's place.
-void RequireNoOtherResult(const std::string& folder);
-
 // The database in `folder`, which exists; made when there is none. Throws InputError when the
 // folder holds another sweep, another part of it, or one of another version or instruction set, and
 // when it holds something else (unless `force`).

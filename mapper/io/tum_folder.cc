@@ -29,6 +29,11 @@ std::string Joined(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
 }
 
+// As TumFolderWriter names an image; `kind`: depth or rgb.
+std::string ImageName(const std::string& kind, double stamp_s) {
+  return fmt::format("{}/{:.6f}.png", kind, stamp_s);
+}
+
 // vision.in.tum.de/data/datasets/rgbd-dataset/file_formats, "Intrinsic Camera Calibration of the
 // Kinect": the colour cameras, to which the depth images are registered.
 std::optional<CameraFile> TumCamera(const std::string& folder) {
@@ -191,6 +196,25 @@ std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const Slam
                        [format](const std::string& path) { return ReadDepthPng(path, format); });
 }
 
+std::set<std::string> TumFolderWriter::FilesIn(const std::string& folder) {
+  std::set<std::string> files;
+  for (const std::string kind : {"depth", "rgb"}) {
+    const std::string list = Joined(folder, kind + ".txt");
+    if (!fs::is_regular_file(list)) continue;
+    bool has_others = false;
+    for (const TextRow& row : SplitRows(ReadFile(list))) {
+      const std::string image = ImageName(kind, ParseNumber(row.fields.front()).value_or(0.0));
+      if (row.fields.size() == 2 && row.fields[1] == image) {
+        files.insert(image);
+      } else {
+        has_others = true;
+      }
+    }
+    if (kind == "rgb" && !has_others) files.insert(kind + ".txt");
+  }
+  return files;
+}
+
 TumFolderWriter::TumFolderWriter(std::string folder, const CameraFile& camera)
     : folder_(std::move(folder)), camera_(camera) {
   fs::create_directories(fs::path(folder_) / "depth");
@@ -198,11 +222,10 @@ TumFolderWriter::TumFolderWriter(std::string folder, const CameraFile& camera)
 
 void TumFolderWriter::WriteFrame(double stamp_s, const DepthImage& depth,
                                  const RgbImage* rgb) const {
-  const std::string name = fmt::format("{:.6f}.png", stamp_s);
-  WriteDepthPng(Joined(folder_, "depth/" + name), depth, camera_.depth_scale_per_m);
+  WriteDepthPng(Joined(folder_, ImageName("depth", stamp_s)), depth, camera_.depth_scale_per_m);
   if (rgb == nullptr) return;
   fs::create_directories(fs::path(folder_) / "rgb");
-  WriteRgbPng(Joined(folder_, "rgb/" + name), *rgb);
+  WriteRgbPng(Joined(folder_, ImageName("rgb", stamp_s)), *rgb);
 }
 
 void TumFolderWriter::Finish(const std::vector<double>& stamps_s, bool with_colour,
@@ -210,7 +233,7 @@ void TumFolderWriter::Finish(const std::vector<double>& stamps_s, bool with_colo
   const auto write_list = [&](const std::string& kind, const char* title) {
     std::string text = fmt::format("# {}\n# timestamp filename\n", title);
     for (const double stamp_s : stamps_s) {
-      fmt::format_to(std::back_inserter(text), "{:.6f} {}/{:.6f}.png\n", stamp_s, kind, stamp_s);
+      fmt::format_to(std::back_inserter(text), "{:.6f} {}\n", stamp_s, ImageName(kind, stamp_s));
     }
     WriteFile(Joined(folder_, kind + ".txt"), text);
   };

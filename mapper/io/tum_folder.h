@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,10 @@ class TumFolderWriter {
   void WriteFrame(double stamp_s, const DepthImage& depth, const RgbImage* rgb) const;
   // depth.txt (and rgb.txt) for these stamps, groundtruth.txt and camera.yaml.
   void Finish(const std::vector<double>& stamps_s, bool with_colour, const Trajectory& truth) const;
+
+  // The images that the lists of a folder it wrote name as it names them, relative to the folder,
+  // and rgb.txt when it names no others.
+  static std::set<std::string> FilesIn(const std::string& folder);
 
  private:
   std::string folder_;

@@ -105,9 +105,9 @@ TEST_F(OutputFolderTest, AFolderGoesWithTheLastOfItsSupersededFiles) {
     WriteFile(Path(file), "old");
   }
   {
-    OutputFolder folder(Path("out"), true);
+    OutputFolder folder(Path("out"), true,
+                        [](const fs::path& file) { return file.extension() == ".png"; });
     WriteFile(folder.File("run.yaml"), "new");
-    folder.Supersede("run.yaml", [](const fs::path& file) { return file.extension() == ".png"; });
     folder.Commit();
   }
   EXPECT_EQ(Everything(), (Names{"out", "out/kept", "out/kept/mine", "out/run.yaml"}));

@@ -300,6 +300,7 @@ TEST_F(ProgramRun, WhatAFileStatesWithoutEffectIsSaid) {
         "  - {name: a, slam: {profile: orb_slam2}}\n"
         "  - {name: b, slam: {profile: planar_slam}, mapper: {fusion: {mode: learned}}}\n"
         "  - {name: c, slam: {profile: ground_truth, drift_scale: 3}}\n");
+  std::filesystem::remove_all(Path("out"));  // no study goes into a run's folder
   EXPECT_EQ(said("./study.yaml --set mapper.fusion.adaptive_rate=0.1"),
             "depthgrid: warning: ./study.yaml:9: slam.drift_scale has no effect because "
             "slam.profile is ground_truth\n"

@@ -1,0 +1,159 @@
+#include "eval/result_files.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <utility>
+
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/tum_folder.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::set<std::string>;
+
+// depth/ or rgb/ and the stamp.
+bool IsRenderedImage(const fs::path& relative) {
+  const fs::path folder = relative.parent_path();
+  return (folder == "depth" || folder == "rgb") && relative.extension() == ".png";
+}
+
+bool IsSamplePicture(const fs::path& relative, const char* ending) {
+  const std::string name = relative.filename().string();
+  const std::size_t digits = name.find_first_not_of("0123456789");
+  return relative.parent_path() == "frames" && digits != 0 && digits != std::string::npos &&
+         name.substr(digits) == ending;
+}
+
+bool IsMapFile(const fs::path& relative) {
+  static const Names names = {"run.yaml",
+                              "warnings.txt",
+                              "map.yaml",
+                              "map.pgm",
+                              "map.scale.png",
+                              "map.png",
+                              "trajectory_slam.txt",
+                              "trajectory_online.txt",
+                              "trajectory_est.txt",
+                              "trajectory_est_kitti.txt",
+                              "frames.csv",
+                              "scans.bin",
+                              "matched.bin",
+                              "pose_graph.g2o",
+                              "timing.csv",
+                              "timing.json",
+                              "timing.js",
+                              "report.html"};
+  return names.contains(relative.string()) || IsSamplePicture(relative, "_depth.png");
+}
+
+// With what needs the truth or SLAM's own account, and a study's input map.
+bool IsRunFile(const fs::path& relative) {
+  static const Names names = {"truth_map.yaml", "truth_map.pgm",        "observable.yaml",
+                              "observable.pgm", "trajectory_truth.txt", "loops.csv",
+                              "metrics.json",   "input_map.yaml",       "input_map.pgm"};
+  return IsMapFile(relative) || names.contains(relative.string()) ||
+         IsSamplePicture(relative, "_colour.png");
+}
+
+bool IsStudyFile(const fs::path& relative) {
+  static const Names names = {"study.yaml", "overrides.txt", "metrics.json", "report.html"};
+  if (relative.parent_path().empty()) return names.contains(relative.string());
+  return IsRunFile(relative.lexically_relative(*relative.begin()));
+}
+
+bool IsAblationFile(const fs::path& relative) {
+  static const Names names = {"experiment.yaml", "ablation.csv", "ablation.json", "report.html"};
+  return names.contains(relative.string());
+}
+
+bool IsRenderFile(const fs::path& relative) {
+  static const Names names = {"render.yaml",   "camera.yaml",     "depth.txt",
+                              "rgb.txt",       "groundtruth.txt", "truth_map.yaml",
+                              "truth_map.pgm", "observable.yaml", "observable.pgm"};
+  return names.contains(relative.string()) || IsRenderedImage(relative);
+}
+
+bool IsSlamFile(const fs::path& relative) {
+  static const Names names = {"slam.yaml", "slam.txt", "slam_final.txt", "loops.csv"};
+  return names.contains(relative.string());
+}
+
+bool IsNoFile(const fs::path&) { return false; }
+
+// Nothing when it is no file that a command wrote: those say so.
+FileRule FilesOfRun(const std::string& run_yaml) {
+  try {
+    const Config config = Config::FromFile(run_yaml);
+    if (!config.Has("provenance")) return IsNoFile;
+    return config.Has("scene") ? IsRunFile : IsMapFile;
+  } catch (const InputError&) {
+    return IsNoFile;
+  }
+}
+
+}  // namespace
+
+FileRule FilesOf(ResultKind kind) {
+  switch (kind) {
+    case ResultKind::kRun:
+      return IsRunFile;
+    case ResultKind::kMap:
+      return IsMapFile;
+    case ResultKind::kStudy:
+      return IsStudyFile;
+    case ResultKind::kAblation:
+      return IsAblationFile;
+    case ResultKind::kRender:
+      return IsRenderFile;
+    case ResultKind::kSlam:
+      return IsSlamFile;
+    case ResultKind::kSweep:
+      break;
+  }
+  return IsNoFile;
+}
+
+FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
+  const fs::path place = folder;
+  if (kind == ResultKind::kRender && fs::exists(place / "render.yaml")) {
+    const std::set<std::string> written = TumFolderWriter::FilesIn(folder);
+    return [written](const fs::path& relative) { return written.contains(relative.string()); };
+  }
+  if (kind != ResultKind::kRun && kind != ResultKind::kMap) return IsNoFile;
+  if (!fs::exists(place / "run.yaml")) return IsNoFile;
+  // Names that several commands give belong to the one that must have written them.
+  const bool rendered = fs::exists(place / "render.yaml");
+  const bool has_slam = fs::exists(place / "slam.yaml");
+  return [of_run = FilesOfRun((place / "run.yaml").string()), rendered,
+          has_slam](const fs::path& relative) {
+    if (rendered && IsRenderFile(relative)) return false;
+    if (has_slam && IsSlamFile(relative)) return false;
+    return of_run(relative);
+  };
+}
+
+void RequireNoOtherResult(const std::string& folder, ResultKind kind) {
+  struct Mark {
+    const char* file;
+    ResultKind kind;
+    const char* what;
+  };
+  if (folder.empty()) return;
+  const bool beside_run = kind == ResultKind::kRun || kind == ResultKind::kMap ||
+                          kind == ResultKind::kRender || kind == ResultKind::kSlam;
+  for (const Mark& mark : {Mark{"results.sqlite", ResultKind::kSweep, "a sweep"},
+                           Mark{"study.yaml", ResultKind::kStudy, "a study"},
+                           Mark{"ablation.json", ResultKind::kAblation, "an ablation"},
+                           Mark{"run.yaml", ResultKind::kRun, "a run"}}) {
+    if (mark.kind == kind || (mark.kind == ResultKind::kRun && beside_run)) continue;
+    if (!fs::exists(fs::path(folder) / mark.file)) continue;
+    throw InputError(folder, fmt::format("holds {}; choose another folder", mark.what));
+  }
+}
+
+}  // namespace depthgrid

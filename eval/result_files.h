@@ -1,0 +1,28 @@
+// The files of each kind of result, by their names: whose a folder is, what a command is about to
+// write there and what an earlier one left.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace depthgrid {
+
+enum class ResultKind { kRun, kMap, kStudy, kAblation, kSweep, kRender, kSlam };
+
+// Of files of a folder, by their paths relative to it.
+using FileRule = std::function<bool(const std::filesystem::path& relative)>;
+
+// What a result of this kind may have; what `regrid` draws is no part of it. A sweep's files are
+// its own business (eval/sweep).
+FileRule FilesOf(ResultKind kind);
+
+// What an earlier result of this kind left in the folder and a new one shall not be mixed with.
+// Nothing when the folder holds none: files of such names are somebody else's.
+FileRule FilesLeftBy(ResultKind kind, const std::string& folder);
+
+// Throws InputError when the folder holds a result of another kind with a report.html of its own:
+// one of the two pages would take the other's place. Only a run is let in beside images and poses.
+void RequireNoOtherResult(const std::string& folder, ResultKind kind);
+
+}  // namespace depthgrid

@@ -1,0 +1,186 @@
+// What --force may write, replace and remove: neither what the command reads nor what no earlier
+// command of its kind wrote.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::UnorderedElementsAreArray;
+
+class KeptFiles : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
+  }
+
+  // One line that says this, exit code 2, and every file of the test as it was.
+  void ExpectRefusal(const std::string& arguments, const std::string& says) const {
+    const std::vector<std::string> before = Contents();
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("depthgrid: " + says)) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_TRUE(Contents() == before) << arguments;
+  }
+  std::vector<std::string> Contents() const {
+    std::vector<std::string> contents;
+    for (const std::string& file : FilesIn(".")) contents.push_back(file + ReadFile(Path(file)));
+    return contents;
+  }
+  void MakeFolder(const std::string& name, const std::vector<std::string>& files) const {
+    fs::create_directories(Path(name));
+    for (const std::string& file : files) Write(name + "/" + file, "mine");
+  }
+};
+
+constexpr const char* kIsRead = ": is read by this command, and ";
+
+TEST_F(KeptFiles, AMapInTheFolderOfItsInputsKeepsThem) {
+  Succeed("render ./small.yaml --set frames=4 --no-colour -o s");
+  Succeed("slam s -o s --force");
+  const std::vector<std::string> inputs = FilesIn("s");
+  ASSERT_THAT(inputs, Contains("loops.csv"));
+  ASSERT_THAT(inputs, Contains("truth_map.pgm"));
+  const std::string map = "map s --poses s/slam.txt --loops s/loops.csv -o s --force";
+  Succeed(map);
+  std::vector<std::string> expected = FilesIn("s");
+  Succeed(map);
+  EXPECT_EQ(FilesIn("s"), expected);
+  for (const std::string& file : inputs) EXPECT_THAT(expected, Contains(file));
+}
+
+TEST_F(KeptFiles, AMapTakesAwayNothingThatNoMapWrites) {
+  Succeed("map one.log -o m");
+  const std::vector<std::string> own = FilesIn("m");
+  const std::vector<std::string> others = {"truth_map.yaml", "observable.pgm",
+                                           "loops.csv",      "metrics.json",
+                                           "input_map.pgm",  "trajectory_truth.txt"};
+  MakeFolder("m", others);
+  Write("m/matched.bin", "of a map with a camera");
+  Succeed("map one.log -o m --force");
+  std::vector<std::string> expected = own;
+  expected.insert(expected.end(), others.begin(), others.end());
+  EXPECT_THAT(FilesIn("m"), UnorderedElementsAreArray(expected));
+  // Nor does it take a run.yaml that no command wrote for the mark of a run.
+  MakeFolder("hand", {"loops.csv", "map.scale.png"});
+  Write("hand/run.yaml", "scene: ./room.yaml\n");
+  Succeed("map one.log -o hand --force");
+  EXPECT_THAT(FilesIn("hand"), Contains("loops.csv"));
+  EXPECT_THAT(FilesIn("hand"), Contains("map.scale.png"));
+}
+
+TEST_F(KeptFiles, AnInputIsNeitherOverwrittenNorRemoved) {
+  Succeed("render ./small.yaml --set frames=4 --no-colour -o seq");
+  Succeed("run ./small.yaml --set frames=4 -o m");
+  fs::create_symlink("m/trajectory_est.txt", Path("link.txt"));
+  const auto refused = [&](const std::string& command, const std::string& file) {
+    ExpectRefusal(command + " -o m --force",
+                  file + kIsRead + "-o m would overwrite or remove it; choose another folder");
+  };
+  refused("map seq --poses m/trajectory_est.txt", "m/trajectory_est.txt");
+  refused("map seq --poses link.txt", "link.txt");
+  refused("map seq --poses seq/groundtruth.txt --final-poses m/trajectory_est.txt",
+          "m/trajectory_est.txt");
+  refused("map seq --poses seq/groundtruth.txt --loops m/loops.csv", "m/loops.csv");
+  refused("map m/frames", "m/frames/000000_colour.png");
+  refused("map one.log --map m", "m/run.yaml");
+  refused("map one.log --map m/. --localise", "m/./run.yaml");
+  refused("run m/run.yaml", "m/run.yaml");
+  fs::copy_file(Path("one.log"), Path("m/warnings.txt"), fs::copy_options::overwrite_existing);
+  refused("map m/warnings.txt", "m/warnings.txt");
+  refused("run ./small.yaml --set trajectory=./m/trajectory_truth.txt",
+          Path("m/trajectory_truth.txt"));
+  ExpectRefusal("render ./small.yaml --set trajectory=./seq/groundtruth.txt -o seq --force",
+                Path("seq/groundtruth.txt") + kIsRead);
+  ExpectRefusal("render seq/render.yaml -o seq --force", std::string("seq/render.yaml") + kIsRead);
+  // It may be read from where it stays.
+  Succeed("map seq --poses seq/groundtruth.txt -o seq --force");
+}
+
+TEST_F(KeptFiles, ASingleFileIsNoInputEither) {
+  Write("gt.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  fs::create_symlink("gt.txt", Path("link.txt"));
+  for (const std::string file : {"gt.txt", "./gt.txt", "link.txt"}) {
+    ExpectRefusal("eval trajectory gt.txt gt.txt --force --errors " + file,
+                  std::string("gt.txt") + kIsRead + "--errors " + file +
+                      " would overwrite it; choose another name");
+  }
+  Write("log.mp4", ReadFile(Path("one.log")));
+  ExpectRefusal("map log.mp4 --video log.mp4 -o out --force",
+                std::string("log.mp4") + kIsRead + "--video log.mp4 would overwrite it");
+}
+
+TEST_F(KeptFiles, AFolderHoldsOneResultWithAPage) {
+  MakeFolder("study", {"study.yaml", "report.html"});
+  MakeFolder("ablation", {"ablation.json", "ablation.csv", "report.html"});
+  MakeFolder("sweep", {"results.sqlite", "report.html"});
+  Succeed("map one.log -o run");
+  Write("cases.yaml", "cases: [{name: a, scene: ./room.yaml, frames: 3}]\n");
+  Write("s.yaml", "experiment: ./small.yaml\naxes: {seed: [1]}\n");
+  const auto refused = [&](const std::string& command, const std::string& folder,
+                           const std::string& what) {
+    ExpectRefusal(command + " -o " + folder + " --force",
+                  folder + ": holds " + what + "; choose another folder");
+  };
+  for (const std::string command :
+       {"map one.log", "run ./small.yaml", "render ./small.yaml", "ablate ./small.yaml"}) {
+    refused(command, "study", "a study");
+    refused(command, "sweep", "a sweep");
+    if (command != "ablate ./small.yaml") refused(command, "ablation", "an ablation");
+  }
+  for (const std::string command : {"run ./cases.yaml", "sweep ./s.yaml"}) {
+    refused(command, "ablation", "an ablation");
+    refused(command, "run", "a run");
+  }
+  refused("ablate ./small.yaml", "run", "a run");
+  refused("sweep ./s.yaml", "study", "a study");
+}
+
+TEST_F(KeptFiles, AStudyGoesOnInItsOwnFolder) {
+  Write("cases.yaml", "frames: 3\ncases: [{name: a, scene: ./room.yaml}]\n");
+  Succeed("run ./cases.yaml -o out");
+  Succeed("run ./cases.yaml -o out --force");
+}
+
+TEST_F(KeptFiles, ARenderTakesTheEarlierOnesImagesAway) {
+  Succeed("render ./small.yaml --set frames=2 -o fresh");
+  Succeed("render ./small.yaml -o images");
+  MakeFolder("images", {"notes.txt", "depth/mine.png", "rgb/9.500000.png"});
+  Succeed("render ./small.yaml --set frames=2 -o images --force");
+  std::vector<std::string> expected = FilesIn("fresh");
+  expected.insert(expected.end(), {"notes.txt", "depth/mine.png", "rgb/9.500000.png"});
+  EXPECT_THAT(FilesIn("images"), UnorderedElementsAreArray(expected));
+  fs::remove(Path("images/rgb/9.500000.png"));
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o images --force");
+  EXPECT_THAT(FilesIn("images"), Not(Contains("rgb.txt")));
+  EXPECT_FALSE(fs::exists(Path("images/rgb")));
+}
+
+TEST_F(KeptFiles, ARenderKeepsTheImagesOfNoRender) {
+  Succeed("render ./small.yaml --set frames=4 -o images");
+  // A list to which somebody added an image; a folder that render did not write.
+  Write("images/rgb.txt", ReadFile(Path("images/rgb.txt")) + "7.5 rgb/7.png\n");
+  Write("images/rgb/7.png", "mine");
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o images --force");
+  EXPECT_THAT(FilesIn("images"), Contains("rgb.txt"));
+  EXPECT_EQ(ReadFile(Path("images/rgb/7.png")), "mine");
+  MakeFolder("tum", {});
+  fs::create_directory(Path("tum/depth"));
+  Write("tum/depth.txt", "5.000000 depth/5.000000.png\n");
+  Write("tum/depth/5.000000.png", "mine");
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o tum --force");
+  EXPECT_EQ(ReadFile(Path("tum/depth/5.000000.png")), "mine");
+}
+
+}  // namespace
+}  // namespace depthgrid
