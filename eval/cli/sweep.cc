@@ -9,7 +9,6 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/interrupts.h"
-#include "eval/result_files.h"
 #include "eval/shipped.h"
 #include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_folder.h"
@@ -51,7 +50,7 @@ class SweepFolder {
     if (!force && fs::exists(path) && !fs::is_empty(path) && !IsSweep()) {
       throw InputError(path, "is not empty and no sweep; choose another folder, or --force");
     }
-    if (!SweepDatabase::Exists(path)) RequireNoOtherResult(path, ResultKind::kSweep);
+    if (!SweepDatabase::Exists(path)) RequireSweepNamesFree(path);
     std::error_code error;
     created_ = fs::create_directories(path, error);
     if (error) throw InputError(path, "cannot be created: " + error.message());

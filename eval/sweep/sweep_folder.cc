@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "eval/result_files.h"
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -126,6 +127,19 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 }
 
 }  // namespace
+
+void RequireSweepNamesFree(const std::string& folder) {
+  RequireNoOtherResult(folder, ResultKind::kSweep);
+  std::vector<std::string> names = {"results.csv", "report.html", "progress.txt", "cache"};
+  // A sweep that Slurm does has these two, and its lock, before it has a database.
+  if (!fs::exists(folder + kLockName)) names.insert(names.end(), {"slurm", "shards"});
+  for (const std::string& name : names) {
+    const fs::path file = fs::path(folder) / name;
+    if (!fs::exists(fs::symlink_status(file))) continue;
+    throw InputError(file.string(),
+                     "is there already and no sweep's; choose another folder for the sweep");
+  }
+}
 
 SweepLock::SweepLock(const std::string& folder) {
   const std::string path = folder + kLockName;

@@ -20,6 +20,10 @@ class SweepLock {
   int file_ = -1;
 };
 
+// Of a folder without a sweep: throws InputError when it holds another result with a report.html of
+// its own, or a file or folder of a name that a sweep would overwrite or remove.
+void RequireSweepNamesFree(const std::string& folder);
+
 // The database in `folder`, which exists; made when there is none. Throws InputError when the
 // folder holds another sweep, another part of it, or one of another version or instruction set, and
 // when it holds something else (unless `force`).

@@ -182,5 +182,17 @@ TEST_F(KeptFiles, ARenderKeepsTheImagesOfNoRender) {
   EXPECT_EQ(ReadFile(Path("tum/depth/5.000000.png")), "mine");
 }
 
+TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
+  Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1]}\n");
+  for (const std::string name : {"results.csv", "report.html", "progress.txt", "cache", "slurm"}) {
+    MakeFolder(name + "_", {name});
+    ExpectRefusal("sweep ./s.yaml -o " + name + "_ --force",
+                  name + "_/" + name + ": is there already and no sweep's; choose another folder");
+  }
+  MakeFolder("mine", {"notes.txt"});
+  Succeed("sweep ./s.yaml -o mine --force");
+  Succeed("sweep ./s.yaml -o mine");  // its own names
+}
+
 }  // namespace
 }  // namespace depthgrid
