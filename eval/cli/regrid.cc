@@ -7,6 +7,7 @@
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/config.h"
+#include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
 #include "mapper/io/scan_file.h"
 
@@ -31,6 +32,17 @@ Config ResolutionOf(const RegridArguments& arguments) {
   return config;
 }
 
+// The image beside a map that WriteMap wrote; nothing when there is none.
+std::string ImageOfMap(const fs::path& yaml) {
+  if (!fs::exists(yaml)) return "";
+  const std::string text = ReadFile(yaml.string());
+  for (const char* ending : {".pgm", ".scale.png"}) {
+    const std::string image = fs::path(yaml).replace_extension(ending).filename().string();
+    if (text.starts_with("image: " + image + "\n")) return image;
+  }
+  return "";
+}
+
 }  // namespace
 
 void Regrid(const RegridArguments& arguments) {
@@ -47,7 +59,10 @@ void Regrid(const RegridArguments& arguments) {
   MapDrawing drawing(options);
   for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
   const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
+  const std::string replaced = ImageOfMap(map.string());
   WriteMap(map.string(), drawing.Map(), arguments.map_mode);
+  // The same map in another mode has an image of another name.
+  if (!replaced.empty() && replaced != ImageOfMap(map.string())) fs::remove(folder / replaced);
   fmt::print("{}\n", map.string());
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::UnorderedElementsAreArray;
@@ -192,6 +193,22 @@ TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
   MakeFolder("mine", {"notes.txt"});
   Succeed("sweep ./s.yaml -o mine --force");
   Succeed("sweep ./s.yaml -o mine");  // its own names
+}
+
+TEST_F(KeptFiles, RegridReplacesTheImageOfAnotherMode) {
+  Succeed("map one.log -o m");
+  const auto drawn = [&](const std::string& mode) {
+    Succeed("regrid m --resolution 0.02 --map-mode " + mode);
+    std::vector<std::string> files = FilesIn("m");
+    std::erase_if(files, [](const std::string& file) { return !file.starts_with("map_"); });
+    return files;
+  };
+  EXPECT_THAT(drawn("raw"), ElementsAre("map_0.02.pgm", "map_0.02.yaml"));
+  EXPECT_THAT(drawn("scale"), ElementsAre("map_0.02.scale.png", "map_0.02.yaml"));
+  EXPECT_THAT(drawn("trinary"), ElementsAre("map_0.02.pgm", "map_0.02.yaml"));
+  // An image that the map does not name is somebody else's.
+  Write("m/map_0.02.scale.png", "mine");
+  EXPECT_THAT(drawn("trinary"), ElementsAre("map_0.02.pgm", "map_0.02.scale.png", "map_0.02.yaml"));
 }
 
 }  // namespace
