@@ -140,7 +140,8 @@ void OutputFolder::RemoveSuperseded() const {
   for (const fs::path& file : superseded) {
     fs::remove(file);
     std::error_code not_empty;  // a folder of such files goes with the last of them
-    if (file.parent_path() != target_) fs::remove(file.parent_path(), not_empty);
+    fs::path parent = file.parent_path();
+    while (parent != target_ && fs::remove(parent, not_empty)) parent = parent.parent_path();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "eval/study.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/tum_folder.h"
@@ -96,6 +97,22 @@ FileRule FilesOfRun(const std::string& run_yaml) {
   }
 }
 
+// The runs of its cases, of which a new study may have others.
+FileRule FilesOfCases(const fs::path& folder) {
+  if (!fs::exists(folder / "study.yaml") || !fs::exists(folder / "overrides.txt")) return IsNoFile;
+  Names cases;
+  try {
+    const Config config = Config::FromFile((folder / "study.yaml").string());
+    for (const StudyCase& one : ReadStudyOutline(config).cases) cases.insert(one.name);
+  } catch (const InputError&) {
+    return IsNoFile;
+  }
+  return [cases](const fs::path& relative) {
+    return !relative.parent_path().empty() && cases.contains(relative.begin()->string()) &&
+           IsStudyFile(relative);
+  };
+}
+
 }  // namespace
 
 FileRule FilesOf(ResultKind kind) {
@@ -124,6 +141,7 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
     const std::set<std::string> written = TumFolderWriter::FilesIn(folder);
     return [written](const fs::path& relative) { return written.contains(relative.string()); };
   }
+  if (kind == ResultKind::kStudy) return FilesOfCases(place);
   if (kind != ResultKind::kRun && kind != ResultKind::kMap) return IsNoFile;
   if (!fs::exists(place / "run.yaml")) return IsNoFile;
   // Names that several commands give belong to the one that must have written them.

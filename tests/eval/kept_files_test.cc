@@ -148,9 +148,17 @@ TEST_F(KeptFiles, AFolderHoldsOneResultWithAPage) {
 }
 
 TEST_F(KeptFiles, AStudyGoesOnInItsOwnFolder) {
-  Write("cases.yaml", "frames: 3\ncases: [{name: a, scene: ./room.yaml}]\n");
-  Succeed("run ./cases.yaml -o out");
-  Succeed("run ./cases.yaml -o out --force");
+  const std::string head = "frames: 3\ncases:\n  - {name: a, scene: ./room.yaml}\n";
+  Write("one.yaml", head);
+  Write("two.yaml", head + "  - {name: b, scene: ./room.yaml, seed: 2}\n");
+  Succeed("run ./one.yaml -o fresh");
+  Succeed("run ./two.yaml -o out");
+  MakeFolder("out/mine", {"map.pgm"});
+  Succeed("run ./one.yaml -o out --force");
+  std::vector<std::string> expected = FilesIn("fresh");
+  expected.emplace_back("mine/map.pgm");
+  EXPECT_THAT(FilesIn("out"), UnorderedElementsAreArray(expected));
+  EXPECT_FALSE(fs::exists(Path("out/b")));
 }
 
 TEST_F(KeptFiles, ARenderTakesTheEarlierOnesImagesAway) {
