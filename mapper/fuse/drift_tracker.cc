@@ -14,7 +14,7 @@ const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
 // follows the prior agrees with it). For so many motions that are seen along an axis, and again
 // from where SLAM drifts more than it was taken to until the next adjustment, the filter believes
 // no less than this share of the first walk along it.
-constexpr int kUnconfirmedMotions = 200;
+constexpr int kUnconfirmedMotions = 1000;
 constexpr double kLeastOfFirstWalk = 0.5;
 // With that it does not confirm itself, so what is told of the errors is what was learnt, once so
 // many motions are seen (docs/tried.md, "Consistency"); not where SLAM began to drift.

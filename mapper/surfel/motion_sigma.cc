@@ -13,9 +13,11 @@ namespace {
 
 // The prior is never believed beyond this, a frame: simulated priors can be perfect.
 const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
-// Nor is it in one direction so much better than in another: in a corridor nothing tells how it
-// errs lengthways, and a direction's sigma may fall to the least. Radians a metre for the yaw.
+// Nor is it along one axis so much better than along the others: in a corridor nothing tells how it
+// errs lengthways, before one wall of a hall only the yaw is seen, and an axis' sigma may fall to
+// the least. Radians a metre for the yaw; in comparing, a radian of it counts as a metre.
 const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
+constexpr double kMetresARadian = 1.0;
 // Links that are probed together are so many apart: what is left of their errors is nearly
 // independent.
 constexpr std::size_t kProbes = 12;
@@ -115,7 +117,7 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
     const double share = std::max(weights > 0.0 ? seen / weights : 0.0, kLeastShareSeen);
     sigma[axis] = kSigmaOfMedian * WeighedMedian(std::move(errors)) / std::sqrt(share);
   }
-  const double most = sigma.head<2>().maxCoeff();
+  const double most = std::max(sigma.head<2>().maxCoeff(), kMetresARadian * sigma.z());
   return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);
 }
 

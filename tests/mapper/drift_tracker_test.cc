@@ -111,7 +111,7 @@ TEST(DriftTracker, WhereNothingIsSeenSlamIsNotTakenForPerfect) {
   DriftTracker tracker;
   RandomStream random(5, RandomStage::kTest);
   const Pose2 slam;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     MatchResult match = NoisyMatch(random);
     match.map_from_base.y_m = 0.0;
     match.information(1, 1) = 0.0;
@@ -162,8 +162,8 @@ TEST(DriftTracker, BelievesThePriorNoMoreThanAnAdjustmentDoes) {
   DriftTracker tracker;
   Pose2 slam;
   // SLAM creeps, but the matches are made against a map that creeps along: they agree with it.
-  for (int i = 0; i < 400; ++i) {
-    if (i == 150) {
+  for (int i = 0; i < 1500; ++i) {
+    if (i == 900) {
       // That is not believed at first.
       EXPECT_GT(tracker.noise().walk.minCoeff(), 0.001);
     }

@@ -130,6 +130,16 @@ TEST(MotionSigma, CountsWhatThePriorHasDrawnToItself) {
   EXPECT_DOUBLE_EQ(sigma.z(), 0.25 * sigma.x());
 }
 
+// Before one wall of a hall yaw and one direction are seen at the most.
+TEST(MotionSigma, IsNotFarBetterAlongWhatWasNotSeenThanInYaw) {
+  Chain chain = ChainOf(21, Eigen::Vector3d::Ones());
+  for (GroupLink& link : chain.links) link.first_from_second.yaw_rad += 0.001;
+  const std::vector<Eigen::Vector3d> yaw_seen(chain.links.size(), Eigen::Vector3d(0.0, 0.0, 1.0));
+  const Eigen::Vector3d sigma = MotionSigma(chain.links, chain.map_from_group, yaw_seen);
+  EXPECT_NEAR(sigma.z(), 1.4826 * 0.001, 1e-6);
+  EXPECT_GE(sigma.head<2>().minCoeff(), 0.5 * sigma.z());  // m of rad
+}
+
 TEST(MotionSigma, OneWrongMotionIsNotTheRule) {
   Chain chain = ChainOf(21, Eigen::Vector3d::Ones());
   for (GroupLink& link : chain.links) link.first_from_second.x_m += 0.001;
