@@ -20,8 +20,7 @@ void RequirePose(const Frame& frame, const Pose3& pose, const std::string& name)
   if (!(std::abs(norm - 1.0) <= kNormSlack)) {
     Refuse(frame, name + "'s quaternion has the norm " + std::to_string(norm) + ", must be 1");
   }
-  if (!(pose.translation.cwiseAbs().maxCoeff() <= kFarthestPoseM) ||
-      !pose.translation.allFinite()) {
+  if (!IsWithinReach(pose.translation)) {
     const Eigen::Vector3d& at = pose.translation;
     Refuse(frame, name + " lies at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) +
                       ", " + std::to_string(at.z()) + "), must lie within 10,000 km");

@@ -1,6 +1,7 @@
 // All that crosses from a source (simulation, a recorded folder, a laser log) to the mapper.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,10 @@ namespace depthgrid {
 // Farther from the origin a pose is wrong: on Earth, in metres, nothing lies farther from the
 // origin of its UTM zone. Cells of 5 mm are still numbered.
 constexpr double kFarthestPoseM = 1e7;
+// False for NaN.
+inline bool IsWithinReach(const Eigen::Vector3d& at) {
+  return (at.array().abs() <= kFarthestPoseM).all();
+}
 // Nor does the map lie farther, with room for how far an estimate goes from poses that drift.
 constexpr double kFarthestMapM = 1.05 * kFarthestPoseM;
 

@@ -10,11 +10,14 @@
 #include <optional>
 
 #include "mapper/core/frame.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
 
 constexpr int kMaxReadings = 20000;
+// After the host: the logger's time, and what some loggers add.
+constexpr int kMostLastColumns = 8;
 constexpr double kMaxYawRad = 1e6;  // beyond is a damaged number
 constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
 constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
@@ -88,16 +91,23 @@ std::optional<Pose2> ReadPose(Tokens& tokens) {
   return Pose2{*x_m, *y_m, WrapAngle(*yaw_rad)};
 }
 
-// The time, which follows `skip` other numbers.
-std::optional<double> ReadStamp(Tokens& tokens, int skip) {
+// Reads the end of a scan's line: `skip` numbers, the time, the host and the logger's time. Returns
+// the damage, if any.
+std::optional<std::string_view> ReadEnd(Tokens& tokens, int skip, CarmenScan& scan) {
+  constexpr std::string_view kNoTime = "without a time";
   for (int i = 0; i < skip; ++i) {
-    if (!tokens.NextNumber()) return std::nullopt;
+    if (!tokens.NextNumber()) return kNoTime;
   }
   const std::optional<double> stamp_s = tokens.NextNumber();
-  if (!stamp_s || !std::isfinite(*stamp_s)) return std::nullopt;
+  if (!stamp_s || !std::isfinite(*stamp_s)) return kNoTime;
+  if (std::abs(*stamp_s) > kLatestStampS) return "with a time that is not in seconds";
   // Without the host after it, the time's own digits may have been cut.
-  if (tokens.Next().empty()) return std::nullopt;
-  return stamp_s;
+  if (tokens.Next().empty()) return kNoTime;
+  for (int i = 0; !tokens.Next().empty(); ++i) {
+    if (i == kMostLastColumns) return "with more columns than it states (a lost line end?)";
+  }
+  scan.stamp_s = *stamp_s;
+  return {};
 }
 
 // FLASER n ranges.. laser_x y theta robot_x y theta time host logger_time. The format states no
@@ -114,9 +124,7 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage("FLASER", kDamagedPose);
   scan.odom_from_laser = *laser;
-  const auto stamp_s = ReadStamp(tokens, 0);
-  if (!stamp_s) return Damage("FLASER", "without a time");
-  scan.stamp_s = *stamp_s;
+  if (const auto damage = ReadEnd(tokens, 0, scan)) return Damage("FLASER", *damage);
   return scan;
 }
 
@@ -147,9 +155,7 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage(kName, kDamagedPose);
   scan.odom_from_laser = *laser;
-  const auto stamp_s = ReadStamp(tokens, 5);
-  if (!stamp_s) return Damage(kName, "without a time");
-  scan.stamp_s = *stamp_s;
+  if (const auto damage = ReadEnd(tokens, 5, scan)) return Damage(kName, *damage);
   return scan;
 }
 

@@ -89,6 +89,11 @@ class CarmenLogSource : public FrameSource {
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     RequireUncompressed(path_);
+    if (!(options_.min_range_m < options_.max_range_m)) {
+      throw InputError("sequence.laser.min_range_m",
+                       fmt::format("is {:g}, must be below sequence.laser.max_range_m ({:g})",
+                                   options_.min_range_m, options_.max_range_m));
+    }
     Rewind();
     std::vector<double> speeds_mps;
     std::optional<CarmenScan> last;

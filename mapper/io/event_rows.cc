@@ -7,6 +7,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/pose_track.h"
 
@@ -22,6 +23,9 @@ void RequirePossible(LoopClosure& loop, const std::string& place) {
     throw InputError(place, fmt::format("quaternion has norm {:.6g}, must be 1", norm));
   }
   if (std::abs(norm - 1.0) > kExactNormError) loop.first_from_second.rotation.normalize();
+  if (!IsWithinReach(loop.first_from_second.translation)) {
+    throw InputError(place, "a loop's ends must lie within 10,000 km");
+  }
   if (std::max(loop.first_frame, loop.second_frame) > loop.reported_at_frame) {
     throw InputError(place, "a loop cannot be reported before the frames it joins");
   }

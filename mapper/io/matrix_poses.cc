@@ -10,6 +10,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 
@@ -32,7 +33,7 @@ std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& 
     }
     translation[row] = numbers[static_cast<std::size_t>(4 * row + 3)];
   }
-  if (rotation.isZero()) return {};
+  if (rotation.isZero() || !IsWithinReach(translation)) return {};
   const bool last_row_ok = numbers.size() == 12 || (numbers[12] == 0.0 && numbers[13] == 0.0 &&
                                                     numbers[14] == 0.0 && numbers[15] == 1.0);
   if (!last_row_ok) throw InputError(place, "the matrix's last row must be 0 0 0 1");

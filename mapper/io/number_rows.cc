@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
@@ -58,6 +59,14 @@ std::optional<double> ParseNumber(std::string_view field) {
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (field.empty() || error != std::errc{} || end != field.data() + field.size()) return {};
   return value;
+}
+
+void RequireSeconds(double stamp_s, const std::string& place) {
+  if (!std::isfinite(stamp_s)) throw InputError(place, "the stamp must be finite");
+  if (std::abs(stamp_s) <= kLatestStampS) return;
+  throw InputError(place, fmt::format("the stamp is {:.6g}, must be in seconds, not in milli- or "
+                                      "nanoseconds",
+                                      stamp_s));
 }
 
 std::string PlaceOfLine(const std::string& path, int line) {

@@ -41,6 +41,11 @@ void RequireText(const TextRow& row, const std::string& path);
 // All fields of a row as numbers; throws InputError unless there are exactly `count`.
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);
 
+// Stamps are seconds: those of milliseconds or nanoseconds since 1970 lie beyond this (year 5138).
+constexpr double kLatestStampS = 1e11;
+// Throws InputError unless it is a finite number of seconds.
+void RequireSeconds(double stamp_s, const std::string& place);
+
 // How far the norm of a unit quaternion may be off. Files print four to nine digits, so norms are
 // off by up to 1e-4; a larger error is a column mistaken for another.
 constexpr double kMaxNormError = 0.05;

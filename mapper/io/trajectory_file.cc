@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -18,7 +19,7 @@ namespace {
 std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place) {
   Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};
   const double norm = pose.rotation.norm();
-  if (!pose.translation.allFinite() || !std::isfinite(norm) || norm == 0.0) return {};
+  if (!IsWithinReach(pose.translation) || !std::isfinite(norm) || norm == 0.0) return {};
   if (std::abs(norm - 1.0) > kMaxNormError) {
     throw InputError(place, fmt::format("quaternion qx qy qz qw has norm {:.6g}, must be 1", norm));
   }
@@ -30,7 +31,7 @@ void AddRow(const TextRow& row, const std::string& place, TrajectoryFile& file) 
   constexpr std::size_t kColumns = 8;
   const std::vector<double> numbers = NumbersIn(row, kColumns, place);
   const std::string row_place = PlaceOfLine(place, row.line);
-  if (!std::isfinite(numbers[0])) throw InputError(row_place, "the stamp must be finite");
+  RequireSeconds(numbers[0], row_place);
   const std::optional<Pose3> pose = PoseOf(numbers, row_place);
   if (!pose) {
     ++file.invalid_poses;
@@ -53,7 +54,7 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
   const auto warn = [&](int count, const char* thing, const char* what) {
     WarnOfCount(warnings, name, count, thing, what);
   };
-  warn(invalid_poses, "pose", "with NaN or a zero quaternion ignored");
+  warn(invalid_poses, "pose", "with NaN, a zero quaternion or beyond 10,000 km ignored");
   warn(unsorted_stamps, "row", "earlier than the row before, sorted");
   warn(duplicate_stamps, "row", "with a stamp already given, ignored");
   return warnings;

@@ -13,7 +13,7 @@ namespace depthgrid {
 // mended is counted.
 struct TrajectoryFile {
   Trajectory poses;
-  int invalid_poses = 0;     // NaN, infinite or zero quaternion: dropped
+  int invalid_poses = 0;     // NaN, zero quaternion, too far: dropped
   int unsorted_stamps = 0;   // rows earlier than their predecessor: sorted
   int duplicate_stamps = 0;  // all but the first row of one stamp: dropped
   RowDamage damage;          // rows that are no pose: dropped

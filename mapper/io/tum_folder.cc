@@ -133,6 +133,7 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
       if (row.fields.size() < 2 || !stamp_s || !std::isfinite(*stamp_s)) {
         throw InputError(PlaceOfLine(place, row.line), "must be a stamp and a file name");
       }
+      RequireSeconds(*stamp_s, PlaceOfLine(place, row.line));
       if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
       list.files.push_back({*stamp_s, std::string(RestOf(row, 1))});
     });

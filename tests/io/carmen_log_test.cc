@@ -243,6 +243,27 @@ TEST(CarmenLog, TakesCoordinatesOfAMapGrid) {
               testing::HasSubstr("damaged pose (no numbers, or beyond 10,000 km)"));
 }
 
+TEST(CarmenLog, ALineThatLostItsEndIsCounted) {
+  const std::string whole = ScanAt(0, 0, 1);
+  const std::string joined = whole.substr(0, whole.size() - 1) + " " + ScanAt(0, 0, 2);
+  EXPECT_THAT(WarningsOf(joined + ScanAt(0, 0, 3)),
+              testing::HasSubstr("FLASER with more columns than it states (a lost line end?)"));
+  EXPECT_THAT(LogRefusal("FLASER 2 1 1 0 0 0 0 0 0 1.7e18 h 1\n"),
+              testing::HasSubstr("FLASER with a time that is not in seconds"));
+  // What some loggers add is not read.
+  const TextFile more(whole.substr(0, whole.size() - 1) + " a 2 b 3\n");
+  EXPECT_EQ(OpenCarmenLog(more.path())->Next()->stamp_s, 1.0);
+}
+
+TEST(CarmenLog, NearestReadingIsNearerThanTheFarthest) {
+  const TextFile file(ScanAt(0, 0, 1));
+  CarmenLogOptions options;
+  options.min_range_m = 6.0;
+  options.max_range_m = 5.0;
+  EXPECT_THAT(RefusalOf([&] { OpenCarmenLog(file.path(), options); }),
+              testing::HasSubstr("sequence.laser.min_range_m: is 6, must be below"));
+}
+
 TEST(CarmenLog, MostScansOutOfOrderAreSaidWithTheirCause) {
   std::string backwards, doubled;
   for (int i = 9; i >= 0; --i) backwards += ScanAt(0, 0, i);

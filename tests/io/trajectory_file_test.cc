@@ -48,14 +48,24 @@ TEST(TrajectoryFile, RoundTripIsExact) {
 TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
   const TrajectoryFile file = ParseTrajectory(
       "3 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n3 9 0 0 0 0 0 1\n4 nan 0 0 0 0 0 1\n"
-      "5 0 0 0 0 0 0 0\n6 0 0 0 NaN 0 0 1\n7 0 inf 0 0 0 0 1\n",
+      "5 0 0 0 0 0 0 0\n6 0 0 0 NaN 0 0 1\n7 0 inf 0 0 0 0 1\n8 0 -2e7 0 0 0 0 1\n",
       "x");
   ASSERT_EQ(file.poses.size(), 2U);
   EXPECT_EQ(file.poses[0].stamp_s, 1.0);
   EXPECT_EQ(file.poses[1].world_from_camera.translation.x(), 0.0);  // the first of stamp 3
-  EXPECT_THAT(file.Warnings("t"), ElementsAre("t: 4 poses with NaN or a zero quaternion ignored",
-                                              "t: 1 row earlier than the row before, sorted",
-                                              "t: 1 row with a stamp already given, ignored"));
+  EXPECT_THAT(file.Warnings("t"),
+              ElementsAre("t: 5 poses with NaN, a zero quaternion or beyond 10,000 km ignored",
+                          "t: 1 row earlier than the row before, sorted",
+                          "t: 1 row with a stamp already given, ignored"));
+}
+
+TEST(TrajectoryFile, StampsMustBeSeconds) {
+  const std::string row = " 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(ParseTrajectory("1700000000.5" + row, "x").poses.size(), 1U);
+  EXPECT_THAT(RefusalOf([&] {
+                ParseTrajectory("1700000000000000000" + row + "1700000000100000000" + row, "x");
+              }),
+              testing::HasSubstr("x:1: the stamp is 1.7e+18, must be in seconds"));
 }
 
 TEST(TrajectoryFile, SurvivesDamageInsideALongFile) {
