@@ -18,6 +18,23 @@ void ResolveFile(std::string& name, const std::string& base_folder) {
     name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
 }
 
+// Where the last layer that has the key has it; empty where none has.
+std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key) {
+  std::string place;
+  for (const Config* layer : layers) {
+    if (layer->Has(key)) place = layer->PlaceOfKey(key);
+  }
+  return place;
+}
+
+void RequireScene(const std::string& scene, const std::string& place) {
+  try {
+    ResolveName(scene, ShippedKind::kScene);
+  } catch (const InputError& error) {
+    throw InputError(place, error.what());
+  }
+}
+
 }  // namespace
 
 void ExperimentOptions::Visit(OptionsVisitor& v) {
@@ -43,6 +60,8 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
   if (options.scene.empty()) throw InputError(layers.front()->Place(), "key 'scene' is missing");
   ResolveFile(options.scene, base_folder);
   ResolveFile(options.trajectory, base_folder);
+  RequireScene(options.scene, PlaceOfKey(layers, "scene"));
+  options.trajectory_place = PlaceOfKey(layers, "trajectory");
   return options;
 }
 

@@ -31,6 +31,9 @@ struct ExperimentOptions {
   SlamOptions slam;
   MapperOptions mapper;
   MetricsOptions metrics;  // which scores; never changes the map
+  // File and line (or the assignment) that names the trajectory, for errors of whoever loads the
+  // scene; empty where nothing does.
+  std::string trajectory_place;
 
   std::uint64_t DepthSeed() const { return depth_seed != 0 ? depth_seed : seed; }
   std::uint64_t SlamSeed() const { return slam_seed != 0 ? slam_seed : seed; }
@@ -38,7 +41,8 @@ struct ExperimentOptions {
 };
 
 // Reads an experiment and resolves its file names: those in `config` are relative to
-// `base_folder`. Of several layers the later override the earlier. Throws InputError.
+// `base_folder`. Of several layers the later override the earlier. Throws InputError, also for a
+// scene that is not there.
 ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
                                  const std::string& base_folder);
 ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);

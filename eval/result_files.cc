@@ -129,6 +129,8 @@ FileRule FilesOf(ResultKind kind) {
       return IsRenderFile;
     case ResultKind::kSlam:
       return IsSlamFile;
+    case ResultKind::kPage:
+      return [](const fs::path& relative) { return relative == "report.html"; };
     case ResultKind::kSweep:
       break;
   }

@@ -8,7 +8,8 @@
 
 namespace depthgrid {
 
-enum class ResultKind { kRun, kMap, kStudy, kAblation, kSweep, kRender, kSlam };
+// kPage: a result's page away from the result.
+enum class ResultKind { kRun, kMap, kStudy, kAblation, kSweep, kRender, kSlam, kPage };
 
 // Of files of a folder, by their paths relative to it.
 using FileRule = std::function<bool(const std::filesystem::path& relative)>;

@@ -115,13 +115,23 @@ VideoWriter::VideoWriter(std::string path, int width_px, int height_px, int fram
       width_px_(width_px),
       height_px_(height_px),
       remove_temporary_([this] {
+        Abandon();
         std::error_code ignored;
         fs::remove(temporary_, ignored);
       }) {
   process_ = Start(CommandFor(temporary_, width_px, height_px, frames_per_s), pipe_);
 }
 
-VideoWriter::~VideoWriter() { Close(); }
+VideoWriter::~VideoWriter() {
+  Abandon();
+  Close();
+}
+
+// So that it neither goes on without us nor complains of a file that is gone.
+void VideoWriter::Abandon() {
+  const int process = process_;
+  if (process > 0) ::kill(process, SIGKILL);
+}
 
 void VideoWriter::Add(const RgbImage& frame) {
   Require(frame.width_px == width_px_ && frame.height_px == height_px_,

@@ -1,6 +1,7 @@
 // MP4 files (H.264), written by the program `ffmpeg` (Debian package of that name).
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "mapper/core/rgb_image.h"
@@ -28,13 +29,14 @@ class VideoWriter {
 
  private:
   void Close();
+  void Abandon();
 
   std::string path_;
   std::string temporary_;
   int width_px_;
   int height_px_;
   int pipe_ = -1;
-  int process_ = -1;
+  std::atomic<int> process_ = -1;  // abandoned on any thread
   int status_ = -1;
   EndTask remove_temporary_;
 };

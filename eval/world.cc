@@ -24,17 +24,20 @@ std::string HashOf(const Scene& scene) {
   return hash.Hex();
 }
 
-const std::string& NamedTrajectory(const Scene& scene, const std::string& name) {
+const std::string& NamedTrajectory(const Scene& scene, const ExperimentOptions& options) {
+  const std::string& name = options.trajectory;
+  const std::string& place =
+      options.trajectory_place.empty() ? options.scene : options.trajectory_place;
   std::vector<std::string> names;
   for (const auto& [candidate, path] : scene.trajectories) names.push_back(candidate);
   if (names.empty()) {
-    throw InputError("trajectory", "the scene names none, must be a TUM file");
+    throw InputError(place, "the scene names no trajectory: 'trajectory' must be a TUM file");
   }
   if (name.empty()) return scene.trajectories.begin()->first;
   const auto found = scene.trajectories.find(name);
   if (found != scene.trajectories.end()) return found->first;
-  throw InputError("trajectory", fmt::format("is '{}', must be one of {} or a TUM file{}", name,
-                                             fmt::join(names, ", "), DidYouMean(name, names)));
+  throw InputError(place, fmt::format("trajectory is '{}', must be one of {} or a TUM file{}", name,
+                                      fmt::join(names, ", "), DidYouMean(name, names)));
 }
 
 Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
@@ -44,7 +47,7 @@ Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
 }
 
 Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentOptions& options) {
-  const std::string& name = NamedTrajectory(scene, options.trajectory);
+  const std::string& name = NamedTrajectory(scene, options);
   const TrajectoryOptions& path = scene.trajectories.at(name);
   const int whole = MinimumFrames(path);
   Trajectory trajectory =
@@ -82,8 +85,7 @@ std::string WorldHash(const ExperimentOptions& options) {
   if (IsFile(options.trajectory)) {
     hash.Text(ReadFile(options.trajectory));
   } else {
-    const TrajectoryOptions& path =
-        scene.trajectories.at(NamedTrajectory(scene, options.trajectory));
+    const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
     hash.Text(ToYaml(path));
     for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
   }

@@ -313,6 +313,17 @@ int Complain(const std::string& message, int exit_code) {
   return exit_code;
 }
 
+// No file, folder or shipped thing is called nothing: a shell's variable is not set, most likely.
+void RequireNames(CLI::App& app) {
+  const auto is_empty = [](const std::string& name) {
+    return name.empty() ? std::string("is empty") : std::string();
+  };
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) option->check(CLI::Validator(is_empty, ""));
+  }
+  for (CLI::App* command : app.get_subcommands({})) RequireNames(*command);
+}
+
 int Main(int argc, char** argv) {
   OpenStandardStreams();
   Program program;
@@ -332,6 +343,7 @@ int Main(int argc, char** argv) {
   AddCompare(program);
   AddAblate(program);
   AddReport(program);
+  RequireNames(program.app);
   CatchInterrupts();
   try {
     try {

@@ -7,6 +7,7 @@
 #include "eval/cli/console.h"
 #include "eval/output_file.h"
 #include "eval/output_folder.h"
+#include "eval/result_files.h"
 #include "eval/run_report.h"
 #include "eval/study_report.h"
 #include "eval/sweep/sweep_database.h"
@@ -36,6 +37,7 @@ void WriteInPlace(const std::string& folder) {
 }
 
 void WriteElsewhere(const ReportArguments& arguments) {
+  RequireNoOtherResult(arguments.output, ResultKind::kPage);
   OutputFolder output(arguments.output, arguments.force);
   const auto plain = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
   const fs::path back = plain(arguments.folder).lexically_relative(plain(arguments.output));
@@ -47,7 +49,8 @@ void WriteElsewhere(const ReportArguments& arguments) {
 
 void Report(const ReportArguments& arguments) {
   if (!fs::is_directory(arguments.folder)) throw InputError(arguments.folder, "no such folder");
-  if (arguments.output.empty()) {
+  std::error_code not_there;
+  if (arguments.output.empty() || fs::equivalent(arguments.folder, arguments.output, not_there)) {
     WriteInPlace(arguments.folder);
   } else {
     WriteElsewhere(arguments);

@@ -171,13 +171,6 @@ void RequireFewEnough(const SweepFileOptions& file, const std::vector<SweepAxis>
 
 // Each value alone, so that a slip is found before the first run and named with its line.
 void CheckValues(const SweepPlan& plan) {
-  const ExperimentOptions base = ReadExperiment(plan.base, plan.base_folder);
-  const auto names_scene = [](const SweepAxis& axis) {
-    return std::find(axis.keys.begin(), axis.keys.end(), "scene") != axis.keys.end();
-  };
-  if (std::none_of(plan.axes.begin(), plan.axes.end(), names_scene)) {
-    ResolveName(base.scene, ShippedKind::kScene);
-  }
   for (const SweepAxis& axis : plan.axes) {
     std::vector<std::vector<std::string>> values = axis.values;
     if (axis.range) {
@@ -187,9 +180,7 @@ void CheckValues(const SweepPlan& plan) {
       Config own;
       for (std::size_t i = 0; i < axis.keys.size(); ++i)
         own.Set(axis.keys[i], value[i], axis.place);
-      ExperimentOptions options = base;
-      own.Read(options);
-      if (own.Has("scene")) ResolveName(options.scene, ShippedKind::kScene, plan.base_folder);
+      ReadExperiment({&plan.base, &own}, plan.base_folder);
     }
   }
 }

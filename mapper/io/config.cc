@@ -168,6 +168,11 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
 
 std::string Config::Place() const { return tree_->At(tree_->root); }
 
+std::string Config::PlaceOfKey(const std::string& key_path) const {
+  const YAML::Node node = Find(tree_->root, key_path);
+  return tree_->PlaceOfKey(key_path, node.IsDefined() ? node : tree_->root);
+}
+
 bool Config::Has(const std::string& key_path) const {
   return Find(tree_->root, key_path).IsDefined();
 }

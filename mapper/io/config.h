@@ -47,6 +47,8 @@ class Config {
   Config Only(const std::vector<std::string>& keys) const;
   // The file (and line) this tree came from, for errors of whoever reads it.
   std::string Place() const;
+  // The same of one key: of the assignment that set it, if one did.
+  std::string PlaceOfKey(const std::string& key_path) const;
   // Names of the top-level keys in file order.
   std::vector<std::string> Keys() const;
   // Every top-level key as it is written, dots and all, with its value; in file order.

@@ -145,6 +145,13 @@ TEST_F(KeptFiles, AFolderHoldsOneResultWithAPage) {
   }
   refused("ablate ./small.yaml", "run", "a run");
   refused("sweep ./s.yaml", "study", "a study");
+  Succeed("map one.log -o other");
+  refused("report other", "run", "a run");
+  refused("report other", "sweep", "a sweep");
+  const std::string page = ReadFile(Path("other/report.html"));
+  fs::remove(Path("other/report.html"));
+  Succeed("report other -o ./other");
+  EXPECT_EQ(ReadFile(Path("other/report.html")), page);
 }
 
 TEST_F(KeptFiles, AStudyGoesOnInItsOwnFolder) {

@@ -63,8 +63,23 @@ TEST_F(ProgramErrors, MissingAndEmptyFiles) {
   ExpectRefusal("run living_rom -o out", {"living_rom", "'living_room'"});
   ExpectRefusal("run ./small.yaml --set scene=office_rom -o out", {"'office_room'"});
   ExpectRefusal("map nowhere --poses x -o out", {"nowhere"});
+  ExpectRefusal("map '' -o out", {"input: is empty"});
+  ExpectRefusal("eval map '' map.yaml", {"is empty"});
   ExpectRefusal("report nowhere", {"nowhere"});
   ExpectRefusal("regrid . --resolution 0.05", {"run.yaml"});
+}
+
+TEST_F(ProgramErrors, ASceneOrATrajectoryThatIsNotThereIsNamedByItsLine) {
+  Write("no_room.yaml", "frames: 3\nscene: living_rom\n");
+  ExpectRefusal("run ./no_room.yaml -o out", {"no_room.yaml:2: ", "'living_room'"});
+  ExpectRefusal("run ./small.yaml --set scene=office_rom -o out", {"--set scene=office_rom: "});
+  Write("no_path.yaml", "scene: living_room\nframes: 3\ntrajectory: handhel\n");
+  ExpectRefusal("run ./no_path.yaml -o out",
+                {"no_path.yaml:3: trajectory is 'handhel'", "'handheld'"});
+  ExpectRefusal("run living_room --set trajectory=up -o out",
+                {"--set trajectory=up: trajectory is 'up', must be one of handheld, robot"});
+  Write("rooms_sweep.yaml", "experiment: living_room\naxes:\n  scene: [living_room, offce]\n");
+  ExpectRefusal("sweep ./rooms_sweep.yaml -o out", {"rooms_sweep.yaml:3: offce: no shipped scene"});
 }
 
 TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
