@@ -1,10 +1,12 @@
 // Independent tasks on several threads. What a task gives must depend on its index alone.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -29,8 +31,12 @@ void ForEachIndex(std::size_t count, int threads, const Task& task) {
     }
   };
   std::vector<std::thread> helpers;
-  for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
-    helpers.emplace_back(work);
+  helpers.reserve(std::min(count, static_cast<std::size_t>(std::max(0, threads - 1))));
+  try {
+    for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
+      helpers.emplace_back(work);
+    }
+  } catch (const std::system_error&) {  // no more threads to be had: fewer do it
   }
   work();
   for (std::thread& helper : helpers) helper.join();

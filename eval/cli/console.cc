@@ -69,15 +69,6 @@ Progress ProgressBar::AsProgress() {
   return [this](int done, int total) { Show(done, total); };
 }
 
-std::string ShellWord(const std::string& text) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string word(1, '\'');
-  for (const char c : text) word.append(c == '\'' ? "'\\''" : std::string(1, c));
-  return word + "'";
-}
-
 void SayReport(const std::string& folder) { fmt::print("look at {}/report.html\n", folder); }
 
 std::string Printable(std::string text) {

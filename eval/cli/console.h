@@ -46,9 +46,6 @@ class ProgressBar {
   Clock::time_point last_drawn_;
 };
 
-// `text` as one word of a shell, in quotes if need be.
-std::string ShellWord(const std::string& text);
-
 // Where the page of what was done lies.
 void SayReport(const std::string& folder);
 // One line whatever it quotes of a damaged file: control characters and bytes that are no UTF-8

@@ -6,6 +6,7 @@
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment.h"
 #include "eval/run_folder.h"
+#include "eval/shell_word.h"
 #include "eval/synthetic_source.h"
 #include "eval/world.h"
 #include "mapper/io/config.h"

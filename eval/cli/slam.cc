@@ -6,6 +6,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
+#include "eval/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -9,6 +10,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/interrupts.h"
+#include "eval/shell_word.h"
 #include "eval/shipped.h"
 #include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_folder.h"
@@ -17,6 +19,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/end_task.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -40,7 +43,8 @@ Shard ShardOf(const std::string& text) {
   return shard;
 }
 
-// A folder made for the sweep is taken away again when nothing could be started in it.
+// A folder made for the sweep is taken away again when nothing could be started in it: neither runs
+// here nor jobs of Slurm, which go on by themselves.
 class SweepFolder {
  public:
   SweepFolder(const std::string& path, bool force) : path_(path) {
@@ -66,7 +70,9 @@ class SweepFolder {
   bool created_ = false;
   EndTask clean_{[this] {
     std::error_code ignored;
-    if (created_ && !SweepDatabase::Exists(path_)) fs::remove_all(path_, ignored);
+    if (created_ && !SweepDatabase::Exists(path_) && !HasSlurmJobs(path_)) {
+      fs::remove_all(path_, ignored);
+    }
   }};
 };
 
@@ -135,22 +141,12 @@ void TabulateKnown(const std::string& folder) {
   }
 }
 
-// Rendered depth and scans outlive a kill beside the results when nobody named another place.
-std::string SweepCache(const CommonArguments& arguments) {
-  const std::string named = CacheFolder(arguments);
-  if (!named.empty() || arguments.no_cache) return named;
-  return arguments.output + "/cache";
-}
-
-void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
+// Closes the database before it returns.
+SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& plan,
+                              SweepContext context) {
   const std::string& output = arguments.common.output;
-  const Shard shard = ShardOf(arguments.shard);
-  const SweepFolder folder(output, arguments.common.force);
-  SweepContext context;
-  context.threads = ThreadsOr(arguments.jobs);
-  context.cache_folder = SweepCache(arguments.common);
-  const SweepLock lock(output);
-  SweepDatabase database = OpenOrCreateSweep(output, plan, shard, arguments.common.force);
+  SweepDatabase database =
+      OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop` more seeds, or fewer, were done because of them.
   const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
   Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), failed, context);
@@ -167,11 +163,24 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
     DoRuns(plan, database, context);
   }
   WriteResultsCsv(database, output);
-  const auto runs = static_cast<int>(database.PlannedRuns().size());
-  file.NoteNow({runs, runs});
-  if (context.cache_folder == output + "/cache") fs::remove_all(context.cache_folder);
-  bar.Clear();
-  Summarise(database.Results());
+  return database.Results();
+}
+
+void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
+  const std::string& output = arguments.common.output;
+  ShardOf(arguments.shard);  // refused before there is a folder
+  const SweepFolder folder(output, arguments.common.force);
+  SweepContext context;
+  context.threads = ThreadsOr(arguments.jobs);
+  context.cache_folder = CacheFolder(arguments.common);
+  // Rendered depth and scans outlive a kill beside the results when nobody named another place.
+  const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
+  if (own_cache) context.cache_folder = output + "/cache";
+  const SweepLock lock(output);
+  const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
+  ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
+  if (own_cache) fs::remove_all(context.cache_folder);
+  Summarise(results);
 }
 
 // The command of one part; the shell of its task knows which.
@@ -192,10 +201,11 @@ std::string PartCommand(const SweepArguments& arguments, const std::string& swee
   return command;
 }
 
+constexpr int kMostParts = 1000;  // Slurm's default MaxArraySize is 1001
+
 // As many parts as have work for long enough: an empty task costs Slurm about a second.
 int PartsFor(const SweepArguments& arguments, const SweepPlan& plan, double cpu_s) {
   constexpr double kLeastTaskS = 30.0;
-  constexpr int kMostParts = 1000;  // Slurm's default MaxArraySize is 1001
   const std::vector<int> groups = ScanGroups(plan);
   const int units =
       plan.stop.Enabled() ? plan.point_count : *std::max_element(groups.begin(), groups.end()) + 1;
@@ -209,7 +219,15 @@ int PartsFor(const SweepArguments& arguments, const SweepPlan& plan, double cpu_
 // The number of parts stays what it was when the sweep was started first.
 int PartsIn(const std::string& folder, const std::function<int()>& otherwise) {
   const std::string path = folder + "/shards/parts.txt";
-  if (fs::exists(path)) return std::stoi(ReadFile(path));
+  if (fs::exists(path)) {
+    const std::string text = ReadFile(path);
+    const auto parts = ParseNumber(text.substr(0, text.find('\n')));
+    if (!parts || *parts < 1 || *parts > kMostParts || *parts != std::floor(*parts)) {
+      throw InputError(path, fmt::format("is '{}', must be a whole number from 1 to {}",
+                                         text.substr(0, text.find('\n')), kMostParts));
+    }
+    return static_cast<int>(*parts);
+  }
   const int parts = otherwise();
   fs::create_directories(folder + "/shards");
   WriteFile(path, fmt::format("{}\n", parts));

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "eval/shell_word.h"
 #include "eval/sweep/sweep_progress.h"
 #include "mapper/io/end_task.h"
 #include "mapper/io/file.h"
@@ -23,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kPollInterval{2};
+constexpr std::chrono::minutes kLongestSilence{5};  // a controller that is started again
 constexpr int kMostFruitlessStarts = 3;
 
 struct CommandOutput {
@@ -42,13 +45,29 @@ CommandOutput OutputOf(const std::string& command) {
   return output;
 }
 
-// Parts of ours that Slurm still has before it. Nothing when it cannot be asked just now.
-std::optional<std::set<int>> PartsInQueue(const std::set<std::string>& job_ids) {
+std::string JobList(const std::string& folder) { return folder + "/slurm/jobs.txt"; }
+
+// Asks Slurm, which may be away for a while.
+class Queue {
+ public:
+  // Parts of these jobs that Slurm still has before it. Nothing when it cannot be asked just now.
+  std::optional<std::set<int>> Parts(const std::set<std::string>& job_ids);
+
+ private:
+  std::optional<std::chrono::steady_clock::time_point> answered_;
+};
+
+std::optional<std::set<int>> Queue::Parts(const std::set<std::string>& job_ids) {
+  const auto now = std::chrono::steady_clock::now();
   // Job of the array, number in it, state; one line a task. Completing tasks have ended.
   const CommandOutput queue = OutputOf(
       "squeue --noheader --array --me --states=PENDING,RUNNING,CONFIGURING,SUSPENDED "
       "--format='%F %K'");
-  if (!queue.succeeded) return std::nullopt;
+  if (!queue.succeeded) {
+    if (answered_ && now - *answered_ < kLongestSilence) return std::nullopt;
+    throw std::runtime_error("squeue failed: " + queue.text);
+  }
+  answered_ = now;
   std::set<int> parts;
   for (const TextRow& row : SplitRows(queue.text)) {
     if (row.fields.size() != 2 || !job_ids.contains(std::string(row.fields[0]))) continue;
@@ -63,22 +82,23 @@ class Submission {
     fs::create_directories(folder_);
     fs::create_directories(job.folder + "/shards");
     WriteFile(Script(), fmt::format("#!/bin/sh\n"
-                                    "#SBATCH --job-name=depthgrid-{}\n"
-                                    "#SBATCH --output={}/%A_%a.log\n"
                                     "#SBATCH --cpus-per-task={}\n"
                                     "exec {}\n",
-                                    job.title, folder_, job.cpus_per_task, job.command));
+                                    job.cpus_per_task, job.command));
     // Jobs of a coordinator that was killed may be running still.
-    if (fs::exists(JobList())) {
-      const std::string text = ReadFile(JobList());
+    if (HasSlurmJobs(job.folder)) {
+      const std::string text = ReadFile(JobList(job.folder));
       for (const TextRow& row : SplitRows(text)) job_ids_.emplace(row.fields[0]);
     }
   }
 
   void Submit(const std::set<int>& parts) {
     const EndDelay whole;  // a job that is in no list would be submitted again
-    const CommandOutput sbatch = OutputOf(fmt::format("sbatch --parsable --array={} {} '{}'",
-                                                      ArrayText(parts), job_.options, Script()));
+    // Names as words of the shell: sbatch's own lines in the script would end at a space.
+    const CommandOutput sbatch =
+        OutputOf(fmt::format("sbatch --parsable --array={} --job-name={} --output={} {} {}",
+                             ArrayText(parts), ShellWord("depthgrid-" + job_.title),
+                             ShellWord(LogPattern()), job_.options, ShellWord(Script())));
     const std::string id = sbatch.text.substr(0, sbatch.text.find_first_of(";\n"));
     if (!sbatch.succeeded || !ParseNumber(id)) {
       throw std::runtime_error("sbatch refused: " + sbatch.text);
@@ -86,7 +106,7 @@ class Submission {
     job_ids_.insert(id);
     std::string list;
     for (const std::string& known : job_ids_) list += known + "\n";
-    WriteFile(JobList(), list);
+    WriteFile(JobList(job_.folder), list);
   }
 
   const std::set<std::string>& job_ids() const { return job_ids_; }
@@ -94,7 +114,12 @@ class Submission {
 
  private:
   std::string Script() const { return folder_ + "/job.sh"; }
-  std::string JobList() const { return folder_ + "/jobs.txt"; }
+  // Job of the array and number in it; a percent sign of the folder's name stands for itself.
+  std::string LogPattern() const {
+    std::string pattern;
+    for (const char c : folder_) pattern += c == '%' ? "%%" : std::string(1, c);
+    return pattern + "/%A_%a.log";
+  }
 
   const SlurmJob& job_;
   std::string folder_;
@@ -128,6 +153,8 @@ std::string PartFolder(const std::string& folder, int part) {
   return fmt::format("{}/shards/{}", folder, part);
 }
 
+bool HasSlurmJobs(const std::string& folder) { return fs::exists(JobList(folder)); }
+
 std::string ArrayText(const std::set<int>& parts) {
   std::string text;
   for (auto first = parts.begin(); first != parts.end();) {
@@ -142,10 +169,11 @@ std::string ArrayText(const std::set<int>& parts) {
 
 void RunOnSlurm(const SlurmJob& job) {
   Submission submission(job);
+  Queue queue;
   std::map<int, int> fruitless;      // starts of a part since it last got on
   std::map<int, int> done_at_start;  // its runs then
   for (State state = StateOf(job); !state.unfinished.empty(); state = StateOf(job)) {
-    const auto queued = PartsInQueue(submission.job_ids());
+    const auto queued = queue.Parts(submission.job_ids());
     if (queued) {
       // Again from the folders: a part may have finished between the two looks.
       std::set<int> ended = StateOf(job).unfinished;

@@ -22,9 +22,13 @@ struct SlurmJob {
 std::string PartFolder(const std::string& folder, int part);
 
 // Writes the job, submits the parts that are not finished, waits, submits again what ended without
-// being finished, and returns when all parts are. Throws std::runtime_error when Slurm refuses, or
-// when a part ends three times without getting on.
+// being finished, and returns when all parts are. Throws std::runtime_error when Slurm refuses,
+// when it cannot be asked at first or for five minutes, or when a part ends three times without
+// getting on.
 void RunOnSlurm(const SlurmJob& job);
+
+// Whether jobs were submitted from the folder of a sweep: they may be running still.
+bool HasSlurmJobs(const std::string& folder);
 
 // "1-3,7" of {1, 2, 3, 7}.
 std::string ArrayText(const std::set<int>& parts);

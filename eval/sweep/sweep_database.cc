@@ -302,11 +302,16 @@ std::vector<int> SweepDatabase::PlannedRuns() const { return impl_->RunsWhere(""
 void SweepDatabase::Record(const RunOutcome& outcome) { Record(std::vector{outcome}); }
 
 void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
-  Writing(impl_->folder, [&] {
-    SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
-    for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
-    transaction.commit();
-  });
+  try {
+    Writing(impl_->folder, [&] {
+      SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
+      for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
+      transaction.commit();
+    });
+  } catch (...) {  // columns that were added with it are gone with it
+    impl_->known_columns.clear();
+    throw;
+  }
 }
 
 int SweepDatabase::PlanFailedAgain() {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "eval/sweep/sweep_axes.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -22,6 +23,9 @@ std::optional<SweepProgress> ReadProgress(const std::string& folder) {
     const auto rows = SplitRows(text);
     if (rows.size() != 1) return std::nullopt;
     const auto numbers = NumbersIn(rows[0], 2, PathIn(folder));
+    if (numbers[0] < 0.0 || numbers[1] < numbers[0] || numbers[1] > kMostSweepRuns) {
+      return std::nullopt;
+    }
     return SweepProgress{static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
   } catch (const InputError&) {  // gone or damaged meanwhile
     return std::nullopt;
@@ -30,6 +34,7 @@ std::optional<SweepProgress> ReadProgress(const std::string& folder) {
 
 void ProgressFile::Note(const SweepProgress& progress) {
   constexpr std::chrono::seconds kInterval{1};
+  if (progress.Finished()) return;
   if (std::chrono::steady_clock::now() - last_ > kInterval) NoteNow(progress);
 }
 

@@ -22,8 +22,9 @@ class ProgressFile {
  public:
   explicit ProgressFile(std::string folder) : folder_(std::move(folder)) {}
 
-  // At most once a second.
+  // At most once a second, and never the end: whoever reads that goes to the database.
   void Note(const SweepProgress& progress);
+  // Of the end: when the database is closed.
   void NoteNow(const SweepProgress& progress);
 
  private:
