@@ -46,6 +46,12 @@ void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera
   }
 }
 
+void RequireReach(const Frame& frame, const Scan& scan) {
+  if (scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m)) return;
+  Refuse(frame, "its scan's max_range_m is " + std::to_string(scan.max_range_m) +
+                    ", must be 0 (unknown) or more");
+}
+
 void RequireLoop(const Frame& frame, const LoopClosure& loop) {
   const std::string name = "the loop closure of frames " + std::to_string(loop.first_frame) +
                            " and " + std::to_string(loop.second_frame);
@@ -65,6 +71,10 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
   }
   if (frame.slam_from_camera) RequirePose(frame, *frame.slam_from_camera, "its pose");
   if (frame.depth) RequireDepth(frame, camera);
+  if (frame.matched_scan && !frame.scan) Refuse(frame, "has a matched_scan, but no scan");
+  for (const auto& scan : {frame.scan, frame.matched_scan}) {
+    if (scan) RequireReach(frame, *scan);
+  }
   for (const LoopClosure& loop : frame.loops) RequireLoop(frame, loop);
 }
 

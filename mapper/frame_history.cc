@@ -15,6 +15,19 @@ constexpr double kLongestExtrapolationS = 0.5;
 // And over no more of its steps: it took no time then, but for a stamp's rounding.
 constexpr double kMostExtrapolatedSteps = 100.0;
 
+// What no robot or hand does: cars are slower, and stamps may repeat or go back.
+constexpr double kLongestStepM = 10.0;
+constexpr double kFastestMps = 50.0;
+
+// Whether SLAM's motion from the last posed frame to this one is none.
+bool BeginsEpoch(const FrameRecord& record, const FrameRecord& last) {
+  if (!record.slam_from_camera) return false;
+  if (record.slam_epoch != last.slam_epoch) return true;
+  const double step_m =
+      (record.slam_from_camera->translation - last.slam_from_camera->translation).norm();
+  return step_m > kLongestStepM + kFastestMps * std::max(0.0, record.stamp_s - last.stamp_s);
+}
+
 // A second at 30 Hz: SLAM's own motion over it is good to millimetres.
 constexpr int kLoopReachFrames = 30;
 
@@ -35,7 +48,12 @@ void FrameHistory::Start(const Frame& frame) {
   record.index = frame.index;
   record.stamp_s = frame.stamp_s;
   record.slam_from_camera = frame.slam_from_camera;
-  record.epoch = frame.slam_epoch;
+  record.slam_epoch = frame.slam_epoch;
+  if (last_posed_) {
+    const FrameRecord& last = records_[*last_posed_];
+    record.epoch = last.epoch + (BeginsEpoch(record, last) ? 1 : 0);
+  }
+  if (record.slam_from_camera) last_posed_ = records_.size();
   records_.push_back(record);
 }
 

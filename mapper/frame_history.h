@@ -16,6 +16,9 @@ struct FrameRecord {
   int index = 0;  // Frame::index
   double stamp_s = 0.0;
   std::optional<Pose3> slam_from_camera;
+  int slam_epoch = 0;  // Frame::slam_epoch
+  // Counted here: another one where SLAM's changes and where a step is no motion. A frame without a
+  // pose has that of the last one with a pose.
   int epoch = 0;
   int mapped = -1;      // position among the mapped frames, -1 if not inserted
   Pose2 map_from_slam;  // the correction as it was known at the time
@@ -48,6 +51,7 @@ class FrameHistory {
   Positions::const_iterator PlaceOf(int frame_index) const;
 
   Positions position_of_index_;
+  std::optional<std::size_t> last_posed_;
 };
 
 // Where the newest frame is if the last motion goes on; `map_from_slam` is the correction of the

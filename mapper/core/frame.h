@@ -33,13 +33,15 @@ struct Frame {
   double stamp_s = 0.0;  // seconds since whenever; differences are what counts
   std::shared_ptr<const DepthImage> depth;
   std::shared_ptr<const Scan> scan;
-  // With `scan`: what is matched where that is another one (mapper/scan/frame_scans.h).
+  // With `scan` only: what is matched where that is another one (mapper/scan/frame_scans.h).
   std::shared_ptr<const Scan> matched_scan;
   // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
-  // metres (docs/conventions.md). Empty while SLAM is lost.
+  // metres (docs/conventions.md). Empty while SLAM is lost. With a ready scan of a sensor that has
+  // no optical axes it is CameraOf() of `base` (mapper/core/level.h).
   std::optional<Pose3> slam_from_camera;
   // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
-  // two poses is a motion only within an epoch.
+  // two poses is a motion only within an epoch. A step that nothing drives (10 m, and 50 m for
+  // each second) begins one by itself.
   int slam_epoch = 0;
   // Reported with this frame, to be applied before its pose is used.
   std::vector<LoopClosure> loops;

@@ -23,10 +23,12 @@ struct Beam {
   bool operator==(const Beam&) const = default;
 };
 
-// Beams are ordered by increasing bearing. Their origin is base's origin.
+// Their origin is base's origin.
 struct Scan {
+  // By increasing bearing; of a ready scan given to the mapper in any order.
   std::vector<Beam> beams;
-  // The range limit the scan was made with; no hit lies beyond it. 0: unknown.
+  // The range limit the scan was made with; no hit lies beyond it: the mapper ignores such. 0:
+  // unknown.
   double max_range_m = 0.0;
 
   bool operator==(const Scan&) const = default;

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "mapper/core/error.h"
@@ -12,19 +12,40 @@
 namespace depthgrid {
 namespace {
 
-// One sum tells of three numbers whether all are finite.
-bool IsSound(const Beam& beam) {
-  const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
-  if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
-  return !beam.hit || (std::isfinite(beam.range_m) && beam.range_m >= 0.0F);
+// A hit nearer than this is no surface: many drivers write 0 where nothing came back.
+constexpr float kNearestHitM = 1e-3F;
+// What no scanner of robots sees past, where a scan does not say how far it reaches.
+constexpr double kFarthestM = 1000.0;
+// Twice round, from wherever the scanner counts.
+constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);
+
+float ReachOf(const Scan& scan) {
+  const bool known = scan.max_range_m > 0.0 && scan.max_range_m < kFarthestM;
+  return static_cast<float>(known ? scan.max_range_m : kFarthestM);
 }
 
-std::shared_ptr<const Scan> SoundPart(const std::shared_ptr<const Scan>& scan) {
-  if (std::all_of(scan->beams.begin(), scan->beams.end(), IsSound)) return scan;
-  Scan sound;
-  sound.max_range_m = scan->max_range_m;
-  std::copy_if(scan->beams.begin(), scan->beams.end(), std::back_inserter(sound.beams), IsSound);
-  return std::make_shared<const Scan>(std::move(sound));
+bool IsSound(const Beam& beam, float reach_m) {
+  // One sum tells of three numbers whether all are finite.
+  const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
+  if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
+  if (std::abs(beam.bearing_rad) > kFarthestBearingRad) return false;
+  return !beam.hit || (beam.range_m >= kNearestHitM && beam.range_m <= reach_m);
+}
+
+// The sound beams in their order, none clear beyond its scan's reach.
+void CopySound(const Scan& given, Scan& sound) {
+  const float reach_m = ReachOf(given);
+  sound.max_range_m = given.max_range_m;
+  sound.beams.clear();
+  for (const Beam& beam : given.beams) {
+    if (!IsSound(beam, reach_m)) continue;
+    sound.beams.push_back(beam);
+    sound.beams.back().clear_to_m = std::min(beam.clear_to_m, reach_m);
+  }
+  const auto before = [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; };
+  if (!std::is_sorted(sound.beams.begin(), sound.beams.end(), before)) {
+    std::stable_sort(sound.beams.begin(), sound.beams.end(), before);
+  }
 }
 
 // Bits of a float without its sign: in the order of sizes, those that are no number above infinity.
@@ -33,7 +54,7 @@ std::uint32_t SizeBits(float z_m) { return std::bit_cast<std::uint32_t>(z_m) & 0
 
 // What follows compares depths many at once and takes all for numbers. Cameras' drivers also write
 // NaN where nothing was measured.
-std::shared_ptr<const DepthImage> SoundPart(const std::shared_ptr<const DepthImage>& depth) {
+std::shared_ptr<const DepthImage> SoundImage(const std::shared_ptr<const DepthImage>& depth) {
   std::uint32_t most = 0;  // a loop that vectorises: 25 us for 640 x 480 pixels
   for (const float z_m : depth->z_m) most = std::max(most, SizeBits(z_m));
   if (most <= kInfinityBits) return depth;
@@ -61,14 +82,20 @@ FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const Sca
   floor_.emplace(*camera, options);
 }
 
+std::shared_ptr<const Scan> FrameScanner::SoundPart(const Scan& given) {
+  const std::shared_ptr<Scan> sound = pool_.Take();
+  CopySound(given, *sound);
+  return sound;
+}
+
 FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (frame.scan) {
-    const std::shared_ptr<const Scan> scan = SoundPart(frame.scan);
-    return {scan, frame.matched_scan ? SoundPart(frame.matched_scan) : scan, std::nullopt};
+    const std::shared_ptr<const Scan> scan = SoundPart(*frame.scan);
+    return {scan, frame.matched_scan ? SoundPart(*frame.matched_scan) : scan, std::nullopt};
   }
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(converter_.has_value(), "a source of depth images has a camera");
-  const std::shared_ptr<const DepthImage> depth = SoundPart(frame.depth);
+  const std::shared_ptr<const DepthImage> depth = SoundImage(frame.depth);
   const CameraStand stand = floor_->Follow(*depth, *frame.slam_from_camera, frame.slam_epoch);
   if (slice_half_height_m_ <= 0.0) {
     const auto scan = std::make_shared<const Scan>(converter_->Convert(*depth, stand));

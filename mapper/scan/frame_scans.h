@@ -35,12 +35,16 @@ class FrameScanner {
   // The camera may be absent when every frame brings a ready scan.
   FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options);
 
-  // Of a ready scan both are that scan, less beams that are not finite numbers or start behind the
-  // sensor: those say nothing. Without image, scan or pose both are null. Frames come in order: the
-  // floor is followed from one to the next.
+  // Of a ready scan both are a copy of it, so that the caller's may change: its beams in order of
+  // bearing, less those that say nothing, as they are not finite, start behind the sensor, or hit
+  // nearer than 1 mm or beyond the scan's reach (1 km where it does not tell), and clear no
+  // farther than that. Without image, scan or pose both are null. Frames come in order: the floor
+  // is followed from one to the next.
   FrameScans ScansOf(const Frame& frame);
 
  private:
+  std::shared_ptr<const Scan> SoundPart(const Scan& given);
+
   std::optional<DepthToScan> converter_;
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
