@@ -37,9 +37,6 @@ struct OutputArguments {
   MapMode map_mode = MapMode::kTrinary;
   std::string video;  // empty: none
 };
-// That the video can be written, and is none of the command's inputs, before the work.
-void RequireVideoFile(const OutputArguments& output, const CommonArguments& common,
-                      const std::vector<std::string>& inputs);
 
 struct RunArguments {
   std::string experiment;

@@ -8,8 +8,8 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/map_settings.h"
+#include "eval/cli/video_output.h"
 #include "eval/map_start.h"
-#include "eval/map_video.h"
 #include "eval/mapping_run.h"
 #include "eval/place_check.h"
 #include "eval/prior_run.h"
@@ -300,11 +300,9 @@ void Map(const MapArguments& given) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
   WriteRunFolder(folder, record);
-  if (!arguments.output.video.empty()) {
-    WriteMapVideo(arguments.output.video, run, settings.mapper.grid);
-  }
   if (arguments.localise) KeepMap(arguments.map, folder);
   folder.Commit();
+  WriteVideo(arguments.output, arguments.common, run, settings.mapper.grid);
   bar.Clear();
   SayResult(run, arguments.localise);
   SayReport(arguments.common.output);

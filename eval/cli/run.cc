@@ -7,16 +7,14 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/cli/video_output.h"
 #include "eval/experiment.h"
 #include "eval/idle_settings.h"
 #include "eval/kept_inputs.h"
-#include "eval/map_video.h"
-#include "eval/output_file.h"
 #include "eval/run_folder.h"
 #include "eval/shipped.h"
 #include "eval/study.h"
 #include "eval/study_run.h"
-#include "eval/video_writer.h"
 #include "eval/view_check.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
@@ -108,10 +106,8 @@ void RunOne(const RunArguments& arguments) {
   record.cpu_s_total = ProcessCpuS();
   bar.Say("writing the folder and the report");
   WriteRunFolder(folder, record);
-  if (!arguments.output.video.empty()) {
-    WriteMapVideo(arguments.output.video, run.mapping, run.options.mapper.grid);
-  }
   folder.Commit();
+  WriteVideo(arguments.output, arguments.common, run.mapping, run.options.mapper.grid);
   bar.Clear();
   Warn(record.warnings);
   PrintScores(run.scores);
@@ -147,14 +143,6 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
 }
 
 }  // namespace
-
-void RequireVideoFile(const OutputArguments& output, const CommonArguments& common,
-                      const std::vector<std::string>& inputs) {
-  if (output.video.empty()) return;
-  RequireInputsKept(output.video, "--video", inputs);
-  RequireNewFile(output.video, common.force);
-  RequireVideo(output.video);
-}
 
 void Run(const RunArguments& arguments) {
   const std::string path = ResolveName(arguments.experiment, ShippedKind::kExperiment);

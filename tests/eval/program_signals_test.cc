@@ -75,7 +75,8 @@ bool HasEnded(pid_t process) {
   return false;
 }
 
-// A step that reports nothing and does not end: ffmpeg takes no pictures. It ends with the program.
+// A step that reports nothing and does not end: ffmpeg takes no pictures. It ends with the program;
+// the map, finished before, stays.
 TEST_F(ProgramSignals, EndAStepThatDoesNotEnd) {
   Write("ffmpeg", "#!/bin/sh\necho $$ > started.part\nmv started.part started\nexec sleep 600\n");
   ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
@@ -90,7 +91,8 @@ TEST_F(ProgramSignals, EndAStepThatDoesNotEnd) {
   EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
   EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
   EXPECT_FALSE(HasUnfinishedFolder());
-  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+  EXPECT_TRUE(std::filesystem::exists(Path("out/report.html")));
+  EXPECT_THAT(FilesIn("."), testing::Not(testing::Contains(testing::HasSubstr(".mp4"))));
   EXPECT_TRUE(HasEnded(std::stoi(ReadFile(Path("started")))));
 }
 

@@ -1,0 +1,42 @@
+// A result that is finished is kept, whatever fails after it.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class KeptResults : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
+  }
+};
+
+TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
+  Write("ffmpeg", "#!/bin/sh\ncat >/dev/null\nexit 1\n");  // as one without libx264
+  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  const char* path = std::getenv("PATH");
+  const std::string before = path == nullptr ? "/usr/bin:/bin" : path;
+  ASSERT_EQ(::setenv("PATH", (root_.string() + ":" + before).c_str(), 1), 0);
+  const Outcome mapped = Program("map one.log --video one.mp4 -o out");
+  const Outcome run = Program("run ./small.yaml --video one.mp4 -o out2");
+  ::setenv("PATH", before.c_str(), 1);
+  for (const Outcome& outcome : {mapped, run}) {
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("depthgrid: one.mp4: ffmpeg failed; the map is in out"));
+  }
+  EXPECT_TRUE(fs::exists(Path("out/map.pgm")));
+  EXPECT_TRUE(fs::exists(Path("out2/metrics.json")));
+  EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr("mp4"))));
+}
+
+}  // namespace
+}  // namespace depthgrid
