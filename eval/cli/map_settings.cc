@@ -35,6 +35,25 @@ Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& o
   return config;
 }
 
+// A map's run.yaml has keys for what the command line has options for: beside any other input they
+// would be settings that nothing reads.
+void RequireOptionsFor(const std::vector<std::string>& overrides) {
+  struct Named {
+    const char* key;
+    const char* instead;
+  };
+  Config config;
+  for (const std::string& assignment : overrides) config.Set(assignment);
+  for (const Named& named :
+       {Named{"input", "the input is the command's argument"}, Named{"poses", "give --poses FILE"},
+        Named{"final_poses", "give --final-poses FILE"}, Named{"loops", "give --loops FILE"},
+        Named{"map", "give --map DIR"}, Named{"localise", "give --map DIR --localise"}}) {
+    if (!config.Has(named.key)) continue;
+    throw InputError(config.PlaceOfKey(named.key),
+                     fmt::format("is for a map's run.yaml as input; {}", named.instead));
+  }
+}
+
 // With the files of the run.yaml that the command line does not name anew.
 MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
   if (!IsSettingsFile(arguments.input)) return arguments;
@@ -67,11 +86,16 @@ void MapSettings::Visit(OptionsVisitor& v) {
 
 MapRequest ReadMapRequest(const MapArguments& given) {
   MapRequest request;
+  if (!IsSettingsFile(given.input)) RequireOptionsFor(given.common.set);
   request.config = ConfigOf(given, given.common.set);
   MapSettings& settings = request.settings;
   request.config.Read(settings);
   request.arguments = WithFilesOf(settings, given);
   const MapArguments& arguments = request.arguments;
+  if (arguments.localise && arguments.map.empty()) {
+    throw InputError(request.config.PlaceOfKey("localise"),
+                     "localise is true, must be false without a map to localise in (--map DIR)");
+  }
   settings.input = FromEverywhere(arguments.input);
   settings.poses = FromEverywhere(arguments.poses);
   settings.final_poses = FromEverywhere(arguments.final_poses);

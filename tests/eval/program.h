@@ -1,6 +1,7 @@
 // Drives the depthgrid program as a user would: arguments in; exit code, output and files out.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -61,6 +62,19 @@ class ProgramTest : public ::testing::Test {
   void Succeed(const std::string& arguments) const {
     const Outcome outcome = Program(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
+  }
+  // One line on standard error that holds all of `says`; no file appears or goes.
+  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
+    SCOPED_TRACE(arguments);
+    const auto before = FilesIn("");
+    const Outcome outcome = Program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, testing::StartsWith("depthgrid: "));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    for (const std::string& text : says) EXPECT_THAT(outcome.err, testing::HasSubstr(text));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(FilesIn(""), before);
+    EXPECT_FALSE(std::filesystem::exists(Path("out")));
   }
 
   // Every file below a folder, by relative name.

@@ -8,24 +8,8 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
-class ProgramErrors : public ProgramTest {
- protected:
-  // One line on standard error that holds all of `says`; no file appears or goes.
-  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
-    SCOPED_TRACE(arguments);
-    const auto before = FilesIn("");
-    const Outcome outcome = Program(arguments);
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, StartsWith("depthgrid: "));
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    for (const std::string& text : says) EXPECT_THAT(outcome.err, HasSubstr(text));
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(FilesIn(""), before);
-    EXPECT_FALSE(std::filesystem::exists(Path("out")));
-  }
-};
+class ProgramErrors : public ProgramTest {};
 
 TEST_F(ProgramErrors, WrongKeysNameTheNearestRightOne) {
   Write("wrong.yaml", std::string(kExperiment) + "framse: 3\n");

@@ -1,0 +1,39 @@
+// `depthgrid map`: what the keys of a map's run.yaml mean as settings.
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+class MapSettingsTest : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
+  }
+};
+
+TEST_F(MapSettingsTest, LocalisingNeedsAMap) {
+  Succeed("map one.log -o m");
+  ExpectRefusal("map m/run.yaml --set localise=true -o out",
+                {"--set localise=true: localise is true, must be false without a map to localise "
+                 "in (--map DIR)"});
+  std::string yaml = ReadFile(Path("m/run.yaml"));
+  const std::string off = "localise: false";
+  yaml.replace(yaml.find(off), off.size(), "localise: true");
+  Write("mine.yaml", yaml);
+  ExpectRefusal("map mine.yaml -o out", {"mine.yaml:", "localise is true, must be false"});
+}
+
+TEST_F(MapSettingsTest, WhatHasAnOptionIsNoSettingOfAPlainInput) {
+  ExpectRefusal("map one.log --set poses=slam.txt -o out",
+                {"--set poses=slam.txt: is for a map's run.yaml as input; give --poses FILE"});
+  ExpectRefusal("map one.log --set map=m -o out", {"--set map=m: ", "give --map DIR"});
+  ExpectRefusal("map one.log --set input=two.log -o out", {"--set input=two.log: "});
+  ExpectRefusal("map one.log --set localise=true -o out", {"give --map DIR --localise"});
+  Succeed("map one.log -o m");
+  Write("two.log", ReadFile(Path("one.log")));
+  Succeed("map m/run.yaml --set input=two.log -o again");
+}
+
+}  // namespace
+}  // namespace depthgrid
