@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,22 @@ fs::path FirstMissing(const fs::path& parent) {
   fs::path missing;
   for (fs::path p = parent; !p.empty() && !fs::exists(p); p = p.parent_path()) missing = p;
   return missing;
+}
+
+// Before anything is moved or removed: a file takes no folder's name, nor a folder a file's.
+void RequireSameKinds(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path destination = to / entry.path().filename();
+    const fs::file_status there = fs::symlink_status(destination);
+    if (!fs::exists(there)) continue;
+    if (entry.is_directory() && !fs::is_directory(destination)) {
+      throw std::runtime_error(destination.string() + ": is a file, must be a folder");
+    }
+    if (!entry.is_directory() && fs::is_directory(there)) {
+      throw std::runtime_error(destination.string() + ": is a folder, must be a file");
+    }
+    if (entry.is_directory()) RequireSameKinds(entry.path(), destination);
+  }
 }
 
 void MoveInto(const fs::path& from, const fs::path& to) {
@@ -113,6 +130,7 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::Clean() const {
+  if (kept_) return;
   std::error_code ignored;
   // Once it took its place, the name may be another program's. When the program ends at once, its
   // other threads may be writing still.
@@ -145,13 +163,31 @@ void OutputFolder::RemoveSuperseded() const {
   }
 }
 
-void OutputFolder::Commit() {
-  const EndDelay whole;
+void OutputFolder::PutInPlace() const {
   std::error_code error;
   fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
-  if (error) {
-    RemoveSuperseded();
-    MoveInto(work_, target_);
+  if (!error) return;
+  if (!fs::is_directory(target_)) throw fs::filesystem_error("rename", target_, error);
+  RequireSameKinds(work_, target_);
+  RemoveSuperseded();
+  MoveInto(work_, target_);
+}
+
+void OutputFolder::Commit() {
+  const EndDelay whole;
+  const auto keep = [this](const std::string& why) {
+    kept_ = true;
+    return std::runtime_error(
+        fmt::format("{}; what was to be written is in {} until the next command that writes {}",
+                    why, work_.string(), target_.string()));
+  };
+  try {
+    PutInPlace();
+  } catch (const fs::filesystem_error& error) {
+    const fs::path& place = error.path2().empty() ? error.path1() : error.path2();
+    throw keep(place.string() + ": " + error.code().message());
+  } catch (const std::runtime_error& error) {
+    throw keep(error.what());
   }
   committed_ = true;
 }

@@ -17,7 +17,7 @@ class OutputFolder {
   // another program is about to write. `superseded`: which files there an earlier result left;
   // those go that are not written again, so that no two results are mixed.
   OutputFolder(const std::string& path, bool force, FileRule superseded = {});
-  // Removes everything again unless committed.
+  // Removes everything again unless Commit() was called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -28,12 +28,14 @@ class OutputFolder {
 
   // Puts the written files in place. In a folder that has files already (`force`), files of the
   // same name are replaced, superseded ones go and all others stay: what a user put there is never
-  // deleted.
+  // deleted. Throws std::runtime_error when that cannot be done; the files that are not in place
+  // then stay where they are, and the message says where.
   void Commit();
 
  private:
   void Take(const std::string& shown);
   void Clean() const;
+  void PutInPlace() const;
   void RemoveSuperseded() const;
 
   std::filesystem::path target_;
@@ -41,6 +43,7 @@ class OutputFolder {
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
   int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;
+  bool kept_ = false;  // what could not be committed is not removed
   FileRule superseded_;
   std::optional<EndTask> clean_;
 };

@@ -113,6 +113,13 @@ FileRule FilesOfCases(const fs::path& folder) {
   };
 }
 
+// Those that a result of this kind makes at its top, apart from a study's, which are its cases'.
+Names FoldersOf(ResultKind kind) {
+  if (kind == ResultKind::kRun || kind == ResultKind::kMap) return {"frames"};
+  if (kind == ResultKind::kRender) return {"depth", "rgb"};
+  return {};
+}
+
 }  // namespace
 
 FileRule FilesOf(ResultKind kind) {
@@ -155,6 +162,30 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
     if (has_slam && IsSlamFile(relative)) return false;
     return of_run(relative);
   };
+}
+
+void RequireNamesFree(const std::string& folder, ResultKind kind) {
+  if (!fs::is_directory(folder)) return;
+  constexpr int kDeepestFile = 2;  // a study's CASE/frames/NAME
+  const FileRule is_file = FilesOf(kind);
+  const Names folders = FoldersOf(kind);
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (auto entry = fs::recursive_directory_iterator(folder, options);
+       entry != fs::recursive_directory_iterator(); ++entry) {
+    if (entry.depth() == kDeepestFile) entry.disable_recursion_pending();
+    const fs::path relative = entry->path().lexically_relative(folder);
+    const bool is_folder = entry->is_directory();
+    if (is_folder && !entry->is_symlink() && is_file(relative)) {
+      throw InputError(entry->path().string(),
+                       "is a folder, and a file of that name is to be written; choose another "
+                       "output folder");
+    }
+    if (!is_folder && folders.contains(relative.string())) {
+      throw InputError(entry->path().string(),
+                       "is a file, and a folder of that name is to be written; choose another "
+                       "output folder");
+    }
+  }
 }
 
 void RequireNoOtherResult(const std::string& folder, ResultKind kind) {

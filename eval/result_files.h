@@ -22,6 +22,10 @@ FileRule FilesOf(ResultKind kind);
 // Nothing when the folder holds none: files of such names are somebody else's.
 FileRule FilesLeftBy(ResultKind kind, const std::string& folder);
 
+// Throws InputError when what lies there cannot be replaced by such a result: a folder where one of
+// its files goes, or the other way round.
+void RequireNamesFree(const std::string& folder, ResultKind kind);
+
 // Throws InputError when the folder holds a result of another kind with a report.html of its own:
 // one of the two pages would take the other's place. Only a run is let in beside images and poses.
 void RequireNoOtherResult(const std::string& folder, ResultKind kind);

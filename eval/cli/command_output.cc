@@ -8,6 +8,7 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
                         const std::vector<std::string>& inputs) {
   const std::string& folder = arguments.output;
   RequireNoOtherResult(folder, kind);
+  RequireNamesFree(folder, kind);
   const FileRule written = FilesOf(kind);
   const FileRule removed = FilesLeftBy(kind, folder);
   RequireInputsKept(

@@ -12,7 +12,8 @@ namespace depthgrid::cli {
 
 // The folder for a result of this kind; what an earlier one left there goes. `inputs`: files and
 // folders that the command reads. Throws InputError, before anything is done, for what OutputFolder
-// does not take, for a folder of another result, and when an input would be overwritten or removed.
+// does not take, for a folder of another result or of names that it cannot have, and when an input
+// would be overwritten or removed.
 OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
                         const std::vector<std::string>& inputs);
 

@@ -38,6 +38,7 @@ void WriteInPlace(const std::string& folder) {
 
 void WriteElsewhere(const ReportArguments& arguments) {
   RequireNoOtherResult(arguments.output, ResultKind::kPage);
+  RequireNamesFree(arguments.output, ResultKind::kPage);
   OutputFolder output(arguments.output, arguments.force);
   const auto plain = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
   const fs::path back = plain(arguments.folder).lexically_relative(plain(arguments.output));

@@ -154,6 +154,14 @@ TEST_F(KeptFiles, AFolderHoldsOneResultWithAPage) {
   EXPECT_EQ(ReadFile(Path("other/report.html")), page);
 }
 
+TEST_F(KeptFiles, AFolderInTheWayOfAFileIsSaidBeforeTheWork) {
+  fs::create_directories(Path("m/map.yaml"));
+  Write("m/map.yaml/mine", "mine");
+  ExpectRefusal("map one.log -o m --force", "m/map.yaml: is a folder, and a file of that name");
+  MakeFolder("r", {"frames"});
+  ExpectRefusal("run ./small.yaml -o r --force", "r/frames: is a file, and a folder of that name");
+}
+
 TEST_F(KeptFiles, AStudyGoesOnInItsOwnFolder) {
   const std::string head = "frames: 3\ncases:\n  - {name: a, scene: ./room.yaml}\n";
   Write("one.yaml", head);

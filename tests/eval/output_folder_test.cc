@@ -98,6 +98,35 @@ TEST_F(OutputFolderTest, ForceReplacesItsOwnNamesAndKeepsOthers) {
   EXPECT_EQ(ReadFile(Path("out/mine.txt")), "precious");
 }
 
+TEST_F(OutputFolderTest, WhatCannotTakeItsPlaceIsKept) {
+  fs::create_directories(Path("out/b.txt"));
+  WriteFile(Path("out/a.txt"), "old");
+  WriteFile(Path("out/rgb"), "precious");
+  const auto commit = [&](const std::string& name) -> std::string {
+    OutputFolder folder(Path("out"), true, [](const fs::path&) { return true; });
+    fs::create_directories(fs::path(folder.File(name)).parent_path());
+    WriteFile(folder.File("a.txt"), "new");
+    WriteFile(folder.File(name), "new");
+    try {
+      folder.Commit();
+    } catch (const InputError&) {
+      return "no failure of the program, an error of the user";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string rest = "; what was to be written is in " + Path(".out.partial") +
+                           " until the next command that writes " + Path("out");
+  EXPECT_EQ(commit("b.txt"), Path("out/b.txt") + ": is a folder, must be a file" + rest);
+  EXPECT_EQ(Everything(), (Names{".out.partial", ".out.partial/a.txt", ".out.partial/b.txt", "out",
+                                 "out/a.txt", "out/b.txt", "out/rgb"}));
+  EXPECT_EQ(ReadFile(Path("out/a.txt")), "old");
+  EXPECT_EQ(commit("rgb/0.png"), Path("out/rgb") + ": is a file, must be a folder" + rest);
+  EXPECT_EQ(ReadFile(Path("out/rgb")), "precious");
+  EXPECT_EQ(ReadFile(Path(".out.partial/rgb/0.png")), "new");
+}
+
 TEST_F(OutputFolderTest, AFolderGoesWithTheLastOfItsSupersededFiles) {
   fs::create_directories(Path("out/frames"));
   fs::create_directories(Path("out/kept"));
