@@ -85,12 +85,24 @@ std::string LengthText(double length_m) {
 
 constexpr int kMarginPx = 12;
 constexpr int kTextScale = 2;
+constexpr double kPathWidthPx = 2.5;
+constexpr double kBeneathWidthPx = 7.0;
+constexpr double kDotRadiusPx = 5.0;
 
-// A scale bar and the paths' names, in one line.
+double WidthOf(const Path& path) {
+  return path.style == PathStyle::kBeneath ? kBeneathWidthPx : kPathWidthPx;
+}
+
+Colour ShownColour(const Path& path) {
+  return path.style == PathStyle::kBeneath ? Paler(path.colour) : path.colour;
+}
+
+// A scale bar, the paths' names and what their dots are, in one line.
 class Legend {
  public:
-  Legend(double width_m, double px_per_m, const std::vector<Path>& paths)
-      : bar_text_(LengthText(ScaleBarLength(width_m))),
+  Legend(double width_m, double px_per_m, const std::vector<Path>& paths, PathDot dot)
+      : dot_text_(dot == PathDot::kStart ? "start" : "now"),
+        bar_text_(LengthText(ScaleBarLength(width_m))),
         bar_px_(static_cast<int>(std::lround(ScaleBarLength(width_m) * px_per_m))),
         paths_(paths) {}
 
@@ -99,6 +111,7 @@ class Legend {
     for (const Path& path : paths_) {
       width_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
     }
+    if (!paths_.empty()) width_px += 4 * kMarginPx + Canvas::TextWidth(dot_text_, kTextScale);
     return width_px;
   }
   static int HeightPx() { return Canvas::TextHeight(kTextScale) + 2 * kMarginPx; }
@@ -114,14 +127,19 @@ class Legend {
     canvas.Text(left, text_top, bar_text_, kTextScale, kInk);
     left += Canvas::TextWidth(bar_text_, kTextScale) + 2 * kMarginPx;
     for (const Path& path : paths_) {
-      canvas.Fill(left, middle - 2, 2 * kMarginPx, 4, path.colour);
+      const int half_px = path.style == PathStyle::kBeneath ? 4 : 2;
+      canvas.Fill(left, middle - half_px, 2 * kMarginPx, 2 * half_px, ShownColour(path));
       left += 3 * kMarginPx;
       canvas.Text(left, text_top, path.name, kTextScale, kInk);
       left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
     }
+    if (paths_.empty()) return;
+    canvas.Disc({left + kDotRadiusPx, middle}, kDotRadiusPx, kInk);
+    canvas.Text(left + 2 * kMarginPx, text_top, dot_text_, kTextScale, kInk);
   }
 
  private:
+  std::string dot_text_;
   std::string bar_text_;
   int bar_px_;
   const std::vector<Path>& paths_;
@@ -129,16 +147,16 @@ class Legend {
 
 // Over a picture of so many rows, whose lower left corner is the origin. The centre of cell (i,
 // j)'s picture is that of its enlarged square.
-void DrawPath(const Path& path, const Eigen::Vector2d& origin_m, double px_per_m, int rows_px,
-              Canvas& canvas) {
-  constexpr double kPathWidthPx = 2.5;
+void DrawPath(const Path& path, PathDot dot, const Eigen::Vector2d& origin_m, double px_per_m,
+              int rows_px, Canvas& canvas) {
   std::vector<Eigen::Vector2d> points;
   for (const StampedPose& pose : path.poses) {
     const Eigen::Vector2d offset_m = pose.world_from_camera.translation.head<2>() - origin_m;
     points.emplace_back(offset_m.x() * px_per_m - 0.5, rows_px - offset_m.y() * px_per_m - 0.5);
   }
-  canvas.Polyline(points, kPathWidthPx, path.colour);
-  if (!points.empty()) canvas.Disc(points.front(), 2.0 * kPathWidthPx, path.colour);
+  canvas.Polyline(points, WidthOf(path), ShownColour(path));
+  if (points.empty()) return;
+  canvas.Disc(dot == PathDot::kStart ? points.front() : points.back(), kDotRadiusPx, path.colour);
 }
 
 }  // namespace
@@ -171,11 +189,11 @@ RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
 }
 
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
-                      const std::vector<Path>& paths) {
+                      const std::vector<Path>& paths, PathDot dot) {
   const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
   const double px_per_m = factor / geometry.resolution_m;
-  const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths);
+  const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths, dot);
   Canvas canvas(std::max(large.width_px, legend.WidthPx()), large.height_px + Legend::HeightPx(),
                 kPaper);
   RgbImage image = canvas.image();
@@ -184,7 +202,7 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
   }
   canvas = Canvas(std::move(image));
   for (const Path& path : paths) {
-    DrawPath(path, geometry.OriginM(), px_per_m, large.height_px, canvas);
+    DrawPath(path, dot, geometry.OriginM(), px_per_m, large.height_px, canvas);
   }
   legend.Draw(large.height_px, canvas);
   return canvas.image();

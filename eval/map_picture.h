@@ -22,15 +22,22 @@ RgbImage PictureOf(const CellSet& cells, const GridGeometry& geometry);
 RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
                            const std::optional<CellSet>& observable, const GridGeometry& geometry);
 
+// A path that another one may lie upon is wide and pale, so that it is seen on both sides of it.
+enum class PathStyle { kLine, kBeneath };
+
 struct Path {
   std::string name;
   Colour colour;
   Trajectory poses;
+  PathStyle style = PathStyle::kLine;
 };
+
+// Which end of each path has a dot.
+enum class PathDot { kStart, kNow };
 
 // The picture (one pixel a cell) enlarged, with paths, a legend and a scale bar below it.
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
-                      const std::vector<Path>& paths);
+                      const std::vector<Path>& paths, PathDot dot = PathDot::kStart);
 
 // The part of `geometry` that holds anything but unknown cells, with a margin; all of it if nothing
 // does.

@@ -12,31 +12,36 @@ constexpr int kFramesPerS = 30;
 constexpr std::size_t kMaxFrames = 600;
 // The finished map stays in the picture this long.
 constexpr int kLastFrames = 2 * kFramesPerS;
-constexpr int kMarginCells = 4;
 
 }  // namespace
 
 void WriteMapVideo(const std::string& path, const MappingRun& run, const GridOptions& options) {
   RequireVideo(path);
   const std::vector<MappedFrame>& mapped = run.result.mapped;
-  const GridGeometry part = KnownPart(StatesOf(run.result.map), kMarginCells);
-  const std::size_t every = mapped.size() / kMaxFrames + 1;
+  if (mapped.empty() || run.reports.empty()) {
+    throw std::runtime_error(path + ": nothing was mapped, there is nothing to show");
+  }
+  Path estimate{"estimate", palette::kEstimate, FinalTrajectory(run)};
+  const GridGeometry part = ShownPart(StatesOf(run.result.map), {estimate});
+  estimate.poses.clear();
   MapDrawing drawing(options);
-  Path estimate{"estimate", palette::kEstimate, {}};
   std::optional<VideoWriter> video;
   RgbImage picture;
-  for (std::size_t i = 0; i < mapped.size(); ++i) {
-    drawing.Add(*mapped[i].obstacles, mapped[i].map_from_base);
-    const auto frame = static_cast<std::size_t>(mapped[i].frame);
-    if (frame < run.result.map_from_camera.size() && run.result.map_from_camera[frame]) {
-      estimate.poses.push_back({mapped[i].stamp_s, *run.result.map_from_camera[frame]});
+  const std::size_t every = run.reports.size() / kMaxFrames + 1;
+  auto next = mapped.begin();
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    // With the first frame also what the run went on in: its frames have numbers below 0.
+    for (; next != mapped.end() && next->frame <= run.reports[i].index; ++next) {
+      drawing.Add(*next->obstacles, next->map_from_base);
     }
-    if (i % every != 0 && i + 1 != mapped.size()) continue;
-    picture = AnnotatedMap(PictureOf(drawing.Map(), part), part, {estimate});
+    if (const auto& pose = run.result.map_from_camera[i]) {
+      estimate.poses.push_back({run.reports[i].stamp_s, *pose});
+    }
+    if (i % every != 0 && i + 1 != run.reports.size()) continue;
+    picture = AnnotatedMap(PictureOf(drawing.Map(), part), part, {estimate}, PathDot::kNow);
     if (!video) video.emplace(path, picture.width_px, picture.height_px, kFramesPerS);
     video->Add(picture);
   }
-  if (!video) throw std::runtime_error(path + ": nothing was mapped, there is nothing to show");
   for (int i = 0; i < kLastFrames; ++i) video->Add(picture);
   video->Finish();
 }

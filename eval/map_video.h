@@ -1,4 +1,5 @@
-// A video of the map growing: the scans at their final poses one after the other.
+// A video of the map growing: the scans at their final poses one after the other, and the path. A
+// finished map that the run went on in is there from the beginning.
 #pragma once
 
 #include <string>

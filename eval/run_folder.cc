@@ -43,7 +43,7 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   const OccupancyMap map = MapOf(*record.mapping);
   std::vector<Path> paths;
   if (record.truth != nullptr) {
-    paths.push_back({"truth", palette::kTruth, record.truth->trajectory});
+    paths.push_back({"truth", palette::kTruth, record.truth->trajectory, PathStyle::kBeneath});
   }
   paths.push_back({"slam", palette::kSlam, SlamTrajectory(*record.mapping)});
   paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});

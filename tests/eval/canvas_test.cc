@@ -88,6 +88,42 @@ TEST(MapPicture, PathsLieWhereTheirCellsAre) {
   EXPECT_EQ(At(image, 10 * factor, 9 * factor + factor / 2), (Colour{255, 0, 0}));
 }
 
+TEST(MapPicture, ATruthBeneathAnEstimateIsSeenOnBothSides) {
+  const GridGeometry geometry{0.05, {-10, -10}, 20, 20};
+  Path truth{"truth", {255, 0, 0}, {}, PathStyle::kBeneath};
+  truth.poses.push_back({0.0, {Eigen::Quaterniond::Identity(), {-0.2, 0.025, 1.0}}});
+  truth.poses.push_back({1.0, {Eigen::Quaterniond::Identity(), {0.2, 0.025, 1.0}}});
+  const Path estimate{"estimate", {0, 0, 255}, truth.poses};
+  const RgbImage image =
+      AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, {truth, estimate});
+  const int factor = image.width_px / geometry.width_cells;
+  const int middle = 9 * factor + factor / 2;
+  EXPECT_EQ(At(image, 10 * factor, middle), (Colour{0, 0, 255}));
+  for (const int side : {-3, 3}) {
+    EXPECT_EQ(At(image, 10 * factor, middle + side), (Colour{255, 127, 127}));
+  }
+}
+
+TEST(MapPicture, TheDotIsAtTheStartOrWhereItIsNow) {
+  const GridGeometry geometry{0.05, {-10, -10}, 20, 20};
+  Path path{"p", {255, 0, 0}, {}};
+  path.poses.push_back({0.0, {Eigen::Quaterniond::Identity(), {-0.225, 0.025, 1.0}}});
+  path.poses.push_back({1.0, {Eigen::Quaterniond::Identity(), {0.225, 0.025, 1.0}}});
+  int pictures = 0;
+  for (const PathDot dot : {PathDot::kStart, PathDot::kNow}) {
+    const RgbImage image =
+        AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, {path}, dot);
+    const int factor = image.width_px / geometry.width_cells;
+    const int above = 9 * factor + factor / 2 - 3;
+    const bool at_start = At(image, 5 * factor + factor / 2, above) == path.colour;
+    const bool at_end = At(image, 14 * factor + factor / 2, above) == path.colour;
+    EXPECT_EQ(at_start, dot == PathDot::kStart);
+    EXPECT_EQ(at_end, dot == PathDot::kNow);
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 2);
+}
+
 TEST(MapPicture, TheLegendIsNotCut) {
   const std::vector<Path> paths = {
       {"truth", {255, 0, 0}, {}}, {"odometry", {0, 255, 0}, {}}, {"estimate", {0, 0, 255}, {}}};
