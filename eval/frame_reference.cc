@@ -79,7 +79,10 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
   const auto scans = static_cast<std::size_t>(submap.scans);
   const std::size_t submap_index = scan_index / scans;
   const std::size_t first = submap_index > 0 ? (submap_index - 1) * scans : 0;
-  const std::optional<std::size_t> first_row = RowOf(run.frames, run.scans[first].frame);
+  if (scan_index < run.prior_scans) return {};
+  // Of the map that the run went on in no row tells, but it stays where it is.
+  const std::size_t first_own = std::min(std::max(first, run.prior_scans), scan_index);
+  const std::optional<std::size_t> first_row = RowOf(run.frames, run.scans[first_own].frame);
   const std::optional<std::size_t> row = RowOf(run.frames, run.scans[scan_index].frame);
   const std::optional<Pose2> pose_then = row ? PoseAt(run.frames, *row) : std::nullopt;
   if (!first_row || !pose_then) return {};
@@ -93,9 +96,12 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
   ScanRasterizer rasterizer;
   for (std::size_t i = first; i < scan_index; ++i) {
     const StoredScan& stored = run.scans[i];
-    const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
-    const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
-    Pose2 pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
+    Pose2 pose = stored.map_from_base;
+    if (i >= run.prior_scans) {
+      const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
+      const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
+      pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
+    }
     Scan scan = *stored.scan;
     // It counts as one of the submap's scans, but poses flung far apart need no grid over them all.
     if (AreApart(scan, pose, shown, *pose_then, grid.resolution_m)) {

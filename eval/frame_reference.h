@@ -21,9 +21,10 @@ std::optional<FrameAtTheTime> FrameAtRow(const CsvTable& frames, std::size_t row
 
 // The older active submap (mapper/grid/submap.h) as it was when run.scans[scan_index] came: of the
 // scans before it at the poses they had then. If SLAM closed a loop in between, the finished map's
-// scans moved so that this one lies where it lay at the time. Unknown everywhere for the first
-// scan. Only its surroundings: scans too far away to share a cell with them are left out, so that
-// the map stays small however far the poses fly.
+// scans moved so that this one lies where it lay at the time. Scans of a map that the run went on
+// in lie as they lie in the end. Unknown everywhere for the first scan. Only its surroundings:
+// scans too far away to share a cell with them are left out, so that the map stays small however
+// far the poses fly.
 OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const GridOptions& grid,
                          const SubmapOptions& submap);
 

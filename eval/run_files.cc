@@ -1,5 +1,6 @@
 #include "eval/run_files.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "mapper/core/error.h"
@@ -10,6 +11,15 @@
 namespace depthgrid {
 
 namespace fs = std::filesystem;
+namespace {
+
+std::size_t PriorScansOf(const RunFiles& run) {
+  if (run.only_placed) return run.scans.size();
+  const auto is_prior = [](const StoredScan& scan) { return scan.frame < 0; };
+  return static_cast<std::size_t>(std::count_if(run.scans.begin(), run.scans.end(), is_prior));
+}
+
+}  // namespace
 
 RunFiles ReadRunFolder(const std::string& folder) {
   const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
@@ -30,6 +40,9 @@ RunFiles ReadRunFolder(const std::string& folder) {
   run.est = ReadTrajectoryFile(path("trajectory_est.txt")).poses;
   run.frames = ReadCsv(path("frames.csv"));
   if (exists("scans.bin")) run.scans = ReadScans(path("scans.bin"));
+  const Config settings = Config::FromText(run.settings, path("run.yaml"));
+  run.only_placed = SettingOf(settings, "localise") == "true";
+  run.prior_scans = PriorScansOf(run);
   return run;
 }
 

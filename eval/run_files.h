@@ -29,6 +29,10 @@ struct RunFiles {
   Trajectory est;
   CsvTable frames;
   std::vector<StoredScan> scans;
+  // So many of them, the first, are of the finished map that the run went on in (`--map`): all when
+  // it was only placed there (`--localise`), which keeps the numbers of the run that made the map.
+  std::size_t prior_scans = 0;
+  bool only_placed = false;
 };
 
 // Throws InputError when the folder is no run's, or a file of it is damaged.

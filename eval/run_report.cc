@@ -108,15 +108,17 @@ Json FramesJson(const CsvTable& frames, const std::vector<double>& final_errors_
   return json;
 }
 
-// Hits of some scans in base axes, whole centimetres: an even spread, and the worst frames'.
+// Hits of some of the run's own scans in base axes, whole centimetres: an even spread, and the
+// worst frames'.
 Json ScansJson(const RunFiles& run, const std::vector<std::size_t>& worst) {
   constexpr std::size_t kSpreadScans = 150;
   constexpr std::size_t kMaxHits = 160;
   const std::vector<double>& frame_of_row = run.frames.Column("frame");
-  const std::size_t step = std::max<std::size_t>(1, run.scans.size() / kSpreadScans);
+  const std::size_t step =
+      std::max<std::size_t>(1, (run.scans.size() - run.prior_scans) / kSpreadScans);
   Json json = Json::array();
   std::size_t row = 0;
-  for (std::size_t i = 0; i < run.scans.size(); ++i) {
+  for (std::size_t i = run.prior_scans; i < run.scans.size(); ++i) {
     const StoredScan& stored = run.scans[i];
     while (row < frame_of_row.size() && frame_of_row[row] < stored.frame) ++row;
     const bool is_worst = std::find(worst.begin(), worst.end(), row) != worst.end();
@@ -204,7 +206,9 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);
   const bool planar = !run.slam.empty() && IsPlanar(run.slam.front().world_from_camera);
   json["input_poses"] = planar ? "odometry" : "SLAM";
-  json["mapped_frames"] = run.scans.size();
+  json["own_scans"] = run.scans.size() - run.prior_scans;
+  json["prior_scans"] = run.prior_scans;
+  json["only_placed"] = run.only_placed;
   json["map"] = MapJson(run);
   json["paths"]["slam"] = PathJson(PosesAt(run.slam, stamps_s));
   json["paths"]["online"] = PathJson(PosesAt(run.online, stamps_s));

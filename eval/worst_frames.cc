@@ -50,23 +50,39 @@ ReportJson SurfaceJson(const MatchSurface& surface) {
           {"yaw_residual", RoundedAll(surface.yaw_residual, kDecimals)}};
 }
 
+// Without one, why.
 void AddMatch(const RunFiles& run, std::size_t scan_index, const Pose2& map_from_base,
               const GridOptions& grid, const SubmapOptions& submap, ReportJson& json) {
   MatchPoints points;
   points.Assign(*run.scans[scan_index].scan);
   const OccupancyMap reference = ReferenceOf(run, scan_index, grid, submap);
-  if (points.size() == 0 || reference.geometry.size() == 0) return;
+  if (points.size() == 0) {
+    json["no_match"] = "Its scan has no return.";
+    return;
+  }
+  if (reference.geometry.size() == 0) {
+    json["no_match"] = "Nothing was mapped yet that this frame could be matched against.";
+    return;
+  }
   json["map"] = MapJson(reference, RectangleAround(points, map_from_base, grid.resolution_m));
   json["surface"] = SurfaceJson(MatchSurfaceAround(points, ViewOf(reference), map_from_base, {}));
 }
 
-// Among run.scans, which are in the order of their frames.
+// Among the run's own scans, which are in the order of their frames.
 std::optional<std::size_t> ScanOfFrame(const RunFiles& run, int frame) {
+  const auto first = run.scans.begin() + static_cast<std::ptrdiff_t>(run.prior_scans);
   const auto found =
-      std::lower_bound(run.scans.begin(), run.scans.end(), frame,
+      std::lower_bound(first, run.scans.end(), frame,
                        [](const StoredScan& scan, int wanted) { return scan.frame < wanted; });
   if (found == run.scans.end() || found->frame != frame) return std::nullopt;
   return static_cast<std::size_t>(found - run.scans.begin());
+}
+
+std::string WhyNoScan(const RunFiles& run) {
+  return run.only_placed
+             ? "It was matched against the finished map; of frames that are only placed "
+               "no scan is kept to draw."
+             : "No scan of it is kept.";
 }
 
 }  // namespace
@@ -105,7 +121,13 @@ ReportJson WorstFramesJson(const RunFiles& run, const std::vector<std::size_t>& 
       json["match"] = PoseJson(frame->matched_map_from_base);
       json["truth"] = truth.empty() ? ReportJson(nullptr) : PoseJson(truth[row]);
       const auto scan = ScanOfFrame(run, static_cast<int>(frame_of_row[row]));
-      if (scan) AddMatch(run, *scan, frame->map_from_base, grid, submap, json);
+      if (scan) {
+        AddMatch(run, *scan, frame->map_from_base, grid, submap, json);
+      } else {
+        json["no_match"] = WhyNoScan(run);
+      }
+    } else {
+      json["no_match"] = "Nothing knew a pose of this frame.";
     }
     list.push_back(json);
   }

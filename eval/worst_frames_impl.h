@@ -14,7 +14,7 @@ namespace depthgrid {
 std::vector<std::size_t> WorstRows(const std::vector<double>& badness);
 
 // One object a row: poses at the time, and if the row has a scan, what it was matched against and
-// the surface of residuals around the estimate. `truth`, one a row, may be empty.
+// the surface of residuals around the estimate; else why not. `truth`, one a row, may be empty.
 nlohmann::ordered_json WorstFramesJson(const RunFiles& run, const std::vector<std::size_t>& rows,
                                        const std::vector<std::optional<Pose2>>& truth,
                                        const GridOptions& grid, const SubmapOptions& submap);

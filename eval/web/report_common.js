@@ -25,8 +25,14 @@ function metres(value) {
   if (size < 1) return `${fixed(value * 100, 1)} cm`;
   return `${fixed(value, 2)} m`;
 }
-const percent = (value) => (isNumber(value) ? `${(value * 100).toFixed(1)} %` : "–");
+const percent = (value) => (isNumber(value) ? `${fixed(value * 100, 1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// What fits on a sheet of A4 or US letter between the margins: the page is still as wide as the
+// window when the browser says that it is about to print.
+const PRINT_WIDTH = 690;
+let printing = false;
+const widthFor = (container, least, otherwise) => (printing ? PRINT_WIDTH : Math.max(least, container.clientWidth || otherwise));
 
 // ---- theme ----
 const themeListeners = [];  // redraw what is painted in the theme's colours
@@ -46,10 +52,14 @@ function initTheme() {
   let onScreen = null;
   window.addEventListener("beforeprint", () => {
     onScreen = current();
-    setTheme("light");
+    printing = true;
+    setTheme("light");  // which draws everything anew
     for (const details of document.querySelectorAll("details")) details.open = true;
   });
-  window.addEventListener("afterprint", () => { if (onScreen) setTheme(onScreen); });
+  window.addEventListener("afterprint", () => {
+    printing = false;
+    if (onScreen) setTheme(onScreen);
+  });
 }
 
 function tableOf(head, rows) {
@@ -91,12 +101,36 @@ function paintedCanvas(width, height, label, paint) {
 // ---- plots ----
 const allPlots = [];
 
+// As many digits as tell apart what the axis shows, and no fewer than asked for.
+function digitsOn(scale, least) {
+  const span = Math.abs(scale.max - scale.min);
+  return span > 0 ? Math.max(least, Math.min(6, 1 - Math.floor(Math.log10(span)))) : least;
+}
+
 function seriesOf(s) {
+  const say = (u, v, i) => `${s.digits === undefined ? compact(v) : fixed(v, digitsOn(u.scales.y, s.digits))}${s.unit ? ` ${s.unit}` : ""}${s.notes && i != null ? ` ${s.notes[i]}` : ""}`;
   return {
     label: s.label, stroke: colour(s.colour), width: 1.6, dash: s.dash, show: s.show !== false,
-    points: { show: Boolean(s.points), size: 7, fill: colour(s.colour) }, spanGaps: Boolean(s.spanGaps), paths: s.onlyPoints ? () => null : undefined,
-    value: (u, v) => (isNumber(v) ? `${s.digits === undefined ? compact(v) : v.toFixed(s.digits)}${s.unit ? ` ${s.unit}` : ""}` : "–"),
+    points: { show: Boolean(s.points) && !s.weights, size: 7, fill: colour(s.colour) }, spanGaps: Boolean(s.spanGaps), paths: s.onlyPoints ? () => null : undefined,
+    value: (u, v, k, i) => (isNumber(v) ? say(u, v, i) : "–"),
   };
+}
+
+// Points as large as what they stand for: their areas are as the weights.
+function drawWeighted(u, series) {
+  const MOST_RADIUS = 10;
+  const LEAST_RADIUS = 1.5;
+  series.forEach((s, k) => {
+    if (!s.weights || !u.series[k + 1].show) return;
+    const most = Math.max(...s.weights);
+    u.ctx.fillStyle = colour(s.colour);
+    u.data[0].forEach((x, i) => {
+      const radius = Math.max(LEAST_RADIUS, MOST_RADIUS * Math.sqrt(s.weights[i] / most)) * devicePixelRatio;
+      u.ctx.beginPath();
+      u.ctx.arc(u.valToPos(x, "x", true), u.valToPos(s.values[i], "y", true), radius, 0, 2 * Math.PI);
+      u.ctx.fill();
+    });
+  });
 }
 
 // Whiskers from low to high at every point of the series that have them, side by side.
@@ -162,7 +196,7 @@ function zoomPlot(u, x, factor) {
 }
 
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash,
-// digits, unit, points, low, high (ends of intervals)}. Lines stop where a value is null. Plots of
+// digits, unit, points, weights (of points), notes (behind the values), low, high (ends of intervals)}. Lines stop where a value is null. Plots of
 // one `sync` key share their cursor. `xNames` replaces the numbers of the x axis, one a value of x.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
 function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
@@ -171,7 +205,7 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
   container.append(box);
   let plot = null;
   let quiet = false;  // the cursor moves because somebody else moved it
-  const width = () => Math.max(280, container.clientWidth || 1100);
+  const width = () => widthFor(container, 280, 1100);
   // Dots and whiskers at the ends must not be cut.
   const roomAround = (u, low, high) => {
     if (xNames) return [Math.min(low, high) - 0.5, high + 0.5];
@@ -192,7 +226,7 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
       series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map(seriesOf)],
       hooks: {
         setCursor: onCursor ? [(u) => { if (!quiet && u.cursor.event && u.cursor.idx != null) { shown = u.cursor.idx; onCursor(shown); } }] : [],
-        draw: [(u) => drawIntervals(u, series)],
+        draw: [(u) => { drawIntervals(u, series); drawWeighted(u, series); }],
         ready: [() => { if (shown !== null) setTimeout(() => show(shown)); }],
       },
     };

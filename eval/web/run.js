@@ -30,18 +30,27 @@ function headline() {
   const cards = [];
   const add = (value, text) => cards.push(make("div", { class: "card" }, make("b", {}, value), make("span", {}, text)));
   const m = RUN.metrics;
+  const known = (path) => path.x.filter((x) => x !== null).length;
+  const [posed, tracked] = [known(RUN.paths.est), known(RUN.paths.slam)];
+  const others = tracked < frameCount ? `, of the ${tracked} frames that it tracked` : "";
   if (m) {
     const seen = m.map.observable ?? m.map.all;
     add(fixed(seen.occupied.f1, 3), `F1 of ${m.map.observable ? "observable " : ""}walls, 1-cell tolerance`);
     add(percent(m.map.coverage), "of the observable cells mapped");
     add(metres(m.map.chamfer_m), "chamfer distance of the walls");
     if (isNumber(m.map.navigability?.success_rate)) add(percent(m.map.navigability.success_rate), "of sampled ways are planned on the map and free in truth");
-    add(metres(m.trajectory.slam?.mean_euclidean_m), "SLAM's mean error, not aligned");
+    add(metres(m.trajectory.slam?.mean_euclidean_m), `SLAM's mean error, not aligned${others}`);
     add(metres(m.trajectory.est?.mean_euclidean_m), "mean error of the estimate, not aligned");
     add(metres(m.trajectory.est?.ate_rmse_se2_m), "ATE of the estimate, aligned in the plane");
+    if (posed < frameCount) add(`${frameCount - posed} of ${frameCount}`, "frames without any pose: SLAM was lost; no error counts them");
   } else {
-    add(String(frameCount), "frames");
-    add(String(RUN.mapped_frames), "frames mapped");
+    if (RUN.only_placed) {
+      add(`${posed} of ${frameCount}`, "frames placed in the finished map");
+      add(String(RUN.prior_scans), "scans in that map, none added");
+    } else {
+      add(String(frameCount), "frames");
+      add(String(RUN.own_scans), RUN.prior_scans ? `frames added to the finished map's ${RUN.prior_scans}` : "frames mapped");
+    }
     add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
     add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved`);
     add(fixed(median(frames.match_score), 2), "share of the beams that the map explains, median");
@@ -60,12 +69,14 @@ function initWarnings() {
 
 function initSamples() {
   if (!RUN.samples.length) { byId("samples-section").remove(); return; }
+  if (RUN.only_placed) byId("samples-note").textContent = "Depth: bright is near, grey could not be measured.";
   for (const sample of RUN.samples) {
     const figure = (source, text) => make("figure", {}, make("img", { src: source, alt: `${text} of frame ${sample.frame}` }),
       make("figcaption", {}, `Frame ${sample.frame}: ${text}`));
+    const depth = RUN.only_placed ? "depth" : "depth with the scan";
     const row = make("div", { class: "samples-row" });
     if (sample.colour) row.append(figure(sample.colour, "colour"));
-    row.append(figure(sample.depth, "depth with the scan"));
+    row.append(figure(sample.depth, depth));
     byId("samples").append(row);
   }
 }
@@ -138,8 +149,8 @@ function initNumbers() {
   const bins = (m.map.calibration?.reliability ?? []).filter((bin) => bin.cells > 0);
   if (bins.length > 1) {
     drawPlot(byId("numbers"), {
-      title: "Calibration: share of cells truly occupied against the map's probability", x: bins.map((bin) => bin.mean_prob), xLabel: "probability in the map", yLabel: "share occupied",
-      series: [{ label: "cells", values: bins.map((bin) => bin.occupied_share), colour: "est", points: true }, { label: "ideal", values: bins.map((bin) => bin.mean_prob), colour: "muted", dash: [4, 4] }],
+      title: "Calibration: share of cells truly occupied against the map's probability; a dot's area is its number of cells", x: bins.map((bin) => bin.mean_prob), xLabel: "probability in the map", yLabel: "share occupied",
+      series: [{ label: "truly occupied", values: bins.map((bin) => bin.occupied_share), colour: "est", points: true, onlyPoints: true, weights: bins.map((bin) => bin.cells), notes: bins.map((bin) => `of ${bin.cells} ${bin.cells === 1 ? "cell" : "cells"}`) }, { label: "ideal", values: bins.map((bin) => bin.mean_prob), colour: "muted", dash: [4, 4] }],
     });
   }
 }

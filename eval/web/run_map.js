@@ -2,7 +2,7 @@
 "use strict";
 const canvas = byId("map");
 const images = {};
-const view = { zoom: 1, x: 0, y: 0 };  // pan in canvas pixels
+const view = { zoom: 1, x: 0, y: 0, whole: true };  // pan in canvas pixels
 
 function cellSize() { return (canvas.width / RUN.map.width) * view.zoom; }
 function toCanvas(x, y) {
@@ -12,9 +12,11 @@ function toCanvas(x, y) {
   return [view.x + column * size, view.y + row * size];
 }
 
-function drawPath(context, path, stroke) {
+// The truth is wide and pale, so that it is seen on both sides of an estimate that lies upon it.
+function drawPath(context, name, path, stroke) {
   context.strokeStyle = stroke;
-  context.lineWidth = 2 * devicePixelRatio;
+  context.globalAlpha = name === "truth" ? 0.5 : 1;
+  context.lineWidth = (name === "truth" ? 7 : 2) * devicePixelRatio;
   context.lineJoin = "round";
   context.beginPath();
   let pen = false;
@@ -25,6 +27,7 @@ function drawPath(context, path, stroke) {
     pen = true;
   }
   context.stroke();
+  context.globalAlpha = 1;
 }
 
 function drawPose(context, path, i, fill) {
@@ -99,7 +102,7 @@ function drawMap() {
   context.fillRect(0, 0, canvas.width, canvas.height);
   const image = images[currentLayer];
   if (image?.complete) context.drawImage(image, view.x, view.y, RUN.map.width * cellSize(), RUN.map.height * cellSize());
-  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, RUN.paths[name], MAP_COLOURS[tone]);
+  for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, name, RUN.paths[name], MAP_COLOURS[tone]);
   if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame), RUN.paths.est ?? RUN.paths.online, MAP_COLOURS.scan);
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
   drawScaleBar(context);
@@ -107,13 +110,19 @@ function drawMap() {
 
 function resizeMap() {
   const width = canvas.clientWidth * devicePixelRatio;
+  const middle = [(canvas.width / 2 - view.x) / cellSize(), (canvas.height / 2 - view.y) / cellSize()];
   const most = Math.max(320, window.innerHeight * 0.85) * devicePixelRatio;
   canvas.width = Math.round(width);
   canvas.height = Math.round(Math.min(most, width * RUN.map.height / RUN.map.width));
   canvas.style.aspectRatio = `${canvas.width} / ${canvas.height}`;
-  resetView();
+  if (view.whole) { resetView(); return; }
+  // What was in the middle stays there.
+  view.x = canvas.width / 2 - middle[0] * cellSize();
+  view.y = canvas.height / 2 - middle[1] * cellSize();
+  requestDraw();
 }
 function resetView() {
+  view.whole = true;
   view.zoom = Math.min(1, (canvas.height / canvas.width) * (RUN.map.width / RUN.map.height));
   view.x = (canvas.width - RUN.map.width * cellSize()) / 2;
   view.y = 0;
@@ -124,8 +133,16 @@ function zoomAt(u, v, factor) {
   const before = view.zoom;
   view.zoom = Math.min(40, Math.max(0.2, view.zoom * factor));
   const ratio = view.zoom / before;
+  view.whole = false;
   view.x = u - (u - view.x) * ratio;
   view.y = v - (v - view.y) * ratio;
+  requestDraw();
+}
+
+function pan(dx, dy) {
+  view.x += dx;
+  view.y += dy;
+  view.whole = false;
   requestDraw();
 }
 
@@ -133,7 +150,7 @@ function zoomAt(u, v, factor) {
 function moveByKey(event) {
   const step = 0.1 * canvas.width;
   const move = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
-  if (move) { view.x += move[0]; view.y += move[1]; requestDraw(); }
+  if (move) pan(...move);
   else if (event.key === "+" || event.key === "=") zoomAt(canvas.width / 2, canvas.height / 2, 1.4);
   else if (event.key === "-") zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4);
   else if (event.key === "0") resetView();
@@ -151,7 +168,7 @@ function initMap() {
     input.addEventListener("change", () => selectLayer(name));
     byId("layers").append(make("label", { for: `layer-${name}` }, input, ` ${label}`));
   }
-  for (const [name, label, tone] of [...PATHS, ["scan", "Scan of the frame", "scan"]]) {
+  for (const [name, label, tone] of [...PATHS, ...(RUN.scans.length ? [["scan", "Scan of the frame", "scan"]] : [])]) {
     const input = make("input", { type: "checkbox", id: `path-${name}` });
     input.checked = shownPaths.has(name);
     input.addEventListener("change", () => {
@@ -159,7 +176,7 @@ function initMap() {
       requestDraw();
     });
     byId("paths").append(make("label", { for: `path-${name}` }, input,
-      make("span", { class: "swatch", style: `background: ${MAP_COLOURS[tone]}` }), label));
+      make("span", { class: name === "truth" ? "swatch beneath" : "swatch", style: `background: ${MAP_COLOURS[tone]}` }), label));
   }
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && !event.shiftKey) return;
@@ -171,10 +188,8 @@ function initMap() {
   canvas.addEventListener("pointerdown", (event) => { drag = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
   canvas.addEventListener("pointermove", (event) => {
     if (!drag) return;
-    view.x += (event.clientX - drag[0]) * devicePixelRatio;
-    view.y += (event.clientY - drag[1]) * devicePixelRatio;
+    pan((event.clientX - drag[0]) * devicePixelRatio, (event.clientY - drag[1]) * devicePixelRatio);
     drag = [event.clientX, event.clientY];
-    requestDraw();
   });
   canvas.addEventListener("pointerup", () => { drag = null; });
   canvas.addEventListener("pointermove", (event) => {
@@ -191,15 +206,19 @@ function initMap() {
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4) }, "Zoom out"), " ",
     make("button", { type: "button", onclick: resetView }, "Whole map"), make("span", { id: "map-position", class: "muted" }));
   byId("map-note").before(zoomButtons);
-  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. Red dots: the scan of the chosen frame at its final pose; arrowheads: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
+  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. ${RUN.scans.length ? "Red dots: the scan of the chosen frame at its final pose; arrowheads" : "Arrowheads"}: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
   selectLayer(currentLayer);
   resizeMap();
 }
 
+// Colours, one beside it for cells that could not be seen where that is told, and the meaning.
 const LAYER_KEYS = {
   estimate: [["#000", "occupied"], ["#fff", "free"], ["#cdcdcd", "unknown"]],
   truth: [["#000", "surface in the obstacle band"], ["#fff", "reachable"], ["#cdcdcd", "neither"]],
-  difference: [["#000", "wall, found"], [MAP_COLOURS.missed, "wall, missed"], [MAP_COLOURS.invented, "no wall there"], ["#fff", "free"], ["#cdcdcd", "unknown; paler: could not be seen"]],
+  difference: [
+    [["#000", "#7f7f7f"], "wall, found"], [[MAP_COLOURS.missed, "#eaae7f"], "wall, missed"], [[MAP_COLOURS.invented, "#e5bcd3"], "no wall there"],
+    [["#fff", "#fff"], "free"], [["#cdcdcd", "#e6e6e6"], "unknown"],
+  ],
   observable: [["#fff", "could be seen"], ["#cdcdcd", "could not"]],
 };
 function selectLayer(name) {
@@ -207,8 +226,10 @@ function selectLayer(name) {
   const input = byId(`layer-${name}`);
   if (input) input.checked = true;
   canvas.dataset.layer = name;
-  byId("legend").replaceChildren(...LAYER_KEYS[name].map(([tone, text]) =>
-    make("div", {}, make("i", { style: `background:${tone}` }), text)));
+  const twofold = name === "difference" && RUN.map.layers.observable;
+  const swatches = (tones) => [tones].flat().slice(0, twofold ? 2 : 1).map((tone) => make("i", { style: `background:${tone}` }));
+  byId("legend").replaceChildren(...LAYER_KEYS[name].map(([tones, text]) => make("div", {}, ...swatches(tones), text)),
+    ...(twofold ? [make("div", {}, "right: the same in cells that could not be seen")] : []));
   requestDraw();
 }
 

@@ -7,11 +7,16 @@ const hasColumn = (column) => Boolean(frames[column]) && frames[column].some((v)
 const times = frames.stamp_s.map((t) => t - frames.stamp_s[0]);
 
 function addPlot(container, title, yLabel, series) {
-  if (!series.length) return;
+  if (!series.length || frameCount < 2) return;
   drawPlot(container, { title, x: times, xLabel: "time (s)", yLabel, series, sync: "frames", onCursor: selectFrame });
 }
 
 function initPlots() {
+  if (frameCount < 2) {
+    byId("plots").append(make("p", {}, "There is one frame: the values at the map are all there is."));
+    byId("plots-how").remove();
+    return;
+  }
   const add = (title, yLabel, series) => addPlot(byId("plots"), title, yLabel, series);
   const column = (label, name, tone, factor, digits, unit) => ({ label, values: scaled(frames[name], factor), colour: tone, digits, unit });
   const degree = 180 / Math.PI;

@@ -35,7 +35,9 @@ function markKey() {
 function scanPicture(worst, size) {
   const map = worst.map;
   const image = new Image();
-  const canvas = paintedCanvas(size, size, `Frame ${frames.frame[worst.row]}: its scan in the map of the time`, (context) => {
+  const strip = 20;  // below the map, so that the scale bar hides no wall
+  const canvas = paintedCanvas(size, size + strip, `Frame ${frames.frame[worst.row]}: its scan in the map of the time`, (context) => {
+    context.clearRect(0, 0, size, size + strip);
     const cell = Math.min(size / map.width, size / map.height);
     const left = (size - cell * map.width) / 2;
     const top = (size - cell * map.height) / 2;
@@ -54,11 +56,10 @@ function scanPicture(worst, size) {
     }
     for (const [name, , tone, shape] of MARKS) if (worst[name]) drawMark(context, shape, ...at(worst[name][0], worst[name][1]), MAP_COLOURS[tone]);
     const metre = cell / map.resolution;
-    context.fillStyle = "rgba(255,255,255,0.85)";
-    context.fillRect(4, size - 26, Math.max(metre, context.measureText("1 m").width) + 8, 22);
-    context.fillStyle = "#111";
-    context.fillRect(8, size - 10, metre, 3);
-    context.fillText("1 m", 8, size - 14);
+    const length = [1, 10, 0.1].find((l) => l * metre > 8 && l * metre < 0.8 * size) ?? 1;
+    context.fillStyle = colour("ink");
+    context.fillRect(0, size + 8, length * metre, 3);
+    context.fillText(`${length} m`, length * metre + 5, size + 13);
   });
   image.onload = canvas.redraw;
   image.src = map.image;
@@ -168,9 +169,9 @@ function worstCard(worst) {
     pictures.append(
       make("figure", {}, scanPicture(worst, 250), make("figcaption", {}, "Scan in the map of the time")),
       make("figure", {}, surfacePicture(worst, 250, (text) => { caption.textContent = text || scale; }), caption),
-      make("figure", {}, yawPicture(worst, 508, 96), make("figcaption", {}, "Residual over heading")));
+      make("figure", {}, yawPicture(worst, Math.max(250, Math.min(508, byId("worst-cards").clientWidth - 32)), 96), make("figcaption", {}, "Residual over heading")));
   } else {
-    pictures.append(make("p", { class: "muted" }, "Nothing was mapped yet that this frame could be matched against, or it has no scan."));
+    pictures.append(make("p", { class: "muted" }, worst.no_match));
   }
   return make("article", { class: "worst-card" },
     make("h3", {}, `Frame ${frames.frame[i]}, ${fixed(times[i], 2)} s: ${errors}`), pictures);
@@ -191,6 +192,10 @@ function initWorst() {
   const table = tableOf(head, rows);
   table.id = "worst";
   byId("worst").replaceWith(table);
+  if (!RUN.worst.some((w) => w.surface)) {
+    byId("worst-how").textContent = [...new Set(RUN.worst.map((w) => w.no_match))].join(" ");
+    return;
+  }
   byId("worst-cards").before(markKey());
   byId("worst-cards").append(...RUN.worst.map(worstCard));
 }

@@ -72,18 +72,19 @@ function svg(tag, attributes, ...children) {
 function pathPicture(room, c) {
   const width = room.width * room.resolution;
   const height = room.height * room.resolution;
-  const line = (path, stroke) => {
+  const line = (path, name) => {
     const points = [];
     for (let i = 0; i + 1 < path.length; i += 2) points.push(`${fixed(path[i] - room.origin[0], 3)},${fixed(height - (path[i + 1] - room.origin[1]), 3)}`);
-    return svg("polyline", { points: points.join(" "), stroke });
+    return svg("polyline", { points: points.join(" "), stroke: PATH_COLOURS[name], class: name });
   };
-  const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${c.name}: trajectories` });
+  const strip = 0.6;  // below the map, so that the scale bar hides no wall
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height + strip}`, role: "img", "aria-label": `${c.name}: trajectories` });
   if (room.truth) picture.append(svg("image", { href: room.truth, width, height, opacity: 0.55, preserveAspectRatio: "none" }));
-  if (room.path) picture.append(line(room.path, PATH_COLOURS.truth));
-  picture.append(line(c.input_path, PATH_COLOURS.input), line(c.output_path, PATH_COLOURS.output),
-    svg("rect", { class: "bar-back", x: 0.1, y: height - 0.66, width: 1.2, height: 0.56 }),
-    svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: height - 0.2, y2: height - 0.2 }),
-    svg("text", { class: "bar-text", x: 0.2, y: height - 0.32 }, "1 m"));
+  if (room.path) picture.append(line(room.path, "truth"));
+  picture.append(line(c.input_path, "input"), line(c.output_path, "output"),
+    svg("rect", { class: "bar-back", x: 0, y: height, width, height: strip }),
+    svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: height + 0.3, y2: height + 0.3 }),
+    svg("text", { class: "bar-text", x: 1.35, y: height + 0.4 }, "1 m"));
   return picture;
 }
 

@@ -37,7 +37,32 @@ function headline() {
 function initFailures() {
   const failures = Object.entries(SWEEP.runs?.failures ?? {});
   if (!failures.length) { byId("failures-section").remove(); return; }
-  byId("failures").append(tableOf(["run", "reason"], failures.map(([row, reason]) => [String(SWEEP.runs.run[row]), reason])));
+  // Reasons that differ in a number only are one.
+  const kinds = new Map();
+  for (const [row, reason] of failures) {
+    const kind = reason.replace(/\d[\d.e+-]*/g, "#");
+    kinds.set(kind, [...(kinds.get(kind) ?? []), { row: Number(row), reason }]);
+  }
+  const line = (group) => {
+    const rows = group.map(({ row }) => row);
+    const reasons = new Set(group.map(({ reason }) => reason));
+    return [String(rows.length), settingsOf(rows), someOf(rows.map((row) => SWEEP.runs.run[row])), `${reasons.size > 1 ? "such as: " : ""}${group[0].reason}`];
+  };
+  byId("failures").append(tableOf(["failed", "at", "runs", "reason"], [...kinds.values()].map(line)));
+}
+
+// The values that these runs have of each axis of which they have not all.
+function settingsOf(rows) {
+  const parts = AXES.map((axis, i) => {
+    const values = [...new Set(rows.map((row) => POINTS[SWEEP.runs.point[row]].values[i]))].sort((a, b) => a - b);
+    return values.length < axis.texts.length ? `${shortKey(axis.key)} ${someOf(values.map((k) => axis.labels[k]))}` : "";
+  });
+  return parts.filter(Boolean).join(", ") || "all settings";
+}
+
+function someOf(items) {
+  const MOST = 8;
+  return items.length <= MOST ? items.join(", ") : `${items.slice(0, MOST - 1).join(", ")}, … ${items.at(-1)}`;
 }
 
 function initEnvironment() {
@@ -59,7 +84,7 @@ if (METRICS.length) {
   if (AXES.length) initHeat(); else byId("heat-section").remove();
   initTable();
 } else {
-  for (const id of ["plot-section", "best-section", "heat-section", "table-section"]) byId(id).remove();
+  for (const id of ["chooser", "headline", "plot-section", "best-section", "heat-section", "table-section"]) byId(id).remove();
 }
 subtitle();
 initFailures();

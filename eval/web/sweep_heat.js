@@ -23,6 +23,8 @@ function initHeat() {
   heat.y = mainAxis();  // its best value is the line; up is more
   heat.x = axes.find((i) => i !== heat.y);
   changed.push(drawHeat);
+  themeListeners.push(drawHeat);  // also for paper
+  window.addEventListener("resize", drawHeat);
   drawHeat();
 }
 
@@ -79,16 +81,23 @@ function heatPicture(cells, best, width) {
     cells.forEach((column, c) => column.forEach((cell, r) => {
       context.fillStyle = cell ? rgb(shade(cell.mean)) : colour("panel");
       context.fillRect(u(c), v(r), Math.ceil(w), Math.ceil(h));
+      if (!cell) crossOut(context, u(c), v(r), w, h);
+    }));
+    // Marks at a cell's right, its number at the left and above the line from mark to mark.
+    const beside = w >= 64;
+    drawBestMarks(context, best, (c) => (beside ? u(c) + w - 12 : u(c) + w / 2), (r) => v(r) + h / 2);
+    cells.forEach((column, c) => column.forEach((cell, r) => {
       if (!cell || w < 44 || h < 16) return;
       const [red, green, blue] = shade(cell.mean);
-      context.fillStyle = 0.3 * red + 0.6 * green + 0.1 * blue > 120 ? "#000" : "#fff";
-      // Out of the way of the best line, which runs through the cells' middles, where there is room.
-      const beside = w >= 80;
+      const text = String(Number(cell.mean.toPrecision(3)));
+      const place = [u(c) + (beside ? 8 : w / 2), h >= 30 ? v(r) + 13 : v(r) + h / 2 + 4];
       context.textAlign = beside ? "left" : "center";
-      const middle = v(r) + h / 2 + 4;
-      context.fillText(String(Number(cell.mean.toPrecision(3))), u(c) + (beside ? 8 : w / 2), h >= 30 ? v(r) + 13 : middle);
+      context.strokeStyle = rgb([red, green, blue]);
+      context.lineWidth = 4;
+      context.strokeText(text, ...place);
+      context.fillStyle = 0.3 * red + 0.6 * green + 0.1 * blue > 120 ? "#000" : "#fff";
+      context.fillText(text, ...place);
     }));
-    drawBestLine(context, best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
     context.strokeStyle = colour("ink");
     context.lineWidth = 2;
     context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
@@ -104,14 +113,39 @@ function heatPicture(cells, best, width) {
     context.textAlign = "center";
     context.fillText(AXES[heat.y].key, 0, 0);
     context.restore();
-    drawHeatKey(context, width - edge.right + 14, edge.top, height - edge.top - edge.bottom, sorted, low, high);
+    const key = [width - edge.right + 14, edge.top, height - edge.top - edge.bottom];
+    drawHeatKey(context, ...key, sorted, low, high);
+    if (cells.flat().includes(null)) sayCrossedOut(context, key[0], key[1] + key[2] + 14);
   };
   const canvas = paintedCanvas(width, height, `${metric.name} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
   canvas.cellAt = (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)];
   return canvas;
 }
 
-function drawBestLine(context, best, u, v) {
+// Where no run gave a value.
+function crossOut(context, left, top, w, h) {
+  context.strokeStyle = colour("line");
+  context.lineWidth = 1;
+  context.beginPath();
+  context.moveTo(left, top);
+  context.lineTo(left + w, top + h);
+  context.moveTo(left, top + h);
+  context.lineTo(left + w, top);
+  context.stroke();
+}
+
+function sayCrossedOut(context, left, top) {
+  context.fillStyle = colour("panel");
+  context.fillRect(left, top, 14, 12);
+  crossOut(context, left, top, 14, 12);
+  context.strokeRect(left, top, 14, 12);
+  context.fillStyle = colour("muted");
+  context.textAlign = "left";
+  context.fillText("no result", left + 18, top + 10);
+}
+
+// A line only along numbers: names have no trend.
+function drawBestMarks(context, best, u, v) {
   const line = (draw) => {
     for (const [stroke, width] of [["#fff", 5], ["#d4002a", 2.5]]) {
       context.strokeStyle = stroke;
@@ -121,7 +155,7 @@ function drawBestLine(context, best, u, v) {
       context.stroke();
     }
   };
-  line(() => best.forEach((b, c) => { if (b) context.lineTo(u(c), v(b.row)); }));
+  if (AXES[heat.x].numeric) line(() => best.forEach((b, c) => { if (b) context.lineTo(u(c), v(b.row)); }));
   best.forEach((b, c) => {
     if (!b) return;
     if (isNumber(b.low) && b.low !== b.high) line(() => { context.moveTo(u(c), v(b.low)); context.lineTo(u(c), v(b.high)); });
@@ -149,14 +183,20 @@ function drawHeatKey(context, left, top, height, sorted, low, high) {
   }
 }
 
+// One run has no interval.
+function spreadOf(point) {
+  const interval = isNumber(metric.low[point]) ? ` (95 % ${compact(metric.low[point])} to ${withUnit(metric.high[point])})` : "";
+  const runs = POINTS[point].runs;
+  return `${interval}, ${runs} ${runs === 1 ? "run" : "runs"}`;
+}
+
 function sayCell(cells, best) {
   const [c, r] = heat.cell;
   const cell = cells[c]?.[r];
   const place = `${AXES[heat.x].key} ${HEAT_AXES[heat.x].labels[c]}, ${AXES[heat.y].key} ${HEAT_AXES[heat.y].labels[r]}: `;
-  const value = !cell ? "no run" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points`
-    : `${withUnit(cell.mean)} (95 % ${withUnit(metric.low[cell.point])} to ${withUnit(metric.high[cell.point])}), ${POINTS[cell.point].runs} runs`;
+  const value = !cell ? "no result" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points` : `${withUnit(cell.mean)}${spreadOf(cell.point)}`;
   const line = best[c] ? ` Best there: ${HEAT_AXES[heat.y].labels[best[c].row]}.` : "";
-  byId("heat-note").textContent = `${place}${value}.${line} Red: the best ${AXES[heat.y].key} of each column, the bar its 95 % interval where computed. Colours by rank, yellow is better.`;
+  byId("heat-note").textContent = `${place}${value}.${line} Red: the best ${AXES[heat.y].key} of each column${best.some((b) => b && isNumber(b.low) && b.low !== b.high) ? ", the bar its 95 % interval" : ""}. Colours by rank, yellow is better.`;
 }
 
 function drawHeat() {
@@ -174,7 +214,7 @@ function drawHeat() {
   const best = bestOfColumns(cells);
   if (!cells.flat().some(Boolean)) { byId("heat").replaceChildren(); byId("heat-note").textContent = "No run has these values together."; return; }
   const hadFocus = byId("heat").contains(document.activeElement);
-  const canvas = heatPicture(cells, best, Math.max(320, byId("heat").clientWidth || 1000));
+  const canvas = heatPicture(cells, best, widthFor(byId("heat"), 320, 1000));
   canvas.tabIndex = 0;
   const choose = (c, r) => {
     heat.cell = [Math.max(0, Math.min(cells.length - 1, c)), Math.max(0, Math.min(cells[0].length - 1, r))];

@@ -86,6 +86,8 @@ TEST_F(ReportPage, OfARun) {
   const std::string whole = PixelsOf("#map");
   browser_->Press("+");
   EXPECT_NE(PixelsOf("#map"), whole);
+  browser_->Evaluate("window.dispatchEvent(new Event('resize'))");
+  EXPECT_NE(PixelsOf("#map"), whole);  // what was zoomed to stays
   browser_->Press("0");
   EXPECT_EQ(PixelsOf("#map"), whole);
 
@@ -106,6 +108,30 @@ TEST_F(ReportPage, OfASequenceWithoutTruth) {
   EXPECT_GT(ColoursOf("#map"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#layers input').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.getElementById('numbers-section')"), nullptr);
+}
+
+// The finished map's scans are another run's: a frame of this one is never drawn with them.
+TEST_F(ReportPage, OfARunInAFinishedMap) {
+  Succeed("render ./small.yaml -o seq");
+  const std::string map = "map seq --poses seq/groundtruth.txt --set mapper.fusion.mode=fixed ";
+  Succeed(map + "-o first");
+  Succeed(map + "--map first --localise -o placed");
+  browser_->Open(Path("placed/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("RUN.scans.length"), 0);
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('.card').textContent"),
+            "12 of 12frames placed in the finished map");
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('path-scan')"), nullptr);
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('worst-how').textContent.includes("
+                               "'matched against the finished map')"),
+            true);
+  Succeed(map + "--map first -o longer");
+  browser_->Open(Path("longer/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("RUN.scans.map((scan) => scan.row).join()"),
+            "0,1,2,3,4,5,6,7,8,9,10,11");
+  // What was there before the first frame is what that was matched against.
+  EXPECT_EQ(browser_->Evaluate("RUN.worst.every((w) => w.surface)"), true);
 }
 
 // Five gains x three noise scales x four seeds; one run failed.
@@ -181,6 +207,11 @@ TEST_F(ReportPage, OfASweep) {
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#table a').getAttribute('href')"),
             "runs/9/report.html");
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table .failed').length"), 1);
+  // Paper is narrower than the window.
+  browser_->Evaluate("window.dispatchEvent(new Event('beforeprint'))");
+  browser_->WaitFor("document.querySelector('#plot .uplot').clientWidth < 700");
+  browser_->Evaluate("window.dispatchEvent(new Event('afterprint'))");
+  browser_->WaitFor("document.querySelector('#plot .uplot').clientWidth > 700");
   browser_->Click("#table button.link");
   EXPECT_EQ(browser_->Evaluate("document.getElementById('table-command').textContent"),
             "depthgrid run experiment.yaml --set mapper.fusion.gain=0 --set slam.drift_scale=2 "
@@ -217,6 +248,10 @@ TEST_F(ReportPage, OfASweepWhoseFirstValueFails) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
   ExpectEveryPlotIsDrawn();
   EXPECT_GT(ColoursOf("#heat canvas"), 3);
+  // One reason, one line, with the setting that all six have.
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#failures tbody tr').length"), 1);
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('#failures tbody').textContent"),
+            "6max_range_m 0.30, 2, 4, 6, 8, 10too near");
 }
 
 }  // namespace

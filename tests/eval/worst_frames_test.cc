@@ -134,6 +134,23 @@ TEST(ReferenceOf, HoldsTheScansBeforeAtTheirPosesOfTheTime) {
   EXPECT_TRUE(std::isnan(third.At({40, 0})));
 }
 
+// Of a map that the run went on in no row tells; its scans lie where they lie in the end.
+TEST(ReferenceOf, HoldsTheMapThatTheRunWentOnIn) {
+  RunFiles run;
+  run.frames = Frames();
+  run.frames.columns["loops_accepted"] = {0, 0, 0};
+  run.prior_scans = 2;
+  ScanArchive archive;
+  for (int i = -2; i < 3; ++i) {
+    run.scans.push_back({i, 0.1 * i, {0.0, i < 0 ? 1.0 : 5.0, 0.0}, archive.Keep(OneHit())});
+  }
+  EXPECT_EQ(ReferenceOf(run, 1, {}, {}).geometry.size(), 0U);
+  EXPECT_GT(ReferenceOf(run, 2, {}, {}).At({20, 20}), 0.5F);
+  const OccupancyMap second = ReferenceOf(run, 3, {}, {});
+  EXPECT_GT(second.At({20, 20}), 0.5F);
+  EXPECT_GT(second.At({20, 0}), 0.5F);  // the run's own first scan, where it lay then
+}
+
 // Poses a hundred kilometres apart: the map is as small as one of a camera that stood still.
 TEST(ReferenceOf, HoldsOnlyTheSurroundings) {
   RunFiles run;
