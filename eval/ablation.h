@@ -2,6 +2,7 @@
 // (docs/statistics.md, "Ablation").
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,8 +49,9 @@ struct StageShare {
   std::string variant;
   double error = 0.0;     // mean over seeds with this truth put in
   PairedComparison gain;  // this variant against the one it is compared with; b - a is negative
-  double share = 0.0;     // mean error owned / mean error of the experiment as it is
-  double p_holm = 1.0;    // over the stages
+  // Mean error owned / mean error of the experiment as it is; empty where that has none.
+  std::optional<double> share;
+  double p_holm = 1.0;  // over the stages
 };
 
 struct ErrorShares {

@@ -61,7 +61,7 @@ ErrorShares SharesOfScore(const std::vector<AblationRun>& runs, const std::strin
     stage.error = Summarise(errors).mean;
     stage.gain =
         ComparePaired(ErrorsOf(runs, variant.against, metric), errors, Better::kLower, resamples);
-    stage.share = shares.error > 0.0 ? (0.0 - stage.gain.mean_difference) / shares.error : 0.0;
+    if (shares.error > 0.0) stage.share = (0.0 - stage.gain.mean_difference) / shares.error;
     p_values.push_back(stage.gain.wilcoxon.p_value);
     shares.stages.push_back(std::move(stage));
   }
@@ -108,7 +108,7 @@ std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t see
       cell["compared_with"] = AblationVariants()[i + 1].against;
       cell["error"] = stage.error;
       cell["owned"] = 0.0 - stage.gain.mean_difference;
-      cell["share"] = stage.share;
+      cell["share"] = stage.share ? nlohmann::ordered_json(*stage.share) : nullptr;
       cell["owned_interval95"] = nullptr;
       if (const auto& interval = stage.gain.mean_interval) {
         cell["owned_interval95"] = {-interval->high, -interval->low};

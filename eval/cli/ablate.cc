@@ -24,7 +24,7 @@ void PrintShares(const ErrorShares& score) {
     rows.push_back(
         {stage.variant, Short(stage.error), Short(0.0 - stage.gain.mean_difference),
          interval ? fmt::format("[{}, {}]", Short(-interval->high), Short(-interval->low)) : "-",
-         fmt::format("{:.0f} %", 100.0 * stage.share + 0.0),
+         stage.share ? Number(100.0 * *stage.share, 0) + " %" : "-",
          fmt::format("{:.3g}", stage.gain.wilcoxon.p_value), fmt::format("{:.3g}", stage.p_holm)});
   }
   fmt::print("{}", Table(rows));

@@ -135,7 +135,11 @@ std::string Table(const std::vector<std::vector<std::string>>& rows) {
 std::string Short(double value) { return fmt::format("{:.4g}", value + 0.0); }  // -0 as 0
 
 std::string Number(const std::optional<double>& value, int digits) {
-  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+  if (!value) return "-";
+  std::string text = fmt::format("{:.{}f}", *value, digits);
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  if (is_zero && text.front() == '-') text.erase(0, 1);
+  return text;
 }
 
 int ThreadsOr(int requested) { return requested > 0 ? requested : UsableThreads(); }

@@ -66,7 +66,7 @@ std::string Table(const std::vector<std::vector<std::string>>& rows);
 
 // Four significant digits, whatever the size.
 std::string Short(double value);
-// "-" for nothing.
+// "-" for nothing; what is 0 in so many digits has no sign.
 std::string Number(const std::optional<double>& value, int digits);
 
 int ThreadsOr(int requested);

@@ -27,25 +27,26 @@ void PrintTable(const TrajectoryScore& score) {
   fmt::print("{} of {} reference and {} estimated poses matched, {:.3f} m of path\n\n",
              score.matched_poses, score.reference_poses, score.estimate_poses,
              score.reference_path_m);
-  fmt::print("{}", Table({{"error", "rmse", "mean", "median", "std", "min", "max"},
-                          StatisticsRow("xy, not aligned (m)", score.xy_unaligned),
-                          StatisticsRow("xy, first pose aligned (m)", score.xy_origin),
-                          StatisticsRow("xy, SE(2) aligned (m)", score.xy_se2),
-                          StatisticsRow("xyz, not aligned (m)", score.xyz_unaligned),
-                          StatisticsRow("xyz, first pose aligned (m)", score.xyz_origin),
-                          StatisticsRow("xyz, SE(3) aligned (m)", score.xyz_se3),
-                          StatisticsRow("xyz, Sim(3) aligned (m)", score.xyz_sim3),
-                          StatisticsRow("rotation, not aligned (rad)", score.rotation_unaligned),
-                          StatisticsRow("rotation, SE(3) aligned (rad)", score.rotation_se3),
-                          StatisticsRow("relative, 1 pose (m)", score.rpe_frame_translation),
-                          StatisticsRow("relative, 1 pose (rad)", score.rpe_frame_rotation),
-                          StatisticsRow("relative, 1 m (m)", score.rpe_metre_translation),
-                          StatisticsRow("relative, 1 m (rad)", score.rpe_metre_rotation)}));
+  fmt::print("{}",
+             Table({{"error", "rmse", "mean", "median", "std", "min", "max"},
+                    StatisticsRow("xy, not aligned (m)", score.xy_unaligned),
+                    StatisticsRow("xy, first pose aligned (m)", score.xy_origin),
+                    StatisticsRow("xy, SE(2) aligned (m)", score.xy_se2),
+                    StatisticsRow("xyz, not aligned (m)", score.xyz_unaligned),
+                    StatisticsRow("xyz, first pose aligned (m)", score.xyz_origin),
+                    StatisticsRow("xyz, SE(3) aligned (m)", score.xyz_se3),
+                    StatisticsRow("xyz, Sim(3) aligned (m)", score.xyz_sim3),
+                    StatisticsRow("rotation, not aligned (rad)", score.rotation_unaligned),
+                    StatisticsRow("rotation, SE(3) aligned (rad)", score.rotation_se3),
+                    StatisticsRow("relative, 1 pose apart (m)", score.rpe_frame_translation),
+                    StatisticsRow("relative, 1 pose apart (rad)", score.rpe_frame_rotation),
+                    StatisticsRow("relative, steps of 1 m (m)", score.rpe_metre_translation),
+                    StatisticsRow("relative, steps of 1 m (rad)", score.rpe_metre_rotation)}));
 }
 
 void PrintDrift(const TrajectoryScore& score) {
   std::vector<Row> rows = {
-      {"relative motion over", "motions", "rms m", "rms rad", "mean m / unit"}};
+      {"relative, from every pose, over", "motions", "rms m", "rms rad", "mean m / unit"}};
   const auto add = [&rows](const char* unit, const Drift& drift) {
     rows.push_back({fmt::format("{:g} {}", drift.over, unit), std::to_string(drift.motions),
                     fmt::format("{:.6f}", drift.translation_rms_m),

@@ -110,12 +110,12 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
   const FoundPlace& place = start->place;
   prior.map_from_slam = place.map_from_slam;
   fmt::print(
-      "{}: {}; {} frame lies at ({:.2f} m, {:.2f} m, {:.1f} degrees) of it, fit {:.2f}, "
+      "{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}, "
       "elsewhere {:.2f}\n",
       arguments.map, Counted(prior.frames.size(), "scan"),
-      sequence.source->Camera() ? "SLAM's" : "odometry's", place.map_from_slam.x_m,
-      place.map_from_slam.y_m, DegFromRad(place.map_from_slam.yaw_rad), place.score,
-      place.second_score);
+      sequence.source->Camera() ? "SLAM's" : "odometry's", Number(place.map_from_slam.x_m, 2),
+      Number(place.map_from_slam.y_m, 2), Number(DegFromRad(place.map_from_slam.yaw_rad), 1),
+      place.score, place.second_score);
   if (start->trial && start->trial->places > 1) {
     fmt::print(
         "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "

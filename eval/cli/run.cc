@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 
@@ -28,6 +29,19 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPathsAxes =
     "; the path's poses must be those of the camera's axes, x right, y down, z forward";
+
+// A run in which SLAM is lost has scores of what is left.
+void PrintLost(const MappingRun& run) {
+  const auto lost = std::count_if(run.reports.begin(), run.reports.end(),
+                                  [](const auto& report) { return !report.slam_from_camera; });
+  if (lost == 0) return;
+  const auto poses =
+      std::count_if(run.result.map_from_camera.begin(), run.result.map_from_camera.end(),
+                    [](const auto& pose) { return pose.has_value(); });
+  fmt::print(
+      "SLAM was lost in {} of {}, the estimate has a pose of {}: errors are of those only\n\n",
+      lost, Counted(run.reports.size(), "frame"), poses);
+}
 
 void PrintScores(const RunScores& scores) {
   const auto row = [](const char* name, const std::optional<TrajectoryScore>& score) {
@@ -59,9 +73,9 @@ std::optional<double> WallF1(const MapScore& score) {
 }
 
 void PrintCases(const std::vector<CaseResult>& results) {
-  std::vector<std::vector<std::string>> rows = {{"case", "published m", "input mean m", "ATE m",
-                                                 "output mean m", "ATE m", "input map F1",
-                                                 "output map F1"}};
+  std::vector<std::vector<std::string>> rows = {{"case", "published m", "input mean m",
+                                                 "input ATE m", "output mean m", "output ATE m",
+                                                 "input map F1", "output map F1"}};
   const auto mean = [](const std::optional<TrajectoryScore>& score) {
     return score ? Number(score->xy_unaligned.mean, 3) : "-";
   };
@@ -111,6 +125,7 @@ void RunOne(const RunArguments& arguments) {
   bar.Clear();
   Warn(record.warnings);
   PrintScores(run.scores);
+  PrintLost(run.mapping);
   SayReport(arguments.common.output);
 }
 

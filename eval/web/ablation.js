@@ -25,6 +25,7 @@ function intervalOf(score, stage) {
 }
 
 function barOf(score, stage, name, at) {
+  if (!isNumber(stage.share)) return "";
   const [zero, end] = [at(0), at(stage.share)];
   const picture = svg("svg", { class: "share", viewBox: `0 0 ${BAR_WIDTH} ${BAR_HEIGHT}`, role: "img", "aria-label": `${name}: ${percent(stage.share)} of the error` },
     svg("rect", { class: stage.share < 0 ? "below" : "above", x: Math.min(zero, end), y: 5, width: Math.abs(end - zero), height: 12 }),

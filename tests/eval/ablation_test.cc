@@ -36,7 +36,7 @@ TEST(Ablation, SharesAreDifferencesFromWhatEachIsComparedWith) {
     EXPECT_EQ(score.is_complement, score.metric.ends_with("f1"));
     EXPECT_NEAR(score.error, 2.0, 1e-12);
     std::map<std::string, double> share;
-    for (const StageShare& stage : score.stages) share[stage.variant] = stage.share;
+    for (const StageShare& stage : score.stages) share[stage.variant] = stage.share.value();
     EXPECT_NEAR(share.at("poses"), 0.5, 1e-12);
     EXPECT_NEAR(share.at("depth"), 0.1, 1e-12);
     EXPECT_NEAR(share.at("converter"), 0.15, 1e-12);  // beyond what exact depth gives
@@ -44,6 +44,17 @@ TEST(Ablation, SharesAreDifferencesFromWhatEachIsComparedWith) {
     EXPECT_NEAR(share.at("loops"), -0.1, 1e-12);
     EXPECT_NEAR(share.at("all"), 1.0, 1e-12);
   }
+}
+
+TEST(SharesOf, OfNoErrorAreNone) {
+  std::vector<AblationRun> runs;
+  for (const AblationVariant& variant : AblationVariants()) {
+    runs.push_back({variant.name, 1, {{"map.observable.occupied.f1", 1.0}}});
+  }
+  const std::vector<ErrorShares> shares = SharesOf(runs);
+  ASSERT_EQ(shares.size(), 1U);
+  for (const StageShare& stage : shares[0].stages) EXPECT_FALSE(stage.share) << stage.variant;
+  EXPECT_NE(AblationJson(shares, 1).find(R"("share": null)"), std::string::npos);
 }
 
 class ProgramAblate : public ProgramTest {};
