@@ -239,7 +239,7 @@ void AddEval(Program& program) {
 void AddCompare(Program& program) {
   const auto [app, arguments] = program.Add<CompareArguments>(
       program.app, "compare", "Which of two sweeps or sets of runs is better, and how sure that is",
-      "depthgrid compare sweep sweep --where-a mapper.fusion.gain=0.25 "
+      "depthgrid compare sweep sweep --where-a mapper.fusion.gain=0.2 "
       "--where-b mapper.fusion.gain=1",
       &CompareRuns);
   const auto add_where = [&app = app](const char* name, std::vector<std::string>& values,
