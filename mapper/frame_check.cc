@@ -11,20 +11,44 @@ namespace {
 // What rounding to floats, or to four digits, leaves of a unit quaternion's norm.
 constexpr double kNormSlack = 1e-3;
 
+std::string NameOf(const Frame& frame) { return "frame " + std::to_string(frame.index); }
+
 [[noreturn]] void Refuse(const Frame& frame, const std::string& why) {
-  throw InputError("frame " + std::to_string(frame.index), why);
+  throw InputError(NameOf(frame), why);
 }
 
-void RequirePose(const Frame& frame, const Pose3& pose, const std::string& name) {
+void RequirePose(const std::string& place, const Pose3& pose, const std::string& name) {
   const double norm = pose.rotation.norm();
   if (!(std::abs(norm - 1.0) <= kNormSlack)) {
-    Refuse(frame, name + "'s quaternion has the norm " + std::to_string(norm) + ", must be 1");
+    throw InputError(place,
+                     name + "'s quaternion has the norm " + std::to_string(norm) + ", must be 1");
   }
   if (!IsWithinReach(pose.translation)) {
     const Eigen::Vector3d& at = pose.translation;
-    Refuse(frame, name + " lies at (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) +
-                      ", " + std::to_string(at.z()) + "), must lie within 10,000 km");
+    throw InputError(place, name + " lies at (" + std::to_string(at.x()) + ", " +
+                                std::to_string(at.y()) + ", " + std::to_string(at.z()) +
+                                "), must lie within 10,000 km");
   }
+}
+
+void RequirePlanar(const std::string& place, const Pose2& pose, const std::string& name) {
+  if (std::isfinite(pose.yaw_rad) && IsWithinReach({pose.x_m, pose.y_m, 0.0})) return;
+  throw InputError(place, name + " is (" + std::to_string(pose.x_m) + ", " +
+                              std::to_string(pose.y_m) + ", " + std::to_string(pose.yaw_rad) +
+                              "), must be finite and within 10,000 km");
+}
+
+void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
+  if (!frame.of_prior_map()) {
+    throw InputError(place, "is frame " + std::to_string(frame.frame) + ", must be below 0");
+  }
+  if (!frame.kept() || !frame.scan || !frame.obstacles) {
+    throw InputError(place, "has no scans of its own, must have both");
+  }
+  if (!std::isfinite(frame.stamp_s)) {
+    throw InputError(place, "its stamp is " + std::to_string(frame.stamp_s) + ", must be seconds");
+  }
+  RequirePlanar(place, frame.map_from_base, "its pose");
 }
 
 void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera) {
@@ -55,7 +79,7 @@ void RequireReach(const Frame& frame, const Scan& scan) {
 void RequireLoop(const Frame& frame, const LoopClosure& loop) {
   const std::string name = "the loop closure of frames " + std::to_string(loop.first_frame) +
                            " and " + std::to_string(loop.second_frame);
-  RequirePose(frame, loop.first_from_second, name);
+  RequirePose(NameOf(frame), loop.first_from_second, name);
   for (const double sigma : {loop.sigma_translation_m, loop.sigma_rotation_rad}) {
     if (std::isfinite(sigma) && sigma > 0.0) continue;
     Refuse(frame, name + " has a sigma of " + std::to_string(sigma) + ", must be positive");
@@ -69,13 +93,39 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
   if (!std::isfinite(frame.stamp_s)) {
     Refuse(frame, "its stamp is " + std::to_string(frame.stamp_s) + ", must be seconds");
   }
-  if (frame.slam_from_camera) RequirePose(frame, *frame.slam_from_camera, "its pose");
+  if (frame.slam_from_camera) RequirePose(NameOf(frame), *frame.slam_from_camera, "its pose");
   if (frame.depth) RequireDepth(frame, camera);
   if (frame.matched_scan && !frame.scan) Refuse(frame, "has a matched_scan, but no scan");
   for (const auto& scan : {frame.scan, frame.matched_scan}) {
     if (scan) RequireReach(frame, *scan);
   }
   for (const LoopClosure& loop : frame.loops) RequireLoop(frame, loop);
+}
+
+void RequireSoundFinal(const std::vector<std::optional<Pose3>>& slam_final, std::size_t frames) {
+  if (!slam_final.empty() && slam_final.size() != frames) {
+    throw InputError("slam_final", "has " + std::to_string(slam_final.size()) +
+                                       " poses, must have one for each of the " +
+                                       std::to_string(frames) + " frames, or none");
+  }
+  for (std::size_t i = 0; i < slam_final.size(); ++i) {
+    if (slam_final[i]) RequirePose("slam_final", *slam_final[i], "entry " + std::to_string(i));
+  }
+}
+
+void RequireSound(const PriorMap& prior) {
+  const std::string place = "prior map";
+  for (std::size_t i = 0; i < prior.frames.size(); ++i) {
+    const MappedFrame& frame = prior.frames[i];
+    const std::string entry = place + ", entry " + std::to_string(i);
+    RequirePriorFrame(entry, frame);
+    if (i > 0 && prior.frames[i - 1].frame >= frame.frame) {
+      throw InputError(entry, "is frame " + std::to_string(frame.frame) +
+                                  ", must come after the one before it, " +
+                                  std::to_string(prior.frames[i - 1].frame));
+    }
+  }
+  RequirePlanar(place, prior.map_from_slam, "its map_from_slam");
 }
 
 }  // namespace depthgrid

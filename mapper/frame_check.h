@@ -1,14 +1,18 @@
-// What a frame must hold to be mapped.
+// What a frame must hold to be mapped, and what else a mapper is given.
 #pragma once
 
 #include <optional>
 
 #include "mapper/core/frame.h"
+#include "mapper/incremental_mapper.h"
 
 namespace depthgrid {
 
 // Throws InputError, "frame 40: ...", for a frame that the mapper cannot use (IncrementalMapper::
 // AddFrame says what that is). `camera`: of the depth images, if there are any.
 void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera);
+// Throws InputError, "slam_final: ..." or "prior map: ...", as Finish() and StartFrom() say.
+void RequireSoundFinal(const std::vector<std::optional<Pose3>>& slam_final, std::size_t frames);
+void RequireSound(const PriorMap& prior);
 
 }  // namespace depthgrid

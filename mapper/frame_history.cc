@@ -1,6 +1,7 @@
 #include "mapper/frame_history.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "mapper/core/error.h"
@@ -11,7 +12,9 @@ namespace depthgrid {
 namespace {
 
 // The last motion goes on for this long at most; after a longer gap it says nothing.
-constexpr double kLongestExtrapolationS = 0.5;
+constexpr double kNearS = 0.5;
+// Speeds change: after so long it is off by all of kEpochSigma, before with the square of the time.
+constexpr double kSurpriseS = 0.3;
 // And over no more of its steps: it took no time then, but for a stamp's rounding.
 constexpr double kMostExtrapolatedSteps = 100.0;
 
@@ -26,6 +29,10 @@ bool BeginsEpoch(const FrameRecord& record, const FrameRecord& last) {
   const double step_m =
       (record.slam_from_camera->translation - last.slam_from_camera->translation).norm();
   return step_m > kLongestStepM + kFastestMps * std::max(0.0, record.stamp_s - last.stamp_s);
+}
+
+bool IsNear(const FrameHistory& history, const FrameRecord& record) {
+  return history.newest().stamp_s - record.stamp_s <= kNearS;
 }
 
 // A second at 30 Hz: SLAM's own motion over it is good to millimetres.
@@ -113,24 +120,27 @@ std::optional<Anchor> AnchorOf(const FrameRecord& record, const FrameHistory& hi
 
 }  // namespace
 
-Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam) {
+Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam) {
   const FrameRecord* last = history.PosedBefore(history.newest());
-  if (last == nullptr) return BaseOf(*history.newest().slam_from_camera);
-  const Pose2 slam_from_last = BaseOf(*last->slam_from_camera);
-  const Pose2 map_from_last = map_from_slam * slam_from_last;
-  const FrameRecord* before = history.PosedBefore(*last);
+  if (last == nullptr) return {BaseOf(*history.newest().slam_from_camera), true};
   const double gap_s = history.newest().stamp_s - last->stamp_s;
-  if (before == nullptr || before->epoch != last->epoch || gap_s > kLongestExtrapolationS) {
-    return map_from_last;
+  Extrapolation went_on{map_from_slam * BaseOf(*last->slam_from_camera), IsNear(history, *last),
+                        std::min(1.0, std::pow(gap_s / kSurpriseS, 2))};
+  const FrameRecord* later = last;
+  const FrameRecord* before = history.PosedBefore(*later);
+  // An epoch of one frame has no motion: that before it is the newest known.
+  while (before != nullptr && before->epoch != later->epoch && IsNear(history, *before)) {
+    later = before;
+    before = history.PosedBefore(*later);
   }
-  const double step_s = last->stamp_s - before->stamp_s;
+  if (!went_on.near || before == nullptr || before->epoch != later->epoch) return went_on;
+  const double step_s = later->stamp_s - before->stamp_s;
   // Stamps that repeat or go back tell no speed.
-  if (gap_s < 0.0 || step_s <= 0.0 || gap_s > kMostExtrapolatedSteps * step_s) {
-    return map_from_last;
-  }
-  const double share = gap_s / step_s;
-  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), slam_from_last);
-  return map_from_last * Pose2::FromVector(share * motion.vector());
+  if (gap_s < 0.0 || step_s <= 0.0 || gap_s > kMostExtrapolatedSteps * step_s) return went_on;
+  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), BaseOf(*later->slam_from_camera));
+  went_on.map_from_base =
+      went_on.map_from_base * Pose2::FromVector(gap_s / step_s * motion.vector());
+  return went_on;
 }
 
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,

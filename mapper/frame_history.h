@@ -56,7 +56,12 @@ class FrameHistory {
 
 // Where the newest frame is if the last motion goes on; `map_from_slam` is the correction of the
 // frame before it.
-Pose2 Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
+struct Extrapolation {
+  Pose2 map_from_base;
+  bool near = false;         // the last pose was so short ago that this is near it
+  double sigma_share = 1.0;  // of kEpochSigma, how well it is known
+};
+Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
 
 // A loop between two frames as one between two mapped frames, by SLAM's own motion within an epoch.
 // Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped` is the

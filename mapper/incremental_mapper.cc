@@ -40,10 +40,11 @@ void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
 }
 
 void IncrementalMapper::StartFrom(PriorMap prior) {
-  Require(state_->history.records().empty(), "a prior map comes before the first frame");
+  Require(state_->history.records().empty() && !state_->prior_start && state_->mapped.empty(),
+          "a prior map comes before the first frame, once");
+  RequireSound(prior);
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     MappedFrame& frame = prior.frames[i];
-    Require(frame.of_prior_map(), "frames of a prior map have numbers below 0");
     // Its poses are all that is known of how it moved: no more of SLAM's errors is in them.
     if (i > 0) {
       frame.slam_motion = Between(prior.frames[i - 1].map_from_base, frame.map_from_base);
@@ -54,7 +55,7 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
     }
   }
   // How its last frame and the first to come lie to each other is for the match to say.
-  if (state_->reference) state_->reference->BeginPart();
+  if (state_->reference) state_->reference->BeginPart(PartPlace::kKnown);
   state_->prior_frames = static_cast<int>(prior.frames.size());
   state_->mapped.StartFrom(std::move(prior.frames));
   state_->fixed_map = prior.fixed;
@@ -119,8 +120,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const bool provisional = scans.matched && frame.slam_from_camera;
   if (provisional) {
     frames.push_back(mapped.WithScans(
-        AsMapped(SameEpoch() ? CarriedOn() : Extrapolated(history, filter.map_from_slam())),
-        scans));
+        AsMapped(SameEpoch() ? CarriedOn() : BegunAt(nullptr).map_from_base), scans));
   }
   LoopCloser::Outcome outcome =
       loop_closer.Close(frame.loops, history, frames, provisional, *reference);
@@ -130,7 +130,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const Pose2 newest = outcome.map_from_base.back();
   outcome.map_from_base.resize(mapped.all().size());
   MoveTo(outcome.map_from_base);
-  if (provisional) Anchor(newest);
+  if (provisional) Anchor({newest, 0.0});
 }
 
 // Poses and map corrected together while the run goes on.
@@ -162,7 +162,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   const FrameRecord* last = history.PosedBefore(history.newest());
   const double lost_s = last == nullptr ? 0.0 : report.stamp_s - last->stamp_s;
   if (relocation.Begins(lost_s, share, mapped.size())) {
-    reference->BeginPart();
+    reference->BeginPart(PartPlace::kGuessed);
   } else {
     relocation.Explained(share);
   }
@@ -200,27 +200,13 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
 }
 
-// Within an epoch SLAM's motion carries the correction on. Across one there are two guesses: the
-// camera went on as it did, or SLAM's new pose means the same place of the map as its old poses did
-// (a relocalisation). The one that matches better is taken.
+// Within an epoch SLAM's motion carries the correction on.
 Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& scan,
                                              FrameReport& report) {
   const StageTimer timer(clock, report.times.match_us);
   const FrameRecord& record = history.newest();
   const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
-  if (reference && !SameEpoch()) {
-    const Pose2 extrapolated = Extrapolated(history, filter.map_from_slam());
-    const Pose2 carried_on = CarriedOn();
-    Pose2 better = extrapolated;
-    if (scan && !mapped.empty()) {
-      const MatchResult at_extrapolated =
-          reference->Match(scan, {extrapolated, filter.covariance()});
-      const MatchResult at_carried_on = reference->Match(scan, {carried_on, filter.covariance()});
-      const auto worth = [](const MatchResult& match) { return match.found ? match.score : 0.0; };
-      if (worth(at_carried_on) > worth(at_extrapolated)) better = carried_on;
-    }
-    Anchor(better);
-  }
+  if (reference && !SameEpoch()) Anchor(BegunAt(scan));
   filter_epoch = record.epoch;
   if (prior_start) {
     filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base,
@@ -248,6 +234,7 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
   Eigen::Vector3d outside_gain = Eigen::Vector3d::Zero();
   if (oracle && report.match.found) {
     outside_gain = oracle(record.index, prediction.map_from_base, report.match.map_from_base);
+    Require(outside_gain.allFinite(), "an oracle's gain is made of finite numbers");
   }
   const FusedPose fused =
       filter.Fuse(BaseOf(*record.slam_from_camera), prediction, report.match, outside_gain);
@@ -303,25 +290,6 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& 
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);
   }
-}
-
-bool IncrementalMapper::State::SameEpoch() const {
-  return !filter_epoch || *filter_epoch == history.newest().epoch;
-}
-
-// SLAM's pose with the correction that stood before it.
-Pose2 IncrementalMapper::State::CarriedOn() const {
-  return filter.Predict(BaseOf(*history.newest().slam_from_camera), history.newest().stamp_s)
-      .map_from_base;
-}
-
-// The correction is chosen so that SLAM's newest pose lies there.
-void IncrementalMapper::State::Anchor(const Pose2& map_from_base) {
-  const FrameRecord& record = history.newest();
-  filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, map_from_base,
-                filter.covariance());
-  errors.Break();
-  filter_epoch = record.epoch;
 }
 
 MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const {

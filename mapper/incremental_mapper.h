@@ -35,7 +35,8 @@ using MatchOracle = std::function<Pose2(int frame)>;
 
 // A finished map to go on from.
 struct PriorMap {
-  // In order of time, at final poses; their `frame` is below 0.
+  // In order of time, at final poses; their `frame` is below 0 and increases. A finished mapper's
+  // `mapped` becomes this by counting it -size() to -1.
   std::vector<MappedFrame> frames;
   // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees.
   Pose2 map_from_slam;
@@ -60,7 +61,9 @@ class IncrementalMapper {
   // From the next frame on.
   void SetMatchOracle(MatchOracle oracle);
 
-  // Before the first frame, once. The result's `mapped` then begins with the prior frames.
+  // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
+  // InputError, and nothing was begun, when a frame's number, pose, stamp or scans are not as
+  // PriorMap wants them, or `map_from_slam` is not finite.
   void StartFrom(PriorMap prior);
 
   // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
@@ -76,7 +79,8 @@ class IncrementalMapper {
   // The last correction, then the map drawn from the stored scans at their final poses. It takes
   // seconds after tens of thousands of frames; frames may come after it, and another end.
   // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
-  // when SLAM is trusted alone (K = 0); frames without one keep their live pose.
+  // when SLAM is trusted alone (K = 0); frames without one keep their live pose. Throws InputError
+  // when it is of another length, or holds a pose that AddFrame() would not take.
   MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
   // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them, so ask
   // once in a while rather than after each frame. Empty, of no size, while nothing was mapped.

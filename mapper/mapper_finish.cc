@@ -1,8 +1,8 @@
 // The end of a run: the last correction, and the map from the stored scans.
 #include <utility>
 
-#include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/frame_check.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/mapper_state.h"
 
@@ -10,8 +10,7 @@ namespace depthgrid {
 
 MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
   const std::vector<FrameRecord>& records = state_->history.records();
-  Require(slam_final.empty() || slam_final.size() == records.size(),
-          "SLAM's final trajectory has one entry a frame");
+  RequireSoundFinal(slam_final, records.size());
   State::FinalEstimate final = state_->Final(slam_final);
   MapperResult result;
   result.map_from_camera = std::move(final.map_from_camera);

@@ -83,7 +83,12 @@ struct IncrementalMapper::State {
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
-  void Anchor(const Pose2& map_from_base);
+  struct EpochStart {
+    Pose2 map_from_base;
+    double sigma_share = 0.0;
+  };
+  EpochStart BegunAt(const std::shared_ptr<const Scan>& scan);
+  void Anchor(const EpochStart& start);
   MappedFrame AsMapped(const Pose2& map_from_base) const;
   struct FinalEstimate {
     std::vector<Pose2> map_from_base;                   // of the mapped frames

@@ -28,6 +28,7 @@ MatchResult PaperReference::Match(const std::shared_ptr<const Scan>& scan,
   // All scans of the submap alike.
   const int count = static_cast<int>(map_from_base_.size());
   const int first = std::max((count - 1) / scans_per_submap_ - 1, 0) * scans_per_submap_;
+  if (first < part_begin_) return {};
   part_ = {0.5 * (first + count - 1), Eigen::Matrix3d::Identity(), kNoiseShare};
   return matcher_.Match(*scan, ViewOf(submap->map()), prediction.map_from_base);
 }
@@ -76,6 +77,7 @@ void PaperReference::Rebuild(const std::vector<MappedFrame>& frames) {
 // What was measured between the frames before and those moved was of the old guess.
 void PaperReference::RebuildMoved(const std::vector<MappedFrame>& frames, int first_moved) {
   Rebuild(frames);
+  part_begin_ = 0;
   for (auto i = static_cast<std::size_t>(first_moved); i < frames.size(); ++i) {
     measurements_[i] = MeasurementOf(map_from_base_, static_cast<int>(i), scans_per_submap_);
   }

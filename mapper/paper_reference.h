@@ -30,6 +30,11 @@ class PaperReference : public ReferenceMap {
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
+  // Matches at a place that is only guessed would pull its scans apart: there are none until a
+  // submap holds nothing from before.
+  void BeginPart(PartPlace place) override {
+    if (place == PartPlace::kGuessed) part_begin_ = static_cast<int>(map_from_base_.size());
+  }
   void RebuildMoved(const std::vector<MappedFrame>& frames, int first_moved) override;
 
  private:
@@ -41,6 +46,7 @@ class PaperReference : public ReferenceMap {
   ScanMatcher matcher_;
   ScanRasterizer rasterizer_;
   ActiveSubmaps submaps_;
+  int part_begin_ = 0;                // no submap with scans before this one is matched
   MapPart part_;                      // all of the submap
   std::vector<Pose2> map_from_base_;  // of all scans inserted, as the map has them now
   std::vector<ScanMeasurement> measurements_;

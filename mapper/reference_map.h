@@ -65,6 +65,12 @@ struct MapPart {
   double noise_share = 0.0;  // of this information's variance, how much is the part's own noise
 };
 
+// How well it is guessed where a new epoch of SLAM's poses begins, from SLAM's own word or from the
+// motion before: m, m, rad (docs/math.md, "Epochs").
+inline const Eigen::Vector3d kEpochSigma(0.1, 0.1, 0.05);
+
+enum class PartPlace { kKnown, kGuessed };
+
 class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
@@ -91,8 +97,9 @@ class ReferenceMap {
                             const std::vector<PlanarLoop>& loops, AdjustEffort effort) = 0;
   // Forgets everything and inserts the frames again at their (corrected) poses.
   virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
-  // The next frame's place among those before is not known: nothing is measured between them.
-  virtual void BeginPart() {}
+  // How the next frame and the one before lie to each other is not known: nothing is measured
+  // between them. kGuessed: neither is where it lies in the map.
+  virtual void BeginPart(PartPlace) {}
   // As Rebuild, after the frames from this position on were moved as one.
   virtual void RebuildMoved(const std::vector<MappedFrame>& frames, int) { Rebuild(frames); }
 };

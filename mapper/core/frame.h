@@ -25,7 +25,7 @@ inline bool IsWithinReach(const Eigen::Vector3d& at) {
 constexpr double kFarthestMapM = 1.05 * kFarthestPoseM;
 
 // At most one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
-// image).
+// image), or only loops (SLAM is lost, and yet corrected itself).
 struct Frame {
   // Position in the sequence from 0 on, counted by the source; loop closures refer to it. Numbers
   // may be left out, none comes twice.

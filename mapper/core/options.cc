@@ -51,8 +51,13 @@ class RangeCheck final : public OptionsVisitor {
   }
 
  protected:
-  void ChoiceIndex(std::string_view, int&, const std::vector<std::string_view>&,
-                   std::string_view) override {}
+  void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
+                   std::string_view) override {
+    if (index >= 0) return;
+    std::string all;
+    for (const std::string_view name : names) all.append(all.empty() ? "" : ", ").append(name);
+    throw InputError(path_ + "." + std::string(key), "is none of its values, " + all);
+  }
   bool Begin(std::string_view key, std::string_view) override {
     lengths_.push_back(path_.size());
     path_.append(".").append(key);

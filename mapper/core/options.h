@@ -55,13 +55,13 @@ class OptionsVisitor {
               std::initializer_list<std::pair<Enum, std::string_view>> allowed,
               std::string_view meaning) {
     std::vector<std::string_view> names;
-    int index = 0;
+    int index = -1;  // a value of none of the names
     for (const auto& [candidate, name] : allowed) {
       if (candidate == value) index = static_cast<int>(names.size());
       names.push_back(name);
     }
     ChoiceIndex(key, index, names, meaning);
-    value = (allowed.begin() + index)->first;
+    if (index >= 0) value = (allowed.begin() + index)->first;
   }
 
   // A nested struct with a Visit of its own.
@@ -73,6 +73,7 @@ class OptionsVisitor {
   }
 
  protected:
+  // `index` is -1 for a value that has no name.
   virtual void ChoiceIndex(std::string_view key, int& index,
                            const std::vector<std::string_view>& names,
                            std::string_view meaning) = 0;

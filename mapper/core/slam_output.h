@@ -13,7 +13,8 @@ namespace depthgrid {
 // carries one standard deviation for translation and one for rotation (isotropic information
 // 1/sigma^2).
 struct LoopClosure {
-  // The event arrives with this frame, before its pose; >= max(first_frame, second_frame).
+  // The event arrives with this frame, before its pose; >= max(first_frame, second_frame). For
+  // files: the mapper takes a loop when the frame comes that brings it (Frame::loops).
   int reported_at_frame = 0;
   int first_frame = 0;
   int second_frame = 0;

@@ -104,7 +104,7 @@ bool Relocation::Begins(double lost_s, double share, int next_frame) {
     lost_s_ += lost_s;
     return false;
   }
-  if (share >= options_.min_share * usual_share_) return false;
+  if (IsUsual(share)) return false;
   active_ = true;
   first_frame_ = next_frame;
   lost_s_ = lost_s;
@@ -123,7 +123,7 @@ bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
   const double share = reference.ShareSeenBefore(newest, frames.back().map_from_base, first_frame_);
   recent_share_ += kNewShare * (share - recent_share_);
   return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge &&
-         recent_share_ >= options_.min_share * usual_share_;
+         IsUsual(recent_share_);
 }
 
 // Whether both put a frame to the same place.

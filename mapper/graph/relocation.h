@@ -55,6 +55,8 @@ class Relocation {
   // Whether a guess after so long without a pose, of which the map explains this share, is to be
   // doubted. Begins the search then; the next mapped frame is the first of its part.
   bool Begins(double lost_s, double share, int next_frame);
+  // Whether a match explains what a right place does.
+  bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   bool active() const { return active_; }
   int first_frame() const { return first_frame_; }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/config_text.h"
 
@@ -8,6 +9,11 @@ namespace depthgrid {
 namespace {
 
 std::string Shown(double value) { return fmt::format("{}", value); }
+
+std::string NameAt(const std::vector<std::string_view>& names, int index) {
+  Require(index >= 0, "what is written has a name");
+  return std::string(names[static_cast<std::size_t>(index)]);
+}
 
 // Writes two-space indented YAML; numbers in the shortest form that reads back to the same double.
 class YamlWriter final : public OptionsVisitor {
@@ -56,7 +62,7 @@ class YamlWriter final : public OptionsVisitor {
  protected:
   void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
                    std::string_view) override {
-    Line(key, std::string(names[static_cast<std::size_t>(index)]));
+    Line(key, NameAt(names, index));
   }
   bool Begin(std::string_view key, std::string_view) override {
     out_ += fmt::format("{:{}}{}:\n", "", 2 * depth_, key);
@@ -117,8 +123,7 @@ class KeyLister final : public OptionsVisitor {
  protected:
   void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
                    std::string_view meaning) override {
-    Line(key, std::string(names[static_cast<std::size_t>(index)]), "one of " + Joined(names),
-         meaning);
+    Line(key, NameAt(names, index), "one of " + Joined(names), meaning);
   }
   bool Begin(std::string_view key, std::string_view) override {
     path_.push_back(std::string(key) + ".");

@@ -38,8 +38,8 @@ StateMap ReadStates(const std::string& path);
 // The cells a map file calls free: in observable.yaml those that could be seen.
 CellSet ReadFreeCells(const std::string& path);
 
-// Writes `yaml_path` and the image beside it: the same name with .pgm, or for `scale`, which needs
-// transparency, .scale.png.
+// Writes a map of at least one cell: `yaml_path` and the image beside it: the same name with .pgm,
+// or for `scale`, which needs transparency, .scale.png.
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map,
               MapMode mode = MapMode::kTrinary, const StateThresholds& thresholds = {});
 void WriteMap(const std::string& yaml_path, const StateMap& map);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "mapper/reference_map.h"
 #include "mapper/surfel/landmarks.h"
 #include "mapper/surfel/motion_persistence.h"
 #include "mapper/surfel/motion_sigma.h"
@@ -18,6 +19,9 @@ namespace {
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
 // And how well a prior map's adjustment has: it had all that was seen, and loops.
 const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
+// Across a gap in SLAM's motion groups lie as the online estimate has them, robustly: what ties
+// them together where both see nothing in common.
+constexpr double kGapHuberSigmas = 2.0;
 constexpr int kLoopIterations = 5;
 // Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where
 // they were and are known to be wrong.
@@ -90,7 +94,14 @@ std::vector<GroupLink> SettledLinks(const Problem& problem) {
     const GroupMotion& motion = problem.motions[g];
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
-    if (!motion.known || !motion.of_prior_map) continue;
+    if (!motion.known) {
+      links.push_back(
+          {second - 1, second,
+           Between(problem.groups[g - 1].map_from_group, problem.groups[g].map_from_group),
+           kEpochSigma, kGapHuberSigmas});
+      continue;
+    }
+    if (!motion.of_prior_map) continue;
     links.push_back({second - 1, second, motion.before_from_group, kPriorMapSigma, 0.0});
   }
   return links;

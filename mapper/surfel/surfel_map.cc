@@ -191,6 +191,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
   const JointResult result =
       AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
+  const double shared_before = matcher_.shared_errors();
   if (effort != AdjustEffort::kBend) matcher_.ShareErrors(result.correlation);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
@@ -212,6 +213,8 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
       effort == AdjustEffort::kFinish
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)
           : PosesOf(groups.places(), result.map_from_group);
+  // Frames may come after an end: to them it was none.
+  if (effort == AdjustEffort::kFinish) matcher_.ShareErrors(shared_before);
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;

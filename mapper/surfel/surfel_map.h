@@ -45,7 +45,7 @@ class SurfelMap : public ReferenceMap {
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
-  void BeginPart() override { groups_.BeginPart(); }
+  void BeginPart(PartPlace) override { groups_.BeginPart(); }
 
   // What Match and Insert make of a scan, for one that is matched again and again.
   std::vector<Surfel> Cut(const Scan& scan);

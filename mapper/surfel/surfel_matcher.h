@@ -30,6 +30,7 @@ class SurfelMatcher {
 
   // What companions among the pieces share of their errors (shared_errors.h), from now on.
   void ShareErrors(double correlation) { correlation_ = correlation; }
+  double shared_errors() const { return correlation_; }
   // Iterates towards the maximum a posteriori, which keeps directions that the scan does not see
   // where the prediction puts them. What is returned is the match alone: the pose at which the
   // debiased equations have their minimum, and their information. `parts`, if given, becomes what

@@ -71,6 +71,12 @@ const std::vector<Case>& Cases() {
        },
        "holds 7 values, must hold 3072"},
       {[](Frame& f) { f.scan = std::make_shared<Scan>(); }, "a depth image and a scan"},
+      {[](Frame& f) { f.matched_scan = std::make_shared<Scan>(); }, "a matched_scan, but no scan"},
+      {[](Frame& f) {
+         f.depth.reset();
+         f.scan = std::make_shared<Scan>(Scan{.beams = {}, .max_range_m = kNan});
+       },
+       "its scan's max_range_m is nan, must be 0 (unknown) or more"},
       {[](Frame& f) {
          f.loops = {LoopOf(f)};
          f.loops[0].sigma_rotation_rad = 0.0;
@@ -166,6 +172,34 @@ TEST(IncrementalMapper, IsNotMadeOfOptionsOutOfRangeNorOfACameraThatIsNone) {
   camera = kCamera;
   camera.width_px = 1;
   EXPECT_EQ(WhyNotMade({}, camera), "camera: is 1 x 48 pixels, must be 2 x 2 or more");
+}
+
+TEST(IncrementalMapper, IsNotMadeOfAChoiceThatIsNone) {
+  MapperOptions options;
+  options.method = static_cast<MapperMethod>(7);
+  EXPECT_EQ(WhyNotMade(options, kCamera), "mapper.method: is none of its values, paper, surfel");
+}
+
+TEST(IncrementalMapper, SaysWhatIsWrongWithSlamsFinalTrajectory) {
+  IncrementalMapper mapper({}, kCamera);
+  const Frame frame = CheckedFrame(0);
+  mapper.AddFrame(frame);
+  const auto why = [&](const std::vector<std::optional<Pose3>>& slam_final) -> std::string {
+    try {
+      mapper.Finish(slam_final);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why({}), "");
+  EXPECT_EQ(why({frame.slam_from_camera}), "");
+  EXPECT_EQ(why({std::nullopt}), "");
+  EXPECT_EQ(why({{}, {}}),
+            "slam_final: has 2 poses, must have one for each of the 1 frames, or none");
+  Pose3 nowhere = *frame.slam_from_camera;
+  nowhere.translation.x() = kNan;
+  EXPECT_THAT(why({nowhere}), HasSubstr("slam_final: entry 0 lies at (nan"));
 }
 
 TEST(IncrementalMapper, AnotherOneTakesItsPlace) {

@@ -136,10 +136,52 @@ TEST(FrameScanner, WithoutASliceTheObstaclesAreMatched) {
 
 TEST(FrameScanner, AReadyScanIsBoth) {
   Frame frame;
-  frame.scan = std::make_shared<const Scan>();
+  const auto scan = std::make_shared<Scan>();
+  scan->max_range_m = 6.0;
+  scan->beams = {{-0.1F, 2.0F, 0.0F, 2.0F, true}, {0.1F, 3.0F, 0.0F, 3.0F, true}};
+  const Scan given = *scan;
+  frame.scan = scan;
   const FrameScans scans = FrameScanner({}, ScanOptions{}).ScansOf(frame);
-  EXPECT_EQ(scans.obstacles, frame.scan);
-  EXPECT_EQ(scans.matched, frame.scan);
+  EXPECT_EQ(scans.obstacles, scans.matched);
+  EXPECT_EQ(*scans.matched, given);
+  scan->beams.clear();  // the caller's own, to fill again
+  EXPECT_EQ(*scans.matched, given);
+}
+
+Scan SoundPartOf(const Scan& scan) {
+  Frame frame;
+  frame.scan = std::make_shared<const Scan>(scan);
+  return *FrameScanner({}, ScanOptions{}).ScansOf(frame).matched;
+}
+
+// As drivers bring them: from left to right, from any bearing on, twice round.
+TEST(FrameScanner, BeamsOfAReadyScanAreBroughtIntoTheirOrder) {
+  Scan scan{.beams = {{3.0F, 2.0F, 0.0F, 2.0F, true},
+                      {-1.0F, 3.0F, 0.0F, 3.0F, true},
+                      {7.0F, 4.0F, 0.0F, 4.0F, false}},
+            .max_range_m = 6.0};
+  const Scan sorted = SoundPartOf(scan);
+  std::swap(scan.beams[0], scan.beams[1]);
+  EXPECT_EQ(sorted, scan);
+}
+
+TEST(FrameScanner, HitsThatAreNoneAndBearingsOfNoCircleSayNothing) {
+  const Beam sound{0.0F, 2.0F, 0.0F, 2.0F, true};
+  for (const Beam& stray : std::vector<Beam>{{0.1F, 0.0F, 0.0F, 0.0F, true},
+                                             {0.1F, -2.0F, 0.0F, 0.0F, true},
+                                             {0.1F, 6.5F, 0.0F, 6.5F, true},
+                                             {1e9F, 2.0F, 0.0F, 2.0F, true}}) {
+    const Scan scan{.beams = {sound, stray}, .max_range_m = 6.0};
+    EXPECT_EQ(SoundPartOf(scan).beams, std::vector<Beam>{sound});
+  }
+}
+
+TEST(FrameScanner, NothingIsClearBeyondTheScansReach) {
+  const Scan scan{.beams = {{0.0F, 0.0F, 0.0F, 80.0F, false}}, .max_range_m = 6.0};
+  EXPECT_EQ(SoundPartOf(scan).beams[0].clear_to_m, 6.0F);
+  const Scan unknown{.beams = {{0.0F, 0.0F, 0.0F, 1e9F, false}, {0.1F, 2e3F, 0.0F, 2e3F, true}}};
+  ASSERT_EQ(SoundPartOf(unknown).beams.size(), 1U);
+  EXPECT_EQ(SoundPartOf(unknown).beams[0].clear_to_m, 1000.0F);
 }
 
 TEST(FrameScanner, WithoutImageOrPoseThereIsNoScan) {

@@ -136,7 +136,7 @@ TEST(Extrapolated, GoesOnAsItWentUnlessTheStampsTellNoSpeed) {
       frame.stamp_s = i == 0 ? 0.0 : i == 1 ? second_s : third_s;
       history.Start(frame);
     }
-    return Extrapolated(history, {}).x_m;
+    return Extrapolated(history, {}).map_from_base.x_m;
   };
   EXPECT_NEAR(forward_m(0.1, 0.2), 0.2, 1e-12);
   EXPECT_NEAR(forward_m(0.1, 0.25), 0.25, 1e-12);

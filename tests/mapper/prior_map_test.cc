@@ -1,9 +1,14 @@
 // Going on in a finished map with poses that drift.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
 #include <vector>
 
+#include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "tests/mapper/match_world.h"
@@ -150,6 +155,58 @@ TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
     EXPECT_EQ(reports[0][i].map_from_camera, reports[1][i].map_from_camera) << i;
   }
   EXPECT_NE(reports[0][kFirst].map_from_camera, reports[1][kFirst].map_from_camera);
+}
+
+std::string WhyNotBegun(const PriorMap& prior) {
+  IncrementalMapper mapper({}, std::nullopt);
+  try {
+    mapper.StartFrom(prior);
+  } catch (const InputError& error) {
+    // As if nothing had been given.
+    mapper.StartFrom(FinishedRound());
+    return error.what();
+  }
+  EXPECT_THROW(mapper.StartFrom(prior), std::logic_error);
+  return "";
+}
+
+TEST(PriorMap, SaysWhatIsWrongWithIt) {
+  const PriorMap sound = FinishedRound();
+  EXPECT_EQ(WhyNotBegun(sound), "");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<std::function<void(PriorMap&)>, std::string>> cases = {
+      {[](PriorMap& p) { p.frames[2].frame = 2; }, "prior map, entry 2: is frame 2, must be below"},
+      {[](PriorMap& p) { p.frames[2].frame = p.frames[1].frame; },
+       "entry 2: is frame -297, must come after the one before it, -297"},
+      {[](PriorMap& p) { p.frames[3].scan = {}; }, "entry 3: has no scans of its own"},
+      {[](PriorMap& p) { p.frames[3].tied_to = 0; }, "entry 3: has no scans of its own"},
+      {[&](PriorMap& p) { p.frames[4].stamp_s = nan; }, "entry 4: its stamp is nan"},
+      {[](PriorMap& p) {
+         p.frames[5].map_from_base = {1e9, 0.0, 0.0};
+       },
+       "entry 5: its pose is"},
+      {[&](PriorMap& p) {
+         p.map_from_slam = {nan, 0.0, 0.0};
+       },
+       "prior map: its map_from_slam is"}};
+  for (const auto& [spoil, why] : cases) {
+    PriorMap prior = sound;
+    spoil(prior);
+    EXPECT_THAT(WhyNotBegun(prior), testing::HasSubstr(why));
+  }
+}
+
+// What is asked for between two frames does not touch what comes after it.
+TEST(PriorMap, AnEndChangesNothingOfTheFramesAfterIt) {
+  const std::vector<Pose2> slam_from_base = DriftingRound();
+  IncrementalMapper undisturbed({}, std::nullopt), asked({}, std::nullopt);
+  for (int i = 0; i < kPriorRound; ++i) {
+    const Frame frame = PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]);
+    ASSERT_EQ(asked.AddFrame(frame).map_from_camera, undisturbed.AddFrame(frame).map_from_camera)
+        << i;
+    if (i % 60 == 20) asked.Finish();
+  }
+  EXPECT_EQ(asked.Finish().map_from_camera, undisturbed.Finish().map_from_camera);
 }
 
 TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {

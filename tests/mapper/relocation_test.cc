@@ -89,6 +89,43 @@ TEST(Relocation, ACorridorIsAmbiguous) {
   EXPECT_EQ(Lose(corridor, corridor, along, farther, true).relocated, 0);
 }
 
+// SLAM is lost for 1.5 s and finds itself again, 2 cm off; the camera meanwhile turned to what it
+// had not seen. Nothing ties what comes after to what came before but SLAM's own word.
+TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
+  constexpr int kLost = 40, kBack = 85, kFrames = 200;
+  const Pose2 off{0.02, -0.01, 0.005};
+  for (const MapperMethod method : {MapperMethod::kSurfel, MapperMethod::kPaper}) {
+    MapperOptions options;
+    options.method = method;
+    IncrementalMapper mapper(options, std::nullopt);
+    double worst_online_m = 0.0;
+    for (int i = 0; i < kFrames; ++i) {
+      const bool is_after = i >= kBack;
+      Frame frame;
+      frame.index = i;
+      frame.stamp_s = i / 30.0;
+      frame.slam_epoch = is_after ? 1 : 0;
+      if (i < kLost || is_after) {
+        frame.slam_from_camera = CameraOf(RoundTheRoom(i) * (is_after ? off : Pose2{}), 1.0);
+        const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+        frame.scan = std::make_shared<const Scan>(
+            ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, 5, static_cast<std::uint32_t>(i)));
+      }
+      const FrameReport report = mapper.AddFrame(frame);
+      if (!report.map_from_camera) continue;
+      worst_online_m =
+          std::max(worst_online_m,
+                   Between(RoundTheRoom(i), BaseOf(*report.map_from_camera)).translation().norm());
+    }
+    EXPECT_LT(worst_online_m, 0.06);
+    const MapperResult result = mapper.Finish();
+    for (int i = kBack; i < kFrames; ++i) {
+      const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
+      EXPECT_LT(Between(RoundTheRoom(i), pose).translation().norm(), 0.05) << i;
+    }
+  }
+}
+
 TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
   RelocationOptions options;
   Relocation relocation(options, {}, {});
