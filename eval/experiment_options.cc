@@ -76,7 +76,7 @@ ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) 
 std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
                                            const std::vector<std::string>& profiles) {
   if (!file.Has("slam.profile")) return {};
-  const std::string own = file.List("slam.profile").front();
+  const std::string own = file.Text("slam.profile");
   const bool another = std::any_of(
       profiles.begin(), profiles.end(),
       [&](const std::string& profile) { return profile != own && profile != "ground_truth"; });

@@ -45,8 +45,7 @@ void AddParameters(const fs::path& run, SweepResults& table) {
     for (const char* key : kKeys) table.parameters.push_back({key, {}, {}});
   }
   for (SweepParameter& parameter : table.parameters) {
-    const std::string text =
-        settings.Has(parameter.key) ? settings.List(parameter.key).front() : "";
+    const std::string text = settings.Text(parameter.key);
     parameter.texts.push_back(text);
     parameter.numbers.push_back(ParseNumber(text).value_or(kNothing));
   }

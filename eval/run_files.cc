@@ -1,5 +1,7 @@
 #include "eval/run_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -47,8 +49,8 @@ RunFiles ReadRunFolder(const std::string& folder) {
 }
 
 std::string SettingOf(const Config& settings, const std::string& key) {
-  const std::string value = settings.Has(key) ? settings.List(key).front() : "";
-  return value == "\"\"" ? "" : value;  // YAML of an empty text
+  if (!settings.HasList(key)) return settings.Text(key);
+  return fmt::format("{}", fmt::join(settings.List(key), ", "));
 }
 
 }  // namespace depthgrid

@@ -41,7 +41,7 @@ RunFiles ReadRunFolder(const std::string& folder);
 // How much of the unknown is shown around a map.
 constexpr int kMapMarginCells = 4;
 
-// A setting as text, empty when it is not there or empty.
+// A setting as text, the items of a list with commas between; empty when it is not there or empty.
 std::string SettingOf(const Config& settings, const std::string& key);
 
 }  // namespace depthgrid

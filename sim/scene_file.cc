@@ -139,7 +139,7 @@ class SceneReader {
     Config config = Config::FromFile(path);
     RequireKnownKeys(config);
     scene_.materials.push_back(MaterialOptions().Make("default"));
-    if (config.Has("include")) ReadInclude(config.List("include").front());
+    if (config.Has("include")) ReadInclude(config.Text("include"));
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
     ReadLighting(config.Take("lighting"));
@@ -260,7 +260,7 @@ class SceneReader {
       throw InputError(config.Place(), fmt::format("'shape' is missing, must be one of {}",
                                                    fmt::join(kinds, ", ")));
     }
-    const std::string kind = config.List("shape").front();
+    const std::string kind = config.Text("shape");
     if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
       throw InputError(config.Place(),
                        fmt::format("shape is '{}', must be one of {}{}", kind,

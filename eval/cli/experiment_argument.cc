@@ -57,12 +57,12 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
   Config given;
   for (const std::string& assignment : set) given.Set(assignment);
   if (!given.Has("slam.profile")) return {};
-  const std::vector<std::string> profile = given.List("slam.profile");
+  const std::string profile = given.Text("slam.profile");
   const std::vector<std::string> kept = KeptBesideProfile(
-      ExperimentFile(ResolveName(name, ShippedKind::kExperiment)), given, profile);
+      ExperimentFile(ResolveName(name, ShippedKind::kExperiment)), given, {profile});
   if (kept.empty()) return {};
   return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
-                     fmt::join(kept, ", "), profile.front());
+                     fmt::join(kept, ", "), profile);
 }
 
 }  // namespace

@@ -109,7 +109,8 @@ std::string RefusalIfNegative(const std::string& text) {
 std::string RefusalUnlessSeed(const std::string& text) {
   std::uint64_t value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && *stop == '\0') return "";
+  // The option itself would read 010 as 8.
+  if (error == std::errc() && *stop == '\0' && !HasLeadingZero(text)) return "";
   return fmt::format("is '{}', must be a whole number from 0 to {}", text, UINT64_MAX);
 }
 

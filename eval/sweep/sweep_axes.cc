@@ -148,7 +148,8 @@ std::vector<SweepAxis> ReadAxes(const Config& axes) {
 std::string ShortestYaml(const std::string& text) {
   constexpr double kExactIntegers = 9007199254740992.0;  // 2^53: larger seeds stay as they stand
   const auto number = ParseNumber(text);
-  if (!number || !std::isfinite(*number) || std::abs(*number) >= kExactIntegers) return text;
+  const bool is_exact = number && std::isfinite(*number) && std::abs(*number) < kExactIntegers;
+  if (!is_exact || HasLeadingZero(text)) return text;
   return fmt::format("{}", *number);
 }
 

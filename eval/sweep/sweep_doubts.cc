@@ -83,7 +83,7 @@ std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config
                                            const std::vector<SweepAxis>& axes) {
   Config changes = fixed;
   std::vector<std::string> profiles;
-  if (changes.Has("slam.profile")) profiles = changes.List("slam.profile");
+  if (changes.Has("slam.profile")) profiles = {changes.Text("slam.profile")};
   for (const SweepAxis& axis : axes) {
     for (std::size_t i = 0; i < axis.keys.size(); ++i) {
       const bool is_profile = axis.keys[i] == "slam.profile";

@@ -113,8 +113,7 @@ CameraDescription FromRos(const Config& config, const std::string& place) {
   pinhole.width_px = WholeAt(config, need({"image_width", "width"}), place);
   pinhole.height_px = WholeAt(config, need({"image_height", "height"}), place);
   SetMatrix(NumbersAt(config, need({"camera_matrix.data", "K", "k"}), place), 3, place, pinhole);
-  const std::string model = config.Has("distortion_model") ? config.List("distortion_model").front()
-                                                           : std::string("plumb_bob");
+  const std::string model = config.Text("distortion_model", "plumb_bob");
   const std::string key = FirstOf(config, {"distortion_coefficients.data", "D", "d"});
   const std::vector<double> distortion =
       key.empty() ? std::vector<double>{} : NumbersAt(config, key, place);

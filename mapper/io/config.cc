@@ -9,43 +9,13 @@
 #include "mapper/core/error.h"
 #include "mapper/io/config_tree_impl.h"
 #include "mapper/io/file.h"
+#include "mapper/io/yaml_text_impl.h"
 
 namespace depthgrid {
 
 namespace {
 
 constexpr std::size_t kMaxConfigBytes = 16U << 20U;
-
-void RequireUniqueKeys(const YAML::Node& node, const std::string& place) {
-  if (node.IsSequence()) {
-    for (const auto& item : node) RequireUniqueKeys(item, place);
-  }
-  if (!node.IsMap()) return;
-  std::vector<std::string> seen;
-  for (const auto& entry : node) {
-    if (!entry.first.IsScalar()) {
-      throw InputError(PlaceOf(place, entry.first), "a key must be a plain word");
-    }
-    const auto key = entry.first.Scalar();
-    for (const auto& other : seen) {
-      if (other == key)
-        throw InputError(PlaceOf(place, entry.first), "key '" + key + "' is given twice");
-    }
-    seen.push_back(key);
-    RequireUniqueKeys(entry.second, place);
-  }
-}
-
-YAML::Node ParseYaml(const std::string& text, const std::string& place) {
-  try {
-    YAML::Node node = YAML::Load(text);
-    return node;
-  } catch (const YAML::Exception& e) {
-    const std::string where =
-        e.mark.is_null() ? place : fmt::format("{}:{}", place, e.mark.line + 1);
-    throw InputError(where, "not valid YAML: " + e.msg);
-  }
-}
 
 std::vector<std::string> SplitPath(const std::string& path) {
   std::vector<std::string> parts;
@@ -94,7 +64,6 @@ Config Config::FromText(const std::string& text, const std::string& place) {
   tree->root = ParseYaml(text, place);
   if (tree->root.IsNull()) throw InputError(place, "is empty");
   if (!tree->root.IsMap()) throw InputError(place, "must be a map of keys");
-  RequireUniqueKeys(tree->root, place);
   return Config(std::move(tree));
 }
 
@@ -112,6 +81,9 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
       given_place.empty() ? "--set " + key_path + "=" + yaml_value : given_place;
   const YAML::Node value = ParseYaml(yaml_value, place);
   const auto parts = SplitPath(key_path);
+  if (parts.size() > kMaxYamlDepth) {
+    throw InputError(place, fmt::format("keys are nested deeper than {}", kMaxYamlDepth));
+  }
   YAML::Node node = tree_->root;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].empty()) throw InputError(place, "must have the form key.path=value");
@@ -177,6 +149,10 @@ bool Config::Has(const std::string& key_path) const {
   return Find(tree_->root, key_path).IsDefined();
 }
 
+bool Config::HasList(const std::string& key_path) const {
+  return Find(tree_->root, key_path).IsSequence();
+}
+
 Config Config::Only(const std::vector<std::string>& keys) const {
   auto kept = std::make_unique<Tree>();
   kept->place = tree_->place;
@@ -203,6 +179,11 @@ std::vector<std::string> Config::List(const std::string& key_path) const {
   std::vector<std::string> items;
   for (const auto& item : node) items.push_back(FlowText(item));
   return items;
+}
+
+std::string Config::Text(const std::string& key_path, const std::string& otherwise) const {
+  const YAML::Node node = Find(tree_->root, key_path);
+  return node.IsDefined() ? TextIn(*tree_, key_path, node) : otherwise;
 }
 
 std::string Config::ToYaml() const {

@@ -42,6 +42,7 @@ class Config {
   // What this tree is about, "trajectory 'tour'": errors name it behind file and line.
   void NameSubject(const std::string& subject);
   bool Has(const std::string& key_path) const;
+  bool HasList(const std::string& key_path) const;
   // A copy with only these of the top-level keys: for files of other programs, which may hold more
   // than is read here.
   Config Only(const std::vector<std::string>& keys) const;
@@ -56,6 +57,9 @@ class Config {
   // The YAML texts of a list's elements at a key path; a scalar is a list of one. Throws InputError
   // if absent.
   std::vector<std::string> List(const std::string& key_path) const;
+  // The text at a key path, `otherwise` if there is no such key. Throws InputError for a list or a
+  // map.
+  std::string Text(const std::string& key_path, const std::string& otherwise = "") const;
   // The tree as YAML.
   std::string ToYaml() const;
 

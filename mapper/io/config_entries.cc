@@ -1,5 +1,6 @@
 // Trees whose keys are themselves key paths, such as the axes of a sweep.
 #include "mapper/io/config_tree_impl.h"
+#include "mapper/io/yaml_text_impl.h"
 
 namespace depthgrid {
 
@@ -8,7 +9,7 @@ std::vector<ConfigEntry> Config::Entries() const {
   for (const auto& item : tree_->root) {
     ConfigEntry entry;
     entry.key = item.first.Scalar();
-    entry.place = PlaceOf(tree_->place, item.first);
+    entry.place = PlaceOf(tree_->place, item.first.Mark());
     entry.text = FlowText(item.second);
     if (item.second.IsMap()) {
       auto map = std::make_unique<Tree>();

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 
 #include "mapper/core/error.h"
 #include "mapper/io/config_text.h"
 #include "mapper/io/config_tree_impl.h"
+#include "mapper/io/number_rows.h"
+#include "mapper/io/yaml_text_impl.h"
 
 namespace depthgrid {
 namespace {
@@ -22,8 +25,7 @@ class YamlReader final : public OptionsVisitor {
   void Number(std::string_view key, int& value, Interval allowed, std::string_view) override {
     if (const YAML::Node node = Lookup(key); node.IsDefined()) {
       int number = 0;
-      if (!node.IsScalar() || !YAML::convert<int>::decode(node, number))
-        Fail(node, key, "a whole number");
+      if (!WholeIn(node, key, number)) Fail(node, key, "a whole number");
       if (number < allowed.low || number > allowed.high) Fail(node, key, Shown(allowed));
       value = number;
     }
@@ -31,8 +33,7 @@ class YamlReader final : public OptionsVisitor {
   void Seed(std::string_view key, std::uint64_t& value, std::string_view) override {
     if (const YAML::Node node = Lookup(key); node.IsDefined()) {
       std::uint64_t number = 0;
-      const bool negative = node.IsScalar() && node.Scalar().starts_with('-');
-      if (!node.IsScalar() || negative || !YAML::convert<std::uint64_t>::decode(node, number)) {
+      if (!WholeIn(node, key, number)) {
         Fail(node, key, fmt::format("a whole number from 0 to {}", UINT64_MAX));
       }
       value = number;
@@ -46,8 +47,7 @@ class YamlReader final : public OptionsVisitor {
   }
   void Text(std::string_view key, std::string& value, std::string_view) override {
     if (const YAML::Node node = Lookup(key); node.IsDefined()) {
-      if (!node.IsScalar()) Fail(node, key, "a text");
-      value = node.Scalar();
+      value = TextIn(tree_, PathOf(key), node);
     }
   }
   void Numbers(std::string_view key, std::vector<double>& values, Interval allowed,
@@ -133,10 +133,27 @@ class YamlReader final : public OptionsVisitor {
     level.known.emplace_back(key);
     return static_cast<const YAML::Node&>(level.node)[std::string(key)];
   }
+  // What comes out as another number in another program is not guessed at.
+  void RequireDecimal(const YAML::Node& node, std::string_view key) const {
+    if (HasLeadingZero(node.Scalar())) {
+      Fail(node, key, "a decimal number without leading zeros");
+    }
+  }
+  template <typename Whole>
+  bool WholeIn(const YAML::Node& node, std::string_view key, Whole& number) const {
+    if (!node.IsScalar()) return false;
+    RequireDecimal(node, key);
+    const std::string& text = node.Scalar();
+    const char* const digits = text.data() + (text.starts_with('+') ? 1 : 0);
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(digits, end, number);
+    return error == std::errc() && stop == end;
+  }
   double NumberIn(const YAML::Node& node, std::string_view key, const Interval& allowed) const {
     double number = 0.0;
     if (!node.IsScalar() || !YAML::convert<double>::decode(node, number))
       Fail(node, key, "a number");
+    RequireDecimal(node, key);
     if (!std::isfinite(number) || number < allowed.low || number > allowed.high) {
       Fail(node, key, Shown(allowed));
     }
@@ -151,8 +168,7 @@ class YamlReader final : public OptionsVisitor {
   }
   [[noreturn]] void Fail(const YAML::Node& node, std::string_view key,
                          const std::string& rule) const {
-    throw InputError(tree_.PlaceOfKey(PathOf(key), node),
-                     fmt::format("{} is '{}', must be {}", PathOf(key), FlowText(node), rule));
+    FailValue(tree_, PathOf(key), node, rule);
   }
   void RequireUsed(const Level& level) const {
     for (const auto& entry : level.node) {
@@ -173,16 +189,38 @@ class YamlReader final : public OptionsVisitor {
 
 }  // namespace
 
+namespace {
+
+// The emitter asks each list and map how it was written.
+void WriteOnOneLine(YAML::Node node) {
+  if (!node.IsSequence() && !node.IsMap()) return;
+  node.SetStyle(YAML::EmitterStyle::Flow);
+  for (const auto& item : node) WriteOnOneLine(node.IsMap() ? item.second : YAML::Node(item));
+}
+
+}  // namespace
+
 std::string FlowText(const YAML::Node& node) {
+  const bool is_word = !node.IsSequence() && !node.IsMap();
+  const YAML::Node copy = is_word ? node : YAML::Clone(node);
+  if (!is_word) WriteOnOneLine(copy);
   YAML::Emitter emitter;
-  emitter << YAML::Flow << node;
+  emitter << YAML::Flow << copy;
   return emitter.c_str();
 }
 
-std::string PlaceOf(const std::string& place, const YAML::Node& node) {
-  // Nodes of a copied tree have no mark of their own; yaml-cpp gives them that of the first letter.
-  const bool unmarked = node.Mark().pos <= 0;
-  return unmarked ? place : fmt::format("{}:{}", place, node.Mark().line + 1);
+void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node,
+               const std::string& rule) {
+  constexpr std::size_t kMostLetters = 200;  // enough to know the place by
+  std::string text = FlowText(node);
+  if (text.size() > kMostLetters) text = text.substr(0, kMostLetters) + "...";
+  throw InputError(tree.PlaceOfKey(key_path, node),
+                   fmt::format("{} is '{}', must be {}", key_path, text, rule));
+}
+
+std::string TextIn(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node) {
+  if (!node.IsScalar()) FailValue(tree, key_path, node, "a text");
+  return node.Scalar();
 }
 
 std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::Node& node) const {
@@ -197,7 +235,7 @@ std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::No
 }
 
 std::string Config::Tree::At(const YAML::Node& node) const {
-  return PlaceOf(place, node) + (subject.empty() ? "" : ": " + subject);
+  return PlaceOf(place, node.Mark()) + (subject.empty() ? "" : ": " + subject);
 }
 
 std::vector<ConfigOverride> Config::Tree::OverridesBelow(const std::string& key) const {

@@ -35,8 +35,11 @@ struct Config::Tree {
 
 // One value as YAML on one line.
 std::string FlowText(const YAML::Node& node);
-// "file:line", or the file alone where the node's line is not known.
-std::string PlaceOf(const std::string& place, const YAML::Node& node);
+// The error of a value that breaks a rule: place, key, value and rule.
+[[noreturn]] void FailValue(const Config::Tree& tree, const std::string& key_path,
+                            const YAML::Node& node, const std::string& rule);
+// Throws InputError for a list or a map.
+std::string TextIn(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node);
 
 // Fills options from `tree`, which must outlive it.
 std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree);

@@ -61,6 +61,11 @@ std::optional<double> ParseNumber(std::string_view field) {
   return value;
 }
 
+bool HasLeadingZero(std::string_view number) {
+  if (number.starts_with('+') || number.starts_with('-')) number.remove_prefix(1);
+  return number.size() > 1 && number[0] == '0' && number[1] >= '0' && number[1] <= '9';
+}
+
 void RequireSeconds(double stamp_s, const std::string& place) {
   if (!std::isfinite(stamp_s)) throw InputError(place, "the stamp must be finite");
   if (std::abs(stamp_s) <= kLatestStampS) return;

@@ -27,6 +27,9 @@ std::vector<std::string_view> SplitAtCommas(std::string_view line);
 // entirely a number.
 std::optional<double> ParseNumber(std::string_view field);
 
+// 010, which is 8 to some programs and 10 to others; 0 and 0.5 have none.
+bool HasLeadingZero(std::string_view number);
+
 // "file:12", the place of a row in errors.
 std::string PlaceOfLine(const std::string& path, int line);
 

@@ -89,6 +89,12 @@ TEST(CameraFormats, OneClearLineForEachFault) {
   EXPECT_EQ(DescriptionRefusal("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
                                "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"),
             "c: distortion_model is equidistant, must be plumb_bob");
+  for (const char* model : {"[]", "[plumb_bob]", "{a: b}"}) {
+    EXPECT_EQ(DescriptionRefusal("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
+                                 "distortion_model: " +
+                                 std::string(model) + "\n"),
+              "c:4: distortion_model is '" + std::string(model) + "', must be a text");
+  }
   EXPECT_EQ(DescriptionRefusal("what: ever\n"), "c: key 'width' is missing");
   // A matrix does not say the image's size: what fits some image is no error yet.
   EXPECT_EQ(DescriptionRefusal("5000 0 1920\n0 5000 1080\n0 0 1\n"), "no error");

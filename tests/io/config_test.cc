@@ -154,6 +154,7 @@ TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ConfigRefusal("step_m: .nan"), "run.yaml:1: step_m is '.nan', must be from 0 to 1");
   EXPECT_EQ(ConfigRefusal("seed: -1"),
             "run.yaml:1: seed is '-1', must be a whole number from 0 to 18446744073709551615");
+  EXPECT_EQ(ConfigRefusal("scene: [a]"), "run.yaml:1: scene is '[a]', must be a text");
   EXPECT_EQ(ConfigRefusal("seed: 1\nseed: 2"), "run.yaml:2: key 'seed' is given twice");
   EXPECT_EQ(ConfigRefusal("fusion: {mode: kalmann}"),
             "run.yaml:1: fusion.mode is 'kalmann', must be one of fixed, kalman (did you mean "
@@ -162,6 +163,37 @@ TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ConfigRefusal("fusion: {gain: [1, 1]}"),
             "run.yaml:1: fusion.gain is '[1, 1]', must be one number or [forward, left, yaw]");
   EXPECT_THAT(ConfigRefusal("a: [1"), HasSubstr("not valid YAML"));
+}
+
+// 010 is 8 to YAML 1.1 and 10 to YAML 1.2.
+TEST(Config, WholeNumbersAreDecimalWithoutLeadingZeros) {
+  EXPECT_EQ(ConfigRefusal("seed: 010"),
+            "run.yaml:1: seed is '010', must be a decimal number without leading zeros");
+  EXPECT_EQ(ConfigRefusal("frames: 010"),
+            "run.yaml:1: frames is '010', must be a decimal number without leading zeros");
+  EXPECT_EQ(ConfigRefusal("frames: -007"),
+            "run.yaml:1: frames is '-007', must be a decimal number without leading zeros");
+  EXPECT_EQ(ConfigRefusal("step_m: 00.5"),
+            "run.yaml:1: step_m is '00.5', must be a decimal number without leading zeros");
+  EXPECT_EQ(ConfigRefusal("frames: 0x10"), "run.yaml:1: frames is '0x10', must be a whole number");
+  EXPECT_EQ(ConfigRefusal("frames: 99999999999"),
+            "run.yaml:1: frames is '99999999999', must be a whole number");
+  EXPECT_THAT(ConfigRefusal("seed: 18446744073709551616"), HasSubstr("must be a whole number"));
+  EXPECT_EQ(ConfigRefusal("frames: +10\nseed: 0\nstep_m: 0.5"), "no error");
+}
+
+TEST(Config, ATextIsNeitherListNorMap) {
+  const Config config = Config::FromText("a: 'it: is'\nb:\n  c: [x, y]\nd:\n", "run.yaml");
+  EXPECT_EQ(config.Text("a"), "it: is");
+  EXPECT_EQ(config.Text("z"), "");
+  EXPECT_EQ(config.Text("z", "else"), "else");
+  const auto refusal = [&](const char* key) { return RefusalOf([&] { config.Text(key); }); };
+  EXPECT_EQ(refusal("b"), "run.yaml:3: b is '{c: [x, y]}', must be a text");
+  EXPECT_EQ(refusal("b.c"), "run.yaml:3: b.c is '[x, y]', must be a text");
+  const Config block = Config::FromText("a:\n  b: 1\n  c:\n    - 2\n    - {d: 3}\n", "run.yaml");
+  EXPECT_EQ(RefusalOf([&] { block.Text("a"); }),
+            "run.yaml:2: a is '{b: 1, c: [2, {d: 3}]}', must be a text");
+  EXPECT_EQ(refusal("d"), "run.yaml:5: d is '~', must be a text");
 }
 
 TEST(Config, ListsOfMapsKeepTheirLines) {

@@ -178,6 +178,10 @@ TEST_F(SceneFiles, ErrorsAreOneLineWithPlaceAndRule) {
   EXPECT_THAT(ErrorOf("shapes:\n  - {size: [1, 1, 1]}\n"),
               HasSubstr("~/s.yaml:2: 'shape' is missing, must be one of box, cylinder"));
   EXPECT_THAT(ErrorOf("shapes:\n  - {shape: bx}\n"), HasSubstr("did you mean 'box'?"));
+  EXPECT_EQ(ErrorOf("shapes:\n  - {shape: []}\n"), "~/s.yaml:2: shape is '[]', must be a text");
+  EXPECT_EQ(ErrorOf("shapes:\n  - {shape: [box]}\n"),
+            "~/s.yaml:2: shape is '[box]', must be a text");
+  EXPECT_EQ(ErrorOf("include: []\n"), "~/s.yaml:1: include is '[]', must be a text");
   EXPECT_EQ(ErrorOf("shapes:\n" + kFloor + "  - {shape: box, sise: [1, 1, 1]}\n"),
             "~/s.yaml:3: unknown key 'sise', did you mean 'size'?");
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: box, size: [1, 1]}\n"),

@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+
+#include <sstream>
+#include <unordered_set>
+#include <vector>
+
+#include "mapper/core/error.h"
+#include "mapper/io/yaml_text_impl.h"
+
+namespace depthgrid {
+namespace {
+
+// A value takes a few hundred bytes once it is in the tree: this is some of a gigabyte at worst.
+constexpr std::size_t kMaxYamlValues = 1'000'000;
+
+// Looks at the text before a tree is made of it. Aliases are refused and not bounded: through them
+// a list can hold itself, and a few lines can stand for more values than any memory holds.
+class BoundsCheck final : public YAML::EventHandler {
+ public:
+  explicit BoundsCheck(const std::string& place) : place_(place) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { NoteValue(mark, nullptr); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    Fail(mark, "an alias (*name) is not read, write the value itself");
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& value) override {
+    NoteValue(mark, &value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Begin(mark, false);
+  }
+  void OnSequenceEnd() override { groups_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Begin(mark, true);
+  }
+  void OnMapEnd() override { groups_.pop_back(); }
+
+ private:
+  struct Group {
+    bool is_map = false;
+    bool key_is_next = false;
+    std::unordered_set<std::string> keys;
+  };
+
+  void Begin(const YAML::Mark& mark, bool is_map) {
+    NoteValue(mark, nullptr);
+    if (groups_.size() >= kMaxYamlDepth) {
+      Fail(mark, fmt::format("values are nested deeper than {}", kMaxYamlDepth));
+    }
+    groups_.push_back({is_map, is_map, {}});
+  }
+
+  // `word` is null for what is no plain word.
+  void NoteValue(const YAML::Mark& mark, const std::string* word) {
+    if (++values_ > kMaxYamlValues) Fail(mark, fmt::format("more than {} values", kMaxYamlValues));
+    if (groups_.empty() || !groups_.back().is_map) return;
+    Group& map = groups_.back();
+    if (map.key_is_next) {
+      if (word == nullptr) Fail(mark, "a key must be a plain word");
+      if (!map.keys.insert(*word).second) Fail(mark, "key '" + *word + "' is given twice");
+    }
+    map.key_is_next = !map.key_is_next;
+  }
+
+  [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& rule) const {
+    throw InputError(PlaceOf(place_, mark), rule);
+  }
+
+  const std::string& place_;
+  std::vector<Group> groups_;
+  std::size_t values_ = 0;
+};
+
+}  // namespace
+
+std::string PlaceOf(const std::string& place, const YAML::Mark& mark) {
+  // Nodes of a copied tree have no mark of their own; yaml-cpp gives them that of the first letter.
+  return mark.pos <= 0 ? place : fmt::format("{}:{}", place, mark.line + 1);
+}
+
+YAML::Node ParseYaml(const std::string& text, const std::string& place) {
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    BoundsCheck check(place);
+    parser.HandleNextDocument(check);
+    return YAML::Load(text);
+  } catch (const YAML::Exception& e) {
+    const std::string where =
+        e.mark.is_null() ? place : fmt::format("{}:{}", place, e.mark.line + 1);
+    throw InputError(where, "not valid YAML: " + e.msg);
+  }
+}
+
+}  // namespace depthgrid
