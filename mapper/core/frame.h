@@ -23,6 +23,11 @@ inline bool IsWithinReach(const Eigen::Vector3d& at) {
 }
 // Nor does the map lie farther, with room for how far an estimate goes from poses that drift.
 constexpr double kFarthestMapM = 1.05 * kFarthestPoseM;
+// False for NaN too. The limit keeps cell indices within int.
+inline bool IsOnAMap(const Pose2& pose) {
+  return std::abs(pose.x_m) < kFarthestMapM && std::abs(pose.y_m) < kFarthestMapM &&
+         std::isfinite(pose.yaw_rad);
+}
 
 // At most one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
 // image), or only loops (SLAM is lost, and yet corrected itself).

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "mapper/core/pose2.h"
@@ -33,6 +34,22 @@ struct Scan {
 
   bool operator==(const Scan&) const = default;
 };
+
+// A hit nearer than this is no surface: many drivers write 0 where nothing came back.
+constexpr float kNearestHitM = 1e-3F;
+// What no scanner of robots sees past, where a scan does not say how far it reaches.
+constexpr double kFarthestSeenM = 1000.0;
+// Twice round, from wherever the scanner counts.
+constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);
+
+// False for a beam that no scanner of this reach can have seen, and for NaN.
+inline bool IsSound(const Beam& beam, float reach_m) {
+  // One sum tells of three numbers whether all are finite.
+  const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
+  if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
+  if (std::abs(beam.bearing_rad) > kFarthestBearingRad) return false;
+  return !beam.hit || (beam.range_m >= kNearestHitM && beam.range_m <= reach_m);
+}
 
 inline Eigen::Vector2d EndPoint(const Beam& beam) {
   return {beam.range_m * std::cos(beam.bearing_rad), beam.range_m * std::sin(beam.bearing_rad)};

@@ -1,5 +1,7 @@
 #include "mapper/io/scan_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -7,7 +9,9 @@
 #include <span>
 
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -55,7 +59,7 @@ class Reader {
   void RequireRoom(std::uint32_t count, std::size_t bytes_each) const {
     if (rest_.size() / bytes_each < count) Fail("is truncated");
   }
-  [[noreturn]] void Fail(const char* message) const { throw InputError(place_, message); }
+  [[noreturn]] void Fail(const std::string& message) const { throw InputError(place_, message); }
   bool empty() const { return rest_.empty(); }
 
  private:
@@ -66,9 +70,10 @@ class Reader {
 // Without its beams.
 constexpr std::size_t kScanBytes = 3 * sizeof(std::uint32_t) + 5 * sizeof(double) + 1;
 
-bool IsFinite(const Beam& beam) {
-  return std::isfinite(beam.bearing_rad) && std::isfinite(beam.range_m) &&
-         std::isfinite(beam.clear_from_m) && std::isfinite(beam.clear_to_m);
+// What a mapper can have kept, whatever the scan's reach was.
+bool IsPossible(const Beam& beam) {
+  constexpr auto kReachM = static_cast<float>(kFarthestSeenM);
+  return IsSound(beam, kReachM) && std::isfinite(beam.range_m) && beam.clear_to_m <= kReachM;
 }
 
 // Scans one after the other: bearings that stay the same are not repeated.
@@ -90,14 +95,25 @@ class ScanTaker {
     const PackedScan packed{max_range_m, bearings_rad_, codes_, values_};
     if (!IsWhole(packed)) reader.Fail("holds a damaged scan");
     const Scan scan = Unpacked(packed);
-    if (!std::all_of(scan.beams.begin(), scan.beams.end(), IsFinite)) {
-      reader.Fail("holds a beam that is not finite");
-    }
+    RequirePossible(reader, stored, scan);
     stored.scan = archive_.Keep(scan);
     return stored;
   }
 
  private:
+  static void RequirePossible(const Reader& reader, const StoredScan& stored, const Scan& scan) {
+    const auto require = [&](bool possible, const char* what) {
+      if (possible) return;
+      reader.Fail(fmt::format("the scan of frame {} has {}", stored.frame, what));
+    };
+    require(std::abs(stored.stamp_s) <= kLatestStampS, "a stamp that is no time in seconds");
+    require(IsOnAMap(stored.map_from_base), "a pose that is not finite or beyond 10,500 km");
+    require(scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m),
+            "a range limit that is not finite or below 0");
+    require(std::all_of(scan.beams.begin(), scan.beams.end(), IsPossible),
+            "a beam that is not finite or beyond 1 km");
+  }
+
   ScanArchive archive_;
   std::vector<float> bearings_rad_;
   std::vector<float> values_;

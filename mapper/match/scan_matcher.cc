@@ -5,16 +5,6 @@
 #include "mapper/core/frame.h"
 
 namespace depthgrid {
-namespace {
-
-// False for NaN too. The limit keeps cell indices within int.
-bool IsUsable(const Pose2& pose) {
-  return std::abs(pose.x_m) < kFarthestMapM && std::abs(pose.y_m) < kFarthestMapM &&
-         std::isfinite(pose.yaw_rad);
-}
-
-}  // namespace
-
 void ScanMatcherOptions::Visit(OptionsVisitor& v) {
   v.Choice("stages", stages,
            {{MatchStages::kBoth, "both"},
@@ -39,7 +29,7 @@ MatchResult ScanMatcher::Match(const Scan& scan, const ProbabilityView& view,
   MatchResult result;
   result.map_from_base = predicted_map_from_base;
   points_.Assign(scan);
-  if (points_.size() < options_.min_points || !IsUsable(predicted_map_from_base)) return result;
+  if (points_.size() < options_.min_points || !IsOnAMap(predicted_map_from_base)) return result;
   ProbabilityView map = view;
   map.unknown_prob = static_cast<float>(options_.unknown_prob);
 

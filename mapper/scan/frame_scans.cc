@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 
 #include "mapper/core/error.h"
@@ -12,24 +11,9 @@
 namespace depthgrid {
 namespace {
 
-// A hit nearer than this is no surface: many drivers write 0 where nothing came back.
-constexpr float kNearestHitM = 1e-3F;
-// What no scanner of robots sees past, where a scan does not say how far it reaches.
-constexpr double kFarthestM = 1000.0;
-// Twice round, from wherever the scanner counts.
-constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);
-
 float ReachOf(const Scan& scan) {
-  const bool known = scan.max_range_m > 0.0 && scan.max_range_m < kFarthestM;
-  return static_cast<float>(known ? scan.max_range_m : kFarthestM);
-}
-
-bool IsSound(const Beam& beam, float reach_m) {
-  // One sum tells of three numbers whether all are finite.
-  const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
-  if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
-  if (std::abs(beam.bearing_rad) > kFarthestBearingRad) return false;
-  return !beam.hit || (beam.range_m >= kNearestHitM && beam.range_m <= reach_m);
+  const bool known = scan.max_range_m > 0.0 && scan.max_range_m < kFarthestSeenM;
+  return static_cast<float>(known ? scan.max_range_m : kFarthestSeenM);
 }
 
 // The sound beams in their order, none clear beyond its scan's reach.

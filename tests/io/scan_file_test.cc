@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -74,6 +77,43 @@ TEST_F(ScanFileTest, DamagedBytesAreAnErrorOrAnotherScan) {
     }
   }
   EXPECT_GT(errors, 30);
+}
+
+// The message for the second scan with something changed, without the file's name.
+template <typename Change>
+std::string RefusalAfter(const std::string& path, Change change) {
+  std::vector<StoredScan> scans = SomeScans();
+  Scan scan = *scans[1].scan;
+  change(scans[1], scan);
+  ScanArchive archive;
+  scans[1].scan = archive.Keep(scan);
+  WriteScans(path, scans);
+  const std::string refusal = RefusalOf([&] { ReadScans(path); });
+  return refusal == "no error" ? refusal : refusal.substr(path.size() + 2);
+}
+
+TEST_F(ScanFileTest, WhatNoMapperCanHaveKeptIsRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto refusal = [&](auto change) { return RefusalAfter(path_, change); };
+  EXPECT_EQ(refusal([](StoredScan&, Scan&) {}), "no error");
+  for (const double bad : {kNan, 1e300, -1e300, -kNan}) {
+    const auto bad_float = static_cast<float>(bad);
+    EXPECT_EQ(refusal([&](StoredScan& stored, Scan&) { stored.stamp_s = bad; }),
+              "the scan of frame 3 has a stamp that is no time in seconds");
+    const std::string pose =
+        "the scan of frame 3 has a pose that is not finite or beyond 10,500 km";
+    EXPECT_EQ(refusal([&](StoredScan& stored, Scan&) { stored.map_from_base.x_m = bad; }), pose);
+    EXPECT_EQ(refusal([&](StoredScan& stored, Scan&) { stored.map_from_base.y_m = bad; }), pose);
+    const std::string beam = "the scan of frame 3 has a beam that is not finite or beyond 1 km";
+    EXPECT_EQ(refusal([&](StoredScan&, Scan& s) { s.beams[3].bearing_rad = bad_float; }), beam);
+    EXPECT_EQ(refusal([&](StoredScan&, Scan& s) { s.beams[3].range_m = bad_float; }), beam);
+    EXPECT_EQ(refusal([&](StoredScan&, Scan& s) { s.beams[3].clear_from_m = bad_float; }), beam);
+  }
+  EXPECT_NE(refusal([&](StoredScan& stored, Scan&) { stored.map_from_base.yaw_rad = kNan; }),
+            "no error");
+  EXPECT_NE(refusal([](StoredScan&, Scan& s) { s.beams[3].clear_to_m = 1e6F; }), "no error");
+  EXPECT_NE(refusal([](StoredScan&, Scan& s) { s.max_range_m = kNan; }), "no error");
+  EXPECT_NE(refusal([](StoredScan&, Scan& s) { s.max_range_m = -1.0; }), "no error");
 }
 
 TEST_F(ScanFileTest, AnAbsurdCountTakesNoMemory) {
