@@ -1,6 +1,7 @@
 // A finished map: the probability of each cell to be occupied, and its reading in three states.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -10,6 +11,10 @@
 namespace depthgrid {
 
 constexpr float kUnknownProb = std::numeric_limits<float>::quiet_NaN();
+
+// A gigabyte of probabilities, 819 x 819 m at 5 cm: beyond it a pose or a file is wrong rather than
+// the building large, and the machine would be out of memory before anything was said.
+constexpr std::size_t kMaxMapCells = std::size_t{1} << 28U;
 
 struct OccupancyMap {
   GridGeometry geometry;

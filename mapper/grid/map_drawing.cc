@@ -21,10 +21,6 @@ std::size_t CellInTile(const Cell& cell) {
                                   (cell.x & (kWordCells - 1)));
 }
 
-// A gigabyte of probabilities, 819 x 819 m at 5 cm: beyond it a pose is wrong rather than the
-// building large, and the machine would be out of memory before anything was said.
-constexpr std::size_t kMaxMapCells = std::size_t{1} << 28U;
-
 void RequireDrawable(const GridGeometry& seen) {
   if (seen.size() <= kMaxMapCells) return;
   const auto metres = [&](int cells) {

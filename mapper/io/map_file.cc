@@ -95,6 +95,37 @@ void Place(const MapYaml& yaml, MapFile& file) {
   }
 }
 
+// The level rectangle around a map that may be turned.
+GridGeometry AlignedGeometry(const MapFile& file) {
+  const GridGeometry& source = file.map.geometry;
+  const double r = source.resolution_m;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  for (const int x : {0, source.width_cells}) {
+    for (const int y : {0, source.height_cells}) {
+      const Eigen::Vector2d corner =
+          file.world_from_grid * Eigen::Vector2d(source.OriginM() + r * Eigen::Vector2d(x, y));
+      low = low.cwiseMin(corner);
+      high = high.cwiseMax(corner);
+    }
+  }
+  const Cell min_cell = CellOf(low, r);
+  const Cell max_cell = CellOf(high, r);
+  return {r, min_cell, max_cell.x - min_cell.x + 1, max_cell.y - min_cell.y + 1};
+}
+
+// A long image lies across much that it does not cover.
+void RequireAlignable(const MapFile& file, double yaw_rad, const std::string& yaml_path) {
+  const GridGeometry aligned = AlignedGeometry(file);
+  if (aligned.size() <= kMaxMapCells) return;
+  throw InputError(
+      yaml_path,
+      fmt::format("origin turns the map's {} x {} cells by {:.3g} rad, so that it spans {} x {}; "
+                  "a map may have {}",
+                  file.map.geometry.width_cells, file.map.geometry.height_cells, yaw_rad,
+                  aligned.width_cells, aligned.height_cells, kMaxMapCells));
+}
+
 const char* NameOf(MapMode mode) {
   if (mode == MapMode::kScale) return "scale";
   return mode == MapMode::kRaw ? "raw" : "trinary";
@@ -118,6 +149,7 @@ MapFile ReadMap(const std::string& yaml_path) {
   Place(yaml, file);
   file.map.geometry.width_cells = image.width_px;
   file.map.geometry.height_cells = image.height_px;
+  if (file.world_from_grid != Pose2{}) RequireAlignable(file, yaml.origin[2], yaml_path);
   file.map.occupied_prob.reserve(file.map.geometry.size());
   for (int v = image.height_px - 1; v >= 0; --v) {
     for (int u = 0; u < image.width_px; ++u) {
@@ -132,22 +164,8 @@ MapFile ReadMap(const std::string& yaml_path) {
 
 OccupancyMap AlignedMap(const MapFile& file) {
   if (file.world_from_grid == Pose2{}) return file.map;
-  const GridGeometry& source = file.map.geometry;
-  const double r = source.resolution_m;
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d high = -low;
-  for (const int x : {0, source.width_cells}) {
-    for (const int y : {0, source.height_cells}) {
-      const Eigen::Vector2d corner =
-          file.world_from_grid * Eigen::Vector2d(source.OriginM() + r * Eigen::Vector2d(x, y));
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
-    }
-  }
-  const Cell min_cell = CellOf(low, r);
-  const Cell max_cell = CellOf(high, r);
-  OccupancyMap aligned(
-      GridGeometry{r, min_cell, max_cell.x - min_cell.x + 1, max_cell.y - min_cell.y + 1});
+  const double r = file.map.geometry.resolution_m;
+  OccupancyMap aligned(AlignedGeometry(file));
   const Pose2 grid_from_world = Inverse(file.world_from_grid);
   for (std::size_t i = 0; i < aligned.occupied_prob.size(); ++i) {
     const Eigen::Vector2d centre = CellCentre(aligned.geometry.CellAt(i), r);

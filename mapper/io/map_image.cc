@@ -1,5 +1,7 @@
 #include "mapper/io/map_image.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "mapper/core/error.h"
@@ -45,6 +47,14 @@ ShadeImage ShadesOfPng(const RgbaImage& png, MapMode mode) {
   return image;
 }
 
+// Each takes about twenty bytes on its way to a map, and few in a packed image.
+void RequireDrawable(int width_px, int height_px, const std::string& path) {
+  const GridGeometry geometry{1.0, {}, width_px, height_px};
+  if (geometry.size() <= kMaxMapCells) return;
+  throw InputError(path, fmt::format("has {} x {} pixels, a map may have {}", width_px, height_px,
+                                     kMaxMapCells));
+}
+
 std::uint8_t PixelOf(float occupied_prob, MapMode mode, const StateThresholds& thresholds) {
   if (mode == MapMode::kRaw) {
     return std::isnan(occupied_prob)
@@ -72,7 +82,11 @@ std::uint8_t PixelOf(float occupied_prob, MapMode mode, const StateThresholds& t
 ShadeImage ReadShades(const std::string& path, MapMode mode) {
   const std::string bytes = ReadFile(path);
   if (bytes.empty()) throw InputError(path, "is empty, must be a PGM or PNG image");
-  if (IsPgm(bytes)) return ShadesOfPgm(DecodePgm(bytes, path));
+  if (IsPgm(bytes)) {
+    const PgmImage pgm = DecodePgm(bytes, path);
+    RequireDrawable(pgm.width_px, pgm.height_px, path);
+    return ShadesOfPgm(pgm);
+  }
   if (bytes.starts_with("\x89PNG")) return ShadesOfPng(DecodeRgbaPng(bytes, path), mode);
   throw InputError(path, "is neither a PGM nor a PNG image");
 }

@@ -96,6 +96,15 @@ TEST_F(MapFileTest, YawAndOffLatticeOriginsArePoses) {
   EXPECT_EQ(aligned.At(CellOf({1.75, 3.75}, 0.5)), 0.0F);
 }
 
+TEST_F(MapFileTest, AMapThatTurnsIntoTooManyCellsIsRefused) {
+  const std::string row = "P5 65535 1 255\n" + std::string(65535, '\0');
+  EXPECT_EQ(ErrorOf(row, "resolution: 0.5\norigin: [0, 0, 0]\n"), "no error");
+  EXPECT_EQ(ErrorOf(row, "resolution: 0.5\norigin: [0, 0, 0.01]\n"), "no error");
+  EXPECT_EQ(ErrorOf(row, "resolution: 0.5\norigin: [0, 0, 0.7853981633974483]\n"),
+            "m.yaml: origin turns the map's 65535 x 1 cells by 0.785 rad, so that it spans 46342 x "
+            "46341; a map may have 268435456");
+}
+
 OccupancyMap RandomMap() {
   OccupancyMap map(GridGeometry{0.05, {-7, 12}, 31, 17});
   RandomStream random(5, RandomStage::kTest);
