@@ -3,7 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
@@ -80,38 +84,38 @@ std::vector<Eigen::Vector3d> LevelPoints(const Patches& patches, const Eigen::Ve
   return points;
 }
 
-// How many points lie how high, in bins of kHeightBinM.
+// How many points lie how high, in bins of kHeightBinM. Only bins with points take memory: poses
+// may lie thousands of kilometres apart.
 struct Levels {
   double low_m = 0.0;
-  std::vector<int> bins;
+  std::map<std::int64_t, int> bins;
 
   Levels(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
     low_m = up.dot(points.front());
-    double high_m = low_m;
+    for (const Eigen::Vector3d& point : points) low_m = std::min(low_m, up.dot(point));
     for (const Eigen::Vector3d& point : points) {
-      low_m = std::min(low_m, up.dot(point));
-      high_m = std::max(high_m, up.dot(point));
-    }
-    bins.resize(static_cast<std::size_t>((high_m - low_m) / kHeightBinM) + 1);
-    for (const Eigen::Vector3d& point : points) {
-      ++bins[static_cast<std::size_t>((up.dot(point) - low_m) / kHeightBinM)];
+      ++bins[static_cast<std::int64_t>((up.dot(point) - low_m) / kHeightBinM)];
     }
   }
 
-  double HeightM(std::size_t bin) const {
+  double HeightM(std::int64_t bin) const {
     return low_m + (static_cast<double>(bin) + 0.5) * kHeightBinM;
   }
-  double FullestM() const {
-    const auto fullest = std::max_element(bins.begin(), bins.end());
-    return HeightM(static_cast<std::size_t>(fullest - bins.begin()));
+  // The lowest of them where several are.
+  std::pair<std::int64_t, int> Fullest() const {
+    return *std::max_element(bins.begin(), bins.end(),
+                             [](const auto& a, const auto& b) { return a.second < b.second; });
   }
+  double FullestM() const { return HeightM(Fullest().first); }
   // The lowest that holds many of the points.
   double LowestM() const {
-    const double enough = kFloorPeakShare * *std::max_element(bins.begin(), bins.end());
-    std::size_t k = 0;
-    while (bins[k] < enough) ++k;
-    while (k + 1 < bins.size() && bins[k + 1] > bins[k]) ++k;
-    return HeightM(k);
+    const double enough = kFloorPeakShare * Fullest().second;
+    auto lowest = bins.begin();
+    while (lowest->second < enough) ++lowest;
+    for (auto next = std::next(lowest); next != bins.end(); lowest = next++) {
+      if (next->first != lowest->first + 1 || next->second <= lowest->second) break;
+    }
+    return HeightM(lowest->first);
   }
 };
 

@@ -44,6 +44,12 @@ double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return DegFromRad(std::acos(std::min(1.0, a.dot(b))));
 }
 
+// Poses are not read beyond 10,000 km; bins over all of the height between would take gigabytes.
+TEST(Gravity, PosesFarApartTakeNoMemory) {
+  const auto identity = Eigen::Quaterniond::Identity();
+  EXPECT_NO_THROW(Views(FurnishedRoom(), identity, 0.3, 0.0, 1e13).Find());
+}
+
 TEST(Gravity, FindsUpInAnyTurnedWorld) {
   RandomStream random(3, RandomStage::kTest);
   int cases = 0;
