@@ -7,6 +7,9 @@
 
 namespace depthgrid {
 
+// Setting `submap.scans` of a run that goes on in a map: the last two submaps hold all of it.
+constexpr int kAllScansInOneSubmap = 1'000'000;
+
 // The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError.
 PriorMap ReadPriorRun(const std::string& folder);
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "eval/map_picture.h"
+#include "eval/prior_run.h"
 #include "eval/report_json_impl.h"
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
@@ -187,12 +188,13 @@ std::string SubtitleOf(const Config& settings, std::size_t frames) {
 }
 
 // All else of run.yaml does not matter to what a frame was matched against.
-std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings) {
+std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings, bool went_on_in_a_map) {
   GridOptions grid;
   SubmapOptions submap;
   Config mapper = settings.Take("mapper");
   mapper.Take("grid").Read(grid);
   mapper.Take("submap").Read(submap);
+  if (went_on_in_a_map) submap.scans = kAllScansInOneSubmap;
   return {grid, submap};
 }
 
@@ -227,7 +229,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
     for (const double score : run.frames.Column("match_score")) badness.push_back(1.0 - score);
   }
   const std::vector<std::size_t> worst = WorstRows(badness);
-  const auto [grid, submap] = GridSettingsOf(settings);
+  const auto [grid, submap] = GridSettingsOf(settings, run.prior_scans > 0);
   json["worst"] = WorstFramesJson(run, worst, true_bases, grid, submap);
   json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
                                : "By the match score, the lowest first.";

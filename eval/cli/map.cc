@@ -25,8 +25,6 @@
 namespace depthgrid::cli {
 namespace {
 
-constexpr int kAllScansInOneSubmap = 1'000'000;
-
 void Say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
@@ -100,8 +98,11 @@ std::optional<PriorMap> OpenPrior(const MapArguments& arguments) {
 // Where in the finished map the sequence begins.
 FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& settings,
                        std::vector<std::string>& warnings) {
-  // The paper's chain reads the last two submaps only: here one holds everything.
-  settings.mapper.submap.scans = kAllScansInOneSubmap;
+  // The paper's chain reads the last two submaps only: here one holds everything. Elsewhere this
+  // only says over how many frames motions are told, and how many scans are at hand.
+  if (settings.mapper.method == MapperMethod::kPaper) {
+    settings.mapper.submap.scans = kAllScansInOneSubmap;
+  }
   const auto slam = ReadSlam(arguments, settings.sequence);
   Sequence sequence = OpenSequence(arguments.input, settings.sequence,
                                    slam ? std::optional(slam->slam) : std::nullopt);
