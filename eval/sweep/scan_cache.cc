@@ -96,15 +96,16 @@ std::optional<std::vector<FrameScans>> ScanCache::Load(const std::string& key) c
   const fs::path path = PathOf(key);
   if (!fs::exists(path)) return std::nullopt;
   try {
-    const std::string bytes = ReadFile(path.string());
+    const std::string bytes = ReadFile(path.string(), size_limit_bytes_);
     ByteReader header(bytes);
     if (header.Get<std::uint32_t>() != kScansMagic) return std::nullopt;
     const auto checksum = header.Get<std::uint64_t>();
     const auto content = std::string_view(bytes).substr(sizeof(std::uint32_t) + sizeof checksum);
     if (ChecksumOf(content) != checksum) return std::nullopt;
     ByteReader reader(content);
-    std::vector<FrameScans> scans(reader.Get<std::uint64_t>());
-    for (FrameScans& frame : scans) {
+    std::vector<FrameScans> scans;
+    for (auto count = reader.Get<std::uint64_t>(); count > 0; --count) {
+      FrameScans& frame = scans.emplace_back();
       frame.obstacles = reader.GetScan();
       const bool same = reader.Get<std::uint8_t>() != 0;
       frame.matched = same ? frame.obstacles : reader.GetScan();

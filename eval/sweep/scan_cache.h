@@ -19,7 +19,8 @@ class ScanCache {
   // one would not fit into the limit. Throws InputError when the folder cannot be made.
   ScanCache(const std::string& folder, std::uint64_t size_limit_bytes = kDefaultScanCacheBytes);
 
-  // Nothing when the set is not there, or is damaged.
+  // Nothing when the set is not there, is damaged, or is larger than the limit: what Store() may
+  // write is read, however large other files may be.
   std::optional<std::vector<FrameScans>> Load(const std::string& key) const;
   // Does nothing when the set is larger than the limit or the disk refuses: a cache may only save
   // time.

@@ -60,6 +60,15 @@ TEST_F(ScanCacheTest, DamageIsNoEntry) {
   }
 }
 
+TEST_F(ScanCacheTest, TheLimitIsThatOfWritingAndOfReading) {
+  ScanCache(Path("cache")).Store("a", Frames());
+  const auto size = std::filesystem::file_size(Path("cache/a.scans"));
+  EXPECT_TRUE(ScanCache(Path("cache"), size).Load("a").has_value());
+  EXPECT_FALSE(ScanCache(Path("cache"), size - 1).Load("a").has_value());
+  ScanCache(Path("cache"), size - 1).Store("b", Frames());
+  EXPECT_FALSE(std::filesystem::exists(Path("cache/b.scans")));
+}
+
 TEST_F(ScanCacheTest, KeepsToItsSizeAndDropsTheLongestUnused) {
   ScanCache(Path("cache")).Store("measure", Frames());
   const auto size = std::filesystem::file_size(Path("cache/measure.scans"));
