@@ -9,6 +9,7 @@
 
 #include "eval/csv_table.h"
 #include "mapper/core/error.h"
+#include "mapper/grid/map_drawing.h"
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/config.h"
@@ -141,16 +142,40 @@ struct SomeOptions {
   }
 };
 
+// All that is asked of a tree, whether its keys are known or not.
+void AskOf(const Config& config) {
+  for (const ConfigEntry& entry : config.Entries()) {
+    if (entry.map) AskOf(*entry.map);
+    Accepts([&] { config.Text(entry.key); });
+    Accepts([&] { config.List(entry.key); });
+    Accepts([&] { Config(config).TakeMaps(entry.key); });
+    Accepts([&] { Config(config).Set(entry.key, entry.text); });
+  }
+  Accepts([&] { Config::FromText(config.ToYaml(), "written"); });
+}
+
 bool TrySettings(std::string_view bytes) {
   return Accepts([&] {
+    const Config config = Config::FromText(std::string(bytes), "x");
+    AskOf(config);
     SomeOptions options;
-    Config::FromText(std::string(bytes), "x").Read(options);
+    config.Read(options);
     Config::FromText(ToYaml(options), "written").Read(options);
   });
 }
 
 bool TryScans(std::string_view bytes) {
-  return Accepts([&] { ParseScans(bytes, "x"); });
+  return Accepts([&] {
+    const std::vector<StoredScan> scans = ParseScans(bytes, "x");
+    const std::string path = TheScratch().Put("x.bin", "");
+    WriteScans(path, scans);
+    if (ReadScans(path) != scans) throw std::logic_error("scans change when they are written");
+    GridOptions coarse;  // scans of damaged numbers reach far
+    coarse.resolution_m = 1.0;
+    MapDrawing drawing(coarse);
+    for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
+    drawing.Map();
+  });
 }
 
 bool TryCsv(std::string_view bytes) {
