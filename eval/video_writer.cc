@@ -120,6 +120,8 @@ VideoWriter::VideoWriter(std::string path, int width_px, int height_px, int fram
         fs::remove(temporary_, ignored);
       }) {
   process_ = Start(CommandFor(temporary_, width_px, height_px, frames_per_s), pipe_);
+  // A dead ffmpeg is told by write() and its exit code, not by a signal.
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 VideoWriter::~VideoWriter() {
@@ -136,8 +138,6 @@ void VideoWriter::Abandon() {
 void VideoWriter::Add(const RgbImage& frame) {
   Require(frame.width_px == width_px_ && frame.height_px == height_px_,
           "all frames of a video have one size");
-  // A dead ffmpeg is told by write() and its exit code, not by a signal.
-  std::signal(SIGPIPE, SIG_IGN);
   std::size_t done = 0;
   while (done < frame.rgb.size()) {
     const auto written = ::write(pipe_, frame.rgb.data() + done, frame.rgb.size() - done);
@@ -150,7 +150,7 @@ void VideoWriter::Add(const RgbImage& frame) {
 void VideoWriter::Close() {
   if (pipe_ >= 0) ::close(pipe_);
   pipe_ = -1;
-  if (process_ > 0) ::waitpid(process_, &status_, 0);
+  while (process_ > 0 && ::waitpid(process_, &status_, 0) < 0 && errno == EINTR) continue;
   process_ = -1;
 }
 

@@ -8,7 +8,6 @@
 namespace depthgrid {
 
 void Validate(const PinholeCamera& camera, const std::string& place) {
-  constexpr int kMaxSizePx = 16384;
   const auto require = [&](bool holds, const char* key, double value, const char* rule) {
     if (!holds) {
       throw InputError(place,
@@ -16,10 +15,15 @@ void Validate(const PinholeCamera& camera, const std::string& place) {
     }
   };
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  require(camera.width_px > 0 && camera.width_px <= kMaxSizePx, "width", camera.width_px,
-          "from 1 to 16384 pixels");
-  require(camera.height_px > 0 && camera.height_px <= kMaxSizePx, "height", camera.height_px,
-          "from 1 to 16384 pixels");
+  // Undistorting takes a pixel and its neighbours.
+  const int least_px = camera.HasDistortion() ? 2 : 1;
+  const std::string sizes =
+      "from " + std::to_string(least_px) + " to " + std::to_string(kMostImageSidePx) + " pixels";
+  const auto sized = [&](int side_px) {
+    return side_px >= least_px && side_px <= kMostImageSidePx;
+  };
+  require(sized(camera.width_px), "width", camera.width_px, sizes.c_str());
+  require(sized(camera.height_px), "height", camera.height_px, sizes.c_str());
   require(positive(camera.fx_px), "fx", camera.fx_px, "positive");
   require(positive(camera.fy_px), "fy", camera.fy_px,
           "positive (a y-up world is expressed in the poses, see docs/conventions.md)");

@@ -7,6 +7,9 @@
 
 namespace depthgrid {
 
+// Of images and cameras, whatever file they come from.
+constexpr int kMostImageSidePx = 16384;
+
 // Pixel (u, v) has its centre at integer coordinates: column u covers [u - 0.5, u + 0.5).
 // Defaults are ICL-NUIM's (640x480, fx 481.20, fy taken positive, see docs/conventions.md).
 struct PinholeCamera {

@@ -9,7 +9,7 @@
 namespace depthgrid {
 
 void CameraFile::Visit(OptionsVisitor& v) {
-  constexpr Interval kSizePx{1, 16384};
+  constexpr Interval kSizePx{1, kMostImageSidePx};
   constexpr Interval kFocalPx{1e-3, 1e6};
   constexpr Interval kCentrePx{-1e6, 1e6};
   v.Number("width", camera.width_px, kSizePx, "image width, pixels");

@@ -219,8 +219,7 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
   }
   PinholeCamera checked = pinhole;
   if (!camera.has_size) {  // checked again beside the first image
-    constexpr int kLargestImagePx = 16384;
-    checked.width_px = checked.height_px = kLargestImagePx;
+    checked.width_px = checked.height_px = kMostImageSidePx;
   }
   Validate(checked, place);
   if (!(camera.file.depth_scale_per_m > 0.0))

@@ -7,12 +7,12 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "mapper/core/camera.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::internal {
 namespace {
 
-constexpr png_uint_32 kMaxSizePx = 16384;
 // Level 1 with one fixed filter: within 10 % of the best size on depth and rendered colour, and an
 // order of magnitude faster. Fixed also so that the bytes do not depend on libpng's heuristics.
 constexpr int kCompressionLevel = 1;
@@ -96,7 +96,7 @@ void ConvertToColour(png_structp png, bool alpha) {
 // Reads header and size; false on a libpng error.
 bool ReadHeader(Decoder* decoder) {
   if (setjmp(png_jmpbuf(decoder->png))) return false;
-  png_set_user_limits(decoder->png, kMaxSizePx, kMaxSizePx);
+  png_set_user_limits(decoder->png, kMostImageSidePx, kMostImageSidePx);
   png_set_read_fn(decoder->png, decoder, ReadBytes);
   png_read_info(decoder->png, decoder->info);
   if (decoder->wanted == PngKind::kRgb8 || decoder->wanted == PngKind::kRgba8) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <optional>
 
@@ -222,6 +223,10 @@ DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& o
       options.depth_scale_per_m > 0.0 ? options.depth_scale_per_m : camera.depth_scale_per_m;
   format.invalid_units.clear();
   for (const double units : options.invalid_units) {
+    if (units != std::floor(units)) {
+      throw InputError("sequence.recording.invalid_units",
+                       fmt::format("holds {}, must be whole numbers", units));
+    }
     format.invalid_units.push_back(static_cast<std::uint16_t>(units));
   }
   return format;

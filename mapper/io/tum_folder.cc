@@ -83,13 +83,15 @@ void PairWithColour(const std::string& folder, const RecordingOptions& options,
   }
 }
 
-// Two depth images may pair with one colour image; the first keeps the stamp.
+// Two depth images may pair with one colour image; the first keeps the stamp. One without a colour
+// image may have an earlier one of its own.
 void DropRepeatedStamps(const std::string& folder, Recording& recording) {
-  auto& images = recording.images;
-  const auto same = [](const auto& a, const auto& b) { return a.stamp_s >= b.stamp_s; };
-  const auto end = std::unique(images.begin(), images.end(), same);
-  const auto dropped = static_cast<int>(images.end() - end);
-  images.erase(end, images.end());
+  std::vector<RecordedImage> later;
+  for (RecordedImage& image : recording.images) {
+    if (later.empty() || image.stamp_s > later.back().stamp_s) later.push_back(std::move(image));
+  }
+  const auto dropped = static_cast<int>(recording.images.size() - later.size());
+  recording.images = std::move(later);
   if (dropped > 0) {
     recording.warnings.push_back(
         fmt::format("{}: {} with the colour image of the one before, ignored", folder,

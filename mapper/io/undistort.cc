@@ -24,7 +24,8 @@ float DepthAt(const DepthImage& image, const Eigen::Vector2f& pixel) {
   const float z01 = image.At(u, v + 1), z11 = image.At(u + 1, v + 1);
   const float low = std::min({z00, z10, z01, z11});
   const float high = std::max({z00, z10, z01, z11});
-  if (!(low > 0.0F) || high - low > kOneSurfaceShare * low) {
+  // Between infinities there is no surface, and their difference is no number.
+  if (!(low > 0.0F) || !std::isfinite(high) || high - low > kOneSurfaceShare * low) {
     return image.At(nearest_u, nearest_v);
   }
   const float a = std::clamp(pixel.x() - static_cast<float>(u), 0.0F, 1.0F);

@@ -229,6 +229,29 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
 }
 
+TEST_F(TumFolderTest, UnitsThatMeanNothingAreWhole) {
+  const Trajectory truth = WriteSequence();
+  RecordingOptions options;
+  options.invalid_units = {65535, 1.5};
+  EXPECT_EQ(ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(truth), options); }),
+            "sequence.recording.invalid_units: holds 1.5, must be whole numbers");
+}
+
+// Its own stamp, 0.130, lies before the colour image's of the one before, 0.140.
+TEST_F(TumFolderTest, AnImageEarlierThanTheOneBeforeIsLeftOutAndCounted) {
+  const Trajectory truth = WriteSequence();
+  Write("depth.txt",
+        "0.000 depth/0.000000.png\n0.125 depth/0.125000.png\n"
+        "0.130 depth/0.250000.png\n0.375 depth/0.375000.png\n");
+  Write("rgb.txt", "0.000 rgb/0.000000.png\n0.140 rgb/0.125000.png\n0.375 rgb/0.375000.png\n");
+  RecordingOptions options;
+  options.max_stamp_difference_s = 0.016;
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth), options);
+  std::vector<double> stamps_s;
+  for (const Frame& frame : All(*source)) stamps_s.push_back(frame.stamp_s);
+  EXPECT_THAT(stamps_s, ElementsAre(0.0, 0.14, 0.375));
+}
+
 TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
   WriteSequence();
   RecordingOptions options;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace depthgrid {
 namespace {
@@ -87,6 +89,15 @@ TEST(Undistort, EdgesAndHolesAreNotSmeared) {
   EXPECT_GT(near, 100000);
   EXPECT_GT(far, 100000);
   EXPECT_GT(invalid, 15000);
+}
+
+TEST(Undistort, WhatIsInfinitelyFarStaysSo) {
+  const PinholeCamera camera = KinectCamera();
+  DepthImage distorted(camera.width_px, camera.height_px);
+  std::fill(distorted.z_m.begin(), distorted.z_m.end(), std::numeric_limits<float>::infinity());
+  int numbers = 0;
+  for (const float z_m : Undistorter(camera).Apply(distorted).z_m) numbers += z_m == z_m ? 1 : 0;
+  EXPECT_EQ(numbers, 640 * 480);
 }
 
 }  // namespace
