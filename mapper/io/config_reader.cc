@@ -213,7 +213,7 @@ void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML
                const std::string& rule) {
   constexpr std::size_t kMostLetters = 200;  // enough to know the place by
   std::string text = FlowText(node);
-  if (text.size() > kMostLetters) text = text.substr(0, kMostLetters) + "...";
+  if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
   throw InputError(tree.PlaceOfKey(key_path, node),
                    fmt::format("{} is '{}', must be {}", key_path, text, rule));
 }

@@ -193,6 +193,9 @@ TEST(Config, ATextIsNeitherListNorMap) {
   const Config block = Config::FromText("a:\n  b: 1\n  c:\n    - 2\n    - {d: 3}\n", "run.yaml");
   EXPECT_EQ(RefusalOf([&] { block.Text("a"); }),
             "run.yaml:2: a is '{b: 1, c: [2, {d: 3}]}', must be a text");
+  const Config lengthy = Config::FromText("a: [" + std::string(1000, 'x') + "]", "run.yaml");
+  EXPECT_EQ(RefusalOf([&] { lengthy.Text("a"); }),
+            "run.yaml:1: a is '[" + std::string(199, 'x') + "...', must be a text");
   EXPECT_EQ(refusal("d"), "run.yaml:5: d is '~', must be a text");
 }
 
