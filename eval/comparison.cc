@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
@@ -119,7 +120,26 @@ std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
 struct Pairs {
   std::vector<std::size_t> a;
   std::vector<std::size_t> b;
+  std::vector<std::string> unit;  // pairs of one are averaged: they do not vary on their own
 };
+
+// A seed's runs share its noise and its SLAM's errors whatever else they differ in, so the seeds
+// are what varies (`seed`, `slam_seed` and their like). Of one seed alone, or without such an axis,
+// each pair is a unit.
+std::vector<std::string> UnitsOf(const std::vector<Key>& keys,
+                                 const std::vector<std::string>& paired_by) {
+  std::vector<std::string> units;
+  for (const Key& key : keys) {
+    std::string unit;
+    for (std::size_t axis = 0; axis < key.size(); ++axis) {
+      if (paired_by[axis].ends_with("seed")) unit += key[axis] + " ";
+    }
+    units.push_back(unit);
+  }
+  if (std::set<std::string>(units.begin(), units.end()).size() > 1) return units;
+  for (std::size_t i = 0; i < units.size(); ++i) units[i] = std::to_string(i);
+  return units;
+}
 
 Pairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
               Comparison& comparison) {
@@ -127,15 +147,20 @@ Pairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions
   const auto rows_a = RowsByKey(a, RowsThatMeet(a, options.where_a), comparison.paired_by);
   const auto rows_b = RowsByKey(b, RowsThatMeet(b, options.where_b), comparison.paired_by);
   Pairs pairs;
+  std::vector<Key> keys;
   for (const auto& [key, row] : rows_a) {
     const auto other = rows_b.find(key);
     if (other == rows_b.end()) continue;
     pairs.a.push_back(row);
     pairs.b.push_back(other->second);
+    keys.push_back(key);
   }
+  pairs.unit = UnitsOf(keys, comparison.paired_by);
   comparison.runs_a = static_cast<int>(rows_a.size());
   comparison.runs_b = static_cast<int>(rows_b.size());
   comparison.pairs = static_cast<int>(pairs.a.size());
+  comparison.units =
+      static_cast<int>(std::set<std::string>(pairs.unit.begin(), pairs.unit.end()).size());
   if (pairs.a.empty()) {
     throw InputError(b.folder, fmt::format("shares no run with {} (by {})", a.folder,
                                            fmt::join(comparison.paired_by, ", ")));
@@ -166,14 +191,25 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
 std::optional<MetricComparison> CompareMetric(const SweepResults& a, const SweepResults& b,
                                               const std::string& name, const Pairs& pairs,
                                               const CompareOptions& options) {
-  std::vector<double> of_a;
-  std::vector<double> of_b;
+  struct Sum {
+    double a = 0.0;
+    double b = 0.0;
+    int count = 0;
+  };
+  std::map<std::string, Sum> by_unit;
   for (std::size_t i = 0; i < pairs.a.size(); ++i) {
     const double value_a = a.Metric(name)[pairs.a[i]];
     const double value_b = b.Metric(name)[pairs.b[i]];
     if (!std::isfinite(value_a) || !std::isfinite(value_b)) continue;
-    of_a.push_back(value_a);
-    of_b.push_back(value_b);
+    Sum& sum = by_unit[pairs.unit[i]];
+    sum.a += value_a;
+    sum.b += value_b;
+    ++sum.count;
+  }
+  std::vector<double> of_a, of_b;
+  for (const auto& [unit, sum] : by_unit) {
+    of_a.push_back(sum.a / sum.count);
+    of_b.push_back(sum.b / sum.count);
   }
   if (of_a.empty()) return std::nullopt;
   MetricComparison result;

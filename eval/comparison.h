@@ -44,6 +44,7 @@ struct MetricComparison {
 struct Comparison {
   std::vector<std::string> paired_by;  // the axes whose values make a pair
   int pairs = 0;
+  int units = 0;   // what the tests count: pairs of one seed are averaged, and count as one
   int runs_a = 0;  // that meet the conditions and did not fail
   int runs_b = 0;
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined

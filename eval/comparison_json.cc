@@ -51,6 +51,7 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                {"b", b},
                {"paired_by", comparison.paired_by},
                {"pairs", comparison.pairs},
+               {"units", comparison.units},
                {"runs_a", comparison.runs_a},
                {"runs_b", comparison.runs_b},
                {"metrics", Json::object()}};

@@ -63,6 +63,9 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
   if (!comparison.paired_by.empty()) {
     fmt::print(", paired by {}", fmt::join(comparison.paired_by, ", "));
   }
+  if (comparison.units < comparison.pairs) {
+    fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
+  }
   std::vector<std::vector<std::string>> rows = {{"metric", "better", "A", "B", "B - A",
                                                  "95 % interval", "wins A:B", "p", "p Holm",
                                                  "seeds needed", "verdict"}};

@@ -122,8 +122,7 @@ bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
                               const std::shared_ptr<const Scan>& newest, ReferenceMap& reference) {
   const double share = reference.ShareSeenBefore(newest, frames.back().map_from_base, first_frame_);
   recent_share_ += kNewShare * (share - recent_share_);
-  return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge &&
-         IsUsual(recent_share_);
+  return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge && IsUsual(recent_share_);
 }
 
 // Whether both put a frame to the same place.

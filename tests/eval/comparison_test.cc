@@ -74,6 +74,34 @@ TEST(Compare, PairsByAllAxesThatBothHave) {
   EXPECT_NEAR(c.metrics[0].paired.mean_b, 0.3918, 1e-12);
 }
 
+// The same five seeds at five gains are no 25 seeds.
+TEST(Compare, PairsOfOneSeedCountAsOne) {
+  const std::vector<double> a(kA.begin(), kA.begin() + 5), b(kB.begin(), kB.begin() + 5);
+  const Comparison seeds = Compare(Sweep({{"0.5", a}}), Sweep({{"0.5", b}}), {});
+  std::vector<std::pair<std::string, std::vector<double>>> many_a, many_b;
+  for (const char* gain : {"0.1", "0.2", "0.3", "0.4", "0.5"}) {
+    many_a.emplace_back(gain, a);
+    many_b.emplace_back(gain, b);
+  }
+  const Comparison c = Compare(Sweep(many_a), Sweep(many_b), {});
+  EXPECT_EQ(c.pairs, 25);
+  EXPECT_EQ(c.units, 5);
+  EXPECT_EQ(c.metrics[0].paired.pairs, 5);
+  EXPECT_NEAR(c.metrics[0].paired.wilcoxon.p_value, seeds.metrics[0].paired.wilcoxon.p_value,
+              1e-12);
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kTooFew);
+}
+
+// Rooms of one seed are all that varies.
+TEST(Compare, OfOneSeedEachPairCounts) {
+  std::vector<std::pair<std::string, std::vector<double>>> one_a, one_b;
+  for (std::size_t i = 0; i < kA.size(); ++i) {
+    one_a.push_back({std::to_string(i), {kA[i]}});
+    one_b.push_back({std::to_string(i), {kB[i]}});
+  }
+  EXPECT_EQ(Compare(Sweep(one_a), Sweep(one_b), {}).units, 10);
+}
+
 TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   SweepResults a = Sweep({{"0.25", kA}});
   const SweepResults b = Sweep({{"0.25", kB}});
