@@ -44,12 +44,14 @@ void VisitSegmentSpans(Eigen::Vector2d from, Eigen::Vector2d to, Visit&& visit) 
   if (from.y() > to.y()) std::swap(from, to);
   const int first_row = FloorToInt(from.y());
   const int last_row = FloorToInt(to.y());
-  if (first_row == last_row) {
+  const auto visit_one_row = [&](int row) {
     const auto [low, high] = std::minmax(from.x(), to.x());
-    visit(CellSpan{first_row, FloorToInt(low), FloorToInt(high)});
-    return;
-  }
+    visit(CellSpan{row, FloorToInt(low), FloorToInt(high)});
+  };
+  if (first_row == last_row) return visit_one_row(last_row);
   const double slope = (to.x() - from.x()) / (to.y() - from.y());
+  // So nearly along a boundary that a double does not hold the slope: it is taken to lie above.
+  if (!std::isfinite(slope)) return visit_one_row(last_row);
   for (int row = first_row; row <= last_row; ++row) {
     visit(RowSpan(from, to, slope, row, row == first_row, row == last_row));
   }

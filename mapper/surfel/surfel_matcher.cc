@@ -46,7 +46,8 @@ Eigen::Vector3d SeenStep(const NormalEquations& equations) {
 }  // namespace
 
 void SurfelMatchOptions::Visit(OptionsVisitor& v) {
-  v.Number("gate_m", gate_m, {0.01, 10.0}, "farther along the normal nothing is associated");
+  v.Number("gate_m", gate_m, {0.01, 10.0},
+           "farther along the normal than this and 2 sigmas nothing is associated");
   v.Number("along_m", along_m, {0.01, 10.0}, "farther along the wall nothing is associated");
   v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between associated normals, at most");
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");

@@ -83,6 +83,17 @@ TEST(SegmentSpans, AgreeWithBruteForceSupercover) {
   EXPECT_EQ(cases, 6000);
 }
 
+// Across a boundary by less than a double's slope can tell.
+TEST(SegmentSpans, AlongABoundaryOfRowsAreInOneRow) {
+  const Eigen::Vector2d from(0.5, -1e-310), to(3.5, 1e-310);
+  const std::vector<CellSpan> expected = {{0, 0, 3}};
+  for (const auto& [a, b] : {std::pair(from, to), std::pair(to, from)}) {
+    std::vector<CellSpan> spans;
+    VisitSegmentSpans(a, b, [&](const CellSpan& span) { spans.push_back(span); });
+    EXPECT_EQ(spans, expected);
+  }
+}
+
 // Ends on multiples of a quarter meet corners and grid lines all the time, and are exact.
 TEST(SegmentSpans, AgreeWithBruteForceOnGridLines) {
   int cases = 0;
