@@ -48,8 +48,9 @@ function drawPose(context, path, i, fill) {
   context.stroke();
 }
 
-// The scan nearest to a frame: not every frame's is kept.
-function scanNear(i) {
+// The scan nearest to a frame: not every frame's is kept. None for one whose place is not known.
+function scanNear(i, path) {
+  if (!path || path.x[i] === null) return null;
   let best = -1;
   for (let k = 0; k < RUN.scans.length; ++k) {
     if (best < 0 || Math.abs(RUN.scans[k].row - i) < Math.abs(RUN.scans[best].row - i)) best = k;
@@ -58,7 +59,7 @@ function scanNear(i) {
 }
 
 function drawScan(context, scan, path, fill) {
-  if (!scan || !path || path.x[scan.row] === null) return;
+  if (!scan || path.x[scan.row] === null) return;
   const c = Math.cos(path.yaw[scan.row]);
   const s = Math.sin(path.yaw[scan.row]);
   const radius = 1.8 * devicePixelRatio;
@@ -103,7 +104,8 @@ function drawMap() {
   const image = images[currentLayer];
   if (image?.complete) context.drawImage(image, view.x, view.y, RUN.map.width * cellSize(), RUN.map.height * cellSize());
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, name, RUN.paths[name], MAP_COLOURS[tone]);
-  if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame), RUN.paths.est ?? RUN.paths.online, MAP_COLOURS.scan);
+  const scanned = RUN.paths.est ?? RUN.paths.online;
+  if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame, scanned), scanned, MAP_COLOURS.scan);
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
   drawScaleBar(context);
 }

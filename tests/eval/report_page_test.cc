@@ -99,6 +99,24 @@ TEST_F(ReportPage, OfARun) {
   ExpectFits();
 }
 
+// What another frame saw is not shown for one whose place nobody knows.
+TEST_F(ReportPage, OfFramesThatSlamLostNoScanIsShown) {
+  Succeed(
+      "run ./small.yaml -o out --set frames=60 --set slam.lost_rate_hz=3 --set "
+      "slam.lost_mean_s=0.3");
+  browser_->Open(Path("out/report.html"));
+  const auto frames = [&](const char* lost, const char* without_scan) {
+    const std::string path = "RUN.paths.est";
+    return browser_
+        ->Evaluate(path + ".x.filter((x, i) => (x === null) === " + lost + " && (scanNear(i, " +
+                   path + ") === null) === " + without_scan + ").length")
+        .get<int>();
+  };
+  EXPECT_GT(frames("true", "true"), 0);
+  EXPECT_GT(frames("false", "false"), 0);
+  EXPECT_EQ(frames("true", "false") + frames("false", "true"), 0);
+}
+
 TEST_F(ReportPage, OfASequenceWithoutTruth) {
   Succeed("render ./small.yaml -o seq");
   Succeed("map seq --poses seq/groundtruth.txt -o out");
