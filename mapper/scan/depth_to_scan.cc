@@ -146,9 +146,9 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
                                                 static_cast<float>(options_.slice_agree_sigmas)},
                                       window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
-  return {
-      ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
-      ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice))};
+  return {ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
+          ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice)),
+          window};
 }
 
 std::vector<Eigen::Vector2d> DepthToScan::HitPixels(const DepthImage& depth,

@@ -15,10 +15,12 @@
 
 namespace depthgrid {
 
-// Of one image: what a robot must not run into, and the level slice around the camera.
+// Of one image: what a robot must not run into, the level slice around the camera, and how noisy
+// the depths are.
 struct ScanPair {
   Scan obstacles;
   Scan slice;
+  NoiseWindow noise = {};
 };
 
 // Memory for conversions, kept from frame to frame.

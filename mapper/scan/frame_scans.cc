@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mapper/core/error.h"
+#include "mapper/scan/cut_ends.h"
 
 namespace depthgrid {
 namespace {
@@ -60,7 +61,8 @@ std::shared_ptr<Scan> ScanPool::Take() {
 
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
     // The other modes read few rows at the camera's height already.
-    : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0) {
+    : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0),
+      drop_cut_ends_(options.drop_cut_ends) {
   if (!camera) return;
   converter_.emplace(*camera, options);
   floor_.emplace(*camera, options);
@@ -88,6 +90,8 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
   const std::shared_ptr<Scan> obstacles = pool_.Take(), slice = pool_.Take();
   ScanPair scans = converter_->ConvertBoth(*depth, stand, slice_half_height_m_, memory_,
                                            {std::move(*obstacles), std::move(*slice)});
+  farthest_m_ = std::max(farthest_m_, scans.noise.farthest_m());
+  if (drop_cut_ends_) DropCutEnds(scans.noise, farthest_m_, scans.slice);
   *obstacles = std::move(scans.obstacles);
   *slice = std::move(scans.slice);
   return {obstacles, slice, stand};

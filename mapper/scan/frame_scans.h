@@ -48,6 +48,8 @@ class FrameScanner {
   std::optional<DepthToScan> converter_;
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
+  bool drop_cut_ends_ = false;
+  double farthest_m_ = 0.0;  // NoiseWindow's, of any image
   ScanMemory memory_;
   ScanPool pool_;
 };

@@ -52,6 +52,8 @@ double InverseSigmaOf(const std::vector<float>& differences) {
 
 }  // namespace
 
+NoiseWindow::NoiseWindow() { inverse_sigma_.fill(kDefaultInverseSigma); }
+
 NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   for (std::vector<float>& of_class : differences) of_class.clear();
   const auto row_of = [&](int k) { return image.Row((2 * k + 1) * image.height_px / (2 * kRows)); };
@@ -74,7 +76,10 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   std::array<bool, kClasses> measured{};
   for (std::size_t k = 0; k < kClasses; ++k) {
     measured[k] = differences[k].size() >= kMinSamples;
-    if (measured[k]) last = InverseSigmaOf(differences[k]);
+    if (measured[k]) {
+      last = InverseSigmaOf(differences[k]);
+      farthest_m_ = static_cast<double>(k) * kClassM;
+    }
     inverse_sigma_[k] = last;
   }
   // Classes nearer than the first measured one take its value.

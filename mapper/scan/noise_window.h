@@ -15,6 +15,8 @@ namespace depthgrid {
 
 class NoiseWindow {
  public:
+  // Of no image: a Kinect's.
+  NoiseWindow();
   // From second differences of inverse depth along image rows, which vanish on planes: a high
   // quantile of them for each class of depth.
   explicit NoiseWindow(const DepthImage& image) {
@@ -49,6 +51,10 @@ class NoiseWindow {
   static bool IsNarrow(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
   static int MeansOf(float width_m) { return IsNarrow(width_m) ? kMeansOfNarrow : 1; }
 
+  // Something was measured this far away or up to half a metre farther, and little beyond; 0 if
+  // nothing was.
+  double farthest_m() const { return farthest_m_; }
+
   // Standard deviation of depth as estimated for a class of depth.
   double SigmaM(double z_m) const {
     // Linear between the centres of the classes.
@@ -64,6 +70,7 @@ class NoiseWindow {
   static constexpr double kMinWindowM = 0.01;
 
   std::array<double, kClasses> inverse_sigma_{};  // of 1/z, 1/m
+  double farthest_m_ = 0.0;
 };
 
 }  // namespace depthgrid

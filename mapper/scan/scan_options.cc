@@ -22,6 +22,8 @@ void ScanOptions::Visit(OptionsVisitor& v) {
   v.Number("slice_agree_sigmas", slice_agree_sigmas, {0.0, 1000.0},
            "where the slice's upper or lower part stands farther from its inner half than this "
            "many sigmas, the inner half alone is matched; 0 takes all for one surface");
+  v.Flag("drop_cut_ends", drop_cut_ends,
+         "whether the end of a wall that recedes beyond the camera's reach is not matched");
   v.Choice(
       "floor", floor, {{FloorSource::kPose, "pose"}, {FloorSource::kImage, "image"}},
       "camera height and tilt over the floor: from the pose or from the floor seen in the image");

@@ -42,6 +42,8 @@ struct ScanOptions {
   // Beyond so many sigmas of noise, what lies above and below the slice's inner half is another
   // surface (SteadyRange); 0 takes all for one. Of pure noise 2.5 drops one bearing in forty.
   double slice_agree_sigmas = 2.5;
+  // Whether the slice leaves out what the camera's reach cut off (cut_ends.h).
+  bool drop_cut_ends = true;
   // SLAM drifts in height, roll and pitch too: with its poses the floor turns into walls
   // (docs/results.md, "Heights and tilts").
   FloorSource floor = FloorSource::kImage;

@@ -76,7 +76,7 @@ TEST(SharedErrors, NothingIsToldOfFewPairsOrWhatErrsTheOtherWay) {
 }
 
 // Sixteen pieces across the view, known to 1 cm.
-std::vector<Surfel> Wall() {
+std::vector<Surfel> FlatWall() {
   std::vector<Surfel> wall(16);
   for (std::size_t i = 0; i < wall.size(); ++i) {
     wall[i].point_m = {2.0, 0.1 * static_cast<double>(i)};
@@ -95,7 +95,7 @@ SurfelStore MapOfPieces(const std::vector<Surfel>& pieces) {
 
 // Sixteen pieces of one wall that all err alike tell as much as one, in the same place.
 TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
-  const std::vector<Surfel> wall = Wall();
+  const std::vector<Surfel> wall = FlatWall();
   const SurfelStore map = MapOfPieces(wall);
   Prediction prediction;
   prediction.map_from_base = {0.01, 0.0, 0.0};
@@ -116,7 +116,7 @@ TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
 
 // Far from the minimum all residuals are large, and none of that is misfit.
 TEST(SurfelMatcher, AWrongPredictionIsNoMisfit) {
-  const std::vector<Surfel> wall = Wall();
+  const std::vector<Surfel> wall = FlatWall();
   const SurfelStore map = MapOfPieces(wall);
   Prediction prediction;
   prediction.map_from_base = {0.05, 0.0, 0.0};  // five sigmas off

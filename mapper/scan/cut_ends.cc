@@ -1,0 +1,76 @@
+#include "mapper/scan/cut_ends.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace depthgrid {
+namespace {
+
+// Where fewer bearings in a row have no hit, pixels were lost.
+constexpr int kBearingsOfNothing = 4;
+// Noise must not hide how far the end is: the farthest of so many beams counts.
+constexpr int kBeamsOfEnd = 3;
+// Walls seen more steeply than 85 degrees from their normal look like jumps.
+constexpr float kMaxIncidenceTangent = 11.4F;
+
+// The scan's beams from one of its ends, so that both are looked at in one way.
+class BeamsFrom {
+ public:
+  BeamsFrom(Scan& scan, bool backwards) : beams_(scan.beams), backwards_(backwards) {}
+
+  int size() const { return static_cast<int>(beams_.size()); }
+  Beam& operator[](int i) const {
+    return beams_[static_cast<std::size_t>(backwards_ ? size() - 1 - i : i)];
+  }
+  float DepthM(int i) const { return (*this)[i].range_m * std::cos((*this)[i].bearing_rad); }
+  bool AreOneSurface(int i, int k, float noise_m) const {
+    const Beam& a = (*this)[i];
+    const Beam& b = (*this)[k];
+    if (!a.hit || !b.hit) return false;
+    const float steep_m = kMaxIncidenceTangent * std::abs(a.bearing_rad - b.bearing_rad) *
+                          std::min(a.range_m, b.range_m);
+    return std::abs(a.range_m - b.range_m) <= noise_m + steep_m;
+  }
+  bool IsNothingAfter(int i) const {
+    if (i + kBearingsOfNothing >= size()) return false;
+    for (int k = 1; k <= kBearingsOfNothing; ++k) {
+      if ((*this)[i + k].hit) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::vector<Beam>& beams_;
+  bool backwards_;
+};
+
+// Of the surface whose last hit this is.
+void DropCutEnd(const BeamsFrom& beams, int last, float width_m, double farthest_m) {
+  float end_m = 0.0F;
+  int first = last;
+  for (; first == last || (first >= 0 && beams.AreOneSurface(first, first + 1, width_m)); --first) {
+    if (last - first < kBeamsOfEnd) end_m = std::max(end_m, beams.DepthM(first));
+  }
+  if (end_m + width_m < farthest_m) return;
+  const int size = last - first;
+  int dropped = 0;
+  while (dropped < size && beams.DepthM(last - dropped) > end_m - 0.5F * width_m) ++dropped;
+  if (2 * dropped >= size) return;
+  for (int k = 0; k < dropped; ++k) beams[last - k].hit = false;
+}
+
+}  // namespace
+
+void DropCutEnds(const NoiseWindow& window, double farthest_m, Scan& scan) {
+  for (const bool backwards : {false, true}) {
+    const BeamsFrom beams(scan, backwards);
+    for (int i = 0; i < beams.size(); ++i) {
+      if (!beams[i].hit || !beams.IsNothingAfter(i)) continue;
+      const float width_m = window.At(beams[i].range_m);
+      if (beams[i].range_m + width_m > scan.max_range_m) continue;
+      DropCutEnd(beams, i, width_m, farthest_m);
+    }
+  }
+}
+
+}  // namespace depthgrid

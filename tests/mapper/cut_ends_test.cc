@@ -1,0 +1,129 @@
+// Walls that recede beyond a depth camera's reach, which cuts what noise made longer.
+#include "mapper/scan/cut_ends.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "mapper/core/rng.h"
+#include "mapper/scan/frame_scans.h"
+#include "tests/mapper/analytic_room.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kReachM = 4.5;
+constexpr double kSigmaM = 0.009;
+constexpr double kWallM = 3.0;                  // to the left
+constexpr double kHeadingRad = RadFromDeg(35);  // towards the wall, which is out of reach ahead
+
+AnalyticRoom LongRoom() {
+  AnalyticRoom room;
+  room.walls = {{-30.0, -30.0, 0.0}, {30.0, kWallM, 2.5}};
+  return room;
+}
+
+DepthImage Seen(const AnalyticRoom& room, const PinholeCamera& camera, const Pose3& pose,
+                RandomStream& random, double sigma_m) {
+  DepthImage image = room.Render(camera, pose);
+  for (float& z_m : image.z_m) {
+    z_m += static_cast<float>(sigma_m * random.Normal());
+    if (z_m > static_cast<float>(kReachM)) z_m = kInvalidDepth;
+  }
+  return image;
+}
+
+Scan SliceOf(const DepthImage& image, const PinholeCamera& camera, const Pose3& pose, bool drop) {
+  ScanOptions options;
+  options.drop_cut_ends = drop;
+  FrameScanner scanner(camera, options);
+  Frame frame;
+  frame.depth = std::make_shared<const DepthImage>(image);
+  frame.slam_from_camera = pose;
+  return *scanner.ScansOf(frame).matched;
+}
+
+// How far before the wall the last four hits towards the reach lie in the mean.
+double BendM(const Scan& scan) {
+  double sum_m = 0.0;
+  int count = 0;
+  for (const Beam& beam : scan.beams) {  // from the right, where the wall is farthest
+    if (!beam.hit || count == 4) continue;
+    sum_m += kWallM - beam.range_m * std::sin(beam.bearing_rad + kHeadingRad);
+    ++count;
+  }
+  EXPECT_EQ(count, 4);
+  return sum_m / count;
+}
+
+int Hits(const Scan& scan) {
+  return static_cast<int>(std::count_if(scan.beams.begin(), scan.beams.end(),
+                                        [](const Beam& beam) { return beam.hit; }));
+}
+
+TEST(CutEnds, AWallThatRecedesBeyondTheReachStaysStraight) {
+  const PinholeCamera camera;
+  const Pose3 pose = TiltedCamera({0.0, 0.0, kHeadingRad}, kCameraHeightM, 0.0, 0.0);
+  RandomStream random(1, RandomStage::kTest);
+  double kept_m = 0.0, dropped_m = 0.0;
+  constexpr int kImages = 10;
+  for (int i = 0; i < kImages; ++i) {
+    const DepthImage image = Seen(LongRoom(), camera, pose, random, kSigmaM);
+    const Scan kept = SliceOf(image, camera, pose, false);
+    const Scan dropped = SliceOf(image, camera, pose, true);
+    kept_m += BendM(kept) / kImages;
+    dropped_m += BendM(dropped) / kImages;
+    EXPECT_GT(Hits(dropped), 0.8 * Hits(kept));
+  }
+  EXPECT_GT(kept_m, 0.003);
+  EXPECT_NEAR(dropped_m, 0.0, 0.001);
+}
+
+TEST(CutEnds, NothingIsDroppedWhereAllIsSeen) {
+  const PinholeCamera camera;
+  const Pose3 pose = TiltedCamera({0.0, 0.0, kHeadingRad}, kCameraHeightM, 0.0, 0.0);
+  RandomStream random(2, RandomStage::kTest);
+  AnalyticRoom room;
+  room.walls = {{-2.0, -2.0, 0.0}, {3.0, 2.0, 2.5}};
+  const DepthImage image = Seen(room, camera, pose, random, kSigmaM);
+  EXPECT_EQ(SliceOf(image, camera, pose, true), SliceOf(image, camera, pose, false));
+}
+
+// It ends there, and is as far away as anything.
+TEST(CutEnds, AWallFaceOnIsKept) {
+  const PinholeCamera camera;
+  const Pose3 pose = TiltedCamera({0.0, 0.0, 0.0}, kCameraHeightM, 0.0, 0.0);
+  RandomStream random(3, RandomStage::kTest);
+  AnalyticRoom room;
+  room.walls = {{-30.0, -30.0, 0.0}, {30.0, 30.0, 12.0}};
+  room.boxes = {{{4.0, -1.0, 0.0}, {4.2, 1.0, 2.0}}};
+  const DepthImage image = Seen(room, camera, pose, random, kSigmaM);
+  const Scan scan = SliceOf(image, camera, pose, true);
+  EXPECT_GT(Hits(scan), 200);
+  EXPECT_EQ(scan, SliceOf(image, camera, pose, false));
+}
+
+// The wall is seen beyond a patch that was not measured: no reach ends it there.
+TEST(CutEnds, AWallWithAHoleIsKept) {
+  const PinholeCamera camera;
+  const Pose3 pose = TiltedCamera({0.0, 0.0, RadFromDeg(60)}, kCameraHeightM, 0.0, 0.0);
+  RandomStream random(4, RandomStage::kTest);
+  AnalyticRoom room = LongRoom();
+  DepthImage image = Seen(room, camera, pose, random, kSigmaM);
+  for (int v = 0; v < image.height_px; ++v) {
+    for (int u = 300; u < 340; ++u) image.Row(v)[u] = kInvalidDepth;
+  }
+  const Scan kept = SliceOf(image, camera, pose, false);
+  const Scan dropped = SliceOf(image, camera, pose, true);
+  const auto hits_before_hole = [](const Scan& scan) {
+    return std::count_if(scan.beams.begin(), scan.beams.end(),
+                         [](const Beam& beam) { return beam.hit && beam.bearing_rad > 0.0F; });
+  };
+  EXPECT_LT(Hits(kept), static_cast<int>(kept.beams.size()));
+  EXPECT_EQ(hits_before_hole(dropped), hits_before_hole(kept));
+}
+
+}  // namespace
+}  // namespace depthgrid
