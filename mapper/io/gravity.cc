@@ -19,14 +19,6 @@ using internal::SurfaceView;
 using Patches = std::vector<internal::SurfacePatch>;
 using Views = std::vector<SurfaceView>;
 
-// Patches across an image, whatever its size.
-constexpr int kPatchesAcross = 80;
-// Half the baseline of a normal as a share of the width: wide enough to average noise, narrow
-// enough for furniture (6 of 640 pixels).
-constexpr double kBaselineShare = 0.0094;
-constexpr double kMaxDepthM = 5.0;         // farther normals are noise on real sensors
-constexpr double kSameSurfaceShare = 0.1;  // depth change over the baseline, of the depth
-
 const double kMaxFromImageUp = std::cos(RadFromDeg(50.0));
 const double kCandidateCone = std::cos(RadFromDeg(6.0));
 const double kFloorCone = std::cos(RadFromDeg(12.0));
@@ -52,8 +44,8 @@ constexpr double kFirstFloorOffM = 0.03;
 // Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
 // all that some see); more is SLAM's drift.
 constexpr double kDriftRad = RadFromDeg(0.8);
-// Or the first images' floor is as much off from what all agree on: SLAM's tilt drifted at first
-// and then no more. What one place's floor says of up is off by up to 1.5 degrees.
+// Or the first images' floor is off by more than one place's may be (1.5 degrees) from what all
+// agree on: SLAM's tilt drifted at first and then no more.
 constexpr double kFirstOffRad = RadFromDeg(2.0);
 // Patches this near the plane take part in its fit, from the first to the last round.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
@@ -225,35 +217,6 @@ Patches PatchesOf(const Views& views) {
   return patches;
 }
 
-// As the recording's first images have it, if they see a floor.
-std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
-  if (first_views.empty()) return {};
-  const auto patches = PatchesOf(first_views);
-  if (patches.size() < kMinFloorPatches) return {};
-  const CommonLevel first = FitCommonLevel(first_views, CommonNormal(patches));
-  if (first.fits.size() < kFirstViews) return {};
-  return FirstUp(first.fits, first.up, first.fits.size());
-}
-
-std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
-                                  const Eigen::Vector3d& about_up) {
-  const CommonLevel level = FitCommonLevel(views, about_up);
-  if (level.fits.empty()) return {};
-  std::vector<double> angles_rad;
-  for (const PlaneFit& fit : level.fits) {
-    angles_rad.push_back(AngleBetween(level.up, NormalOf(fit.scatter, level.up)));
-  }
-  std::sort(angles_rad.begin(), angles_rad.end());
-  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(angles_rad.size()));
-  const double wander_rad = angles_rad[std::min(rank, angles_rad.size() - 1)];
-  const std::optional<Eigen::Vector3d> first = UpAtFirst(first_views);
-  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad ||
-                      (first && AngleBetween(level.up, *first) > kFirstOffRad);
-  if (!drifts) return Direction{level.up, wander_rad, false};
-  // Otherwise as the first of those spread over it that see one.
-  return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
-}
-
 struct FloorOfViews {
   double height_m = 0.0;  // up . point
   double camera_height_m = 0.0;
@@ -277,6 +240,64 @@ double MiddleOf(const std::vector<FloorOfViews>& floors, double FloorOfViews::*n
   std::vector<double> numbers;
   for (const FloorOfViews& floor : floors) numbers.push_back(floor.*number);
   return UpperMedian(numbers);
+}
+
+// As the recording's first images have it, if they see a floor.
+std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
+  if (first_views.empty()) return {};
+  const auto patches = PatchesOf(first_views);
+  if (patches.size() < kMinFloorPatches) return {};
+  const CommonLevel first = FitCommonLevel(first_views, CommonNormal(patches));
+  if (first.fits.size() < kFirstViews) return {};
+  return FirstUp(first.fits, first.up, first.fits.size());
+}
+
+// Whether most of the first images see the floor where the later ones do, and as level.
+bool SeeSameFloor(const Views& first_views, const Views& views, const Eigen::Vector3d& up) {
+  const auto later = OwnFloors(views, up);
+  if (later.empty()) return false;
+  const double usual_m = MiddleOf(later, &FloorOfViews::camera_height_m);
+  std::size_t seeing = 0;
+  for (const SurfaceView& view : first_views) {
+    const auto points = LevelPoints(view.patches, up);
+    const double floor_m = up.dot(view.camera) - usual_m;
+    const PlaneFit fit = FitNear(points, up, floor_m, kAgreeM);
+    if (fit.points < kMinViewPatches) continue;
+    seeing += AngleBetween(NormalOf(fit.scatter, up), up) <= kFirstOffRad ? 1 : 0;
+  }
+  return 2 * seeing > first_views.size();
+}
+
+// Whether the camera is as high above what is level at first as above the later images' floor: the
+// normals of a sofa's cushions may agree as well.
+bool IsFloorToo(const Views& first_views, const Eigen::Vector3d& first_up, const Views& views,
+                const Eigen::Vector3d& up) {
+  const auto first = OwnFloors(first_views, first_up);
+  const auto later = OwnFloors(views, up);
+  return !first.empty() && !later.empty() &&
+         std::abs(MiddleOf(first, &FloorOfViews::camera_height_m) -
+                  MiddleOf(later, &FloorOfViews::camera_height_m)) <= kAgreeM;
+}
+
+std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
+                                  const Eigen::Vector3d& about_up) {
+  const CommonLevel level = FitCommonLevel(views, about_up);
+  if (level.fits.empty()) return {};
+  std::vector<double> angles_rad;
+  for (const PlaneFit& fit : level.fits) {
+    angles_rad.push_back(AngleBetween(level.up, NormalOf(fit.scatter, level.up)));
+  }
+  std::sort(angles_rad.begin(), angles_rad.end());
+  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(angles_rad.size()));
+  const double wander_rad = angles_rad[std::min(rank, angles_rad.size() - 1)];
+  const std::optional<Eigen::Vector3d> first = UpAtFirst(first_views);
+  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad ||
+                      (first && AngleBetween(level.up, *first) > kFirstOffRad &&
+                       !SeeSameFloor(first_views, views, level.up) &&
+                       IsFloorToo(first_views, *first, views, level.up));
+  if (!drifts) return Direction{level.up, wander_rad, false};
+  // Otherwise as the first of those spread over it that see one.
+  return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
 }
 
 // As the first images have it; the camera's height is that above each image's own lowest surface.
@@ -316,7 +337,6 @@ FloorOfViews FloorUnder(const Views& views, const Views& first_views,
   return {floor_m, UpperMedian(cameras_m)};
 }
 
-// Of each view what faces upwards.
 Views Upward(Views views, const Eigen::Vector3d& image_up) {
   for (SurfaceView& view : views) {
     std::erase_if(view.patches,
@@ -325,45 +345,17 @@ Views Upward(Views views, const Eigen::Vector3d& image_up) {
   return views;
 }
 
-SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
-                   const Pose3& world_from_camera) {
-  SurfaceView view;
-  view.camera = world_from_camera.translation;
-  const int step_px = std::max(1, image.width_px / kPatchesAcross);
-  const int base_px = std::max(2, static_cast<int>(kBaselineShare * image.width_px));
-  const auto point_at = [&](int u, int v) { return Unproject(camera, u, v, image.At(u, v)); };
-  for (int v = base_px; v + base_px < image.height_px; v += step_px) {
-    for (int u = base_px; u + base_px < image.width_px; u += step_px) {
-      const float z = image.At(u, v);
-      if (!(z > 0.0F) || z > kMaxDepthM) continue;
-      const float around[] = {image.At(u - base_px, v), image.At(u + base_px, v),
-                              image.At(u, v - base_px), image.At(u, v + base_px)};
-      const auto apart = [&](float other) {
-        return !(other > 0.0F) || std::abs(other - z) > kSameSurfaceShare * z;
-      };
-      if (std::any_of(std::begin(around), std::end(around), apart)) continue;
-      const Eigen::Vector3d along_u = point_at(u + base_px, v) - point_at(u - base_px, v);
-      const Eigen::Vector3d along_v = point_at(u, v + base_px) - point_at(u, v - base_px);
-      // x right times y down points away from the camera.
-      const Eigen::Vector3d normal = along_v.cross(along_u).normalized();
-      view.patches.push_back(
-          {world_from_camera * point_at(u, v), world_from_camera.rotation * normal});
-    }
-  }
-  return view;
-}
-
 }  // namespace
 
 void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
                         const Pose3& world_from_camera) {
-  views_.push_back(ViewOf(image, camera, world_from_camera));
+  views_.push_back(internal::ViewOf(image, camera, world_from_camera));
   image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
 }
 
 void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camera,
                              const Pose3& world_from_camera) {
-  first_views_.push_back(ViewOf(image, camera, world_from_camera));
+  first_views_.push_back(internal::ViewOf(image, camera, world_from_camera));
 }
 
 std::optional<Gravity> GravityFinder::Find() const {

@@ -9,6 +9,7 @@
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/pose3.h"
+#include "mapper/io/surface_view.h"
 
 namespace depthgrid {
 
@@ -24,19 +25,6 @@ struct Gravity {
   double floor_m = 0.0;
   double camera_height_m = 0.0;  // above the floor, median over the frames
 };
-
-namespace internal {
-// A piece of surface as an image shows it.
-struct SurfacePatch {
-  Eigen::Vector3d point;   // in the world
-  Eigen::Vector3d normal;  // towards the camera
-};
-// What an image shows.
-struct SurfaceView {
-  Eigen::Vector3d camera;  // its position
-  std::vector<SurfacePatch> patches;
-};
-}  // namespace internal
 
 class GravityFinder {
  public:
