@@ -5,6 +5,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "sim/correlated_normals.h"
 #include "sim/depth_noise_models.h"
 #include "sim/depth_samples.h"
 #include "sim/parallel_calls.h"
@@ -16,6 +17,9 @@ namespace {
 using noise::DepthSamples;
 using noise::SampleSource;
 using noise::Values;
+
+// Of the four normals of a pixel, the one along its ray.
+constexpr std::size_t kAxial = 2;
 
 bool SamplesBetweenPixels(DepthNoiseModel model) {
   return model == DepthNoiseModel::kHanda || model == DepthNoiseModel::kAzure;
@@ -117,6 +121,22 @@ void DepthNoise::ClampRange(DepthImage& depth) const {
   for (float& z : depth.z_m) z = z >= min_m && z <= max_m ? z : kInvalidDepth;
 }
 
+std::vector<float> DepthNoise::CorrelatedAxial(std::uint64_t seed, std::uint32_t frame) const {
+  const auto width = static_cast<std::size_t>(camera_.width_px);
+  const std::size_t pixels = width * static_cast<std::size_t>(camera_.height_px);
+  std::vector<float> white(pixels);
+  CallInParallel(
+      (pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, [&](std::size_t block) {
+        const std::size_t first = block * kNormalBlockItems;
+        NormalBlock random;
+        FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first),
+                    random);
+        std::copy_n(random.normals[kAxial].data(),
+                    std::min<std::size_t>(kNormalBlockItems, pixels - first), white.data() + first);
+      });
+  return Correlated(white, width, options_.noise_correlation_px, threads_);
+}
+
 DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_cos,
                                 std::uint64_t seed, std::uint32_t frame) const {
   const DepthNoiseModel model = options_.noise;
@@ -130,15 +150,20 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
   const auto softness = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
   const std::size_t pixels = lit.z_m.size();
   DepthImage noisy(lit.width_px, lit.height_px);
+  const std::vector<float> alike =
+      options_.noise_correlation_px > 0.0 ? CorrelatedAxial(seed, frame) : std::vector<float>{};
   const auto add_to_block = [&](std::size_t block) {
     const std::size_t first = block * kNormalBlockItems;
     const std::size_t count = std::min<std::size_t>(kNormalBlockItems, pixels - first);
     NormalBlock random;
     FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first), random);
+    if (!alike.empty()) {
+      std::copy_n(alike.data() + first, count, random.normals[kAxial].data());
+    }
     const DepthSamples clean = Sample(model, source, first, count, random, scale);
     alignas(64) Values theta, measured;
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) theta[i] = noise::Acos(clean.cosine[i]);
-    Measure(model, clean, theta, random.normals[2], scale, focal_px, measured);
+    Measure(model, clean, theta, random.normals[kAxial], scale, focal_px, measured);
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
       const float z = measured[i];
       const bool is_kept = (clean.z[i] > 0.0F) & (z > 0.0F) & (z >= min_m) & (z <= max_m) &

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "mapper/core/camera.h"
 #include "sim/depth_camera.h"
@@ -24,6 +25,8 @@ class DepthNoise {
 
  private:
   void ClampRange(DepthImage& depth) const;
+  // The draws along the rays, alike over noise_correlation_px.
+  std::vector<float> CorrelatedAxial(std::uint64_t seed, std::uint32_t frame) const;
   DepthImage AddNoise(const DepthImage& lit, const float* incidence_cos, std::uint64_t seed,
                       std::uint32_t frame) const;
 

@@ -100,6 +100,8 @@ void SensorOptions::Visit(OptionsVisitor& v) {
             {DepthNoiseModel::kAzure, "azure"}},
            "depth noise model");
   v.Number("noise_scale", noise_scale, {0, 100}, "factor on the model's standard deviations");
+  v.Number("noise_correlation_px", noise_correlation_px, {0, 100},
+           "pixels over which errors along the rays are alike, 0: each errs by itself");
   v.Number("min_range_m", min_range_m, {0, 1000},
            "nearer depths are invalid, 0: the model's limit");
   v.Number("max_range_m", max_range_m, {0, 1000},

@@ -50,6 +50,10 @@ struct SensorOptions {
 
   DepthNoiseModel noise = DepthNoiseModel::kNone;
   double noise_scale = 1.0;  // times every standard deviation; a model's own quantisation stays
+  // Errors along the rays are alike in neighbouring pixels: their correlation at a distance of d
+  // pixels is exp(-(d / this)^2 / 2). 0: each pixel errs by itself, as the models have it. Stereo
+  // that compares blocks of pixels, and filters, make it several pixels.
+  double noise_correlation_px = 0.0;
   // Measured depths outside become invalid; 0 takes the model's own limit (docs/sensors.md).
   double min_range_m = 0.0;
   double max_range_m = 0.0;

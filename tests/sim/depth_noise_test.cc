@@ -110,6 +110,44 @@ TEST(DepthNoise, SigmasAgreeWithThePublishedFigures) {
   }
 }
 
+// Correlation exp(-(d / L)^2 / 2) along rows and columns, the declared sigma everywhere.
+TEST(DepthNoise, NeighboursErrAlikeAsFarAsAsked) {
+  const DepthFrame clean = Constant(2.0, 0.0);
+  SensorOptions options = Options(DepthNoiseModel::kD435);
+  const double sigma = ErrorsOf(DepthNoise(options).Apply(clean, 1, 0), clean.depth).sigma;
+  options.noise_correlation_px = 4.0;
+  double square = 0.0, edge = 0.0, along = 0.0, down = 0.0, far = 0.0;
+  constexpr int kFrames = 40;
+  constexpr int kApart = 4;
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    const DepthImage image = DepthNoise(options).Apply(clean, 1, frame);
+    const auto error = [&](int u, int v) { return double{image.At(u, v)} - 2.0; };
+    double count = 0.0, edge_count = 0.0;
+    double squares = 0.0, edges = 0.0, alongs = 0.0, downs = 0.0, fars = 0.0;
+    for (int v = 0; v + 6 * kApart < image.height_px; ++v) {
+      edges += error(0, v) * error(0, v);
+      ++edge_count;
+      for (int u = 0; u + 6 * kApart < image.width_px; ++u) {
+        squares += error(u, v) * error(u, v);
+        alongs += error(u, v) * error(u + kApart, v);
+        downs += error(u, v) * error(u, v + kApart);
+        fars += error(u, v) * error(u + 6 * kApart, v);
+        ++count;
+      }
+    }
+    square += squares / count / kFrames;
+    edge += edges / edge_count / kFrames;
+    along += alongs / count / kFrames;
+    down += downs / count / kFrames;
+    far += fars / count / kFrames;
+  }
+  EXPECT_NEAR(std::sqrt(square), sigma, 0.01 * sigma);
+  EXPECT_NEAR(std::sqrt(edge), sigma, 0.05 * sigma);
+  EXPECT_NEAR(along / square, std::exp(-0.5), 0.02);
+  EXPECT_NEAR(down / square, std::exp(-0.5), 0.02);
+  EXPECT_NEAR(far / square, 0.0, 0.02);
+}
+
 TEST(DepthNoise, NoiseScaleMultipliesSigma) {
   SensorOptions options = Options(DepthNoiseModel::kD435);
   options.noise_scale = 3.0;
@@ -301,6 +339,11 @@ TEST(DepthNoise, DependsOnSeedFrameAndPixelAlone) {
     EXPECT_EQ(DepthNoise(Options(model), 3).Apply(clean, 1, 2).z_m, once.z_m);
     EXPECT_NE(DepthNoise(Options(model)).Apply(clean, 1, 3).z_m, once.z_m);
     EXPECT_NE(DepthNoise(Options(model)).Apply(clean, 2, 2).z_m, once.z_m);
+    SensorOptions alike = Options(model);
+    alike.noise_correlation_px = 3.0;
+    const DepthImage smooth = DepthNoise(alike).Apply(clean, 1, 2);
+    EXPECT_NE(smooth.z_m, once.z_m);
+    EXPECT_EQ(DepthNoise(alike, 3).Apply(clean, 1, 2).z_m, smooth.z_m);
   }
 }
 
