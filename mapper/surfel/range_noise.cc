@@ -22,6 +22,11 @@ constexpr float kSpacingTolerance = 0.05F;
 // Counting every scan is not needed once the histograms are full.
 constexpr std::int64_t kScansInFull = 50;
 constexpr std::int64_t kThinning = 8;
+// Independent errors tell 1 at every stride, errors correlated by exp(-(d / L)^2 / 2) .15 where d
+// is less than L.
+constexpr double kAlikeShare = 0.25;
+// Fewer beams are not left of a scan.
+constexpr std::size_t kLeastBeams = 40;
 constexpr int kValueBinOffset = (127 - 19) * 8;  // exponent bias of a float, eight bins an octave
 
 int RangeBin(double range_m) {
@@ -40,15 +45,32 @@ double ValueBinLow(int bin) {
 
 }  // namespace
 
-RangeNoise::RangeNoise() { relative_sigma_.fill(kDefaultRelativeSigma); }
+RangeNoise::RangeNoise(bool skips_alike) : skips_alike_(skips_alike) {
+  for (Differences& differences : by_stride_) {
+    differences.relative_sigma.fill(kDefaultRelativeSigma);
+  }
+}
 
 void RangeNoise::Add(const Scan& scan) {
   if (scans_++ >= kScansInFull && scans_ % kThinning != 0) return;
+  const std::size_t strides = skips_alike_ ? by_stride_.size() : 1;
+  for (std::size_t k = 0; k < strides; ++k) {
+    by_stride_[k].Add(scan, std::size_t{1} << k);
+    by_stride_[k].Refresh();
+  }
+  chosen_ = 0;
+  while (chosen_ + 1 < strides && scan.beams.size() >> (chosen_ + 1) >= kLeastBeams &&
+         AreAlike(chosen_)) {
+    ++chosen_;
+  }
+}
+
+void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
   const auto& beams = scan.beams;
-  for (std::size_t i = 1; i + 1 < beams.size(); ++i) {
-    const Beam& left = beams[i - 1];
+  for (std::size_t i = stride; i + stride < beams.size(); ++i) {
+    const Beam& left = beams[i - stride];
     const Beam& middle = beams[i];
-    const Beam& right = beams[i + 1];
+    const Beam& right = beams[i + stride];
     if (!left.hit || !middle.hit || !right.hit) continue;
     const float gap = middle.bearing_rad - left.bearing_rad;
     const float next_gap = right.bearing_rad - middle.bearing_rad;
@@ -59,45 +81,64 @@ void RangeNoise::Add(const Scan& scan) {
         middle.range_m / left.range_m - twice_cosine + middle.range_m / right.range_m;
     const int range_bin = std::clamp(RangeBin(middle.range_m), 0, kRangeBins - 1);
     const int value_bin = std::clamp(ValueBin(std::abs(difference)), 0, kValueBins - 1);
-    ++histogram_[static_cast<std::size_t>(range_bin)][static_cast<std::size_t>(value_bin)];
-    ++count_[static_cast<std::size_t>(range_bin)];
+    ++histogram[static_cast<std::size_t>(range_bin)][static_cast<std::size_t>(value_bin)];
+    ++count[static_cast<std::size_t>(range_bin)];
   }
-  Refresh();
 }
 
-void RangeNoise::Refresh() {
+bool RangeNoise::Differences::Knows(std::size_t range_bin) const {
+  return count[range_bin] >= kMinSamples;
+}
+
+void RangeNoise::Differences::Refresh() {
   std::array<bool, kRangeBins> known{};
   for (std::size_t r = 0; r < kRangeBins; ++r) {
-    if (count_[r] < kMinSamples) continue;
-    const double half = 0.5 * count_[r];
+    known[r] = Knows(r);
+    if (!known[r]) continue;
+    const double half = 0.5 * count[r];
     double below = 0.0;
     std::size_t bin = 0;
-    while (below + histogram_[r][bin] < half) below += histogram_[r][bin++];
+    while (below + histogram[r][bin] < half) below += histogram[r][bin++];
     const double low = ValueBinLow(static_cast<int>(bin));
     const double high = ValueBinLow(static_cast<int>(bin) + 1);
-    const double median = low + (high - low) * (half - below) / histogram_[r][bin];
-    relative_sigma_[r] = std::max(kSigmaOfMedianDifference * median, kMinRelativeSigma);
-    known[r] = true;
+    const double median = low + (high - low) * (half - below) / histogram[r][bin];
+    relative_sigma[r] = std::max(kSigmaOfMedianDifference * median, kMinRelativeSigma);
   }
   if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;
   for (int r = 0; r < kRangeBins; ++r) {  // unknown bins take the nearest known one's, nearer first
     for (int d = 0; !known[static_cast<std::size_t>(r)] && d < kRangeBins; ++d) {
       const int from = r - d >= 0 && known[static_cast<std::size_t>(r - d)] ? r - d : r + d;
       if (from >= kRangeBins || !known[static_cast<std::size_t>(from)]) continue;
-      relative_sigma_[static_cast<std::size_t>(r)] =
-          relative_sigma_[static_cast<std::size_t>(from)];
+      relative_sigma[static_cast<std::size_t>(r)] = relative_sigma[static_cast<std::size_t>(from)];
       break;
     }
   }
 }
 
-double RangeNoise::RelativeSigma(double range_m) const {
+// Whether beams this stride apart share most of the error that shows between beams twice as far
+// apart, over all ranges.
+bool RangeNoise::AreAlike(std::size_t stride) const {
+  const Differences& near = by_stride_[stride];
+  const Differences& far = by_stride_[stride + 1];
+  double seen = 0.0, samples = 0.0;
+  for (std::size_t r = 0; r < kRangeBins; ++r) {
+    if (!near.Knows(r) || !far.Knows(r)) continue;
+    const double ratio = near.relative_sigma[r] / far.relative_sigma[r];
+    seen += far.count[r] * ratio * ratio;
+    samples += far.count[r];
+  }
+  return seen < kAlikeShare * samples;
+}
+
+double RangeNoise::RelativeSigma(double range_m, int stride) const {
+  const std::array<double, kRangeBins>& relative_sigma =
+      by_stride_[stride == 1 ? 0 : chosen_].relative_sigma;
   // Linear between the bins' centres on the logarithm of the range.
   const double place = std::log2(range_m / kFirstRangeM) * kRangeBinsPerOctave - 0.5;
   const double clamped = std::clamp(place, 0.0, kRangeBins - 1.0);
   const auto low = std::min(static_cast<std::size_t>(clamped), std::size_t{kRangeBins - 2});
   const double share = clamped - static_cast<double>(low);
-  return (1.0 - share) * relative_sigma_[low] + share * relative_sigma_[low + 1];
+  return (1.0 - share) * relative_sigma[low] + share * relative_sigma[low + 1];
 }
 
 }  // namespace depthgrid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "mapper/core/scan.h"
@@ -11,23 +12,38 @@ namespace depthgrid {
 // The relative standard deviation of a range as a function of the range. Along a straight wall the
 // inverse range is A cos(bearing) + B sin(bearing), whose second difference
 // u(-1) - 2 cos(step) u(0) + u(+1) vanishes; what is left of it is noise of variance 6 sigma_u^2.
-// The median makes corners and jumps harmless.
+// The median makes corners and jumps harmless. Errors that neighbouring beams share vanish too, so
+// the same is done with beams farther apart: those that tell of more noise err by themselves.
 class RangeNoise {
  public:
-  RangeNoise();
+  // `skips_alike`: whether stride() may be more than 1.
+  explicit RangeNoise(bool skips_alike = true);
   void Add(const Scan& scan);
-  // sigma(r) / r.
-  double RelativeSigma(double range_m) const;
+  // sigma(r) / r, as it shows between beams so many apart: 1, or stride().
+  double RelativeSigma(double range_m, int stride) const;
+  // Beams err by themselves if so many apart: 1, 2, 4, 8 or 16.
+  int stride() const { return 1 << chosen_; }
 
  private:
   static constexpr int kRangeBins = 24;   // two an octave from 0.25 m: up to 1 km
   static constexpr int kValueBins = 160;  // eight an octave from 2^-19: up to 2
+  static constexpr int kStrides = 6;      // 1 to 32
 
-  void Refresh();
+  // Of beams one stride apart.
+  struct Differences {
+    std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram{};
+    std::array<std::uint32_t, kRangeBins> count{};
+    std::array<double, kRangeBins> relative_sigma{};
 
-  std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram_{};
-  std::array<std::uint32_t, kRangeBins> count_{};
-  std::array<double, kRangeBins> relative_sigma_{};
+    void Add(const Scan& scan, std::size_t stride);
+    void Refresh();
+    bool Knows(std::size_t range_bin) const;
+  };
+  bool AreAlike(std::size_t stride) const;
+
+  std::array<Differences, kStrides> by_stride_{};
+  std::size_t chosen_ = 0;
+  bool skips_alike_;
   std::int64_t scans_ = 0;
 };
 

@@ -16,18 +16,19 @@ constexpr double kNoiseLookupShare = 0.1;
 
 }  // namespace
 
-void ScanReturns::Read(const Scan& scan, const RangeNoise& noise) {
+void ScanReturns::Read(const Scan& scan, const RangeNoise& noise, int stride) {
   LearnDirections(scan);
+  step_rad_ = stride * beam_step_rad_;
   returns_.clear();
   max_range_m_ = scan.max_range_m;
   double looked_up_m = 0.0;
   double relative_sigma = 0.0;
-  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+  for (std::size_t i = 0; i < scan.beams.size(); i += static_cast<std::size_t>(stride)) {
     if (!scan.beams[i].hit) continue;
     const double range_m = scan.beams[i].range_m;
     if (std::abs(range_m - looked_up_m) > kNoiseLookupShare * looked_up_m) {
       looked_up_m = range_m;
-      relative_sigma = noise.RelativeSigma(range_m);
+      relative_sigma = noise.RelativeSigma(range_m, stride);
     }
     returns_.push_back(
         {bearings_rad_[i], directions_[i], range_m, 1.0 / range_m, relative_sigma, 1.0});
@@ -52,8 +53,8 @@ void ScanReturns::LearnDirections(const Scan& scan) {
     directions_.emplace_back(std::cos(bearing_rad), std::sin(bearing_rad));
   }
   if (beams.size() > 1) {
-    step_rad_ = (beams.back().bearing_rad - beams.front().bearing_rad) /
-                static_cast<double>(beams.size() - 1);
+    beam_step_rad_ = (beams.back().bearing_rad - beams.front().bearing_rad) /
+                     static_cast<double>(beams.size() - 1);
   }
 }
 

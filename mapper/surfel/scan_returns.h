@@ -30,13 +30,14 @@ class ScanReturns {
   // `jump_sigmas`: a difference of two neighbours this unlikely cuts.
   explicit ScanReturns(double jump_sigmas) : jump_sigmas_(jump_sigmas) {}
 
-  void Read(const Scan& scan, const RangeNoise& noise);
+  // Every `stride`-th beam: 1, or the noise's own.
+  void Read(const Scan& scan, const RangeNoise& noise, int stride);
 
   int size() const { return static_cast<int>(returns_.size()); }
   const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
   ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
-  double step_rad() const { return step_rad_; }  // mean angle between beams
+  double step_rad() const { return step_rad_; }  // mean angle between those that are read
   double max_range_m() const { return max_range_m_; }
 
  private:
@@ -48,7 +49,8 @@ class ScanReturns {
   double jump_sigmas_;
   std::vector<float> bearings_rad_;  // those the directions were computed for
   std::vector<Eigen::Vector2d> directions_;
-  double step_rad_ = 1.0;
+  double beam_step_rad_ = 1.0;
+  double step_rad_ = 1.0;  // of those that are read
   double max_range_m_ = 0.0;
   std::vector<ScanReturn> returns_;
   std::vector<Span> runs_;

@@ -15,16 +15,18 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("min_line_beams", min_line_beams, {3, 1000}, "shorter pieces are left out");
   v.Flag("judge_fit", judge_fit,
          "whether a line that fits its beams worse than their noise explains is believed less");
+  v.Flag("skip_alike", skip_alike,
+         "whether beams are left out that err as their neighbours do, as far as scans show");
   v.Flag(
       "correct_cutoff", correct_cutoff,
       "whether returns near the sensor's reach are corrected for those that noise pushed beyond");
 }
 
-std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise,
+std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise, int stride,
                                           std::vector<Surfel> memory) {
   std::vector<Surfel> surfels = std::move(memory);
   surfels.clear();
-  returns_.Read(scan, noise);
+  returns_.Read(scan, noise, stride);
   for (const ScanLine& line : lines_.Find(returns_)) {
     // A fit so steep that it leaves the field of view is no surface that was seen.
     if (line.coefficients.dot(returns_[line.span.begin].direction) <= 0.0 ||

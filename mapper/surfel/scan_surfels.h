@@ -19,6 +19,8 @@ struct ScanSurfelOptions {
   int min_line_beams = 4;
   // Surfels of a line that fits its beams badly are believed less.
   bool judge_fit = true;
+  // Of beams that err alike only every so many count (RangeNoise::stride).
+  bool skip_alike = true;
   // Returns near the sensor's reach are corrected for those that noise pushed beyond it.
   bool correct_cutoff = true;
 
@@ -32,9 +34,13 @@ class ScanSurfelMaker {
         returns_(options.jump_sigmas),
         lines_(options.split_chi2, options.min_line_beams, options.correct_cutoff) {}
 
-  // `memory`: of an earlier result, to be used again.
-  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise,
+  // Of every `stride`-th beam: 1, or the noise's own. `memory`: of an earlier result, to be used
+  // again.
+  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise, int stride,
                            std::vector<Surfel> memory = {});
+  std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise) {
+    return Make(scan, noise, noise.stride());
+  }
 
  private:
   int BeamsAt(const ScanLine& line, int begin) const;

@@ -118,6 +118,7 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
 
 SurfelMap::SurfelMap(const SurfelOptions& options)
     : options_(options),
+      noise_(options.scan.skip_alike),
       maker_(options.scan),
       matcher_(options.match),
       groups_(options.joint.groups) {}
@@ -125,7 +126,7 @@ SurfelMap::SurfelMap(const SurfelOptions& options)
 const std::vector<Surfel>& SurfelMap::PiecesOf(const std::shared_ptr<const Scan>& scan) {
   if (scan == scan_) return pieces_;
   noise_.Add(*scan);
-  pieces_ = maker_.Make(*scan, noise_, std::move(pieces_));
+  pieces_ = maker_.Make(*scan, noise_, noise_.stride(), std::move(pieces_));
   scan_ = scan;
   return pieces_;
 }
@@ -157,7 +158,11 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
   GrowGently(surfels_before_);
   surfels_before_.push_back(map_.size());
   InsertInto(map_, pieces, map_from_base, static_cast<double>(groups_.places().size()));
-  groups_.Add(pieces, map_from_base);
+  if (noise_.stride() == 1) {
+    groups_.Add(pieces, map_from_base);
+  } else {
+    groups_.Add(maker_.Make(*scan, noise_, 1), map_from_base);
+  }
 }
 
 // The map stays as it is: over hours even a perfect match would carry it along.
@@ -231,7 +236,7 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
   // A provisional frame at the end was not inserted yet.
   SurfelGroups groups = groups_;
   for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
-    groups.Add(maker_.Make(*frames[i].scan, noise_), frames[i].map_from_base);
+    groups.Add(maker_.Make(*frames[i].scan, noise_, 1), frames[i].map_from_base);
   }
   return joined(groups);
 }

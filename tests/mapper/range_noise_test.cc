@@ -1,0 +1,97 @@
+// Errors that neighbouring beams share.
+#include "mapper/surfel/range_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mapper/core/median.h"
+#include "mapper/core/rng.h"
+#include "mapper/surfel/scan_surfels.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kBeams = 640;
+constexpr double kStepRad = 0.0017;
+constexpr double kWallM = 3.0;
+constexpr double kSigma = 0.01;  // of the range
+
+// A wall across the view; errors are correlated by exp(-(d / length)^2 / 2), 0: not.
+Scan WallWithNoise(RandomStream& random, double length) {
+  constexpr int kReach = 40;
+  std::vector<double> white(kBeams + 2 * kReach);
+  for (double& value : white) value = random.Normal();
+  Scan scan;
+  for (int i = 0; i < kBeams; ++i) {
+    double sum = 0.0, squares = 0.0;
+    for (int d = -kReach; d <= kReach; ++d) {
+      const double weight = length > 0.0 ? std::exp(-d * d / (length * length))
+                            : d == 0     ? 1.0
+                                         : 0.0;
+      sum += weight * white[static_cast<std::size_t>(i + kReach + d)];
+      squares += weight * weight;
+    }
+    const double bearing_rad = (i - 0.5 * (kBeams - 1)) * kStepRad;
+    const double range_m =
+        kWallM / std::cos(bearing_rad) * (1.0 + kSigma * sum / std::sqrt(squares));
+    Beam beam;
+    beam.bearing_rad = static_cast<float>(bearing_rad);
+    beam.range_m = static_cast<float>(range_m);
+    beam.hit = true;
+    scan.beams.push_back(beam);
+  }
+  return scan;
+}
+
+TEST(RangeNoise, BeamsThatErrByThemselvesAllCount) {
+  RandomStream random(1, RandomStage::kTest);
+  RangeNoise noise;
+  for (int i = 0; i < 40; ++i) {
+    noise.Add(WallWithNoise(random, 0.0));
+    EXPECT_EQ(noise.stride(), 1) << i;
+  }
+  EXPECT_NEAR(noise.RelativeSigma(kWallM, 1), kSigma, 0.1 * kSigma);
+}
+
+TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
+  for (const auto& [length, stride] : {std::pair{1.5, 2}, {3.0, 4}, {6.0, 8}}) {
+    RandomStream random(2, RandomStage::kTest);
+    RangeNoise noise, all(false);
+    for (int i = 0; i < 40; ++i) {
+      const Scan scan = WallWithNoise(random, length);
+      noise.Add(scan);
+      all.Add(scan);
+    }
+    EXPECT_EQ(noise.stride(), stride) << length;
+    EXPECT_EQ(all.stride(), 1) << length;
+    EXPECT_NEAR(noise.RelativeSigma(kWallM, stride), kSigma, 0.4 * kSigma) << length;
+    EXPECT_LT(noise.RelativeSigma(kWallM, 1), 0.4 * kSigma) << length;
+  }
+}
+
+// How far off normals of a wall's lines are, over what is claimed: the median.
+double NormalErrors(bool skips_alike) {
+  RandomStream random(3, RandomStage::kTest);
+  RangeNoise noise(skips_alike);
+  ScanSurfelMaker maker({});
+  std::vector<double> errors;
+  for (int i = 0; i < 40; ++i) {
+    const Scan scan = WallWithNoise(random, 6.0);
+    noise.Add(scan);
+    for (const Surfel& surfel : maker.Make(scan, noise)) {
+      const double off_rad = std::atan2(surfel.normal.y(), -surfel.normal.x());
+      errors.push_back(std::abs(off_rad) * std::sqrt(surfel.normal_information));
+    }
+  }
+  return kSigmaOfMedian * UpperMedian(errors);
+}
+
+TEST(RangeNoise, LinesOfBeamsThatErrAlikeClaimWhatTheyAreWorth) {
+  EXPECT_GT(NormalErrors(false), 5.0);
+  EXPECT_LT(NormalErrors(true), 3.0);  // beams 8 apart still share .4 of their errors
+}
+
+}  // namespace
+}  // namespace depthgrid
