@@ -86,6 +86,7 @@ void SetDistortion(const std::vector<double>& coefficients, const std::string& p
 CameraDescription FromOwn(const Config& config, const std::string& text, const std::string& place) {
   CameraDescription camera;
   camera.kind = "camera.yaml";
+  camera.takes_usual_scale = !config.Has("depth_scale");
   const double fy = config.Has("fy") ? NumberAt(config, "fy", place) : 0.0;
   camera.y_up = fy < 0.0;
   if (camera.y_up) {
@@ -237,6 +238,12 @@ CameraDescription ReadCameraDescription(const std::string& path,
   const std::string text = ReadTextFile(path);
   WarnOfCut(path, text, warnings);
   return ParseCameraDescription(text, path);
+}
+
+std::string NoDepthScale(const std::string& path, double scale_per_m) {
+  return fmt::format(
+      "{}: states no depth_scale; it is {} a metre unless sequence.recording.depth_scale is set",
+      path, scale_per_m);
 }
 
 Pose3 FlipY(const Pose3& world_from_camera) {

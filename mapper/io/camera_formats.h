@@ -14,6 +14,8 @@ struct CameraDescription {
   CameraFile file;
   bool has_size = true;         // a bare matrix does not say width and height
   bool has_depth_scale = true;  // nor how many units make a metre
+  // A camera.yaml that leaves depth_scale out has the usual one all the same, which is warned of.
+  bool takes_usual_scale = false;
   // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
   // poses are to be turned by FlipY.
   bool y_up = false;
@@ -26,6 +28,8 @@ CameraDescription ReadCameraDescription(const std::string& path);
 CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings);
 CameraDescription ParseCameraDescription(const std::string& text, const std::string& place);
+// That a camera file states no depth_scale, and what is taken.
+std::string NoDepthScale(const std::string& path, double scale_per_m);
 
 // The same motion as seen by a camera whose y axis points down, in a world whose y axis is turned
 // likewise: S T S with S = diag(1, -1, 1, 1).

@@ -155,6 +155,9 @@ CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string
   }
   CameraDescription camera = ReadCameraDescription(path, warnings);
   if (!camera.has_depth_scale) camera.file.depth_scale_per_m = kMillimetres;
+  if (camera.takes_usual_scale) {
+    warnings.push_back(NoDepthScale(path, camera.file.depth_scale_per_m));
+  }
   CompleteSize(folder.recording, camera);
   return camera;
 }

@@ -46,6 +46,16 @@ struct DepthSequence {
   bool y_up = false;  // the poses were turned by FlipY
 };
 
+// The camera of --camera for a TUM folder. A file that cannot state a scale (a matrix) is warned of
+// as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
+CameraDescription GivenCamera(const std::string& path, std::vector<std::string>& warnings) {
+  CameraDescription camera = ReadCameraDescription(path, warnings);
+  if (!camera.has_depth_scale || camera.takes_usual_scale) {
+    warnings.push_back(NoDepthScale(path, camera.file.depth_scale_per_m));
+  }
+  return camera;
+}
+
 DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
                           const std::optional<SlamOutput>& slam, std::vector<std::string>& notes) {
   DepthSequence sequence;
@@ -65,7 +75,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
   if (options.camera.empty()) {
     sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
   } else {
-    CameraDescription camera = ReadCameraDescription(options.camera, sequence.recording.warnings);
+    CameraDescription camera = GivenCamera(options.camera, sequence.recording.warnings);
     CompleteSize(sequence.recording, camera);
     sequence.recording.camera = camera.file;
     sequence.y_up = camera.y_up;

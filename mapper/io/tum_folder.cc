@@ -9,6 +9,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/camera_formats.h"
 #include "mapper/io/config.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
@@ -160,10 +161,7 @@ CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& 
     WarnOfCut(path, ReadFile(path), warnings);
     CameraFile file = ReadCameraFile(path);
     if (!Config::FromFile(path).Has("depth_scale")) {
-      warnings.push_back(
-          fmt::format("{}: states no depth_scale; it is {} a metre unless "
-                      "sequence.recording.depth_scale is set",
-                      path, file.depth_scale_per_m));
+      warnings.push_back(NoDepthScale(path, file.depth_scale_per_m));
     }
     return file;
   }

@@ -140,6 +140,26 @@ TEST_F(SequenceTest, KindsAreDetected) {
   EXPECT_EQ(OpenSequence(Path("log.txt")).kind, "CARMEN laser log");
 }
 
+// As the folder's own camera.yaml is: millimetres read as TUM's units give a fifth of the room.
+TEST_F(SequenceTest, AGivenCameraWithoutDepthScaleIsWarnedOf) {
+  WriteRoom();
+  const std::string own = "width: 80\nheight: 60\nfx: 60.2\nfy: 60\ncx: 39.5\ncy: 29.5\n";
+  Write("own.yaml", own);
+  Write("matrix.txt", "60.2 0 39.5\n0 60 29.5\n0 0 1\n");
+  Write("whole.yaml", own + "depth_scale: 5000\n");
+  const auto warnings_with = [&](const std::string& camera) {
+    SequenceOptions options;
+    options.camera = Path(camera);
+    return OpenSequence(folder_, options).source->Warnings();
+  };
+  for (const char* camera : {"own.yaml", "matrix.txt"}) {
+    EXPECT_THAT(warnings_with(camera),
+                Contains(HasSubstr(std::string(camera) + ": states no depth_scale; it is 5000")));
+  }
+  EXPECT_THAT(warnings_with("whole.yaml"),
+              testing::Not(Contains(HasSubstr("states no depth_scale"))));
+}
+
 TEST_F(SequenceTest, OneClearLineForEachFault) {
   EXPECT_EQ(ErrorOf([&] { OpenSequence(Path("nothing")); }), "~/nothing: no such file or folder");
   EXPECT_THAT(ErrorOf([&] { OpenSequence(folder_); }),
