@@ -22,6 +22,13 @@ constexpr double kMaxYawRad = 1e6;  // beyond is a damaged number
 constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
 constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
 
+std::optional<double> NumberIn(std::string_view token) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error != std::errc{} || end != token.data() + token.size()) return std::nullopt;
+  return value;
+}
+
 class Tokens {
  public:
   explicit Tokens(std::string_view text) : rest_(text) {}
@@ -37,13 +44,7 @@ class Tokens {
     return token;
   }
 
-  std::optional<double> NextNumber() {
-    const std::string_view token = Next();
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (error != std::errc{} || end != token.data() + token.size()) return std::nullopt;
-    return value;
-  }
+  std::optional<double> NextNumber() { return NumberIn(Next()); }
 
  private:
   static bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -77,7 +78,12 @@ std::optional<std::vector<double>> ReadList(Tokens& tokens, int minimum) {
   return values;
 }
 
-std::optional<Pose2> ReadPose(Tokens& tokens) {
+struct StatedPose {
+  Pose2 pose;
+  double yaw_rad = 0.0;  // as written
+};
+
+std::optional<StatedPose> ReadPose(Tokens& tokens) {
   const std::optional<double> x_m = tokens.NextNumber();
   const std::optional<double> y_m = tokens.NextNumber();
   const std::optional<double> yaw_rad = tokens.NextNumber();
@@ -88,7 +94,7 @@ std::optional<Pose2> ReadPose(Tokens& tokens) {
   if (!sane(x_m, kFarthestPoseM) || !sane(y_m, kFarthestPoseM) || !sane(yaw_rad, kMaxYawRad)) {
     return std::nullopt;
   }
-  return Pose2{*x_m, *y_m, WrapAngle(*yaw_rad)};
+  return StatedPose{{*x_m, *y_m, WrapAngle(*yaw_rad)}, *yaw_rad};
 }
 
 // Reads the end of a scan's line: `skip` numbers, the time, the host and the logger's time. Returns
@@ -102,8 +108,17 @@ std::optional<std::string_view> ReadEnd(Tokens& tokens, int skip, CarmenScan& sc
   if (!stamp_s || !std::isfinite(*stamp_s)) return kNoTime;
   if (std::abs(*stamp_s) > kLatestStampS) return "with a time that is not in seconds";
   // Without the host after it, the time's own digits may have been cut.
-  if (tokens.Next().empty()) return kNoTime;
-  for (int i = 0; !tokens.Next().empty(); ++i) {
+  const std::string_view host = tokens.Next();
+  if (host.empty()) return kNoTime;
+  // More readings than the line states move the columns: the time is where the host belongs. Some
+  // hosts are numbers, but then the logger's time alone follows.
+  const bool is_number = NumberIn(host).has_value();
+  for (int i = 0;; ++i) {
+    const std::string_view token = tokens.Next();
+    if (token.empty()) break;
+    if (is_number && (i > 0 || !NumberIn(token))) {
+      return "with other columns than its count of readings says";
+    }
     if (i == kMostLastColumns) return "with more columns than it states (a lost line end?)";
   }
   scan.stamp_s = *stamp_s;
@@ -117,13 +132,15 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   const auto ranges = ReadList(tokens, 2);
   if (!ranges) return Damage("FLASER", "with damaged readings");
   scan.range_m = *ranges;
+  scan.states_angles = false;
   const auto n = static_cast<double>(scan.range_m.size());
   scan.first_bearing_rad = -kPi / 2.0;
   scan.bearing_step_rad = kPi / (scan.range_m.size() % 2 == 0 ? n : n - 1.0);
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage("FLASER", kDamagedPose);
-  scan.odom_from_laser = *laser;
+  scan.odom_from_laser = laser->pose;
+  scan.stated_yaw_rad = laser->yaw_rad;
   if (const auto damage = ReadEnd(tokens, 0, scan)) return Damage("FLASER", *damage);
   return scan;
 }
@@ -154,9 +171,18 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage(kName, kDamagedPose);
-  scan.odom_from_laser = *laser;
+  scan.odom_from_laser = laser->pose;
+  scan.stated_yaw_rad = laser->yaw_rad;
   if (const auto damage = ReadEnd(tokens, 5, scan)) return Damage(kName, *damage);
   return scan;
+}
+
+// PARAM name value time host logger_time. The front laser is the one of FLASER and ROBOTLASER1.
+CarmenLine ParseParameter(Tokens& tokens) {
+  if (tokens.Next() != "robot_front_laser_max") return CarmenOther{};
+  const std::optional<double> range_m = tokens.NextNumber();
+  if (!range_m || !(*range_m > 0.0) || !std::isfinite(*range_m)) return CarmenOther{};
+  return CarmenMaximum{*range_m};
 }
 
 }  // namespace
@@ -167,6 +193,7 @@ CarmenLine ParseCarmenLine(std::string_view line) {
   if (name.empty() || name.front() == '#') return CarmenOther{};
   if (name == "FLASER") return ParseFlaser(tokens);
   if (name == "ROBOTLASER1") return ParseRobotLaser(tokens);
+  if (name == "PARAM") return ParseParameter(tokens);
   if (IsMessageName(name)) return CarmenOther{};
   return CarmenDamage{"a line that begins with no message name", false};
 }

@@ -14,9 +14,16 @@ struct CarmenScan {
   double stamp_s = 0.0;
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;
+  bool states_angles = true;    // FLASER does not: they are those of a half circle
   double max_range_m = 0.0;     // 0 when the line does not state it (FLASER)
   std::vector<double> range_m;  // as written: 0, the maximum, NaN included
   Pose2 odom_from_laser;
+  double stated_yaw_rad = 0.0;  // of odom_from_laser, as written: not wrapped
+};
+
+// PARAM robot_front_laser_max: from here on readings of the front laser say "nothing there".
+struct CarmenMaximum {
+  double range_m = 0.0;
 };
 
 // A line that is no scan: another message, a comment, an empty line.
@@ -27,7 +34,7 @@ struct CarmenDamage {
   bool is_scan = true;  // it begins as a scan
 };
 
-using CarmenLine = std::variant<CarmenScan, CarmenOther, CarmenDamage>;
+using CarmenLine = std::variant<CarmenScan, CarmenMaximum, CarmenOther, CarmenDamage>;
 
 CarmenLine ParseCarmenLine(std::string_view line);
 

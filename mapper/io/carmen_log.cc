@@ -9,9 +9,11 @@
 #include <map>
 #include <utility>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -38,19 +40,54 @@ double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
          (b.stamp_s - a.stamp_s);
 }
 
-Beam BeamOf(double bearing_rad, double range_m, double max_range_m,
+// Where nothing else says when a reading is no return (CarmenLogOptions).
+constexpr double kUsualMaxM = 80.0;
+// Some lasers write a little less than the stated maximum (29.99 of 30.00).
+constexpr double kMaxToleranceM = 0.01;
+constexpr double kMaxToleranceShare = 1e-3;
+
+struct LaserReach {
+  double max_m = 0.0;
+  double no_return_m = 0.0;  // readings from here on are no hit
+};
+
+double MostRangeM(const CarmenLogOptions& options) {
+  return options.max_range_m > 0.0 ? options.max_range_m : kUsualMaxM;
+}
+
+LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  const double most_m = MostRangeM(options);
+  const double stated_m = line.max_range_m;
+  if (!(stated_m > 0.0) || stated_m > most_m) return {most_m, most_m};
+  return {stated_m, stated_m - std::max(kMaxToleranceM, kMaxToleranceShare * stated_m)};
+}
+
+Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
             const CarmenLogOptions& options) {
   Beam beam;
   beam.bearing_rad = static_cast<float>(bearing_rad);
   if (std::isnan(range_m) || range_m < options.min_range_m) return beam;
-  if (range_m >= max_range_m) {
-    beam.clear_to_m = static_cast<float>(std::min(options.no_return_clear_m, max_range_m));
+  if (range_m >= reach.no_return_m) {
+    beam.clear_to_m = static_cast<float>(std::min(options.no_return_clear_m, reach.max_m));
     return beam;
   }
   beam.hit = true;
   beam.range_m = static_cast<float>(range_m);
   beam.clear_to_m = beam.range_m;
   return beam;
+}
+
+struct Bearings {
+  double first_rad = 0.0;
+  double step_rad = 0.0;
+};
+
+Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  if (line.states_angles || options.fov_deg == 0.0) {
+    return {line.first_bearing_rad, line.bearing_step_rad};
+  }
+  const double fov_rad = RadFromDeg(options.fov_deg);
+  return {-0.5 * fov_rad, fov_rad / static_cast<double>(line.range_m.size() - 1)};
 }
 
 // The second one's camera in the first one's, from the same of the lasers.
@@ -89,15 +126,17 @@ class CarmenLogSource : public FrameSource {
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     RequireUncompressed(path_);
-    if (!(options_.min_range_m < options_.max_range_m)) {
+    if (!(options_.min_range_m < MostRangeM(options_))) {
       throw InputError("sequence.laser.min_range_m",
                        fmt::format("is {:g}, must be below sequence.laser.max_range_m ({:g})",
-                                   options_.min_range_m, options_.max_range_m));
+                                   options_.min_range_m, MostRangeM(options_)));
     }
     Rewind();
     std::vector<double> speeds_mps;
     std::optional<CarmenScan> last;
+    CarmenCheck check;
     while (auto scan = NextScan()) {
+      check.Add(*scan, ReachOf(*scan, options_).no_return_m, options_.fov_deg > 0.0, line_number_);
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
       if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
@@ -110,6 +149,7 @@ class CarmenLogSource : public FrameSource {
                                                         seen.first_line, reason, seen.count));
     }
     WarnOfOrder();
+    for (std::string& doubt : check.Warnings(path_)) warnings_.push_back(std::move(doubt));
     if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
       warnings_.push_back(fmt::format(
           "{}: the laser moves at {:.0f} m/s: is the odometry in metres, and are the stamps in "
@@ -160,6 +200,7 @@ class CarmenLogSource : public FrameSource {
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
     odom_from_last_.reset();
     epoch_ = 0;
+    front_max_m_ = 0.0;
   }
 
   // Sorting is not for the program: of a clock that was set back it would make one drive of two.
@@ -209,8 +250,12 @@ class CarmenLogSource : public FrameSource {
         Note(damage->reason);
         lines_of_scans_ += damage->is_scan ? 1 : 0;
       }
+      if (const auto* max = std::get_if<CarmenMaximum>(&line)) front_max_m_ = max->range_m;
       auto* scan = std::get_if<CarmenScan>(&line);
       if (scan == nullptr) continue;
+      if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
+        scan->max_range_m = front_max_m_;
+      }
       if (scan->stamp_s != last_stamp_s_) ++lines_of_scans_;
       // Also what drops the second of two messages written for one scan.
       if (scan->stamp_s <= last_stamp_s_) {
@@ -244,6 +289,7 @@ class CarmenLogSource : public FrameSource {
   double last_stamp_s_ = 0.0;
   std::optional<Pose2> odom_from_last_;
   int epoch_ = 0;
+  double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, those of the same stamp aside
   bool has_zero_bytes_ = false;  // before the first scan
   std::map<std::string, Problem> problems_;
@@ -253,7 +299,10 @@ class CarmenLogSource : public FrameSource {
 }  // namespace
 
 void CarmenLogOptions::Visit(OptionsVisitor& v) {
-  v.Number("max_range_m", max_range_m, {0.1, 1000.0}, "readings from here on are no return");
+  v.Number("max_range_m", max_range_m, {0.0, 1000.0},
+           "readings from here on are no return; 0 takes the log's own maximum, or 80");
+  v.Number("fov_deg", fov_deg, {0.0, 360.0},
+           "degrees from the first to the last reading of a FLASER line; 0: a half circle");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
@@ -262,14 +311,14 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
 }
 
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  const LaserReach reach = ReachOf(line, options);
+  const Bearings bearings = BearingsOf(line, options);
   Scan scan;
-  scan.max_range_m = line.max_range_m > 0.0 ? std::min(line.max_range_m, options.max_range_m)
-                                            : options.max_range_m;
+  scan.max_range_m = reach.max_m;
   scan.beams.reserve(line.range_m.size());
   for (std::size_t i = 0; i < line.range_m.size(); ++i) {
-    const double bearing_rad =
-        line.first_bearing_rad + static_cast<double>(i) * line.bearing_step_rad;
-    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], scan.max_range_m, options));
+    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
+    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], reach, options));
   }
   NarrowGaps(scan, options.no_return_gap_m);
   return scan;

@@ -1,6 +1,6 @@
 // Laser logs in CARMEN's text format: FLASER and ROBOTLASER1 lines become ready scans, and the
 // laser's odometry pose in the line is the prior (docs/formats.md, "Laser logs"). Other messages of
-// a log (ODOM, PARAM, RAWLASER1, ...) are passed over.
+// a log (ODOM, RAWLASER1, ...) are passed over.
 #pragma once
 
 #include <memory>
@@ -15,9 +15,13 @@
 namespace depthgrid {
 
 struct CarmenLogOptions {
-  // A ROBOTLASER1 line states its own maximum, which is used when smaller. 80 m is the SICK LMS
+  // A ROBOTLASER1 line states its own maximum, which is used when smaller. 0 takes the log's own
+  // (PARAM robot_front_laser_max), or 80 m where it has none or a larger one: that is the SICK LMS
   // that the old FLASER logs were recorded with (they write 81.83 for "no return").
-  double max_range_m = 80.0;
+  double max_range_m = 0.0;
+  // What a FLASER line's readings span from the first to the last, half of it to either side; 0 is
+  // the SICK's half circle.
+  double fov_deg = 0.0;
   // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
   double min_range_m = 0.1;
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;

@@ -1,0 +1,113 @@
+#include "mapper/io/carmen_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/counted.h"
+
+namespace depthgrid {
+namespace {
+
+// Readings this near to each other are the same: logs are written in centimetres or millimetres.
+constexpr double kSameRangeM = 1e-3;
+// Of hits hardly two are as far as the farthest; of no-returns all are.
+constexpr double kSuspiciousShare = 0.01;
+constexpr std::int64_t kFewestSuspicious = 20;
+
+// No robot turns by half a turn between two scans, or by a whole one a second; in degrees, taken
+// for radians, a slow one does. Small steps are left aside: stamps may be nearly the same.
+constexpr double kFastestTurnRadPerS = 2.0 * kPi;
+constexpr double kSmallestStepRad = 0.2;
+// A step so near a whole turn is a heading that was wrapped, unless it lies farther out.
+constexpr double kWrapToleranceRad = 0.5;
+constexpr double kMostWrappedRad = 2.0 * kPi + 1.0;
+// Odometry that is set anew gives one such step, degrees one at most turns.
+constexpr int kFewestImpossibleSteps = 3;
+constexpr double kImpossibleShare = 0.01;
+
+bool IsImpossible(double first_rad, double second_rad, double time_s) {
+  const double step_rad = second_rad - first_rad;
+  const double wrapped_rad = std::abs(WrapAngle(step_rad));
+  const bool is_wrap = std::abs(std::abs(step_rad) - 2.0 * kPi) < kWrapToleranceRad &&
+                       std::max(std::abs(first_rad), std::abs(second_rad)) < kMostWrappedRad;
+  if (std::abs(step_rad) > kPi && !is_wrap) return true;
+  return wrapped_rad > kSmallestStepRad && wrapped_rad > kFastestTurnRadPerS * time_s;
+}
+
+bool IsHalfCircle(std::size_t readings) {
+  return readings == 180 || readings == 181 || readings == 360 || readings == 361;
+}
+
+}  // namespace
+
+void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, bool knows_fov, int line_number) {
+  AddReadings(scan, no_return_m, line_number);
+  AddHeading(scan, line_number);
+  if (!scan.states_angles && !knows_fov) AddCount(scan, line_number);
+}
+
+void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int line_number) {
+  readings_ += static_cast<std::int64_t>(scan.range_m.size());
+  for (const double range_m : scan.range_m) {
+    // Negated for NaN.
+    if (!(range_m < no_return_m) || !(range_m > largest_m_ - kSameRangeM)) continue;
+    if (range_m > largest_m_ + kSameRangeM) {
+      largest_count_ = 0;
+      largest_line_ = line_number;
+    }
+    largest_m_ = std::max(largest_m_, range_m);
+    ++largest_count_;
+  }
+}
+
+void CarmenCheck::AddHeading(const CarmenScan& scan, int line_number) {
+  const Heading heading = {scan.stated_yaw_rad, scan.stamp_s, line_number};
+  if (!beyond_a_turn_ && std::abs(heading.yaw_rad) > 2.0 * kPi) beyond_a_turn_ = heading;
+  if (last_heading_) {
+    ++steps_;
+    const bool impossible = IsImpossible(last_heading_->yaw_rad, heading.yaw_rad,
+                                         heading.stamp_s - last_heading_->stamp_s);
+    impossible_steps_ += impossible ? 1 : 0;
+  }
+  last_heading_ = heading;
+}
+
+void CarmenCheck::AddCount(const CarmenScan& scan, int line_number) {
+  if (IsHalfCircle(scan.range_m.size())) return;
+  if (uncommon_counts_++ > 0) return;
+  first_count_ = scan.range_m.size();
+  first_count_line_ = line_number;
+}
+
+std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
+  std::vector<std::string> warnings;
+  if (largest_count_ >= kFewestSuspicious &&
+      static_cast<double>(largest_count_) >= kSuspiciousShare * static_cast<double>(readings_)) {
+    // Rounded down, so that the setting takes all of them.
+    const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
+    warnings.push_back(fmt::format(
+        "{}:{}: {} of {} readings are {:g} m, the largest: if that is how the laser writes \"no "
+        "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.3f} takes them for "
+        "none",
+        path, largest_line_, largest_count_, readings_, largest_m_, setting_m));
+  }
+  if (beyond_a_turn_ && impossible_steps_ >= kFewestImpossibleSteps &&
+      impossible_steps_ >= kImpossibleShare * steps_) {
+    warnings.push_back(fmt::format(
+        "{}:{}: the heading is {:g}, and {} of {} headings turn faster than a robot does: they "
+        "must be in radians, are they in degrees?",
+        path, beyond_a_turn_->line_number, beyond_a_turn_->yaw_rad, impossible_steps_, steps_));
+  }
+  if (uncommon_counts_ > 0) {
+    warnings.push_back(fmt::format(
+        "{}:{}: FLASER with {} readings states no angles and is taken as 180 degrees wide ({}): "
+        "--set sequence.laser.fov_deg=DEGREES says another width",
+        path, first_count_line_, first_count_, Counted(uncommon_counts_, "such line")));
+  }
+  return warnings;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,47 @@
+// What may be wrong with a laser log although each of its lines can be read: no-returns that look
+// like walls, headings in degrees, a scanner that is no half circle.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapper/io/carmen_line.h"
+
+namespace depthgrid {
+
+// Of each doubt at most one warning a log. The scans are given in order of time.
+class CarmenCheck {
+ public:
+  // Readings from `no_return_m` on are known to be no hit. `knows_fov`: a setting says how wide
+  // lines without angles are.
+  void Add(const CarmenScan& scan, double no_return_m, bool knows_fov, int line_number);
+  std::vector<std::string> Warnings(const std::string& path) const;
+
+ private:
+  void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
+  void AddHeading(const CarmenScan& scan, int line_number);
+  void AddCount(const CarmenScan& scan, int line_number);
+
+  std::int64_t readings_ = 0;
+  std::int64_t largest_count_ = 0;  // readings as large as the largest hit
+  double largest_m_ = 0.0;
+  int largest_line_ = 0;
+
+  struct Heading {
+    double yaw_rad = 0.0;
+    double stamp_s = 0.0;
+    int line_number = 0;
+  };
+  std::optional<Heading> last_heading_;
+  std::optional<Heading> beyond_a_turn_;  // the first
+  int steps_ = 0;
+  int impossible_steps_ = 0;
+
+  int uncommon_counts_ = 0;  // lines without angles that are no scanner's half circle
+  std::size_t first_count_ = 0;
+  int first_count_line_ = 0;
+};
+
+}  // namespace depthgrid
