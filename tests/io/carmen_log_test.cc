@@ -3,17 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
+#include "tests/io/log_text.h"
 #include "tests/refusal.h"
-#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -22,24 +19,6 @@ constexpr char kRobotLaser[] =
     "ROBOTLASER1 0 -0.5 1.0 0.5 6.000 0.01 0 3 2.5 6.0 0 2 7 8 "
     "1.5 -2 0.25 1.4 -2 0.25 0 0 0 0 0 10.5 host 10.6\n";
 constexpr char kFlaser[] = "FLASER 3 1.0 81.83 2.0 1 2 0.5 0.9 2 0.5 11.5 host 0.2\n";
-
-class TextFile {
- public:
-  explicit TextFile(const std::string& text) : path_(ScratchPath() + ".log") {
-    std::ofstream(path_, std::ios::binary) << text;
-  }
-  ~TextFile() { std::filesystem::remove(path_); }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-std::vector<Frame> ReadAll(FrameSource& source) {
-  std::vector<Frame> frames;
-  while (auto frame = source.Next()) frames.push_back(*frame);
-  return frames;
-}
 
 TEST(CarmenLog, ReadsRobotLaserByHand) {
   const TextFile file(std::string("# comment\nPARAM robot_x 3\nODOM 1 2 3 0 0 0 1 h 1\n\n") +
@@ -219,13 +198,6 @@ TEST(CarmenLog, RefusesFilesWithoutScan) {
 
 using testing::HasSubstr;
 
-std::string WarningsOf(const std::string& text) {
-  const TextFile file(text);
-  std::string all;
-  for (const std::string& warning : OpenCarmenLog(file.path())->Warnings()) all += warning + "\n";
-  return all;
-}
-
 std::string LogRefusal(const std::string& text) {
   const TextFile file(text);
   return RefusalOf([&] { OpenCarmenLog(file.path()); });
@@ -274,119 +246,6 @@ TEST(CarmenLog, ALineWithMoreReadingsThanItStatesIsCounted) {
   // A host may be a number, with the logger's time after it or without.
   const TextFile hosts("FLASER 2 1 1 0 0 0 0 0 0 1 7 1\nFLASER 2 1 1 0 0 0 0 0 0 2 7\n");
   EXPECT_EQ(OpenCarmenLog(hosts.path())->FrameCount(), 2);
-}
-
-// The distance of each beam that hits, 0 of the others.
-std::vector<float> HitsOf(const std::string& text, const CarmenLogOptions& options = {}) {
-  const TextFile file(text);
-  std::vector<float> hits;
-  for (const Frame& frame : ReadAll(*OpenCarmenLog(file.path(), options))) {
-    for (const Beam& beam : frame.scan->beams) hits.push_back(beam.hit ? beam.range_m : 0.0F);
-  }
-  return hits;
-}
-
-TEST(CarmenLog, TheLogsOwnMaximumIsNoHit) {
-  const std::string scan = "FLASER 3 8.17 8.185 8.19 0 0 0 0 0 0 1 h 1\n";
-  const std::string stated = "PARAM robot_front_laser_max 8.19 0 h 0\n";
-  EXPECT_EQ(HitsOf(scan), (std::vector<float>{8.17F, 8.185F, 8.19F}));
-  EXPECT_EQ(HitsOf(stated + scan), (std::vector<float>{8.17F, 0, 0}));
-  // A maximum that is no number, or another laser's, states nothing.
-  EXPECT_EQ(HitsOf("PARAM robot_front_laser_max x 0 h 0\n" + scan).back(), 8.19F);
-  EXPECT_EQ(HitsOf("PARAM robot_rear_laser_max 8.19 0 h 0\n" + scan).back(), 8.19F);
-  CarmenLogOptions options;
-  options.max_range_m = 8.187;
-  EXPECT_EQ(HitsOf(stated + scan, options), (std::vector<float>{8.17F, 8.185F, 0}));
-  options.max_range_m = 50.0;
-  EXPECT_EQ(HitsOf(stated + scan, options).back(), 8.19F);
-  // The SICK states 81.92 and writes 81.83.
-  EXPECT_EQ(HitsOf("PARAM robot_front_laser_max 81.92\nFLASER 2 79.9 81.83 0 0 0 0 0 0 1 h 1\n"),
-            (std::vector<float>{79.9F, 0}));
-}
-
-TEST(CarmenLog, ReadingsALittleBelowTheStatedMaximumAreNoHit) {
-  const auto line = [](const std::string& max_m, const std::string& readings) {
-    return "ROBOTLASER1 0 -0.5 1 0.5 " + max_m + " 0.01 0 3 " + readings +
-           " 0 0 0 0 0 0 0 0 0 0 0 0 1 h 1\n";
-  };
-  EXPECT_EQ(HitsOf(line("30.00", "29.96 29.98 29.99")), (std::vector<float>{29.96F, 0, 0}));
-  EXPECT_EQ(HitsOf(line("6.0", "5.98 5.995 6.0")), (std::vector<float>{5.98F, 0, 0}));
-}
-
-// 20 scans of 50 readings that differ, of which `count` are as far as no other one.
-std::string LogOfLargest(int count) {
-  std::ostringstream log;
-  for (int scan = 0; scan < 20; ++scan) {
-    log << "FLASER 50";
-    for (int i = 0; i < 50; ++i) {
-      const int reading = 50 * scan + i;
-      log << " " << (reading < count ? 8.19 : 1.0 + 0.005 * reading);
-    }
-    log << " 0 0 0 0 0 0 " << scan << " h 1\n";
-  }
-  return log.str();
-}
-
-TEST(CarmenLog, ALargestReadingThatComesOftenIsSaid) {
-  EXPECT_THAT(WarningsOf(LogOfLargest(20)),
-              HasSubstr(":1: 20 of 1000 readings are 8.19 m, the largest"));
-  EXPECT_THAT(WarningsOf(LogOfLargest(20)), HasSubstr("sequence.laser.max_range_m=8.189"));
-  EXPECT_THAT(WarningsOf(LogOfLargest(18)), testing::Not(HasSubstr("the largest")));
-  // Where it is known to be no return there is nothing to say.
-  EXPECT_THAT(WarningsOf("PARAM robot_front_laser_max 8.19\n" + LogOfLargest(20)),
-              testing::Not(HasSubstr("the largest")));
-}
-
-// Turning at `rate` a scan, ten scans a second.
-std::string LogOfTurn(double rate, double wrap_at) {
-  std::ostringstream log;
-  for (int i = 0; i < 200; ++i) {
-    const double yaw = std::fmod(rate * i, wrap_at);
-    log << "FLASER 2 1 1.5 0 0 " << yaw << " 0 0 " << yaw << " " << 0.1 * i << " h 1\n";
-  }
-  return log.str();
-}
-
-TEST(CarmenLog, HeadingsInDegreesAreSaid) {
-  constexpr const char* kDoubt = "are they in degrees?";
-  for (const double rate_deg : {1.0, 3.0, 6.0, 10.0}) {
-    for (const double wrap_deg : {360.0, 1e6}) {
-      EXPECT_THAT(WarningsOf(LogOfTurn(rate_deg, wrap_deg)), HasSubstr(kDoubt)) << rate_deg;
-    }
-  }
-  EXPECT_THAT(WarningsOf(LogOfTurn(3.0, 360.0)), HasSubstr(":4: the heading is 9, and"));
-  // Radians, wrapped at a turn, later than a turn, or not at all.
-  for (const double wrap_rad : {2 * kPi, 2 * kPi + 0.1, 1e6}) {
-    for (const double rate_rad : {0.05, 0.2, 0.4}) {
-      EXPECT_THAT(WarningsOf(LogOfTurn(rate_rad, wrap_rad)), testing::Not(HasSubstr(kDoubt)))
-          << rate_rad;
-    }
-  }
-}
-
-TEST(CarmenLog, AFlaserThatIsNoHalfCircleIsSaidAndSettled) {
-  const auto log = [](int n) {
-    std::string line = "FLASER " + std::to_string(n);
-    for (int i = 0; i < n; ++i) line += " " + std::to_string(1.0 + 0.002 * i);
-    return line + " 0 0 0 0 0 0 1 h 1\n";
-  };
-  EXPECT_THAT(
-      WarningsOf(log(1081)),
-      HasSubstr(":1: FLASER with 1081 readings states no angles and is taken as 180 degrees "
-                "wide (1 such line): --set sequence.laser.fov_deg"));
-  for (const int n : {180, 181, 360, 361}) EXPECT_EQ(WarningsOf(log(n)), "") << n;
-  const TextFile file(log(1081));
-  CarmenLogOptions options;
-  options.fov_deg = 270.0;
-  const auto source = OpenCarmenLog(file.path(), options);
-  EXPECT_THAT(source->Warnings(), testing::IsEmpty());
-  const auto frame = source->Next();
-  EXPECT_NEAR(frame->scan->beams.front().bearing_rad, RadFromDeg(-135.0), 1e-6);
-  EXPECT_NEAR(frame->scan->beams[1].bearing_rad, RadFromDeg(-134.75), 1e-6);
-  EXPECT_NEAR(frame->scan->beams.back().bearing_rad, RadFromDeg(135.0), 1e-6);
-  // A line that states its angles keeps them.
-  const auto stated = ParseCarmenLine(kRobotLaser);
-  EXPECT_EQ(ScanOf(std::get<CarmenScan>(stated), options).beams[0].bearing_rad, -0.5F);
 }
 
 TEST(CarmenLog, NearestReadingIsNearerThanTheFarthest) {
