@@ -126,7 +126,9 @@ TEST_F(ProgramFormats, AWorldInCameraAxesIsMadeLevel) {
 }
 
 TEST_F(ProgramFormats, WhatHasNoEffectIsSaid) {
-  Write("robot.log", "FLASER 5 2.0 2.1 2.2 2.1 2.0 0 0 0 0 0 0 1 host 0\n");
+  Write("robot.log",
+        "ROBOTLASER1 0 -1.57 3.14 0.785 30 0.01 0 5 2.0 2.1 2.2 2.1 2.0 0 "
+        "0 0 0 0 0 0 0 0 0 0 0 1 host 0\n");
   const auto said = [&](const std::string& arguments) {
     const Outcome outcome = Program("map " + arguments + " -o out --force");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
