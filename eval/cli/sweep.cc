@@ -136,7 +136,11 @@ void Merge(const SweepArguments& arguments) {
 // What is known so far is worth a table. Read anew, for a thread of its own may do it.
 void TabulateKnown(const std::string& folder) {
   try {
-    WriteResultsCsv(SweepDatabase::Open(folder), folder);
+    const SweepDatabase database = SweepDatabase::Open(folder);
+    WriteResultsCsv(database, folder);
+    const std::size_t planned = database.PlannedRuns().size();
+    fmt::print(stderr, "depthgrid: {} of {} done, in {}/results.csv; the same command goes on\n",
+               planned - database.UnfinishedRuns().size(), Counted(planned, "run"), folder);
   } catch (const std::exception&) {  // the next start writes it
   }
 }
