@@ -85,7 +85,9 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& 
     WarnOfCount(warnings, path, count, thing, what);
   };
   warn(homeless, "pose", "with the stamp of no input frame, ignored");
-  warn(doubled, "pose", "beside a nearer one of the same input frame, ignored");
+  warn(doubled, "pose",
+       "beside a nearer one of the same input frame, ignored "
+       "(sequence.recording.interpolate_poses=true goes between neighbours)");
   return framed;
 }
 
