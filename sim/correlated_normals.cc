@@ -16,7 +16,8 @@ std::vector<float> Weights(double length_px) {
   constexpr double kReachSigmas = 3.5;  // what lies farther out is .002 of the middle
   std::vector<float> weights;
   for (int d = 0; d <= static_cast<int>(kReachSigmas * sigma_px); ++d) {
-    weights.push_back(static_cast<float>(std::exp(-0.5 * d * d / (sigma_px * sigma_px))));
+    const double sigmas = d / sigma_px;  // a tiny sigma's square would be 0
+    weights.push_back(static_cast<float>(std::exp(-0.5 * sigmas * sigmas)));
   }
   return weights;
 }

@@ -35,6 +35,9 @@ struct Scan {
   bool operator==(const Scan&) const = default;
 };
 
+// Between neighbouring beams ranges change by this times the range and the angle at most, unless
+// they lie on two surfaces: the tangent of 85 degrees, at which hardly anything comes back.
+constexpr double kSteepestTangent = 11.4;
 // A hit nearer than this is no surface: many drivers write 0 where nothing came back.
 constexpr float kNearestHitM = 1e-3F;
 // What no scanner of robots sees past, where a scan does not say how far it reaches.

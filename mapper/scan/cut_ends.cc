@@ -10,8 +10,6 @@ namespace {
 constexpr int kBearingsOfNothing = 4;
 // Noise must not hide how far the end is: the farthest of so many beams counts.
 constexpr int kBeamsOfEnd = 3;
-// Walls seen more steeply than 85 degrees from their normal look like jumps.
-constexpr float kMaxIncidenceTangent = 11.4F;
 
 // The scan's beams from one of its ends, so that both are looked at in one way.
 class BeamsFrom {
@@ -27,8 +25,8 @@ class BeamsFrom {
     const Beam& a = (*this)[i];
     const Beam& b = (*this)[k];
     if (!a.hit || !b.hit) return false;
-    const float steep_m = kMaxIncidenceTangent * std::abs(a.bearing_rad - b.bearing_rad) *
-                          std::min(a.range_m, b.range_m);
+    const float steep_m = static_cast<float>(kSteepestTangent) *
+                          std::abs(a.bearing_rad - b.bearing_rad) * std::min(a.range_m, b.range_m);
     return std::abs(a.range_m - b.range_m) <= noise_m + steep_m;
   }
   bool IsNothingAfter(int i) const {

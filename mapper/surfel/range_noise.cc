@@ -22,8 +22,8 @@ constexpr float kSpacingTolerance = 0.05F;
 // Counting every scan is not needed once the histograms are full.
 constexpr std::int64_t kScansInFull = 50;
 constexpr std::int64_t kThinning = 8;
-// Independent errors tell 1 at every stride, errors correlated by exp(-(d / L)^2 / 2) .15 where d
-// is less than L.
+// Independent errors tell 1 at every stride; errors correlated by exp(-(d / L)^2 / 2) tell .15 and
+// less up to d = 2 L / 3 and .5 at 4 L / 3 (docs/math.md, "Errors that beams share").
 constexpr double kAlikeShare = 0.25;
 // Fewer beams are not left of a scan.
 constexpr std::size_t kLeastBeams = 40;
@@ -117,9 +117,9 @@ void RangeNoise::Differences::Refresh() {
 
 // Whether beams this stride apart share most of the error that shows between beams twice as far
 // apart, over all ranges.
-bool RangeNoise::AreAlike(std::size_t stride) const {
-  const Differences& near = by_stride_[stride];
-  const Differences& far = by_stride_[stride + 1];
+bool RangeNoise::AreAlike(std::size_t power) const {
+  const Differences& near = by_stride_[power];
+  const Differences& far = by_stride_[power + 1];
   double seen = 0.0, samples = 0.0;
   for (std::size_t r = 0; r < kRangeBins; ++r) {
     if (!near.Knows(r) || !far.Knows(r)) continue;

@@ -39,10 +39,10 @@ class RangeNoise {
     void Refresh();
     bool Knows(std::size_t range_bin) const;
   };
-  bool AreAlike(std::size_t stride) const;
+  bool AreAlike(std::size_t power) const;
 
-  std::array<Differences, kStrides> by_stride_{};
-  std::size_t chosen_ = 0;
+  std::array<Differences, kStrides> by_stride_{};  // by its power of two
+  std::size_t chosen_ = 0;                         // power of two
   bool skips_alike_;
   std::int64_t scans_ = 0;
 };

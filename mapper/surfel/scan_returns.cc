@@ -9,8 +9,6 @@ namespace {
 
 // Hits this many steps apart are still neighbours: beams between them were lost.
 constexpr double kMaxGapSteps = 3.5;
-// Walls seen more steeply than 85 degrees from their normal look like jumps.
-constexpr double kMaxIncidenceTangent = 11.4;
 // The noise changes slowly with range: it is looked up again after this relative change.
 constexpr double kNoiseLookupShare = 0.1;
 
@@ -64,7 +62,7 @@ bool ScanReturns::Jumps(const ScanReturn& a, const ScanReturn& b) const {
   const double relative =
       std::abs(a.inverse_range - b.inverse_range) / std::min(a.inverse_range, b.inverse_range);
   return relative >
-         jump_sigmas_ * std::numbers::sqrt2 * a.relative_sigma + kMaxIncidenceTangent * gap_rad;
+         jump_sigmas_ * std::numbers::sqrt2 * a.relative_sigma + kSteepestTangent * gap_rad;
 }
 
 // A hit that differs from both neighbours, which agree with each other.

@@ -344,6 +344,8 @@ TEST(DepthNoise, DependsOnSeedFrameAndPixelAlone) {
     const DepthImage smooth = DepthNoise(alike).Apply(clean, 1, 2);
     EXPECT_NE(smooth.z_m, once.z_m);
     EXPECT_EQ(DepthNoise(alike, 3).Apply(clean, 1, 2).z_m, smooth.z_m);
+    alike.noise_correlation_px = 1e-200;  // no neighbours
+    EXPECT_EQ(DepthNoise(alike).Apply(clean, 1, 2).z_m, once.z_m);
   }
 }
 
