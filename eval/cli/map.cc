@@ -167,6 +167,25 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           "with images {:.3g} times as deep: their scale (depth_scale of the camera file, or --set "
           "sequence.recording.depth_scale) or SLAM's is wrong",
           1.0 / doubt.scale);
+    case PoseReading::kPitched:
+      return fmt::format(
+          "with a camera that looks about {:.0f} degrees {} the poses' z axis; they must be the camera's "
+          "own (formats.md, \"Poses of a robot's base\")",
+          std::abs(DegFromRad(doubt.down_rad)), doubt.down_rad > 0.0 ? "below" : "above");
+    case PoseReading::kPitchedBodyAxes:
+      return fmt::format(
+          "with poses of axes x forward, y left, z up, the camera looking about {:.0f} degrees {} x; they "
+          "must be the camera's x right, y down, z forward (formats.md, \"Poses of a robot's "
+          "base\")",
+          std::abs(DegFromRad(doubt.down_rad)), doubt.down_rad > 0.0 ? "below" : "above");
+    case PoseReading::kFocal:
+      return fmt::format("with fx and fy about {:.2g} times as large: those of the camera are wrong",
+                         doubt.scale);
+    case PoseReading::kImageSize:
+      return fmt::format(
+          "with fx, fy, cx and cy about {:.2g} times as large: those of the camera are for images of "
+          "another size",
+          doubt.scale);
     case PoseReading::kShifted:
       break;
   }

@@ -1,5 +1,6 @@
 // Whether the depth images of a recording fit the poses given for them; and if not, how the poses
-// would have to be read so that they do (docs/formats.md, "Poses that do not fit their images").
+// would have to be read, or what the camera would have to be, so that they do (docs/formats.md,
+// "Poses that do not fit their images").
 #pragma once
 
 #include <functional>
@@ -30,12 +31,19 @@ enum class PoseReading {
   kGlAxes,    // of a camera with x right, y up, z backward
   kShifted,   // their clock is another than the images'
   kScaled,    // their unit of length is another than the images'
+  kPitched,   // of axes from which the camera is pitched
+  kPitchedBodyAxes,  // of a robot's axes from which the camera is pitched
+  kFocal,            // right, of a camera with other fx and fy
+  kImageSize,        // right, of a camera with other fx, fy, cx and cy: for images of another size
 };
 
 struct PoseDoubt {
   PoseReading reading = PoseReading::kWFirst;  // with which the images fit
   double time_offset_s = 0.0;                  // RecordingOptions' own, with which they fit
-  double scale = 1.0;                          // the poses' positions times this fit the images
+  // The poses' positions (kScaled), the focal lengths (kFocal) or all four of the camera's numbers
+  // (kImageSize) times this fit the images.
+  double scale = 1.0;
+  double down_rad = 0.0;  // so far the camera looks below the axes' level (kPitched...)
   // Means of MisfitOf over the pairs, with the poses as given and as they would fit.
   double misfit = 0.0;
   double better_misfit = 0.0;

@@ -150,6 +150,56 @@ TEST(PoseCheck, NamesAnotherScale) {
   EXPECT_EQ(cases, 3);
 }
 
+TEST(PoseCheck, NamesAnotherCamera) {
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  int cases = 0;
+  for (const double factor : {0.5, 0.8, 1.3}) {
+    PinholeCamera focal = kCamera;
+    focal.fx_px *= factor;
+    focal.fy_px *= factor;
+    PinholeCamera size = focal;
+    size.cx_px = factor * (kCamera.cx_px + 0.5) - 0.5;
+    size.cy_px = factor * (kCamera.cy_px + 0.5) - 0.5;
+    const auto wrong_focal = DoubtOfPoses(pairs, focal, Given(AsItIs), {});
+    ASSERT_TRUE(wrong_focal) << factor;
+    EXPECT_EQ(wrong_focal->reading, PoseReading::kFocal) << factor;
+    EXPECT_NEAR(wrong_focal->scale * factor, 1.0, 0.03) << factor;
+    const auto wrong_size = DoubtOfPoses(pairs, size, Given(AsItIs), {});
+    ASSERT_TRUE(wrong_size) << factor;
+    EXPECT_EQ(wrong_size->reading, PoseReading::kImageSize) << factor;
+    EXPECT_NEAR(wrong_size->scale * factor, 1.0, 0.03) << factor;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
+// Of a robot's axes, and of a camera's that were not tilted with it.
+TEST(PoseCheck, NamesAMountingAngle) {
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  int cases = 0;
+  for (const double down_deg : {-20.0, 15.0, 30.0}) {
+    const Eigen::Quaterniond level_from_camera(
+        Eigen::AngleAxisd(-RadFromDeg(down_deg), Eigen::Vector3d::UnitX()));
+    const auto level = [&](const Pose3& pose) {
+      return Pose3{pose.rotation * level_from_camera.inverse(), pose.translation};
+    };
+    const auto body = [&](const Pose3& pose) {
+      const Eigen::Quaterniond camera_from_body = CameraOf(Pose2{}, 0.0).rotation.inverse();
+      return Pose3{level(pose).rotation * camera_from_body, pose.translation};
+    };
+    const auto of_level = DoubtOfPoses(pairs, kCamera, Given(level), {});
+    ASSERT_TRUE(of_level) << down_deg;
+    EXPECT_EQ(of_level->reading, PoseReading::kPitched) << down_deg;
+    EXPECT_NEAR(DegFromRad(of_level->down_rad), down_deg, 2.0);
+    const auto of_body = DoubtOfPoses(pairs, kCamera, Given(body), {});
+    ASSERT_TRUE(of_body) << down_deg;
+    EXPECT_EQ(of_body->reading, PoseReading::kPitchedBodyAxes) << down_deg;
+    EXPECT_NEAR(DegFromRad(of_body->down_rad), down_deg, 2.0);
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {
   std::vector<ImagePair> pairs = Pairs(0.0);
   EXPECT_FALSE(DoubtOfPoses({}, kCamera, Given(Inverted), {}));
