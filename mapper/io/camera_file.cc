@@ -22,7 +22,8 @@ void CameraFile::Visit(OptionsVisitor& v) {
   v.Numbers("distortion", distortion, {-1e3, 1e3}, "plumb-bob coefficients k1 k2 p1 p2 k3");
   distortion.resize(camera.distortion.size(), 0.0);
   std::copy(distortion.begin(), distortion.end(), camera.distortion.begin());
-  v.Number("depth_scale", depth_scale_per_m, {1e-3, 1e6}, "depth image units a metre");
+  v.Number("depth_scale", depth_scale_per_m, {kLeastDepthScale, 1e6},
+           "depth image units a metre: 1000 of millimetres");
 }
 
 CameraFile ParseCameraFile(const std::string& text, const std::string& place) {

@@ -8,6 +8,9 @@
 
 namespace depthgrid {
 
+// No unit of depth is longer than a metre. Scales the other way round, metres a unit, are below.
+inline constexpr double kLeastDepthScale = 1.0;
+
 // What depth images need besides themselves: the camera, and how many of a PNG's units make a
 // metre.
 struct CameraFile {

@@ -223,8 +223,11 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
     checked.width_px = checked.height_px = kMostImageSidePx;
   }
   Validate(checked, place);
-  if (!(camera.file.depth_scale_per_m > 0.0))
-    throw InputError(place, "depth scale must be positive");
+  if (!(camera.file.depth_scale_per_m >= kLeastDepthScale)) {
+    throw InputError(place, fmt::format("the depth scale is {:g}, must be from {:g}: it is in units "
+                                        "a metre, 1000 of millimetres",
+                                        camera.file.depth_scale_per_m, kLeastDepthScale));
+  }
   return camera;
 }
 

@@ -61,6 +61,16 @@ TEST(CameraFormats, OrbSlamSettings) {
   EXPECT_EQ(third.file.depth_scale_per_m, 1000.0);
 }
 
+TEST(CameraFormats, AScaleTheOtherWayRoundIsRefused) {
+  const std::string own = "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: ";
+  EXPECT_EQ(ParseCameraDescription(own + "1\n", "c").file.depth_scale_per_m, 1.0);
+  EXPECT_THROW(ParseCameraDescription(own + "0.001\n", "c"), InputError);
+  const std::string orb =
+      "%YAML:1.0\nCamera1.fx: 500\nCamera1.fy: 501\nCamera1.cx: 320\nCamera1.cy: 240\n"
+      "RGBD.DepthMapFactor: ";
+  EXPECT_THROW(ParseCameraDescription(orb + "0.001\n", "c"), InputError);
+}
+
 TEST(CameraFormats, MatrixTexts) {
   const char* three =
       " 5.70342205e+02\t  0.00000000e+00\t  3.20000000e+02\t\n 0.0 5.7e+02 2.4e+02\n 0 0 1\n";
