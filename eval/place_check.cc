@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace depthgrid {
 namespace {
@@ -11,23 +13,45 @@ namespace {
 // they saw on the map, those of a wrong place or another room 0.05 and less.
 constexpr double kLeastExplained = 0.2;
 constexpr int kOneOf = 10;
+// So many frames on the map, and as many off it, are no accident.
+constexpr int kSecond = 30;
 // A match is this sure along a line that it has seen the end of, rather than its noise.
 constexpr double kSeenSigmaM = 0.02;
 // Of directions that a match says nothing about.
 constexpr double kUnseenSigmaM = 100.0;
 
+// The index of the frame with which so many lost ones begin, after as many that were not.
+int LeftAt(const std::vector<std::pair<int, bool>>& index_and_lost) {
+  int lost_before = 0, in_a_row = 0;
+  for (int i = 0; i < static_cast<int>(index_and_lost.size()); ++i) {
+    if (!index_and_lost[static_cast<std::size_t>(i)].second) {
+      lost_before += in_a_row;
+      in_a_row = 0;
+    } else if (++in_a_row == kSecond) {
+      const int begin = i + 1 - in_a_row;
+      const bool was_on_map = begin >= kSecond && lost_before * kOneOf <= begin;
+      return was_on_map ? index_and_lost[static_cast<std::size_t>(begin)].first : -1;
+    }
+  }
+  return -1;
+}
+
 }  // namespace
 
 std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
   LostFrames count;
+  std::vector<std::pair<int, bool>> index_and_lost;
   for (const FrameReport& report : run.reports) {
     if (!report.map_from_camera || report.beams == 0) continue;
     const double explained = report.match.found ? report.match.score : 0.0;
-    count.lost += explained < kLeastExplained ? 1 : 0;
+    const bool lost = explained < kLeastExplained;
+    count.lost += lost ? 1 : 0;
     ++count.frames;
+    index_and_lost.emplace_back(report.index, lost);
     if (!localised) break;
   }
   if (count.lost == 0 || count.lost * kOneOf < count.frames) return {};
+  count.left_at = LeftAt(index_and_lost);
   return count;
 }
 

@@ -137,10 +137,15 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
                 const MappingRun& run, std::vector<std::string>& warnings) {
   if (fusion.TrustsSlamAlone()) return;
   if (const auto lost = FramesLost(run, arguments.localise)) {
-    warnings.push_back(fmt::format(
-        "{}: lost: in {} of {} hardly anything that is seen lies on the map; the sequence is of "
-        "another place, or begins elsewhere in it",
-        arguments.map, lost->lost, Counted(lost->frames, "frame")));
+    const std::string why =
+        lost->left_at >= 0
+            ? fmt::format("from frame {} on it leaves the map, where poses are SLAM's motion alone "
+                          "(without --localise they extend it), or it is of another place",
+                          lost->left_at)
+            : "the sequence is of another place, or begins elsewhere in it";
+    warnings.push_back(
+        fmt::format("{}: lost: in {} of {} hardly anything that is seen lies on the map; {}",
+                    arguments.map, lost->lost, Counted(lost->frames, "frame"), why));
   } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
     warnings.push_back(fmt::format(
         "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "

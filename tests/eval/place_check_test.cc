@@ -35,6 +35,16 @@ TEST(FramesLost, AreThoseOfWhichTheMapExplainsNextToNothing) {
   EXPECT_FALSE(FramesLost(run, false));  // the first fits; the others may lie on new walls
 }
 
+// From frame 60 on; a few lost ones before that were an accident.
+TEST(FramesLost, ALongStretchAfterGoodFramesIsWhereTheMapWasLeft) {
+  MappingRun run = RunOf(120, 0.6);
+  run.reports[20].match.found = run.reports[21].match.found = false;
+  for (std::size_t i = 60; i < 90; ++i) run.reports[i].match.score = 0.0;
+  EXPECT_EQ(FramesLost(run, true)->left_at, 60);
+  for (std::size_t i = 0; i < 12; ++i) run.reports[i].match.score = 0.0;
+  EXPECT_EQ(FramesLost(run, true)->left_at, -1);  // it was hardly ever on it
+}
+
 TEST(FramesLost, WithoutAPoseOrAReturnNothingIsSaid) {
   MappingRun run = RunOf(20, 0.0);
   for (int i = 0; i < 10; ++i) run.reports[static_cast<std::size_t>(i)].map_from_camera.reset();
