@@ -74,7 +74,7 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   state_->Match(scans.matched, prediction, report);
   state_->DoubtGuess(report);
   const FusedPose fused = state_->Fuse(prediction, report);
-  state_->Insert(scans, fused, report);
+  state_->Insert(scans, prediction, fused, report);
   state_->Relocate(scans, report);
   state_->FindLoops(scans, report);
   return report;
@@ -270,8 +270,8 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
   report.motion_covariance = errors.MotionCovariance(fused.map_from_base);
 }
 
-void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& fused,
-                                      FrameReport& report) {
+void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction& prediction,
+                                      const FusedPose& fused, FrameReport& report) {
   const StageTimer timer(clock, report.times.insert_us);
   if (!scans.matched || fixed_map) return;
   MappedFrame frame = AsMapped(fused.map_from_base);
@@ -286,6 +286,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const FusedPose& 
   report.well_seen = !added.kept();
   if (!reference) return;
   if (added.kept()) {
+    if (added.slam_motion) reference->Corrected(prediction.map_from_base, fused.map_from_base);
     reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);

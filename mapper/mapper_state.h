@@ -79,7 +79,8 @@ struct IncrementalMapper::State {
              FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);
   void TellMotion(const FusedPose& fused, FrameReport& report);
-  void Insert(const FrameScans& scans, const FusedPose& fused, FrameReport& report);
+  void Insert(const FrameScans& scans, const Prediction& prediction, const FusedPose& fused,
+              FrameReport& report);
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;

@@ -81,6 +81,10 @@ class ReferenceMap {
                             const Prediction& prediction) = 0;
   // What the last match was made against; good until the next call of anything.
   virtual std::span<const MapPart> MatchedParts() const = 0;
+  // The frame to be inserted next is not where SLAM's motion from the one before led: its match
+  // moved it.
+  virtual void Corrected(const Pose2& /*predicted_map_from_base*/, const Pose2& /*map_from_base*/) {
+  }
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

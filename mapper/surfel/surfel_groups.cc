@@ -72,6 +72,13 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
   group.surfels = newest_.surfels();
 }
 
+void SurfelGroups::MoveNewest(const Pose2& motion) {
+  const bool leads_on = !part_begins_ && last_added_ + 1 == places_.size();
+  if (groups_.size() < 2 || !leads_on) return;
+  Pose2& map_from_group = groups_.back().map_from_group;
+  map_from_group = motion * map_from_group;
+}
+
 void SurfelGroups::AddTied(int tied_to, const Pose2& map_from_base) {
   const int group = places_[static_cast<std::size_t>(tied_to)].group;
   const Pose2& map_from_group = groups_[static_cast<std::size_t>(group)].map_from_group;

@@ -46,6 +46,10 @@ class SurfelGroups {
   void Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base);
   // The next frame, which moves with an earlier one and adds nothing to what its group saw.
   void AddTied(int tied_to, const Pose2& map_from_base);
+  // The newest group is elsewhere than the estimate had it, by this motion of the map's axes. The
+  // first stays, as all others are placed by it; so does one that the next frame does not go
+  // on from.
+  void MoveNewest(const Pose2& motion);
   // The next frame begins a group, wherever it is.
   void BeginPart() { part_begins_ = true; }
   const std::vector<SurfelGroup>& groups() const { return groups_; }

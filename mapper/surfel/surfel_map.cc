@@ -112,6 +112,8 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("merge_gate_m", merge_gate_m, {0.0, 1.0},
            "a surfel is changed by what lies this near along its normal");
   v.Number("merge_gate_sigmas", merge_gate_sigmas, {0.0, 100.0}, "and so many sigmas of noise");
+  v.Number("jump_m", jump_m, {0.0, 1000.0},
+           "a match that moves the estimate, or what lies 3 m away, so far moves its group along");
   v.Number("stay_m", stay_m, {0.0, 1000.0},
            "at the end frames stay this near to where the joint adjustment has them; 0: anywhere");
 }
@@ -150,6 +152,12 @@ void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
         options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
     map.Merge(motion * surfel, {kAlongShare * options_.spacing_m, off_m, min_cosine}, frame);
   }
+}
+
+void SurfelMap::Corrected(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {
+  const Eigen::Vector3d jump = Between(predicted_map_from_base, map_from_base).vector();
+  if (jump.cwiseQuotient(kMotionUnit).norm() <= options_.jump_m) return;
+  groups_.MoveNewest(map_from_base * Inverse(predicted_map_from_base));
 }
 
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

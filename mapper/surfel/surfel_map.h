@@ -24,6 +24,9 @@ struct SurfelOptions {
   // A piece of scan changes a surfel that lies this near along the normal, and its own noise.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
+  // A match that moves the estimate, or what lies 3 m away, by more than this at once moves the
+  // frames just before with it (docs/math.md, "Joint adjustment").
+  double jump_m = 0.02;
   // At the end each frame's pose stays near that of the joint adjustment (Smoothed).
   double stay_m = 0.3;
 
@@ -36,6 +39,7 @@ class SurfelMap : public ReferenceMap {
 
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   std::span<const MapPart> MatchedParts() const override { return parts_; }
+  void Corrected(const Pose2& predicted_map_from_base, const Pose2& map_from_base) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
   void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

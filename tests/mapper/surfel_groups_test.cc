@@ -78,6 +78,30 @@ TEST(SurfelGroups, WhatSlamJumpedBetweenStaysApart) {
   EXPECT_EQ(joined.groups()[2].first_frame, 4);
 }
 
+// The two frames of the second group, and no others.
+TEST(SurfelGroups, TheNewestMovesAsAWholeUnlessItIsTheFirst) {
+  SurfelGroupOptions options;
+  options.length_m = 0.15;
+  SurfelGroups groups(options);
+  const Pose2 motion{0.0, 0.03, 0.01};
+  groups.Add(WallFrom(0.0), {});
+  groups.MoveNewest(motion);
+  EXPECT_EQ(groups.groups()[0].map_from_group, Pose2());
+  for (int i = 1; i < 4; ++i) groups.Add(WallFrom(0.1 * i), {0.1 * i, 0.0, 0.0});
+  ASSERT_EQ(groups.groups().size(), 2U);
+  const std::vector<GroupPlace> before = groups.places();
+  groups.MoveNewest(motion);
+  EXPECT_EQ(groups.groups()[0].map_from_group, Pose2());
+  EXPECT_EQ(groups.groups()[1].map_from_group, motion * Pose2(0.2, 0.0, 0.0));
+  EXPECT_EQ(groups.places()[3].group_from_base, before[3].group_from_base);
+  groups.AddTied(0, {});
+  groups.MoveNewest(motion);
+  groups.Add(WallFrom(0.3), {0.3, 0.0, 0.0});
+  groups.BeginPart();
+  groups.MoveNewest(motion);
+  EXPECT_EQ(groups.groups()[1].map_from_group, motion * Pose2(0.2, 0.0, 0.0));
+}
+
 // Frames 3 to 5 see what frame 0 saw and move with its group.
 TEST(SurfelGroups, TiedFramesMoveWithTheirGroup) {
   SurfelGroupOptions options;

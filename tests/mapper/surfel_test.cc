@@ -11,6 +11,7 @@
 #include "mapper/surfel/range_noise.h"
 #include "mapper/surfel/scan_surfels.h"
 #include "mapper/surfel/skyline_matrix.h"
+#include "mapper/surfel/surfel_map.h"
 #include "mapper/surfel/surfel_matcher.h"
 #include "mapper/surfel/surfel_store.h"
 #include "tests/mapper/planar_world.h"
@@ -325,6 +326,33 @@ TEST(MotionNoise, IsBoundBySpread) {
 }
 
 // Once round the room with an odometry that turns a little too much.
+// Two frames see nothing while SLAM drifts by 6 cm, and the third sees the room again. Were they in
+// one group, it would be that far off within itself.
+TEST(SurfelMap, WhatAMatchFindsDoesNotMoveWithWhatCameBefore) {
+  SurfelMap map((SurfelOptions()));
+  std::vector<MappedFrame> frames;
+  for (int i = 0; i < 48; ++i) {
+    const bool blind = i == 24 || i == 25;
+    const Pose2 truth{-1.0 + 0.02 * i, 0.0, 0.0};
+    const Pose2 drifted{truth.x_m, 0.06, 0.0};
+    const auto scan =
+        std::make_shared<const Scan>(ScanOf(blind ? PlanarWorld() : Room(), truth,
+                                            NoisyLaser(0.003), 3, static_cast<std::uint32_t>(i)));
+    MappedFrame frame;
+    frame.frame = i;
+    frame.map_from_base = blind ? drifted : truth;
+    if (i > 0) {
+      frame.slam_motion = Pose2{0.02, 0.0, 0.0};
+      map.Corrected(blind || i == 26 ? drifted : truth, frame.map_from_base);
+    }
+    map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
+    frames.push_back(frame);
+  }
+  const Adjustment adjusted = map.Adjust(frames, {}, AdjustEffort::kCloseLoops);
+  EXPECT_LT(std::abs(adjusted.map_from_base[25].y_m), 0.01);
+  EXPECT_LT(std::abs(adjusted.map_from_base[26].y_m), 0.01);
+}
+
 TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
   MapperOptions options;
   options.method = MapperMethod::kSurfel;
