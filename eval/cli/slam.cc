@@ -56,6 +56,10 @@ void Slam(const SlamArguments& arguments) {
   Config config;
   config.Set("slam.profile", arguments.profile, "--profile " + arguments.profile);
   for (const std::string& assignment : arguments.common.set) config.Set(assignment);
+  // As experiments have it.
+  for (const char* key : {"slam_seed", "seed"}) {
+    if (config.Has(key)) throw InputError(config.PlaceOfKey(key), "give --seed N");
+  }
   SlamSettings settings;
   config.Read(settings);
   const Trajectory truth = TrueFrames(arguments.sequence);

@@ -224,9 +224,10 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
   }
   Validate(checked, place);
   if (!(camera.file.depth_scale_per_m >= kLeastDepthScale)) {
-    throw InputError(place, fmt::format("the depth scale is {:g}, must be from {:g}: it is in units "
-                                        "a metre, 1000 of millimetres",
-                                        camera.file.depth_scale_per_m, kLeastDepthScale));
+    throw InputError(place,
+                     fmt::format("the depth scale is {:g}, must be from {:g}: it is in units "
+                                 "a metre, 1000 of millimetres",
+                                 camera.file.depth_scale_per_m, kLeastDepthScale));
   }
   return camera;
 }

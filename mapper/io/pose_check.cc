@@ -148,8 +148,8 @@ class BestReading {
     const auto attempt = [&](PoseReading reading, Pose3 (*change)(const Pose3&)) {
       PoseDoubt doubt = as_given_;
       doubt.reading = reading;
-      Try(doubt, {[&](const Pose3& pose) { return as_written(change(as_written(pose))); },
-                  camera_});
+      Try(doubt,
+          {[&](const Pose3& pose) { return as_written(change(as_written(pose))); }, camera_});
     };
     attempt(PoseReading::kWFirst, WithWFirst);
     attempt(PoseReading::kInverse, Inverse);
@@ -163,17 +163,20 @@ class BestReading {
   }
   void TryScales() {
     const auto scaled = [&](double scale) {
-      return Attempt{
-          [scale](const Pose3& pose) { return Pose3{pose.rotation, scale * pose.translation}; },
-          camera_};
+      return Attempt{[scale](const Pose3& pose) {
+                       return Pose3{pose.rotation, scale * pose.translation};
+                     },
+                     camera_};
     };
     TryFactors(PoseReading::kScaled, kCoarseScale, kMostScale, scaled);
   }
   void TryCameras() {
-    TryFactors(PoseReading::kFocal, kCoarseFocal, kMostFocal,
-               [&](double scale) { return Attempt{AsGiven, WithFocal(camera_, scale)}; });
-    TryFactors(PoseReading::kImageSize, kCoarseFocal, kMostFocal,
-               [&](double scale) { return Attempt{AsGiven, OfImageSize(camera_, scale)}; });
+    TryFactors(PoseReading::kFocal, kCoarseFocal, kMostFocal, [&](double scale) {
+      return Attempt{AsGiven, WithFocal(camera_, scale)};
+    });
+    TryFactors(PoseReading::kImageSize, kCoarseFocal, kMostFocal, [&](double scale) {
+      return Attempt{AsGiven, OfImageSize(camera_, scale)};
+    });
   }
   void TryPitches() {
     TryPitches(PoseReading::kPitched, AsGiven);
@@ -221,8 +224,8 @@ class BestReading {
         doubt.reading = reading;
         doubt.down_rad = around_rad + k * step_rad;
         if (std::abs(doubt.down_rad) < kLeastPitchRad) continue;
-        Try(doubt, {[&](const Pose3& pose) { return LookingDown(axes(pose), doubt.down_rad); },
-                    camera_});
+        Try(doubt,
+            {[&](const Pose3& pose) { return LookingDown(axes(pose), doubt.down_rad); }, camera_});
       }
     };
     look(0.0, kCoarsePitchRad, kMostPitchRad);

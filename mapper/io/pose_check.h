@@ -25,13 +25,13 @@ struct ImagePair {
 
 // Other ways to mean poses than they are read.
 enum class PoseReading {
-  kWFirst,    // rows are t x y z qw qx qy qz
-  kInverse,   // they map the world to the camera
-  kBodyAxes,  // of a robot's axes at the camera: x forward, y left, z up
-  kGlAxes,    // of a camera with x right, y up, z backward
-  kShifted,   // their clock is another than the images'
-  kScaled,    // their unit of length is another than the images'
-  kPitched,   // of axes from which the camera is pitched
+  kWFirst,           // rows are t x y z qw qx qy qz
+  kInverse,          // they map the world to the camera
+  kBodyAxes,         // of a robot's axes at the camera: x forward, y left, z up
+  kGlAxes,           // of a camera with x right, y up, z backward
+  kShifted,          // their clock is another than the images'
+  kScaled,           // their unit of length is another than the images'
+  kPitched,          // of axes from which the camera is pitched
   kPitchedBodyAxes,  // of a robot's axes from which the camera is pitched
   kFocal,            // right, of a camera with other fx and fy
   kImageSize,        // right, of a camera with other fx, fy, cx and cy: for images of another size

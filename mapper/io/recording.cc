@@ -220,10 +220,11 @@ void CompleteSize(const Recording& recording, CameraDescription& camera) {
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options) {
   DepthPngFormat format;
   if (options.depth_scale_per_m > 0.0 && options.depth_scale_per_m < kLeastDepthScale) {
-    throw InputError("sequence.recording.depth_scale",
-                     fmt::format("is {:g}, must be 0 (the camera file's) or from {:g}: it is in units "
-                                 "a metre, 1000 of millimetres",
-                                 options.depth_scale_per_m, kLeastDepthScale));
+    throw InputError(
+        "sequence.recording.depth_scale",
+        fmt::format("is {:g}, must be 0 (the camera file's) or from {:g}: it is in units "
+                    "a metre, 1000 of millimetres",
+                    options.depth_scale_per_m, kLeastDepthScale));
   }
   format.scale_per_m =
       options.depth_scale_per_m > 0.0 ? options.depth_scale_per_m : camera.depth_scale_per_m;

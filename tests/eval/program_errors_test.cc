@@ -136,6 +136,7 @@ TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
   ExpectRefusal("ablate ./small.yaml -o out --use --json",
                 {"no option '--use'"});  // of many groups
   ExpectRefusal("slam seq -o out --frames 30", {"no option '--frames'"});
+  ExpectRefusal("slam seq -o out --set slam_seed=4", {"--set slam_seed=4: give --seed N"});
 }
 
 TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {
