@@ -14,26 +14,26 @@ namespace {
 constexpr double kLeastExplained = 0.2;
 constexpr int kOneOf = 10;
 // So many frames on the map, and as many off it, are no accident.
-constexpr int kSecond = 30;
+constexpr int kStretchFrames = 30;
 // A match is this sure along a line that it has seen the end of, rather than its noise.
 constexpr double kSeenSigmaM = 0.02;
 // Of directions that a match says nothing about.
 constexpr double kUnseenSigmaM = 100.0;
 
 // The index of the frame with which so many lost ones begin, after as many that were not.
-int LeftAt(const std::vector<std::pair<int, bool>>& index_and_lost) {
+std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_lost) {
   int lost_before = 0, in_a_row = 0;
   for (int i = 0; i < static_cast<int>(index_and_lost.size()); ++i) {
     if (!index_and_lost[static_cast<std::size_t>(i)].second) {
       lost_before += in_a_row;
       in_a_row = 0;
-    } else if (++in_a_row == kSecond) {
+    } else if (++in_a_row == kStretchFrames) {
       const int begin = i + 1 - in_a_row;
-      const bool was_on_map = begin >= kSecond && lost_before * kOneOf <= begin;
-      return was_on_map ? index_and_lost[static_cast<std::size_t>(begin)].first : -1;
+      const bool was_on_map = begin >= kStretchFrames && lost_before * kOneOf <= begin;
+      if (was_on_map) return index_and_lost[static_cast<std::size_t>(begin)].first;
     }
   }
-  return -1;
+  return {};
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ namespace depthgrid {
 struct LostFrames {
   int lost = 0;  // of so many frames hardly anything that they show lies on the map
   int frames = 0;
-  // Before this one (FrameReport::index) a second of frames or more were on the map, but for a
-  // tenth: the sequence left it there. Negative: it was hardly ever on it.
-  int left_at = -1;
+  // Where the sequence left the map (FrameReport::index): 30 frames and more before it were on the
+  // map, but for a tenth, and from it on 30 in a row are not. Empty where that cannot be told.
+  std::optional<int> left_at;
 };
 
 // Of the frames that were matched against the finished map alone: all where nothing was inserted

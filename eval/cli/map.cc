@@ -138,12 +138,12 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
   if (fusion.TrustsSlamAlone()) return;
   if (const auto lost = FramesLost(run, arguments.localise)) {
     const std::string why =
-        lost->left_at >= 0
+        lost->left_at
             ? fmt::format(
                   "from frame {} on it leaves the map, where poses are SLAM's motion alone "
                   "(without --localise they extend it), or it is of another place",
-                  lost->left_at)
-            : "the sequence is of another place, or begins elsewhere in it";
+                  *lost->left_at)
+            : "the sequence is of another place, begins elsewhere in it or leaves it";
     warnings.push_back(
         fmt::format("{}: lost: in {} of {} hardly anything that is seen lies on the map; {}",
                     arguments.map, lost->lost, Counted(lost->frames, "frame"), why));

@@ -136,7 +136,10 @@ TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
   ExpectRefusal("ablate ./small.yaml -o out --use --json",
                 {"no option '--use'"});  // of many groups
   ExpectRefusal("slam seq -o out --frames 30", {"no option '--frames'"});
-  ExpectRefusal("slam seq -o out --set slam_seed=4", {"--set slam_seed=4: give --seed N"});
+  for (const char* key : {"slam_seed", "seed"}) {
+    const std::string setting = std::string("--set ") + key + "=4";
+    ExpectRefusal("slam seq -o out " + setting, {setting + ": give --seed N"});
+  }
 }
 
 TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {

@@ -229,12 +229,16 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
 }
 
-TEST_F(TumFolderTest, UnitsThatMeanNothingAreWhole) {
+TEST_F(TumFolderTest, UnitsOfDepthAreChecked) {
   const Trajectory truth = WriteSequence();
   RecordingOptions options;
   options.invalid_units = {65535, 1.5};
   EXPECT_EQ(ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(truth), options); }),
             "sequence.recording.invalid_units: holds 1.5, must be whole numbers");
+  options.invalid_units = {};
+  options.depth_scale_per_m = 0.001;
+  EXPECT_THAT(ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(truth), options); }),
+              testing::StartsWith("sequence.recording.depth_scale: is 0.001, must be 0 "));
 }
 
 // Its own stamp, 0.130, lies before the colour image's of the one before, 0.140.

@@ -325,10 +325,9 @@ TEST(MotionNoise, IsBoundBySpread) {
   EXPECT_EQ(noise.walk[2], 0.004);
 }
 
-// Once round the room with an odometry that turns a little too much.
-// Two frames see nothing while SLAM drifts by 6 cm, and the third sees the room again. Were they in
-// one group, it would be that far off within itself.
-TEST(SurfelMap, WhatAMatchFindsDoesNotMoveWithWhatCameBefore) {
+// Two frames, with which a group begins, see nothing where SLAM jumps by 6 cm; the third sees the
+// room again. Unless they move along, the group is that far off within itself.
+TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
   SurfelMap map((SurfelOptions()));
   std::vector<MappedFrame> frames;
   for (int i = 0; i < 48; ++i) {
@@ -342,7 +341,7 @@ TEST(SurfelMap, WhatAMatchFindsDoesNotMoveWithWhatCameBefore) {
     frame.frame = i;
     frame.map_from_base = blind ? drifted : truth;
     if (i > 0) {
-      frame.slam_motion = Pose2{0.02, 0.0, 0.0};
+      frame.slam_motion = Pose2{0.02, i == 24 ? 0.06 : 0.0, 0.0};
       map.Corrected(blind || i == 26 ? drifted : truth, frame.map_from_base);
     }
     map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
@@ -353,6 +352,7 @@ TEST(SurfelMap, WhatAMatchFindsDoesNotMoveWithWhatCameBefore) {
   EXPECT_LT(std::abs(adjusted.map_from_base[26].y_m), 0.01);
 }
 
+// Once round the room with an odometry that turns a little too much.
 TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
   MapperOptions options;
   options.method = MapperMethod::kSurfel;
