@@ -138,12 +138,11 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
   if (fusion.TrustsSlamAlone()) return;
   if (const auto lost = FramesLost(run, arguments.localise)) {
     const std::string why =
-        lost->left_at
-            ? fmt::format(
-                  "from frame {} on it leaves the map, where poses are SLAM's motion alone "
-                  "(without --localise they extend it), or it is of another place",
-                  *lost->left_at)
-            : "the sequence is of another place, begins elsewhere in it or leaves it";
+        lost->left_at ? fmt::format(
+                            "from frame {} on it leaves the map, where poses are SLAM's motion "
+                            "alone (without --localise they extend it), or it is of another place",
+                            *lost->left_at)
+                      : "the sequence is of another place, begins elsewhere in it or leaves it";
     warnings.push_back(
         fmt::format("{}: lost: in {} of {} hardly anything that is seen lies on the map; {}",
                     arguments.map, lost->lost, Counted(lost->frames, "frame"), why));
@@ -153,6 +152,11 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
         "off: nothing that was seen ends there",
         arguments.map, DegFromRad(start.unsure->direction_rad), start.unsure->reach_m));
   }
+}
+
+std::string PitchOf(const PoseDoubt& doubt) {
+  return fmt::format("about {:.0f} degrees {}", std::abs(DegFromRad(doubt.down_rad)),
+                     doubt.down_rad > 0.0 ? "below" : "above");
 }
 
 // What is to be done about it: the poses are mapped as they were read.
@@ -175,25 +179,21 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           1.0 / doubt.scale);
     case PoseReading::kPitched:
       return fmt::format(
-          "with a camera that looks about {:.0f} degrees {} the poses' z axis; they must be the "
-          "camera's "
-          "own (formats.md, \"Poses of a robot's base\")",
-          std::abs(DegFromRad(doubt.down_rad)), doubt.down_rad > 0.0 ? "below" : "above");
+          "with a camera that looks {} the poses' z axis; they must be the camera's own "
+          "(formats.md, \"Poses of a robot's base\")",
+          PitchOf(doubt));
     case PoseReading::kPitchedBodyAxes:
       return fmt::format(
-          "with poses of axes x forward, y left, z up, the camera looking about {:.0f} degrees {} "
-          "x; they "
-          "must be the camera's x right, y down, z forward (formats.md, \"Poses of a robot's "
-          "base\")",
-          std::abs(DegFromRad(doubt.down_rad)), doubt.down_rad > 0.0 ? "below" : "above");
+          "with poses of axes x forward, y left, z up, the camera looking {} x; they must be the "
+          "camera's x right, y down, z forward (formats.md, \"Poses of a robot's base\")",
+          PitchOf(doubt));
     case PoseReading::kFocal:
       return fmt::format(
           "with fx and fy about {:.2g} times as large: those of the camera are wrong", doubt.scale);
     case PoseReading::kImageSize:
       return fmt::format(
           "with fx, fy, cx and cy about {:.2g} times as large: those of the camera are for images "
-          "of "
-          "another size",
+          "of another size",
           doubt.scale);
     case PoseReading::kShifted:
       break;

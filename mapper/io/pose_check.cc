@@ -72,7 +72,7 @@ PinholeCamera WithFocal(PinholeCamera camera, double scale) {
   return camera;
 }
 
-// The middle of the first pixel stays where it is.
+// The image's corner, half a pixel before the middle of the first, stays where it is.
 PinholeCamera OfImageSize(PinholeCamera camera, double scale) {
   camera = WithFocal(camera, scale);
   camera.cx_px = scale * (camera.cx_px + 0.5) - 0.5;
