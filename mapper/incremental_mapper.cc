@@ -123,21 +123,21 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
         AsMapped(SameEpoch() ? CarriedOn() : BegunAt(nullptr).map_from_base), scans));
   }
   LoopCloser::Outcome outcome =
-      loop_closer.Close(frame.loops, history, frames, provisional, *reference);
+      loop_closer.Close(frame.loops, history, frames, provisional, *reference, errors.Mapped());
   report.loops_accepted = outcome.accepted;
   report.loops_rejected = outcome.rejected;
   if (!outcome.adjusted) return;
   const Pose2 newest = outcome.map_from_base.back();
   outcome.map_from_base.resize(mapped.all().size());
-  MoveTo(outcome.map_from_base);
+  MoveTo(outcome.map_from_base, outcome.covariance);
   if (provisional) Anchor({newest, 0.0});
 }
 
 // Poses and map corrected together while the run goes on.
 void IncrementalMapper::State::AdjustBetweenFrames() {
   const Adjustment adjustment =
-      loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kRefine);
-  MoveTo(adjustment.map_from_base);
+      loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kRefine, errors.Mapped());
+  MoveTo(adjustment.map_from_base, adjustment.covariance);
   if (adjustment.motion_spread) filter.BoundMotion(*adjustment.motion_spread);
 }
 
@@ -148,11 +148,12 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
   const std::vector<PlanarLoop> found =
       loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
   if (found.empty()) return;
-  const LoopCloser::Outcome outcome = loop_closer.Add(found, mapped.all(), *reference);
+  const LoopCloser::Outcome outcome =
+      loop_closer.Add(found, mapped.all(), *reference, errors.Mapped());
   report.loops_accepted += outcome.accepted;
   report.loops_rejected += outcome.rejected;
   loop_search->Forget();
-  if (outcome.adjusted) MoveTo(outcome.map_from_base);
+  if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
 }
 
 // The first match after a loss says whether the guess was near enough.
@@ -181,13 +182,14 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
     map_from_base.push_back(i < first ? pose : *moved * pose);
   }
   mapped.ForgetMotionTo(first);
-  MoveTo(map_from_base, first);
+  MoveTo(map_from_base, {}, first);
   if (loop_search) loop_search->Forget();
   report.relocated = true;
 }
 
 // The newest pose is the newest mapped frame's.
 void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
+                                      const Eigen::MatrixXd& covariance,
                                       const std::optional<int>& moved_apart) {
   mapped.MoveTo(map_from_base);
   if (moved_apart) {
@@ -196,8 +198,9 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
     reference->Rebuild(mapped.all());
   }
   const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
-  errors.Break();
   filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
+  errors.Break();
+  errors.Adjusted(covariance, filter.step().new_bias);
 }
 
 // Within an epoch SLAM's motion carries the correction on.

@@ -24,7 +24,7 @@ AdjustEffort LoopCloser::EffortFor(const std::vector<MappedFrame>& frames) const
 LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
                                       const FrameHistory& history,
                                       const std::vector<MappedFrame>& frames, bool newest_is_last,
-                                      ReferenceMap& reference) {
+                                      ReferenceMap& reference, std::span<const int> asked) {
   Outcome outcome;
   if (!options_.use || events.empty()) return outcome;
   const int newest_mapped = newest_is_last ? static_cast<int>(frames.size()) - 1 : -1;
@@ -40,9 +40,10 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     loops_.push_back(*loop);
   }
   if (loops_.size() > known) {
-    Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
+    Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames), asked);
     outcome.adjusted = true;
     outcome.map_from_base = std::move(adjustment.map_from_base);
+    outcome.covariance = std::move(adjustment.covariance);
     for (std::size_t i = known; i < loops_.size(); ++i) {
       outcome.accepted += adjustment.loop_accepted[i] ? 1 : 0;
     }
@@ -52,14 +53,14 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
 }
 
 LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
-                                    const std::vector<MappedFrame>& frames,
-                                    ReferenceMap& reference) {
+                                    const std::vector<MappedFrame>& frames, ReferenceMap& reference,
+                                    std::span<const int> asked) {
   const std::vector<PlanarLoop> known = loops_;
   for (const PlanarLoop& loop : found) {
     loops_.push_back(BetweenKept(loop, frames));
     loops_.back().on_trial = true;
   }
-  const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames));
+  const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames), asked);
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];
   };
@@ -74,6 +75,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
   if (believed) {
     outcome.adjusted = true;
     outcome.map_from_base = adjustment.map_from_base;
+    outcome.covariance = adjustment.covariance;
     outcome.accepted = static_cast<int>(found.size());
     for (PlanarLoop& loop : loops_) loop.on_trial = false;
   } else {

@@ -2,6 +2,8 @@
 // adjust.
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "mapper/frame_history.h"
@@ -34,6 +36,7 @@ class LoopCloser {
   struct Outcome {
     bool adjusted = false;
     std::vector<Pose2> map_from_base;  // of all frames given, when adjusted
+    Eigen::MatrixXd covariance;        // as of Adjustment, of the frames asked for
     int accepted = 0;                  // of the new events
     int rejected = 0;
   };
@@ -41,15 +44,15 @@ class LoopCloser {
   // to be placed by its loops.
   Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
-                ReferenceMap& reference);
+                ReferenceMap& reference, std::span<const int> asked);
   // Loops that the mapper found itself. They are kept when the adjustment with all loops takes them
   // in and still lays what their places saw over each other.
   Outcome Add(const std::vector<PlanarLoop>& found, const std::vector<MappedFrame>& frames,
-              ReferenceMap& reference);
+              ReferenceMap& reference, std::span<const int> asked);
   // Everything once more, with the loops known so far.
   Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference,
-                       AdjustEffort effort) const {
-    return reference.Adjust(frames, loops_, effort);
+                       AdjustEffort effort, std::span<const int> asked) const {
+    return reference.Adjust(frames, loops_, effort, asked);
   }
   const std::vector<PlanarLoop>& loops() const { return loops_; }
 

@@ -38,7 +38,8 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalAsItIs() 
 }
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusting() const {
-  Adjustment adjustment = loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kFinish);
+  Adjustment adjustment =
+      loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kFinish, {});
   FinalEstimate final;
   for (std::size_t i = 0; i < loop_closer.loops().size(); ++i) {
     if (adjustment.loop_accepted[i]) final.loops.push_back(loop_closer.loops()[i]);

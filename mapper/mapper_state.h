@@ -72,8 +72,10 @@ struct IncrementalMapper::State {
   void FindLoops(const FrameScans& scans, FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
-  // Only the frames from `moved_apart` on were moved, as one, if it is given.
-  void MoveTo(const std::vector<Pose2>& map_from_base, const std::optional<int>& moved_apart = {});
+  // `covariance` as of Adjustment, of errors.Mapped(). Only the frames from `moved_apart` on were
+  // moved, as one, if it is given.
+  void MoveTo(const std::vector<Pose2>& map_from_base, const Eigen::MatrixXd& covariance,
+              const std::optional<int>& moved_apart = {});
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);

@@ -46,7 +46,8 @@ void PaperReference::Draw(const Scan& scan, const Pose2& map_from_base) {
 }
 
 Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,
-                                  const std::vector<PlanarLoop>& loops, AdjustEffort) {
+                                  const std::vector<PlanarLoop>& loops, AdjustEffort,
+                                  std::span<const int>) {
   std::vector<ScanMeasurement> measurements = measurements_;
   std::vector<Pose2> poses;
   for (const MappedFrame& frame : frames) poses.push_back(frame.map_from_base);

@@ -28,7 +28,7 @@ class PaperReference : public ReferenceMap {
     return 0.0;
   }
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
-                    AdjustEffort effort) override;
+                    AdjustEffort effort, std::span<const int> asked) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
   // Matches at a place that is only guessed would pull its scans apart: there are none until a
   // submap holds nothing from before.

@@ -2,6 +2,7 @@
 // probabilities, Eq. 4, pose graph of Eq. 5-6) and the surfel map (docs/math.md).
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +49,9 @@ struct Adjustment {
   std::vector<bool> loop_accepted;   // one a loop given
   // How SLAM's motion errs, as the adjusted poses tell; empty where they are too few.
   std::optional<MotionSpread> motion_spread;
+  // Of the errors that the frames asked for have left, as they go together: three rows a frame, in
+  // map axes (true pose = Exp(error) * adjusted pose). Empty where nothing was solved for them.
+  Eigen::MatrixXd covariance;
 };
 
 // How much an adjustment may cost, and what for.
@@ -95,9 +99,11 @@ class ReferenceMap {
   // 0 where that is not known.
   virtual double ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
                                  const Pose2& map_from_base, int frame) = 0;
-  // Corrects all poses at once, given loops (possibly none). Does not change the map; see Rebuild.
+  // Corrects all poses at once, given loops (possibly none), and tells how well those of the frames
+  // at the positions `asked` are known then. Does not change the map; see Rebuild.
   virtual Adjustment Adjust(const std::vector<MappedFrame>& frames,
-                            const std::vector<PlanarLoop>& loops, AdjustEffort effort) = 0;
+                            const std::vector<PlanarLoop>& loops, AdjustEffort effort,
+                            std::span<const int> asked) = 0;
   // Forgets everything and inserts the frames again at their (corrected) poses.
   virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
   // How the next frame and the one before lie to each other is not known: nothing is measured

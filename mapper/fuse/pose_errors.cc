@@ -59,6 +59,42 @@ PoseErrors::PoseErrors(int stretch_frames) : stretch_frames_(stretch_frames) {
   shared_.reserve(kKnots);
 }
 
+std::vector<int> PoseErrors::Mapped() const {
+  std::vector<int> mapped;
+  for (const Knot& knot : knots_) mapped.push_back(knot.mapped);
+  return mapped;
+}
+
+void PoseErrors::Adjusted(const Eigen::MatrixXd& covariance,
+                          const std::optional<Eigen::Vector3d>& bias) {
+  if (covariance.size() == 0) return;
+  Require(covariance.rows() == 3 * static_cast<Eigen::Index>(knots_.size()),
+          "an adjustment tells the errors of the remembered frames");
+  const Eigen::Index last = covariance.rows() - 3;
+  const Eigen::Matrix3d map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
+  const Eigen::Matrix3d old_bias = newest_.block<3, 3>(kBias, kBias);
+  newest_.setZero();
+  knots_with_newest_.setZero();
+  for (const int row : {kPose, kCamera}) {
+    for (const int column : {kPose, kCamera}) {
+      newest_.block<3, 3>(row, column) = covariance.block<3, 3>(last, last);
+    }
+  }
+  newest_.block<3, 3>(kMapNoise, kMapNoise) = map_noise;
+  newest_.block<3, 3>(kBias, kBias) = bias ? Eigen::Matrix3d(Squared(*bias)) : old_bias;
+  for (std::size_t i = 0; i < knots_.size(); ++i) {
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    for (const int column : {kPose, kCamera}) {
+      knots_with_newest_.block<3, 3>(3 * knots_[i].slot, column) =
+          covariance.block<3, 3>(row, last);
+    }
+    for (std::size_t k = 0; k < knots_.size(); ++k) {
+      covariance_.block<3, 3>(3 * knots_[i].slot, 3 * knots_[k].slot) =
+          covariance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(k));
+    }
+  }
+}
+
 void PoseErrors::Add(const FilterStep& step, int index, int mapped,
                      const Eigen::Matrix3d& information, std::span<const MapPart> parts) {
   ++frame_;

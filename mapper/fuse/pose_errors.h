@@ -29,6 +29,12 @@ class PoseErrors {
   // The map was corrected, or SLAM began anew: no motion goes on from before.
   void Break() { broken_ = true; }
 
+  // The positions, among the mapped frames, of those whose errors are remembered.
+  std::vector<int> Mapped() const;
+  // Poses and map were adjusted together: what is left of the errors of the frames at Mapped()
+  // (three rows each, map axes; empty: not known), the newest of them last, and of the bias.
+  void Adjusted(const Eigen::MatrixXd& covariance, const std::optional<Eigen::Vector3d>& bias);
+
   // The frame that motions are told from; the newest itself after a break.
   int motion_from() const { return knots_[marked_].index; }
   // Of the last match's innovation, in base axes of the predicted pose: what the pose and what it

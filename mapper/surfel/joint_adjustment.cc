@@ -188,6 +188,7 @@ std::vector<Eigen::Vector3d> FirstShares(const Problem& problem,
 // known of the prior afterwards. False when nothing could be solved.
 bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
                 JointResult& result) {
+  result.factored.reset();  // two would be twice the memory
   std::vector<Pose2>& map_from_group = result.map_from_group;
   const JointOptions& options = problem.options;
   const AssociationGate gate{kAlongShare * options.landmark_m, gate_m,
@@ -198,7 +199,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   std::vector<int> first =
       ChainEnvelope(problem.groups.size(), options.learn_persistence ? 2 : 1, links);
   landmarks.ExtendEnvelope(first);
-  const auto h = MatrixOf(first);
+  auto h = MatrixOf(first);
   Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
   const SightingTrust trust = TrustAt(landmarks, map_from_group, options);
   result.correlation = trust.errors.correlation;
@@ -209,6 +210,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   if (!Factor(*h)) return false;
   const std::vector<Eigen::Vector3d> shares = SharesSeen(motions, map_from_group, *h);
   Step(*h, g, map_from_group);
+  result.factored = std::move(h);
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
   result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
   if (options.learn_persistence) {

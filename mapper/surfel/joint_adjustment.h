@@ -1,11 +1,13 @@
 // Poses and surfels corrected together (docs/math.md, "Joint adjustment").
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "mapper/core/options.h"
 #include "mapper/surfel/group_links.h"
+#include "mapper/surfel/pose_matrix.h"
 #include "mapper/surfel/surfel_groups.h"
 
 namespace depthgrid {
@@ -67,6 +69,8 @@ struct JointResult {
   Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();        // of the prior, a frame, as learnt
   Eigen::Vector3d motion_persistence = Eigen::Vector3d::Zero();  // of its errors, as learnt
   double correlation = 0.0;                                      // of SightingErrors, as learnt
+  // The equations of the last round; null when nothing was solved.
+  std::unique_ptr<PoseMatrix> factored;
 };
 
 // `motions` has one entry a group; the first is not used. `loops` are links without an order of

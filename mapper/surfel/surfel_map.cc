@@ -8,6 +8,7 @@
 #include "mapper/core/growth.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
+#include "mapper/surfel/pose_covariance.h"
 
 namespace depthgrid {
 namespace {
@@ -84,6 +85,15 @@ GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) 
   link.sigma = {loop.sigma_translation_m, loop.sigma_translation_m, loop.sigma_yaw_rad};
   link.on_trial = loop.on_trial;
   return link;
+}
+
+std::vector<int> GroupsAt(std::span<const int> frames, const std::vector<GroupPlace>& places) {
+  std::vector<int> groups;
+  for (const int frame : frames) {
+    const auto place = std::min(static_cast<std::size_t>(frame), places.size() - 1);
+    groups.push_back(places[place].group);
+  }
+  return groups;
 }
 
 std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
@@ -197,17 +207,22 @@ double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
 }
 
 Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
-                             const std::vector<PlanarLoop>& loops, AdjustEffort effort) {
+                             const std::vector<PlanarLoop>& loops, AdjustEffort effort,
+                             std::span<const int> asked) {
   const SurfelGroups groups = GroupsOf(frames, effort);
   const JointOptions joint = JointOptionsFor(effort, groups_.groups().size());
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
-  const JointResult result =
-      AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
+  JointResult result = AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
   const double shared_before = matcher_.shared_errors();
   if (effort != AdjustEffort::kBend) matcher_.ShareErrors(result.correlation);
   Adjustment adjustment;
   adjustment.loop_accepted = result.loop_accepted;
+  if (result.factored) {
+    adjustment.covariance =
+        PoseCovariance(*result.factored, result.map_from_group, GroupsAt(asked, groups.places()));
+    result.factored.reset();
+  }
   const int first_new = FirstNew(frames);
   const auto new_groups =
       std::count_if(groups.groups().begin(), groups.groups().end(),

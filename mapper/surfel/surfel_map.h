@@ -47,7 +47,7 @@ class SurfelMap : public ReferenceMap {
   double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                          int frame) override;
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
-                    AdjustEffort effort) override;
+                    AdjustEffort effort, std::span<const int> asked) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
   void BeginPart(PartPlace) override { groups_.BeginPart(); }
 

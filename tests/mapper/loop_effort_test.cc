@@ -54,9 +54,23 @@ double ErrorAtM(const std::vector<Pose2>& poses, const std::vector<Pose2>& truth
   return Between(truth[i], poses[i]).translation().norm();
 }
 
+// How well poses are known is told only where what was seen was looked at.
+TEST(LoopEffort, AdjustingTellsWhatIsLeftOfTheErrors) {
+  DriftingRound round;
+  const std::vector<int> asked = {0, kLoopFrames / 2, kLoopFrames};
+  EXPECT_EQ(round.map.Adjust(round.frames, {}, AdjustEffort::kBend, asked).covariance.size(), 0);
+  const Eigen::MatrixXd left =
+      round.map.Adjust(round.frames, {}, AdjustEffort::kCloseLoops, asked).covariance;
+  ASSERT_EQ(left.rows(), 9);
+  ASSERT_EQ(left.cols(), 9);
+  EXPECT_LT(left.diagonal().head<3>().maxCoeff(), 1e-10);  // the first is held
+  EXPECT_GT(left.diagonal().tail<6>().minCoeff(), 1e-10);
+  EXPECT_TRUE(left.isApprox(left.transpose(), 1e-12));
+}
+
 TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
   DriftingRound round;
-  const auto bent = round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kBend);
+  const auto bent = round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kBend, {});
   ASSERT_EQ(bent.map_from_base.size(), round.frames.size());
   EXPECT_EQ(bent.loop_accepted, std::vector<bool>{true});
   const double before_m =
@@ -70,7 +84,7 @@ TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
   }
   // Looking at what was seen as well is better in the middle of the way.
   const auto adjusted =
-      round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kCloseLoops);
+      round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kCloseLoops, {});
   EXPECT_LT(ErrorAtM(adjusted.map_from_base, round.truth, kLoopFrames / 2),
             ErrorAtM(bent.map_from_base, round.truth, kLoopFrames / 2));
 }
@@ -81,15 +95,15 @@ TEST(LoopEffort, ALongRunIsBent) {
     LoopOptions options;
     options.bend_frames = bend_frames;
     LoopCloser closer(options);
-    const LoopCloser::Outcome outcome = closer.Add({round.TrueLoop()}, round.frames, round.map);
+    const LoopCloser::Outcome outcome = closer.Add({round.TrueLoop()}, round.frames, round.map, {});
     EXPECT_TRUE(outcome.adjusted);
     return outcome.map_from_base;
   };
   const auto loop = round.TrueLoop();
   EXPECT_EQ(poses_with(kLoopFrames),
-            round.map.Adjust(round.frames, {loop}, AdjustEffort::kBend).map_from_base);
+            round.map.Adjust(round.frames, {loop}, AdjustEffort::kBend, {}).map_from_base);
   EXPECT_EQ(poses_with(kLoopFrames + 1),
-            round.map.Adjust(round.frames, {loop}, AdjustEffort::kCloseLoops).map_from_base);
+            round.map.Adjust(round.frames, {loop}, AdjustEffort::kCloseLoops, {}).map_from_base);
 }
 
 }  // namespace

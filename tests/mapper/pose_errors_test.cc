@@ -179,5 +179,52 @@ TEST(PoseErrors, StretchesEndWhereTheNextBegins) {
   }
 }
 
+// Frames 0 to 9 were adjusted together; the tenth is matched against what the fifth drew.
+TEST(PoseErrors, GoOnFromWhatAnAdjustmentLeft) {
+  PoseErrors errors(1000);
+  for (int i = 0; i < 10; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), i, i, Eigen::Matrix3d::Zero(), {});
+  }
+  const std::vector<int> mapped = errors.Mapped();
+  ASSERT_EQ(mapped.size(), 10U);
+  EXPECT_EQ(mapped[5], 5);
+  RandomStream random(11, RandomStage::kTest);
+  Eigen::MatrixXd root(30, 30);
+  for (Eigen::Index i = 0; i < root.size(); ++i) root(i) = 1e-3 * random.Normal();
+  const Eigen::MatrixXd left = root * root.transpose();
+  errors.Adjusted(left, {});
+
+  const auto between = [&](int a, int b) -> Eigen::Matrix3d {
+    const auto block = [&](int row, int column) -> Eigen::Matrix3d {
+      return left.block<3, 3>(3 * row, 3 * column);
+    };
+    const Eigen::Matrix3d difference = block(a, a) + block(b, b) - block(a, b) - block(b, a);
+    return difference;
+  };
+  const auto in_base = [](const Eigen::Matrix3d& covariance, int frame) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d base_from_map = AdjointOf(Inverse(TruePose(frame)));
+    return base_from_map * covariance * base_from_map.transpose();
+  };
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(9)).isApprox(in_base(between(9, 0), 9), 1e-9));
+
+  const MapPart part = PartOf(5.0);
+  errors.Add(StepAt(10, Eigen::Vector3d::Ones()), 10, 10, MatchInformation(), {&part, 1});
+  const Eigen::Matrix3d expected = in_base(between(5, 0), 10) + Squared(kMatchSigma);
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(10)).isApprox(expected, 1e-9));
+  const Eigen::Matrix3d innovation =
+      in_base(between(9, 5), 10) + Squared(kWalk) + Squared(kMatchSigma);
+  EXPECT_TRUE(errors.innovation_covariance()->isApprox(innovation, 1e-9));
+}
+
+TEST(PoseErrors, StayWhereAnAdjustmentDoesNotTellThem) {
+  PoseErrors errors(1000);
+  for (int i = 0; i < 5; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), i, i, Eigen::Matrix3d::Zero(), {});
+  }
+  const Eigen::Matrix3d before = errors.MotionCovariance(TruePose(4));
+  errors.Adjusted({}, {});
+  EXPECT_EQ(errors.MotionCovariance(TruePose(4)), before);
+}
+
 }  // namespace
 }  // namespace depthgrid

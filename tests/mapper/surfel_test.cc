@@ -347,7 +347,7 @@ TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
     map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
     frames.push_back(frame);
   }
-  const Adjustment adjusted = map.Adjust(frames, {}, AdjustEffort::kCloseLoops);
+  const Adjustment adjusted = map.Adjust(frames, {}, AdjustEffort::kCloseLoops, {});
   EXPECT_LT(std::abs(adjusted.map_from_base[25].y_m), 0.01);
   EXPECT_LT(std::abs(adjusted.map_from_base[26].y_m), 0.01);
 }
