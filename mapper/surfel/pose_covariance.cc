@@ -1,6 +1,7 @@
 #include "mapper/surfel/pose_covariance.h"
 
 #include <map>
+#include <utility>
 
 #include "mapper/fuse/fusion.h"
 

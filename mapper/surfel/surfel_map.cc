@@ -87,6 +87,7 @@ GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) 
   return link;
 }
 
+// Of frames at these positions; one that is to be mapped next counts to the newest group.
 std::vector<int> GroupsAt(std::span<const int> frames, const std::vector<GroupPlace>& places) {
   std::vector<int> groups;
   for (const int frame : frames) {

@@ -216,6 +216,19 @@ TEST(PoseErrors, GoOnFromWhatAnAdjustmentLeft) {
   EXPECT_TRUE(errors.innovation_covariance()->isApprox(innovation, 1e-9));
 }
 
+TEST(PoseErrors, GoOnWithANewBiasAfterAnAdjustment) {
+  const Eigen::Vector3d bias(0.002, 0.001, 0.003);
+  PoseErrors errors(1000);
+  for (int i = 0; i < 3; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), i, i, Eigen::Matrix3d::Zero(), {});
+  }
+  errors.Adjusted(Eigen::MatrixXd::Zero(9, 9), bias);
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(2)).isZero(1e-15));
+  errors.Add(StepAt(3, Eigen::Vector3d::Zero()), 3, 3, Eigen::Matrix3d::Zero(), {});
+  const Eigen::Matrix3d expected = Squared(kWalk) + Squared(bias);
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(3)).isApprox(expected, 1e-9));
+}
+
 TEST(PoseErrors, StayWhereAnAdjustmentDoesNotTellThem) {
   PoseErrors errors(1000);
   for (int i = 0; i < 5; ++i) {
