@@ -27,6 +27,8 @@ constexpr std::int64_t kThinning = 8;
 constexpr double kAlikeShare = 0.25;
 // Fewer beams are not left of a scan.
 constexpr std::size_t kLeastBeams = 40;
+// Within so many sigmas of the sensor's reach what would differ most is missing.
+constexpr float kUncut = 2.0F;
 constexpr int kValueBinOffset = (127 - 19) * 8;  // exponent bias of a float, eight bins an octave
 
 int RangeBin(double range_m) {
@@ -67,6 +69,8 @@ void RangeNoise::Add(const Scan& scan) {
 
 void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
   const auto& beams = scan.beams;
+  const auto reach_m =
+      static_cast<float>(scan.max_range_m > 0.0 ? scan.max_range_m : kFarthestSeenM);
   for (std::size_t i = stride; i + stride < beams.size(); ++i) {
     const Beam& left = beams[i - stride];
     const Beam& middle = beams[i];
@@ -79,10 +83,16 @@ void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
     const float twice_cosine = 2.0F - gap * gap;
     const float difference =
         middle.range_m / left.range_m - twice_cosine + middle.range_m / right.range_m;
-    const int range_bin = std::clamp(RangeBin(middle.range_m), 0, kRangeBins - 1);
+    // The mean of three says nothing of their second difference, as one of them would.
+    const float mean_m = (left.range_m + middle.range_m + right.range_m) / 3.0F;
+    const auto range_bin =
+        static_cast<std::size_t>(std::clamp(RangeBin(mean_m), 0, kRangeBins - 1));
+    if (mean_m * (1.0F + kUncut * static_cast<float>(relative_sigma[range_bin])) > reach_m) {
+      continue;
+    }
     const int value_bin = std::clamp(ValueBin(std::abs(difference)), 0, kValueBins - 1);
-    ++histogram[static_cast<std::size_t>(range_bin)][static_cast<std::size_t>(value_bin)];
-    ++count[static_cast<std::size_t>(range_bin)];
+    ++histogram[range_bin][static_cast<std::size_t>(value_bin)];
+    ++count[range_bin];
   }
 }
 

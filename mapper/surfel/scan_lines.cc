@@ -23,10 +23,12 @@ constexpr double kReturnsLikeNoise = 4.0;
 // Of a line.
 constexpr double kFitted = 2.0;
 
-// Nearer the reach than this, in sigmas, too few returns are left to tell where the wall is.
-constexpr double kLeastSigmas = 0.5;
+// Beyond this, in sigmas before the reach, too few returns are left to tell where the wall is.
+constexpr double kLeastSigmas = 0.0;
+// Lines that tell less than so many returns far from the reach are there because noise put them.
+constexpr double kLeastInformation = 10.0;
 // A line that noise drew nearer is corrected by too little at first.
-constexpr int kCorrections = 3;
+constexpr int kCorrections = 6;
 
 // How many sigmas the line lies before the sensor's reach at this return.
 double SigmasWithinReach(const ScanLine& line, const ScanReturn& r, double max_range_m) {
@@ -170,16 +172,18 @@ std::optional<ScanLine> ScanLineFinder::WithinReach(const ScanLine& fitted,
     if (sigmas(span.begin) > kUncutSigmas && sigmas(span.end - 1) > kUncutSigmas) break;
     while (span.size() > 0 && sigmas(span.begin) < kLeastSigmas) ++span.begin;
     while (span.size() > 0 && sigmas(span.end - 1) < kLeastSigmas) --span.end;
-    if (span.size() < min_returns_) return std::nullopt;
     Sums sums;
+    double information = 0.0;
     for (int i = span.begin; i < span.end; ++i) {
       ScanReturn& r = returns[i];
       const double inverse_range = line.coefficients.dot(r.direction);
       const RangeCutoff cutoff = CutoffAt(sigmas(i));
       r.inverse_range = 1.0 / (r.range_m + cutoff.shortfall * r.relative_sigma / inverse_range);
       r.information = cutoff.information;
+      information += r.information;
       Add(r, inverse_range, sums);
     }
+    if (span.size() < min_returns_ || information < kLeastInformation) return std::nullopt;
     line = Fit(span, sums, returns);
   }
   return line;

@@ -70,7 +70,7 @@ TEST(RangeCutoff, AWallNearTheReachIsWhereItIs) {
     const double cut_m = ShortOfWall(wall_m, kReachM, false) - uncut_m;
     const double corrected_m = ShortOfWall(wall_m, kReachM, true) - uncut_m;
     EXPECT_GT(cut_m, 0.01) << wall_m;
-    EXPECT_LT(std::abs(corrected_m), (wall_m < 5.6 ? 0.2 : 0.6) * cut_m) << wall_m;
+    EXPECT_LT(std::abs(corrected_m), 0.2 * cut_m) << wall_m;
   }
 }
 

@@ -1,4 +1,4 @@
-// Errors that neighbouring beams share.
+// Errors that neighbouring beams share, and those that a sensor's reach hides.
 #include "mapper/surfel/range_noise.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include "mapper/core/median.h"
 #include "mapper/core/rng.h"
 #include "mapper/surfel/scan_surfels.h"
+#include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
 namespace {
@@ -53,6 +54,21 @@ TEST(RangeNoise, BeamsThatErrByThemselvesAllCount) {
     EXPECT_EQ(noise.stride(), 1) << i;
   }
   EXPECT_NEAR(noise.RelativeSigma(kWallM, 1), kSigma, 0.1 * kSigma);
+}
+
+// The longest ranges of a wall near the sensor's reach are missing, so what is left differs less.
+TEST(RangeNoise, IsTheSameNearTheSensorsReach) {
+  constexpr double kRelative = 0.03;
+  PlanarLaser laser;
+  laser.max_range_m = 6.0;
+  laser.sigma_of_range = kRelative;
+  RangeNoise noise;
+  for (std::uint32_t frame = 0; frame < 240; ++frame) {
+    const double wall_m = 4.0 + 0.01 * frame;
+    noise.Add(ScanOf({{{wall_m, -8.0}, {wall_m, 8.0}}}, {}, laser, 3, frame));
+  }
+  EXPECT_NEAR(noise.RelativeSigma(4.0, 1), kRelative, 0.04 * kRelative);
+  EXPECT_NEAR(noise.RelativeSigma(5.9, 1), kRelative, 0.04 * kRelative);
 }
 
 TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
