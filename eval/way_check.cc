@@ -1,6 +1,11 @@
 #include "eval/way_check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/level.h"
 
 namespace depthgrid {
 namespace {
@@ -12,27 +17,85 @@ constexpr double kStretchM = 0.5;
 constexpr double kMostRatio = 1.3;
 constexpr double kLeastWayM = 2.0;
 
-Eigen::Vector2d PlaceOf(const Pose3& pose) { return pose.translation.head<2>(); }
+// A robot may turn on the spot.
+constexpr double kStretchRad = 0.5;
+constexpr double kLeastTurnRad = 0.5 * kPi;
+// Cosines between the motions of SLAM and the map: of turns and ways 0.99 and more where all is
+// right; -1.00 and 0.93 of mirrored scans, -1.00 and 0.35 where headings had the other sign, 1.00
+// and 0.10 where x and y were swapped (a laser in a living room).
+constexpr double kSame = 0.5;
+
+// From the first frame of a stretch to its last, in base axes of the first.
+struct Stretch {
+  Pose2 slam;
+  Pose2 map;
+  double slam_turn_rad = 0.0;  // added up, whole turns too
+  double map_turn_rad = 0.0;
+
+  double longer_m() const { return std::max(slam.translation().norm(), map.translation().norm()); }
+  double larger_turn_rad() const {
+    return std::max(std::abs(slam_turn_rad), std::abs(map_turn_rad));
+  }
+};
+
+// Stretches that are `done`, one after the other; none across a correction of SLAM or where a pose
+// is missing.
+template <typename Done>
+std::vector<Stretch> StretchesOf(const MappingRun& run, Done done) {
+  std::vector<Stretch> stretches;
+  std::optional<Stretch> stretch;
+  Pose2 slam_begin, map_begin, slam_last, map_last;
+  int epoch = 0;
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    const auto& slam_pose = run.reports[i].slam_from_camera;
+    const auto& map_pose = run.result.map_from_camera[i];
+    if (!slam_pose || !map_pose || run.reports[i].slam_epoch != epoch) stretch.reset();
+    epoch = run.reports[i].slam_epoch;
+    if (!slam_pose || !map_pose) continue;
+    const Pose2 slam = BaseOf(*slam_pose);
+    const Pose2 map = BaseOf(*map_pose);
+    if (stretch) {
+      stretch->slam = Between(slam_begin, slam);
+      stretch->map = Between(map_begin, map);
+      stretch->slam_turn_rad += WrapAngle(slam.yaw_rad - slam_last.yaw_rad);
+      stretch->map_turn_rad += WrapAngle(map.yaw_rad - map_last.yaw_rad);
+    }
+    slam_last = slam;
+    map_last = map;
+    if (stretch && !done(*stretch)) continue;
+    if (stretch) stretches.push_back(*stretch);
+    stretch.emplace();
+    slam_begin = slam;
+    map_begin = map;
+  }
+  return stretches;
+}
+
+// The cosine of the angle between two sequences of numbers, 1 where one of them has none.
+struct Likeness {
+  double product = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+
+  void Add(double a, double b) {
+    product += a * b;
+    first += a * a;
+    second += b * b;
+  }
+  double Cosine() const {
+    const double lengths = std::sqrt(first * second);
+    return lengths > 0.0 ? product / lengths : 1.0;
+  }
+};
 
 }  // namespace
 
 Ways WaysOf(const MappingRun& run) {
   Ways ways;
-  std::optional<std::size_t> begin;  // of the stretch
-  for (std::size_t i = 0; i < run.reports.size(); ++i) {
-    const auto& slam = run.reports[i].slam_from_camera;
-    const auto& map = run.result.map_from_camera[i];
-    if (!slam || !map || (begin && run.reports[*begin].slam_epoch != run.reports[i].slam_epoch)) {
-      begin.reset();
-    }
-    if (!slam || !map) continue;
-    if (!begin) begin = i;
-    const double slam_m = (PlaceOf(*slam) - PlaceOf(*run.reports[*begin].slam_from_camera)).norm();
-    const double map_m = (PlaceOf(*map) - PlaceOf(*run.result.map_from_camera[*begin])).norm();
-    if (std::max(slam_m, map_m) < kStretchM) continue;
-    ways.slam_m += slam_m;
-    ways.map_m += map_m;
-    begin = i;
+  const auto done = [](const Stretch& stretch) { return stretch.longer_m() >= kStretchM; };
+  for (const Stretch& stretch : StretchesOf(run, done)) {
+    ways.slam_m += stretch.slam.translation().norm();
+    ways.map_m += stretch.map.translation().norm();
   }
   return ways;
 }
@@ -42,6 +105,32 @@ std::optional<Ways> ScaleDoubt(const MappingRun& run) {
   const auto [least_m, most_m] = std::minmax(ways.slam_m, ways.map_m);
   if (most_m < kLeastWayM || most_m < kMostRatio * least_m) return {};
   return ways;
+}
+
+std::optional<WayFault> WayDoubt(const MappingRun& run) {
+  const auto done = [](const Stretch& stretch) {
+    return stretch.longer_m() >= kStretchM || stretch.larger_turn_rad() >= kStretchRad;
+  };
+  Likeness turns, ways, mirrored_ways;
+  double turn_rad = 0.0;
+  double way_m = 0.0;
+  for (const Stretch& stretch : StretchesOf(run, done)) {
+    const Pose2& slam = stretch.slam;
+    const Pose2& map = stretch.map;
+    turn_rad += stretch.larger_turn_rad();
+    way_m += stretch.longer_m();
+    turns.Add(stretch.slam_turn_rad, stretch.map_turn_rad);
+    ways.Add(slam.x_m, map.x_m);
+    ways.Add(slam.y_m, map.y_m);
+    mirrored_ways.Add(slam.x_m, map.x_m);
+    mirrored_ways.Add(-slam.y_m, map.y_m);
+  }
+  const bool turns_back = turn_rad >= kLeastTurnRad && turns.Cosine() < -kSame;
+  const bool goes_astray = way_m >= kLeastWayM && ways.Cosine() < kSame;
+  if (turns_back && mirrored_ways.Cosine() >= kSame) return WayFault::kMirroredScans;
+  if (turns_back) return WayFault::kTurns;
+  if (goes_astray) return WayFault::kDirections;
+  return {};
 }
 
 }  // namespace depthgrid

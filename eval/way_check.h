@@ -1,4 +1,4 @@
-// Whether SLAM and the scans agree on how far the camera went.
+// Whether SLAM and the scans agree on how far the camera went, and which way.
 #pragma once
 
 #include <optional>
@@ -20,5 +20,16 @@ Ways WaysOf(const MappingRun& run);
 // The ways, where they differ so much that one of the two scales is wrong: depth images read in
 // other units than they have, a monocular SLAM, wheels of another size. Nothing for short ways.
 std::optional<Ways> ScaleDoubt(const MappingRun& run);
+
+// What makes the two go different ways.
+enum class WayFault {
+  kMirroredScans,  // readings from the other side: both go the same way, but for left and right
+  kTurns,          // headings with the other sign
+  kDirections,     // x and y swapped, or headings counted from another axis
+};
+
+// Of planar sequences, whose scans say by themselves how the laser moves. Nothing for short ways
+// and, of turns, for less than a quarter turn.
+std::optional<WayFault> WayDoubt(const MappingRun& run);
 
 }  // namespace depthgrid

@@ -159,6 +159,9 @@ std::string PitchOf(const PoseDoubt& doubt) {
                      doubt.down_rad > 0.0 ? "below" : "above");
 }
 
+// A slow camera moves a centimetre in it.
+constexpr double kSureOfTimeS = 0.04;
+
 // What is to be done about it: the poses are mapped as they were read.
 std::string RemedyOf(const PoseDoubt& doubt) {
   switch (doubt.reading) {
@@ -198,8 +201,10 @@ std::string RemedyOf(const PoseDoubt& doubt) {
     case PoseReading::kShifted:
       break;
   }
-  return fmt::format("with other stamps: --set sequence.recording.time_offset_s={:.2f}",
-                     doubt.time_offset_s);
+  const std::string setting = fmt::format(
+      "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
+  if (doubt.time_unsure_s < kSureOfTimeS) return setting;
+  return fmt::format("{}, {:.2f} s more or less fit alike", setting, doubt.time_unsure_s);
 }
 
 void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
@@ -227,6 +232,25 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
       arguments.input, ways->slam_m, ways->map_m, fault));
 }
 
+// Of laser logs: what the matches say of the odometry's directions, or these of the scans.
+void CheckDirections(const MapArguments& arguments, const MappingRun& run,
+                     std::vector<std::string>& warnings) {
+  if (run.camera) return;
+  const auto fault = WayDoubt(run);
+  if (!fault) return;
+  const char* what =
+      "the odometry goes other ways than the scans: are x and y swapped, or headings "
+      "counted from another axis than x?";
+  if (*fault == WayFault::kTurns) {
+    what = "the odometry's headings turn the other way than the scans: is their sign wrong?";
+  } else if (*fault == WayFault::kMirroredScans) {
+    what =
+        "the scans turn the other way than the odometry, so the map is mirrored: is the laser "
+        "mounted upside down? --set sequence.laser.upside_down=true";
+  }
+  warnings.push_back(arguments.input + ": " + what);
+}
+
 // A map of poses that nothing checked looks like any other.
 void CheckMatches(const MapArguments& arguments, const MapSettings& settings, const MappingRun& run,
                   std::vector<std::string>& warnings) {
@@ -237,9 +261,10 @@ void CheckMatches(const MapArguments& arguments, const MapSettings& settings, co
   if (!run.camera && SawNothing(run)) {
     const CarmenLogOptions& laser = settings.sequence.laser;
     warnings.push_back(
-        fmt::format("{}: no scan has a return between {:g} and {:g} m (sequence.laser.min_range_m, "
-                    "max_range_m)",
-                    arguments.input, laser.min_range_m, laser.max_range_m));
+        fmt::format("{}: no scan has a return between {:g} m (sequence.laser.min_range_m) and {}",
+                    arguments.input, laser.min_range_m,
+                    laser.max_range_m > 0.0 ? fmt::format("{:g} m (max_range_m)", laser.max_range_m)
+                                            : "the log's own maximum, 80 m at most (max_range_m)"));
   }
   const FusionOptions& fusion = settings.mapper.fusion;
   const auto& reports = run.reports;
@@ -317,6 +342,7 @@ void Map(const MapArguments& given) {
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
+  CheckDirections(arguments, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
   if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;

@@ -17,6 +17,9 @@ constexpr double kSameRangeM = 1e-3;
 constexpr double kSuspiciousShare = 0.01;
 constexpr std::int64_t kFewestSuspicious = 20;
 
+// A laser writes about the same for each that has no return; what it measures differs by more.
+constexpr double kAlikeRatio = 1.05;
+
 // No robot turns by half a turn between two scans, or by a whole one a second; in degrees, taken
 // for radians, a slow one does. Small steps are left aside: stamps may be nearly the same.
 constexpr double kFastestTurnRadPerS = 2.0 * kPi;
@@ -50,8 +53,14 @@ void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, bool knows_fov
 }
 
 void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int line_number) {
+  no_return_m_ = std::max(no_return_m_, no_return_m);
   readings_ += static_cast<std::int64_t>(scan.range_m.size());
   for (const double range_m : scan.range_m) {
+    if (range_m > 0.0 && range_m < shortest_m_) {
+      shortest_m_ = range_m;
+      shortest_line_ = line_number;
+    }
+    if (range_m > longest_m_) longest_m_ = range_m;
     // Negated for NaN.
     if (!(range_m < no_return_m) || !(range_m > largest_m_ - kSameRangeM)) continue;
     if (range_m > largest_m_ + kSameRangeM) {
@@ -93,6 +102,12 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
         "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.3f} takes them for "
         "none",
         path, largest_line_, largest_count_, readings_, largest_m_, setting_m));
+  }
+  if (shortest_m_ >= no_return_m_ && longest_m_ > kAlikeRatio * shortest_m_) {
+    warnings.push_back(fmt::format(
+        "{}:{}: the shortest of {} readings is {:g}, and from {:g} m on a reading is no return "
+        "(sequence.laser.max_range_m): are they in metres?",
+        path, shortest_line_, readings_, shortest_m_, no_return_m_));
   }
   if (beyond_a_turn_ && impossible_steps_ >= kFewestImpossibleSteps &&
       impossible_steps_ >= kImpossibleShare * steps_) {

@@ -1,8 +1,9 @@
 // What may be wrong with a laser log although each of its lines can be read: no-returns that look
-// like walls, headings in degrees, a scanner that is no half circle.
+// like walls, ranges that are not in metres, headings in degrees, a scanner that is no half circle.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ class CarmenCheck {
   std::int64_t largest_count_ = 0;  // readings as large as the largest hit
   double largest_m_ = 0.0;
   int largest_line_ = 0;
+  double shortest_m_ = std::numeric_limits<double>::infinity();
+  int shortest_line_ = 0;
+  double longest_m_ = 0.0;
+  double no_return_m_ = 0.0;
 
   struct Heading {
     double yaw_rad = 0.0;

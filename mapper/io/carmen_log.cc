@@ -303,6 +303,7 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
            "readings from here on are no return; 0 takes the log's own maximum, or 80");
   v.Number("fov_deg", fov_deg, {0.0, 360.0},
            "degrees from the first to the last reading of a FLASER line; 0: a half circle");
+  v.Flag("upside_down", upside_down, "whether the readings are written from left to right");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
@@ -318,8 +319,10 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
   scan.beams.reserve(line.range_m.size());
   for (std::size_t i = 0; i < line.range_m.size(); ++i) {
     const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
-    scan.beams.push_back(BeamOf(bearing_rad, line.range_m[i], reach, options));
+    const double sign = options.upside_down ? -1.0 : 1.0;
+    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
   }
+  if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
   NarrowGaps(scan, options.no_return_gap_m);
   return scan;
 }

@@ -22,6 +22,8 @@ struct CarmenLogOptions {
   // What a FLASER line's readings span from the first to the last, half of it to either side; 0 is
   // the SICK's half circle.
   double fov_deg = 0.0;
+  // A laser mounted upside down writes from left to right what others write from right to left.
+  bool upside_down = false;
   // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
   double min_range_m = 0.1;
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;

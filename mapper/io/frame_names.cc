@@ -2,16 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mapper/core/counted.h"
 
 namespace depthgrid {
+namespace {
+
+// Spans that differ by more are of other units.
+constexpr double kMostSpanRatio = 100.0;
+
+std::string RemedyOf(const FrameNames& names, double first_pose_s, double last_pose_s) {
+  const double first_s = names.stamps_s.front();
+  const double last_s = names.stamps_s.back();
+  const auto [least_s, most_s] = std::minmax({last_s - first_s, last_pose_s - first_pose_s});
+  if (least_s > 0.0 && most_s > kMostSpanRatio * least_s) return "are both in seconds?";
+  const bool overlap = first_pose_s <= last_s && first_s <= last_pose_s;
+  if (!overlap) {
+    return fmt::format(
+        "--set sequence.recording.time_offset_s={:.3f} lays the first of both together",
+        names.time_offset_s + first_pose_s - first_s);
+  }
+  return "--set sequence.recording.interpolate_poses=true goes between poses, those up to "
+         "max_interpolation_gap_s apart";
+}
+
+}  // namespace
 
 std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s) {
   const std::string added =
       names.time_offset_s == 0.0 ? "" : fmt::format(" ({:g} s added)", names.time_offset_s);
-  return fmt::format("images from {:.3f} to {:.3f} s{}, poses from {:.3f} to {:.3f} s",
-                     names.stamps_s.front(), names.stamps_s.back(), added, first_pose_s,
-                     last_pose_s);
+  const double first_s = names.stamps_s.front();
+  const double last_s = names.stamps_s.back();
+  return fmt::format("images from {:.3f} to {:.3f} s{}, poses from {:.3f} to {:.3f} s; {}", first_s,
+                     last_s, added, first_pose_s, last_pose_s,
+                     RemedyOf(names, first_pose_s, last_pose_s));
 }
 
 std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,

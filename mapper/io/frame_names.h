@@ -23,8 +23,8 @@ struct FrameNames {
   }
 };
 
-// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", and what was added to the images'.
-// `names` has frames.
+// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', and
+// what may be done about it. `names` has frames.
 std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s);
 
 // Whether so few frames have a pose that it is to be said why.

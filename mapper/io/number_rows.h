@@ -19,6 +19,7 @@ std::string_view WithoutByteOrderMark(std::string_view text);
 // The lines of `text` that are neither empty nor `#` comments, split at spaces, tabs and commas.
 // Windows line ends and a byte order mark are ignored. The views point into `text`.
 std::vector<TextRow> SplitRows(std::string_view text);
+std::vector<TextRow> SplitRows(std::string&& text) = delete;  // the rows are views of it
 
 // The fields of one line of CSV, empty ones included.
 std::vector<std::string_view> SplitAtCommas(std::string_view line);

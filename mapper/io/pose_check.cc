@@ -29,6 +29,10 @@ constexpr double kClearlyBetter = 0.6;
 constexpr double kMostShiftS = 5.0;
 constexpr double kCoarseShiftS = 0.1;
 constexpr double kFineShiftS = 0.01;
+// Shifts that fit so much worse than the best fit alike: while nothing turns and no speed changes,
+// poses of a moment later say the same.
+constexpr double kFitsAlike = 1.02;
+constexpr double kMostUnsureS = 1.0;
 
 // Depth or poses in wrong units: up to a thousand times.
 constexpr double kCoarseScale = 1.15;
@@ -160,6 +164,7 @@ class BestReading {
     TryShifts(0.0, kCoarseShiftS, kMostShiftS);
     if (best_.reading != PoseReading::kShifted) return;
     TryShifts(best_.time_offset_s - as_given_.time_offset_s, kFineShiftS, kCoarseShiftS);
+    TakeMiddleOfShifts();
   }
   void TryScales() {
     const auto scaled = [&](double scale) {
@@ -200,6 +205,23 @@ class BestReading {
       doubt.time_offset_s += shift_s;
       Try(doubt, {AsGiven, camera_, shift_s});
     }
+  }
+  void TakeMiddleOfShifts() {
+    const double best_s = best_.time_offset_s - as_given_.time_offset_s;
+    const auto reach_s = [&](double step_s) {
+      const int most = static_cast<int>(std::lround(kMostUnsureS / kFineShiftS));
+      int k = 0;
+      while (k < most) {
+        const auto misfit = fits_.Misfit({AsGiven, camera_, best_s + (k + 1) * step_s}, least_);
+        if (!misfit || *misfit > kFitsAlike * best_.better_misfit) break;
+        ++k;
+      }
+      return k * step_s;
+    };
+    const double later_s = reach_s(kFineShiftS);
+    const double earlier_s = reach_s(-kFineShiftS);
+    best_.time_offset_s += 0.5 * (later_s + earlier_s);
+    best_.time_unsure_s = 0.5 * (later_s - earlier_s);
   }
   // By factors of `coarse` up to `most` either way, and by fine ones about the best of them.
   template <typename AttemptOf>

@@ -40,6 +40,7 @@ enum class PoseReading {
 struct PoseDoubt {
   PoseReading reading = PoseReading::kWFirst;  // with which the images fit
   double time_offset_s = 0.0;                  // RecordingOptions' own, with which they fit
+  double time_unsure_s = 0.0;                  // so much to either side fits alike
   // The poses' positions (kScaled), the focal lengths (kFocal) or all four of the camera's numbers
   // (kImageSize) times this fit the images.
   double scale = 1.0;

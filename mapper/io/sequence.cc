@@ -120,6 +120,7 @@ void FindCorrections(const std::string& path, DepthSequence& sequence,
   const std::vector<int> jumps = FindJumps(slam.live, {});
   if (const auto doubt = DoubtOf(slam.live, jumps)) {
     sequence.recording.warnings.push_back(path + ": " + *doubt);
+    return;  // these are no corrections
   }
   if (jumps.empty()) return;
   notes.push_back(fmt::format("the poses jump at {}: no motion is taken there",

@@ -116,12 +116,13 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
   SlamOutput& slam = input.slam;
   const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
   const std::vector<int> jumps = FindJumps(slam.live, revised);
+  if (const auto doubt = DoubtOf(slam.live, jumps)) {
+    input.warnings.push_back(paths.live + ": " + *doubt);
+    return;  // these are no corrections
+  }
   if (!jumps.empty()) {
     input.notes.push_back(fmt::format("SLAM corrected itself at {} (jumps of its live poses)",
                                       Counted(jumps.size(), "frame")));
-  }
-  if (const auto doubt = DoubtOf(slam.live, jumps)) {
-    input.warnings.push_back(paths.live + ": " + *doubt);
   }
   StartEpochs(jumps, slam.live);
   if (!paths.loops.empty() || paths.final.empty()) return;

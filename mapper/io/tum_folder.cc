@@ -203,7 +203,8 @@ std::set<std::string> TumFolderWriter::FilesIn(const std::string& folder) {
     const std::string list = Joined(folder, kind + ".txt");
     if (!fs::is_regular_file(list)) continue;
     bool has_others = false;
-    for (const TextRow& row : SplitRows(ReadFile(list))) {
+    const std::string text = ReadFile(list);
+    for (const TextRow& row : SplitRows(text)) {
       const std::string image = ImageName(kind, ParseNumber(row.fields.front()).value_or(0.0));
       if (row.fields.size() == 2 && row.fields[1] == image) {
         files.insert(image);

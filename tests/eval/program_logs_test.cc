@@ -15,21 +15,39 @@ using ::testing::Not;
 
 using ProgramLogs = ProgramTest;
 
-// There and back along a room of 6 x 4 m, its odometry in units of `odometry_scale` metres.
+// In a room of 6 x 4 m.
+double RangeM(double x_m, double y_m, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  const double along_x_m = (c > 0.0 ? 6.0 - x_m : x_m) / std::max(std::abs(c), 1e-9);
+  return std::min(along_x_m, (s > 0.0 ? 4.0 - y_m : y_m) / std::max(std::abs(s), 1e-9));
+}
+
+// There and back along the room, its odometry in units of `odometry_scale` metres.
 std::string ThereAndBack(double odometry_scale) {
-  const auto range_m = [](double x_m, double y_m, double angle_rad) {
-    const double c = std::cos(angle_rad);
-    const double s = std::sin(angle_rad);
-    const double along_x_m = (c > 0.0 ? 6.0 - x_m : x_m) / std::max(std::abs(c), 1e-9);
-    return std::min(along_x_m, (s > 0.0 ? 4.0 - y_m : y_m) / std::max(std::abs(s), 1e-9));
-  };
   std::string log;
   for (int i = 0; i <= 40; ++i) {
     const double x_m = 1.0 + 0.1 * (i <= 20 ? i : 40 - i);
     log += "FLASER 181";
     for (int k = 0; k <= 180; ++k)
-      log += fmt::format(" {:.3f}", range_m(x_m, 1.0, (k - 90) * kPi / 180.0));
+      log += fmt::format(" {:.3f}", RangeM(x_m, 1.0, (k - 90) * kPi / 180.0));
     log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", odometry_scale * x_m, i);
+  }
+  return log;
+}
+
+// Half round the room, by a laser whose readings are written from left to right.
+std::string HalfRoundUpsideDown() {
+  std::string log;
+  for (int i = 0; i <= 120; ++i) {
+    const double at_rad = i * kPi / 120.0;
+    const double x_m = 3.0 + std::sin(at_rad);
+    const double y_m = 2.0 - std::cos(at_rad);
+    log += "FLASER 181";
+    for (int k = 180; k >= 0; --k)
+      log += fmt::format(" {:.3f}", RangeM(x_m, y_m, at_rad + (k - 90) * kPi / 180.0));
+    log += fmt::format(" {0:.3f} {1:.3f} {2:.4f} {0:.3f} {1:.3f} {2:.4f} {3} host 0\n", x_m, y_m,
+                       at_rad, i);
   }
   return log;
 }
@@ -70,6 +88,17 @@ TEST_F(ProgramLogs, OdometryOfAnotherScaleIsSaid) {
   EXPECT_THAT(outcome.err, HasSubstr("the odometry's scale or the laser's is wrong"));
   Write("right.log", ThereAndBack(1.0));
   EXPECT_EQ(Program("map right.log -o out2").err, "");
+}
+
+TEST_F(ProgramLogs, ALaserMountedUpsideDownIsSaidAndSettled) {
+  Write("robot.log", HalfRoundUpsideDown());
+  EXPECT_THAT(Program("map robot.log -o out").err,
+              HasSubstr("robot.log: the scans turn the other way than the odometry, so the map is "
+                        "mirrored: is the laser mounted upside down? --set "
+                        "sequence.laser.upside_down=true\n"));
+  const Outcome settled = Program("map robot.log -o out2 --set sequence.laser.upside_down=true");
+  EXPECT_EQ(settled.exit_code, 0);
+  EXPECT_EQ(settled.err, "");
 }
 
 TEST_F(ProgramLogs, ThatNothingWasMatchedIsSaid) {

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/level.h"
+
 namespace depthgrid {
 namespace {
 
@@ -19,6 +24,60 @@ MappingRun Straight(int frames, double scale) {
     run.result.map_from_camera.emplace_back(map);
   }
   return run;
+}
+
+// The map says that a laser drives along a circle of 1 m radius for `turn_rad`; SLAM's poses are
+// what `slam_of` makes of that.
+template <typename SlamOf>
+MappingRun Circle(double turn_rad, SlamOf slam_of) {
+  MappingRun run;
+  constexpr int kFrames = 120;
+  for (int i = 0; i <= kFrames; ++i) {
+    const double at_rad = turn_rad * i / kFrames;
+    const Pose2 map = {std::sin(at_rad), 1.0 - std::cos(at_rad), WrapAngle(at_rad)};
+    FrameReport report;
+    report.slam_from_camera = CameraOf(slam_of(map), 0.0);
+    run.reports.push_back(report);
+    run.result.map_from_camera.emplace_back(CameraOf(map, 0.0));
+  }
+  return run;
+}
+
+constexpr double kRoundRad = 2.0 * kPi;
+
+TEST(WayCheck, TellsWhatMakesTwoWaysDiffer) {
+  const auto same = [](const Pose2& p) { return p; };
+  const auto elsewhere = [](const Pose2& p) { return Pose2{-3.0, 5.0, 2.0} * p; };
+  const auto drifts = [](const Pose2& p) { return Pose2{1.2 * p.x_m, p.y_m, 0.9 * p.yaw_rad}; };
+  EXPECT_FALSE(WayDoubt(Circle(kRoundRad, same)));
+  EXPECT_FALSE(WayDoubt(Circle(kRoundRad, elsewhere)));
+  EXPECT_FALSE(WayDoubt(Circle(kPi, drifts)));
+  const auto mirrored = [](const Pose2& p) { return Pose2{p.x_m, -p.y_m, -p.yaw_rad}; };
+  EXPECT_EQ(WayDoubt(Circle(kRoundRad, mirrored)), WayFault::kMirroredScans);
+  const auto turned_back = [](const Pose2& p) { return Pose2{p.x_m, p.y_m, -p.yaw_rad}; };
+  EXPECT_EQ(WayDoubt(Circle(kRoundRad, turned_back)), WayFault::kTurns);
+  const auto swapped = [](const Pose2& p) { return Pose2{p.y_m, p.x_m, p.yaw_rad}; };
+  EXPECT_EQ(WayDoubt(Circle(kRoundRad, swapped)), WayFault::kDirections);
+  const auto from_y = [](const Pose2& p) { return Pose2{p.x_m, p.y_m, p.yaw_rad - 0.5 * kPi}; };
+  EXPECT_EQ(WayDoubt(Circle(kRoundRad, from_y)), WayFault::kDirections);
+}
+
+TEST(WayCheck, TellsNothingOfAShortWay) {
+  const auto mirrored = [](const Pose2& p) { return Pose2{p.x_m, -p.y_m, -p.yaw_rad}; };
+  EXPECT_FALSE(WayDoubt(Circle(0.2 * kPi, mirrored)));
+  EXPECT_FALSE(WayDoubt(MappingRun{}));
+}
+
+// On the spot.
+TEST(WayCheck, TurnsAloneTellOfMirroredScans) {
+  MappingRun run;
+  for (int i = 0; i < 100; ++i) {
+    FrameReport report;
+    report.slam_from_camera = CameraOf({0.0, 0.0, 0.1 * i}, 0.0);
+    run.reports.push_back(report);
+    run.result.map_from_camera.emplace_back(CameraOf({0.0, 0.0, -0.1 * i}, 0.0));
+  }
+  EXPECT_EQ(WayDoubt(run), WayFault::kMirroredScans);
 }
 
 TEST(WayCheck, AddsUpStretches) {

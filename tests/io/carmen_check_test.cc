@@ -86,6 +86,18 @@ std::string LogOfTurn(double rate, double wrap_at) {
   return log.str();
 }
 
+TEST(CarmenCheck, RangesThatAreNoMetresAreSaid) {
+  EXPECT_THAT(WarningsOf("FLASER 3 2340 2350 0 0 0 0 0 0 0 1 h 1\n"
+                         "FLASER 3 2140 3350 8190 0 0 0 0 0 0 2 h 2\n"),
+              HasSubstr(":2: the shortest of 6 readings is 2140, and from 80 m on a reading is no "
+                        "return (sequence.laser.max_range_m): are they in metres?"));
+  // Nothing within reach, or one return.
+  const char* said = "are they in metres?";
+  EXPECT_THAT(WarningsOf("FLASER 3 81.83 81.91 0 0 0 0 0 0 0 1 h 1\n"),
+              testing::Not(HasSubstr(said)));
+  EXPECT_THAT(WarningsOf("FLASER 3 2340 79 0 0 0 0 0 0 0 1 h 1\n"), testing::Not(HasSubstr(said)));
+}
+
 TEST(CarmenCheck, HeadingsInDegreesAreSaid) {
   constexpr const char* kDoubt = "are they in degrees?";
   for (const double rate_deg : {1.0, 3.0, 6.0, 10.0}) {

@@ -101,6 +101,22 @@ TEST(CarmenLog, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
   EXPECT_EQ(ScanOf(line, wide).beams[1].clear_to_m, 5.0F);
 }
 
+TEST(CarmenLog, ALaserUpsideDownIsReadFromLeftToRight) {
+  CarmenScan line;
+  line.first_bearing_rad = -0.1;
+  line.bearing_step_rad = 0.1;
+  line.range_m = {1, 2, 3, 4};
+  CarmenLogOptions options;
+  options.upside_down = true;
+  const Scan scan = ScanOf(line, options);
+  ASSERT_EQ(scan.beams.size(), 4U);
+  for (int i = 0; i < 4; ++i) {
+    const Beam& beam = scan.beams[static_cast<std::size_t>(i)];
+    EXPECT_FLOAT_EQ(beam.range_m, static_cast<float>(4 - i));
+    EXPECT_NEAR(beam.bearing_rad, -0.2 + 0.1 * i, 1e-6);
+  }
+}
+
 TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
   const std::string good = kRobotLaser;
   std::string text = good;

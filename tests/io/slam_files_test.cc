@@ -129,7 +129,7 @@ TEST_F(SlamFiles, PosesOfHardlyAnyFrameAreSaidWithTheStamps) {
   WriteTrajectory(Paths().live, nanoseconds);
   const std::string said =
       Paths().live + ": gives 1 of 12 frames a pose: images from 0.000 to 0.367 s, poses from " +
-      "0.000 to 366667000.000 s";
+      "0.000 to 366667000.000 s; are both in seconds?";
   for (const bool interpolate : {false, true}) {
     const SlamInput input =
         ReadSlamFiles({Paths().live, "", ""}, {Stamps(example)}, {0.02, interpolate, 0.2});

@@ -224,7 +224,12 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
   };
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(125e6, 1.0), PoseAt(375e6, 2.0)}),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
-                                    "poses from 0.000 to 375000000.000 s"));
+                                    "poses from 0.000 to 375000000.000 s; are both in seconds?"));
+  EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)}),
+              ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
+                                    "poses from 0.000 to 0.300 s; --set "
+                                    "sequence.recording.interpolate_poses=true goes between poses, "
+                                    "those up to max_interpolation_gap_s apart"));
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
 }
@@ -264,7 +269,8 @@ TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
               OpenTumFolder(folder_, SlamOutputOf({PoseAt(0.0, 0.0), PoseAt(0.375, 1.0)}), options);
             }),
             "~: no pose within 0.02 s of any image: images from 2.500 to 2.875 s (2.5 s added), "
-            "poses from 0.000 to 0.375 s");
+            "poses from 0.000 to 0.375 s; --set sequence.recording.time_offset_s=0.000 lays the "
+            "first of both together");
 }
 
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
@@ -272,7 +278,8 @@ TEST_F(TumFolderTest, OneClearLineForEachFault) {
   const Trajectory truth = WriteSequence();
   EXPECT_EQ(OpenError({PoseAt(7, 0)}),
             "~: no pose within 0.02 s of any image: images from 0.000 to 0.375 s, poses from 7.000 "
-            "to 7.000 s");
+            "to 7.000 s; --set sequence.recording.time_offset_s=7.000 lays the first of both "
+            "together");
   EXPECT_EQ(OpenError({}), "~: the trajectory for it holds no pose");
   WriteCameraFile(Path("camera.yaml"), {{8, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0});
   EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: is 4x3 pixels, the camera 8x3");
