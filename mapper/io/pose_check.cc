@@ -31,7 +31,7 @@ constexpr double kCoarseShiftS = 0.1;
 constexpr double kFineShiftS = 0.01;
 // Shifts that fit so much worse than the best fit alike: while nothing turns and no speed changes,
 // poses of a moment later say the same.
-constexpr double kFitsAlike = 1.02;
+constexpr double kFitsAlike = 1.005;
 constexpr double kMostUnsureS = 1.0;
 
 // Depth or poses in wrong units: up to a thousand times.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kFrameS = 0.1;
 constexpr int kFrames = 120;
+constexpr int kFramesAround = 50;  // poses without images
 const PinholeCamera kCamera{80, 60, 60.2, 60.0, 39.5, 29.5, {}};
 
 Pose3 TruePose(double time_s) {
@@ -19,13 +20,15 @@ Pose3 TruePose(double time_s) {
                       0.3 + 0.1 * std::sin(0.9 * time_s), 0.1 * std::cos(1.3 * time_s));
 }
 
+using PoseAt = Pose3 (*)(double time_s);
+
 // Half a second apart, `noise` of the depth.
-std::vector<ImagePair> Pairs(double noise) {
+std::vector<ImagePair> Pairs(double noise, PoseAt pose_at = TruePose) {
   AnalyticRoom room;
   room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.75}}, {{-2.6, 0.8, 0.0}, {-1.4, 2.2, 1.1}}};
   RandomStream random(4, RandomStage::kTest);
   const auto image_at = [&](double time_s) {
-    auto image = std::make_shared<DepthImage>(room.Render(kCamera, TruePose(time_s)));
+    auto image = std::make_shared<DepthImage>(room.Render(kCamera, pose_at(time_s)));
     for (float& z_m : image->z_m) z_m *= static_cast<float>(1.0 + noise * random.Normal());
     return image;
   };
@@ -38,10 +41,11 @@ std::vector<ImagePair> Pairs(double noise) {
 }
 
 // What a file says whose poses are `written` and whose clock is ahead by `ahead_s`.
-std::vector<SlamPose> Given(const PoseChange& written, double ahead_s = 0.0) {
+std::vector<SlamPose> Given(const PoseChange& written, double ahead_s = 0.0,
+                            PoseAt pose_at = TruePose) {
   std::vector<SlamPose> live;
-  for (int i = 0; i < kFrames; ++i) {
-    live.push_back({i * kFrameS, written(TruePose(i * kFrameS - ahead_s)), 0});
+  for (int i = -kFramesAround; i < kFrames + kFramesAround; ++i) {
+    live.push_back({i * kFrameS, written(pose_at(i * kFrameS - ahead_s)), 0});
   }
   return live;
 }
@@ -108,6 +112,23 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
   EXPECT_EQ(cases, 4);
 }
 
+// Stands, turns, and stands; all pairs lie where it turns, with time to spare on either side.
+Pose3 TurningOn(double time_s) {
+  const double first_s = 20 * kFrameS - 0.1, last_s = 95 * kFrameS + 0.5 + 0.3;
+  const double went_s = std::clamp(time_s, first_s, last_s) - first_s;
+  return TiltedCamera({0.5, 0.3, 0.4 * went_s}, 1.0, 0.2, 0.0);
+}
+
+TEST(PoseCheck, SaysHowUnsureAClockIsThatNothingTells) {
+  constexpr double kAheadS = -1.9;
+  const auto doubt =
+      DoubtOfPoses(Pairs(0.0, TurningOn), kCamera, Given(AsItIs, kAheadS, TurningOn), {});
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->reading, PoseReading::kShifted);
+  EXPECT_NEAR(doubt->time_unsure_s, 0.2, 0.05);
+  EXPECT_NEAR(doubt->time_offset_s, kAheadS, doubt->time_unsure_s);
+}
+
 TEST(PoseCheck, NamesAnotherClock) {
   const std::vector<ImagePair> pairs = Pairs(0.01);
   int cases = 0;
@@ -116,6 +137,7 @@ TEST(PoseCheck, NamesAnotherClock) {
     ASSERT_TRUE(doubt) << ahead_s;
     EXPECT_EQ(doubt->reading, PoseReading::kShifted);
     EXPECT_NEAR(doubt->time_offset_s, ahead_s, 0.03);
+    EXPECT_LT(doubt->time_unsure_s, 0.05);
     RecordingOptions mended;
     mended.time_offset_s = doubt->time_offset_s;
     EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), mended)) << ahead_s;
