@@ -46,7 +46,8 @@ struct Frame {
   std::optional<Pose3> slam_from_camera;
   // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
   // two poses is a motion only within an epoch, and a jump that is taken for one bends the map for
-  // good. A step that nothing drives (10 m, and 50 m for each second) begins one by itself.
+  // good. A step that the motion before does not lead to (mapper/core/slam_step.h) begins one by
+  // itself; corrections of less than 0.1 m go unseen.
   int slam_epoch = 0;
   // Reported with this frame, to be applied before its pose is used.
   std::vector<LoopClosure> loops;

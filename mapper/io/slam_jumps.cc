@@ -6,6 +6,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
+#include "mapper/core/slam_step.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
@@ -13,14 +14,6 @@ namespace {
 
 // Stamps of both trajectories are copies of the images'.
 constexpr double kSameFrameS = 0.005;
-// Measured on ORB-SLAM2 and Planar-SLAM runs: steps differ from the revised ones by up to 0.065 m
-// without an event, and by 0.15 to 0.38 m where a loop or relocalisation moved the poses.
-constexpr double kJumpM = 0.1;
-constexpr double kJumpRad = RadFromDeg(4.0);
-// What a hand or robot can change of its speed from one step to the next, for the test by the
-// motion around.
-constexpr double kAccelerationMps2 = 10.0;
-constexpr double kTurnAccelerationRadps2 = 30.0;
 // Steps on each side that say what motion is usual.
 constexpr int kStepsAround = 4;
 // So few poses can be far apart in truth.
@@ -52,14 +45,10 @@ std::vector<std::optional<Pose3>> FinalOf(const std::vector<SlamPose>& live,
   return found;
 }
 
-// A step from one posed frame to the next, as speeds.
 struct Step {
   int from = 0;  // positions in `live`
   int to = 0;
-  double duration_s = 0.0;
-  Pose3 motion;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();
+  SlamStep speeds;
 };
 
 // Seconds in a unit of the stamps: ICL-NUIM's are the images' numbers, recorded at 30 Hz.
@@ -77,47 +66,25 @@ std::vector<Step> StepsOf(const std::vector<SlamPose>& live) {
   for (std::size_t i = 0; i < live.size(); ++i) {
     if (!live[i].slam_from_camera) continue;
     if (before && live[i].stamp_s > live[*before].stamp_s) {
-      Step step{static_cast<int>(*before), static_cast<int>(i),
-                (live[i].stamp_s - live[*before].stamp_s) * unit_s,
-                Between(*live[*before].slam_from_camera, *live[i].slam_from_camera)};
-      step.velocity = step.motion.translation / step.duration_s;
-      step.turn_rate = LogRotation(step.motion.rotation) / step.duration_s;
-      steps.push_back(step);
+      const double duration_s = (live[i].stamp_s - live[*before].stamp_s) * unit_s;
+      steps.push_back(
+          {static_cast<int>(*before), static_cast<int>(i),
+           StepOf(*live[*before].slam_from_camera, *live[i].slam_from_camera, duration_s)});
     }
     before = i;
   }
   return steps;
 }
 
-template <typename Value>
-Eigen::Vector3d MedianAround(const std::vector<Step>& steps, std::size_t at, Value value) {
-  Eigen::Vector3d median = Eigen::Vector3d::Zero();
+bool IsNoMotion(const std::vector<Step>& steps, std::size_t at) {
   const std::size_t reach = kStepsAround;
-  const std::size_t begin = at > reach ? at - reach : 0;
+  if (steps.size() < reach) return false;
+  std::vector<SlamStep> around;
   const std::size_t end = std::min(at + reach + 1, steps.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i != at) values.push_back(value(steps[i])[axis]);
-    }
-    if (values.empty()) return median;
-    median[axis] = UpperMedian(std::move(values));
+  for (std::size_t i = at > reach ? at - reach : 0; i < end; ++i) {
+    if (i != at) around.push_back(steps[i].speeds);
   }
-  return median;
-}
-
-// The motion around does not lead here. Over a gap of lost frames nothing can be said.
-bool BreaksMotion(const std::vector<Step>& steps, std::size_t at) {
-  const Step& step = steps[at];
-  constexpr double kLongestStepS = 0.2;
-  if (steps.size() < kStepsAround || step.duration_s > kLongestStepS) return false;
-  const double dt_s = step.duration_s;
-  const Eigen::Vector3d velocity =
-      MedianAround(steps, at, [](const Step& s) { return s.velocity; });
-  const Eigen::Vector3d turn = MedianAround(steps, at, [](const Step& s) { return s.turn_rate; });
-  return (step.velocity - velocity).norm() * dt_s > kJumpM + kAccelerationMps2 * dt_s * dt_s ||
-         (step.turn_rate - turn).norm() * dt_s >
-             2.0 * kJumpRad + kTurnAccelerationRadps2 * dt_s * dt_s;
+  return BreaksMotion(steps[at].speeds, UsualOf(around));
 }
 
 // Lengths along the revised path, a frame without a pose keeping the one before.
@@ -166,10 +133,14 @@ std::vector<int> FindJumps(const std::vector<SlamPose>& live, const Trajectory& 
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const auto& from = revised[static_cast<std::size_t>(steps[i].from)];
     const auto& to = revised[static_cast<std::size_t>(steps[i].to)];
-    bool jump = BreaksMotion(steps, i);
+    bool jump = IsNoMotion(steps, i);
     if (from && to) {
-      const Pose3 difference = Between(Between(*from, *to), steps[i].motion);
-      jump |= difference.translation.norm() > kJumpM || Angle(difference.rotation) > kJumpRad;
+      const Pose3 live_motion =
+          Between(*live[static_cast<std::size_t>(steps[i].from)].slam_from_camera,
+                  *live[static_cast<std::size_t>(steps[i].to)].slam_from_camera);
+      const Pose3 difference = Between(Between(*from, *to), live_motion);
+      jump |=
+          difference.translation.norm() > kSlamJumpM || Angle(difference.rotation) > kSlamJumpRad;
     }
     if (jump) jumps.push_back(steps[i].to);
   }

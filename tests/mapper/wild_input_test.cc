@@ -82,6 +82,69 @@ TEST(FrameHistory, AStepThatNothingDrivesBeginsAnEpochAndSoDoesTheWayBack) {
   EXPECT_EQ(epochs, (std::vector<int>{0, 0, 1, 2, 2, 3}));
 }
 
+// Epochs of a camera on a straight way, at 30 Hz; `x_m(i)` is where SLAM has it.
+std::vector<int> EpochsOnAWay(int frames, const std::function<double(int)>& x_m,
+                              const std::function<double(int)>& stamp_s) {
+  FrameHistory history;
+  std::vector<int> epochs;
+  for (int i = 0; i < frames; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = stamp_s(i);
+    frame.slam_from_camera = CameraOf({x_m(i), 0.0, 0.0}, 0.0);
+    history.Start(frame);
+    epochs.push_back(history.newest().epoch);
+  }
+  return epochs;
+}
+
+TEST(FrameHistory, ACorrectionThatSlamDoesNotTellBeginsOneEpoch) {
+  const auto at_30_hz = [](int i) { return i / 30.0; };
+  for (const double jump_m : {0.2, -0.6, 3.0}) {
+    const auto corrected = [&](int i) { return 0.02 * i + (i < 20 ? 0.0 : jump_m); };
+    const std::vector<int> epochs = EpochsOnAWay(40, corrected, at_30_hz);
+    EXPECT_EQ(epochs[19], 0) << jump_m;
+    EXPECT_EQ(epochs[20], 1) << jump_m;
+    EXPECT_EQ(epochs.back(), 1) << jump_m;
+  }
+}
+
+TEST(FrameHistory, WhatAHandOrRobotDoesIsMotion) {
+  const auto at_30_hz = [](int i) { return i / 30.0; };
+  const auto starts_to_run = [](int i) { return std::max(0, i - 20) * 3.0 / 30.0; };
+  EXPECT_EQ(EpochsOnAWay(60, starts_to_run, at_30_hz).back(), 0);
+  const auto shaken = [](int i) { return 0.05 * (i % 2); };
+  EXPECT_EQ(EpochsOnAWay(60, shaken, at_30_hz).back(), 0);
+  // Lost for two seconds on the way.
+  const auto goes_on = [](int i) { return 0.5 * (i / 30.0 + (i < 20 ? 0.0 : 2.0)); };
+  const auto with_gap = [](int i) { return i / 30.0 + (i < 20 ? 0.0 : 2.0); };
+  EXPECT_EQ(EpochsOnAWay(60, goes_on, with_gap).back(), 0);
+  // At 2 m/s and 10 Hz, stamps in bunches.
+  const auto fast = [](int i) { return 0.2 * i; };
+  const auto bunched = [](int i) { return 0.1 * i + (i % 3 == 1 ? -0.09 : 0.0); };
+  EXPECT_EQ(EpochsOnAWay(60, fast, bunched).back(), 0);
+  // Faster than any hand from one frame to the next: taken for a correction, but only once.
+  const auto thrown = [](int i) { return std::max(0, i - 20) * 6.0 / 30.0; };
+  EXPECT_EQ(EpochsOnAWay(60, thrown, at_30_hz).back(), 1);
+}
+
+TEST(WildInput, ACorrectionThatSlamDoesNotTellBendsNothing) {
+  const auto correct = [](const Pose2& old_from_new, int epoch) {
+    return RunWith([=](Frame& frame) {
+      if (frame.index < kWild) return;
+      frame.slam_from_camera = ApplyPlanar(old_from_new, *frame.slam_from_camera);
+      frame.slam_epoch = epoch;
+    });
+  };
+  for (const Pose2& moved : {Pose2{0.3, -0.2, 0.0}, Pose2{-0.5, 0.4, 0.2}}) {
+    const WildRun told = correct(moved, 1), untold = correct(moved, 0);
+    EXPECT_LT(untold.worst_online_m, 0.03);
+    EXPECT_LT(untold.worst_m, 0.01);
+    EXPECT_EQ(untold.worst_online_m, told.worst_online_m);
+    EXPECT_EQ(untold.worst_m, told.worst_m);
+  }
+}
+
 TEST(WildInput, OnePoseFarAwayMovesNoOther) {
   for (const double off_m : {15.0, 1e4, 5e6}) {
     const WildRun run = RunWith([&](Frame& frame) {

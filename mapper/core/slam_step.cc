@@ -1,0 +1,55 @@
+#include "mapper/core/slam_step.h"
+
+#include <algorithm>
+
+namespace depthgrid {
+namespace {
+
+constexpr double kAccelerationMps2 = 10.0;
+constexpr double kTurnAccelerationRadps2 = 30.0;
+constexpr double kLongestStepS = 0.2;
+
+// The upper of the two middle ones where steps are even in number.
+template <typename Value>
+double MedianOf(std::span<SlamStep> steps, Value value) {
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end(),
+                   [&](const SlamStep& a, const SlamStep& b) { return value(a) < value(b); });
+  return value(*middle);
+}
+
+// In which the usual motion takes `dt_s`.
+bool BreaksWithin(double dt_s, const SlamStep& step, const SlamStep& usual) {
+  const Eigen::Vector3d off_m = step.velocity * step.duration_s - usual.velocity * dt_s;
+  const Eigen::Vector3d off_rad = step.turn_rate * step.duration_s - usual.turn_rate * dt_s;
+  return off_m.norm() > kSlamJumpM + kAccelerationMps2 * dt_s * dt_s ||
+         off_rad.norm() > 2.0 * kSlamJumpRad + kTurnAccelerationRadps2 * dt_s * dt_s;
+}
+
+}  // namespace
+
+SlamStep StepOf(const Pose3& slam_from_first, const Pose3& slam_from_second, double duration_s) {
+  const Pose3 motion = Between(slam_from_first, slam_from_second);
+  return {duration_s, motion.translation / duration_s, LogRotation(motion.rotation) / duration_s};
+}
+
+SlamStep UsualOf(std::span<SlamStep> steps) {
+  SlamStep usual;
+  if (steps.empty()) return usual;
+  usual.duration_s = MedianOf(steps, [](const SlamStep& step) { return step.duration_s; });
+  for (int axis = 0; axis < 3; ++axis) {
+    usual.velocity[axis] =
+        MedianOf(steps, [=](const SlamStep& step) { return step.velocity[axis]; });
+    usual.turn_rate[axis] =
+        MedianOf(steps, [=](const SlamStep& step) { return step.turn_rate[axis]; });
+  }
+  return usual;
+}
+
+bool BreaksMotion(const SlamStep& step, const SlamStep& usual) {
+  if (step.duration_s > kLongestStepS) return false;
+  return BreaksWithin(step.duration_s, step, usual) &&
+         BreaksWithin(std::max(step.duration_s, usual.duration_s), step, usual);
+}
+
+}  // namespace depthgrid
