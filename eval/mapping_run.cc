@@ -55,15 +55,14 @@ FrameRecorder::FrameRecorder(const MapperOptions& options,
                              const GainOracle& oracle, const MatchOracle& match_oracle)
     : start_(std::chrono::steady_clock::now()),
       frame_count_(frame_count),
-      mapper_(options, camera, ThreadCpuUs, oracle) {
+      mapper_(options, camera, {ThreadCpuUs, SteadyUs}, oracle) {
   mapper_.SetMatchOracle(match_oracle);
   run_.camera = camera;
 }
 
 void FrameRecorder::Add(const Frame& frame) {
-  const double before_us = ThreadCpuUs();
   run_.reports.push_back(mapper_.AddFrame(frame));
-  run_.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
+  run_.cpu_s += run_.reports.back().times.total_us * 1e-6;
   run_.loops.insert(run_.loops.end(), frame.loops.begin(), frame.loops.end());
   const int position = static_cast<int>(run_.reports.size()) - 1;
   if (frame.depth && IsSample(position, frame_count_)) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,7 +22,10 @@ class OrderedFrames {
   // asked for.
   OrderedFrames(int count, int threads, std::function<Item(int)> make)
       : count_(count), window_(kItemsAheadPerThread * threads), make_(std::move(make)) {
-    for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Work(); });
+    try {
+      for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Work(); });
+    } catch (const std::system_error&) {  // the machine gives no more threads: fewer do as well
+    }
   }
   ~OrderedFrames() {
     {

@@ -1,8 +1,14 @@
 #include "mapper/adjustment_rounds.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace depthgrid {
+namespace {
+
+constexpr double kNeverAgain = 2e9;  // frames
+
+}  // namespace
 
 void RoundOptions::Visit(OptionsVisitor& v) {
   v.Number("first_frames", first_frames, {0, 1e9}, "mapped frames before the first round; 0: none");
@@ -12,7 +18,7 @@ void RoundOptions::Visit(OptionsVisitor& v) {
 
 bool AdjustmentRounds::IsDue(int frames) {
   if (next_ == 0 || frames < next_ || frames > options_.last_frames) return false;
-  next_ = static_cast<int>(std::ceil(options_.growth * frames));
+  next_ = static_cast<int>(std::min(std::ceil(options_.growth * frames), kNeverAgain));
   return true;
 }
 

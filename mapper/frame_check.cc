@@ -115,6 +115,7 @@ void RequireSoundFinal(const std::vector<std::optional<Pose3>>& slam_final, std:
 
 void RequireSound(const PriorMap& prior) {
   const std::string place = "prior map";
+  if (prior.fixed && prior.frames.empty()) throw InputError(place, "is empty, must have frames");
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     const MappedFrame& frame = prior.frames[i];
     const std::string entry = place + ", entry " + std::to_string(i);

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include "mapper/core/error.h"
-#include "mapper/core/growth.h"
 #include "mapper/core/level.h"
 
 namespace depthgrid {
@@ -18,14 +16,6 @@ constexpr double kNearS = 0.5;
 constexpr double kSurpriseS = 0.3;
 // And over no more of its steps: it took no time then, but for a stamp's rounding.
 constexpr double kMostExtrapolatedSteps = 100.0;
-
-// What no robot or hand does: cars are slower, and stamps may repeat or go back.
-constexpr double kLongestStepM = 10.0;
-constexpr double kFastestMps = 50.0;
-// Of so few steps before it none is judged by what is usual.
-constexpr std::size_t kFewSteps = 6;
-// After a gap as long the motion may be another.
-constexpr double kForgottenS = 1.0;
 
 bool IsNear(const FrameHistory& history, const FrameRecord& record) {
   return history.newest().stamp_s - record.stamp_s <= kNearS;
@@ -39,44 +29,17 @@ constexpr int kFinalReachFrames = 300;
 
 }  // namespace
 
-bool RecentMotion::BreaksAt(const FrameRecord& record, const FrameRecord& last_posed) {
-  const double duration_s = record.stamp_s - last_posed.stamp_s;
-  if (!(duration_s < kForgottenS)) step_count_ = 0;
-  if (record.slam_epoch != last_posed.slam_epoch) return true;
-  const Pose3& last = *last_posed.slam_from_camera;
-  const double step_m = (record.slam_from_camera->translation - last.translation).norm();
-  if (step_m > kLongestStepM + kFastestMps * std::max(0.0, duration_s)) return true;
-  if (!(duration_s > 0.0)) return false;
-  const SlamStep step = StepOf(last, *record.slam_from_camera, duration_s);
-  auto recent = steps_;
-  const std::span known(recent.data(), std::min(step_count_, recent.size()));
-  if (known.size() >= kFewSteps && BreaksMotion(step, UsualOf(known))) {
-    step_count_ = 0;  // were it a motion after all, what was usual no longer is
-    return true;
-  }
-  steps_[step_count_++ % steps_.size()] = step;
-  return false;
-}
-
 void FrameHistory::Start(const Frame& frame) {
   const auto place = PlaceOf(frame.index);
   if (place != position_of_index_.end() && place->first == frame.index) {
     throw InputError("frame " + std::to_string(frame.index), "was given before");
   }
-  GrowGently(records_);
-  GrowGently(position_of_index_);
   position_of_index_.insert(PlaceOf(frame.index), {frame.index, records_.size()});
   FrameRecord record;
   record.index = frame.index;
   record.stamp_s = frame.stamp_s;
   record.slam_from_camera = frame.slam_from_camera;
-  record.slam_epoch = frame.slam_epoch;
-  if (last_posed_) {
-    const FrameRecord& last = records_[*last_posed_];
-    record.epoch = last.epoch;
-    if (record.slam_from_camera && motion_.BreaksAt(record, last)) ++record.epoch;
-  }
-  if (record.slam_from_camera) last_posed_ = records_.size();
+  record.epoch = epochs_.Of(frame);
   records_.push_back(record);
 }
 

@@ -2,13 +2,12 @@
 // was corrected.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "mapper/core/frame.h"
-#include "mapper/core/slam_step.h"
+#include "mapper/core/slam_epochs.h"
 #include "mapper/reference_map.h"
 #include "mapper/scan/stand_blend.h"
 
@@ -18,26 +17,11 @@ struct FrameRecord {
   int index = 0;  // Frame::index
   double stamp_s = 0.0;
   std::optional<Pose3> slam_from_camera;
-  int slam_epoch = 0;  // Frame::slam_epoch
-  // Counted here: another one where SLAM's changes and where a step is no motion (RecentMotion). A
-  // frame without a pose has that of the last one with a pose.
-  int epoch = 0;
+  int epoch = 0;       // as SlamEpochs counts
   int mapped = -1;      // position among the mapped frames, -1 if not inserted
   Pose2 map_from_slam;  // the correction as it was known at the time
   // Over the floor that is followed in the images; empty where it is not, and the pose's counts.
   std::optional<CameraStand> stand;
-};
-
-// SLAM's last steps, by which the next is judged: SLAM may correct itself without a word.
-class RecentMotion {
- public:
-  // Whether SLAM's motion from the last posed frame to this one is none: told by another
-  // Frame::slam_epoch, or a step that nothing drives. A motion becomes the newest step.
-  bool BreaksAt(const FrameRecord& record, const FrameRecord& last_posed);
-
- private:
-  std::array<SlamStep, 8> steps_;  // a ring
-  std::size_t step_count_ = 0;     // ever, since nothing was forgotten
 };
 
 class FrameHistory {
@@ -65,8 +49,7 @@ class FrameHistory {
   Positions::const_iterator PlaceOf(int frame_index) const;
 
   Positions position_of_index_;
-  std::optional<std::size_t> last_posed_;
-  RecentMotion motion_;
+  SlamEpochs epochs_;
 };
 
 // Where the newest frame is if the last motion goes on; `map_from_slam` is the correction of the

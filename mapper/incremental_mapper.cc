@@ -22,11 +22,11 @@ const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 }  // namespace
 
 IncrementalMapper::IncrementalMapper(const MapperOptions& options,
-                                     const std::optional<PinholeCamera>& camera, CpuClock clock,
+                                     const std::optional<PinholeCamera>& camera, FrameClocks clocks,
                                      GainOracle oracle) {
   RequireInRange(options, "mapper");
   if (camera) Validate(*camera, "camera");
-  state_ = std::make_unique<State>(options, camera, std::move(clock), std::move(oracle));
+  state_ = std::make_unique<State>(options, camera, std::move(clocks), std::move(oracle));
   if (options.fusion.mode == FusionMode::kOracle && !state_->oracle) {
     throw InputError("mapper.fusion.mode", "oracle needs an experiment that knows the truth");
   }
@@ -65,8 +65,9 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
 // The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   RequireSound(frame, state_->camera);
-  FrameReport report = state_->Begin(frame);
-  const StageTimer total(state_->clock, report.times.total_us);
+  FrameReport report;
+  const FrameTimer total(state_->clocks, report.times);
+  state_->Begin(frame, report);
   const FrameScans scans = state_->ScansOf(frame, report);
   state_->CloseLoops(frame, scans, report);
   if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
@@ -80,19 +81,17 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   return report;
 }
 
-FrameReport IncrementalMapper::State::Begin(const Frame& frame) {
+void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
   history.Start(frame);
-  FrameReport report;
   report.index = frame.index;
   report.stamp_s = frame.stamp_s;
   report.slam_from_camera = frame.slam_from_camera;
   report.slam_epoch = frame.slam_epoch;
   report.map_from_slam = filter.map_from_slam();
-  return report;
 }
 
 FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& report) {
-  const StageTimer timer(clock, report.times.scan_us);
+  const StageTimer timer(clocks, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
   if (scans.matched) report.beams = HitCount(*scans.matched);
   report.stand = scans.stand;
@@ -110,8 +109,12 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
 // that, stays where the motion before leads.
 void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
-  const StageTimer timer(clock, report.times.loops_us);
-  if (!reference || mapped.empty() || mapped.back().of_prior_map()) return;
+  const StageTimer timer(clocks, report.times.loops_us);
+  if (!reference) return;
+  if (mapped.empty() || mapped.back().of_prior_map()) {
+    report.loops_rejected = static_cast<int>(frame.loops.size());
+    return;
+  }
   if (frame.loops.empty()) {
     if (rounds.IsDue(mapped.size() - prior_frames)) AdjustBetweenFrames();
     return;
@@ -143,7 +146,7 @@ void IncrementalMapper::State::AdjustBetweenFrames() {
 
 // Those that the mapper finds itself. The frame's online estimate stays as it was given.
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
-  const StageTimer timer(clock, report.times.loops_us);
+  const StageTimer timer(clocks, report.times.loops_us);
   if (!loop_search || !(report.inserted || report.well_seen)) return;
   const std::vector<PlanarLoop> found =
       loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
@@ -156,22 +159,24 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
   if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
 }
 
-// The first match after a loss says whether the guess was near enough.
+// The first scan after a loss says whether the guess was near enough.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
+  if (const FrameRecord* last = history.PosedBefore(history.newest())) {
+    relocation.Lost(report.stamp_s - last->stamp_s);
+  }
+  if (report.beams == 0) return;  // nothing seen, nothing told
   const double share = report.match.found ? report.match.score : 0.0;
-  const FrameRecord* last = history.PosedBefore(history.newest());
-  const double lost_s = last == nullptr ? 0.0 : report.stamp_s - last->stamp_s;
-  if (relocation.Begins(lost_s, share, mapped.size())) {
+  if (relocation.Begins(share, mapped.size())) {
     reference->BeginPart(PartPlace::kGuessed);
-  } else {
+  } else if (report.match.found) {
     relocation.Explained(share);
   }
 }
 
 // All that was mapped since the loss moves to where it belongs.
 void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
-  const StageTimer timer(clock, report.times.loops_us);
+  const StageTimer timer(clocks, report.times.loops_us);
   if (!relocation.active() || !report.inserted) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
@@ -191,14 +196,20 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
 void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
                                       const Eigen::MatrixXd& covariance,
                                       const std::optional<int>& moved_apart) {
+  const Pose2 before = mapped.back().map_from_base;
   mapped.MoveTo(map_from_base);
   if (moved_apart) {
     reference->RebuildMoved(mapped.all(), *moved_apart);
   } else {
     reference->Rebuild(mapped.all());
   }
-  const Pose3& slam_from_camera = *history.Find(mapped.back().frame)->slam_from_camera;
-  filter.SetCorrection(mapped.back().map_from_base * Inverse(BaseOf(slam_from_camera)));
+  const FrameRecord& record = *history.Find(mapped.back().frame);
+  const Pose2& after = mapped.back().map_from_base;
+  if (filter_epoch == record.epoch) {
+    filter.SetCorrection(after * Inverse(BaseOf(*record.slam_from_camera)));
+  } else {  // frames without a scan came since, in a newer epoch: they move along
+    filter.SetCorrection(after * Inverse(before) * filter.map_from_slam());
+  }
   errors.Break();
   errors.Adjusted(covariance, filter.step().new_bias);
 }
@@ -206,7 +217,7 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
 // Within an epoch SLAM's motion carries the correction on.
 Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& scan,
                                              FrameReport& report) {
-  const StageTimer timer(clock, report.times.match_us);
+  const StageTimer timer(clocks, report.times.match_us);
   const FrameRecord& record = history.newest();
   const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
   if (reference && !SameEpoch()) Anchor(BegunAt(scan));
@@ -221,7 +232,7 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
 
 void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
                                      const Prediction& prediction, FrameReport& report) {
-  const StageTimer timer(clock, report.times.match_us);
+  const StageTimer timer(clocks, report.times.match_us);
   if (!reference || !scan || mapped.empty()) return;
   report.match = reference->Match(scan, prediction);
   if (match_oracle && report.match.found) {
@@ -232,7 +243,7 @@ void IncrementalMapper::State::Match(const std::shared_ptr<const Scan>& scan,
 
 // Eq. 3.
 FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameReport& report) {
-  const StageTimer timer(clock, report.times.fuse_us);
+  const StageTimer timer(clocks, report.times.fuse_us);
   FrameRecord& record = history.newest();
   Eigen::Vector3d outside_gain = Eigen::Vector3d::Zero();
   if (oracle && report.match.found) {
@@ -275,7 +286,7 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
 
 void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction& prediction,
                                       const FusedPose& fused, FrameReport& report) {
-  const StageTimer timer(clock, report.times.insert_us);
+  const StageTimer timer(clocks, report.times.insert_us);
   if (!scans.matched || fixed_map) return;
   MappedFrame frame = AsMapped(fused.map_from_base);
   frame.match = report.match;
@@ -283,7 +294,9 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   // Where nothing is matched nothing can speak against a place.
   std::optional<double> explained = 1.0;
   if (reference) explained = report.match.found ? report.match.score : 0.0;
-  if (relocation.active()) explained.reset();
+  // Loops that came with a frame end at it.
+  const bool ends_loops = report.loops_accepted + report.loops_rejected > 0;
+  if (relocation.active() || ends_loops) explained.reset();
   const MappedFrame& added = mapped.Add(std::move(frame), scans, explained);
   report.inserted = added.kept();
   report.well_seen = !added.kept();

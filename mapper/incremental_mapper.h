@@ -9,9 +9,9 @@
 #include "mapper/core/frame.h"
 #include "mapper/core/occupancy_map.h"
 #include "mapper/frame_report.h"
+#include "mapper/frame_timer.h"
 #include "mapper/mapper_options.h"
 #include "mapper/reference_map.h"
-#include "mapper/stage_timer.h"
 
 namespace depthgrid {
 
@@ -52,7 +52,7 @@ class IncrementalMapper {
   // brings a ready scan. Throws InputError for a camera that is not sound and for options out of
   // range or that contradict each other.
   IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
-                    CpuClock clock = {}, GainOracle oracle = {});
+                    FrameClocks clocks = {}, GainOracle oracle = {});
   ~IncrementalMapper();
   // What was moved from may be destroyed or assigned to, nothing else.
   IncrementalMapper(IncrementalMapper&&) noexcept;

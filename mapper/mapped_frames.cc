@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "mapper/core/error.h"
-#include "mapper/core/growth.h"
 
 namespace depthgrid {
 
@@ -41,7 +40,6 @@ const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans,
   } else {
     recent_.Keep(scans, frame);
   }
-  GrowGently(frames_);
   frames_.push_back(std::move(frame));
   if (frames_.size() > recent_frames_) {
     MappedFrame& old = frames_[frames_.size() - 1 - recent_frames_];
@@ -114,6 +112,7 @@ std::vector<PlanarLoop> AmongKept(std::vector<PlanarLoop> loops,
   for (PlanarLoop& loop : loops) {
     loop.first = position[static_cast<std::size_t>(loop.first)];
     loop.second = position[static_cast<std::size_t>(loop.second)];
+    Require(loop.first >= 0 && loop.second >= 0, "a loop's ends are kept");
   }
   return loops;
 }

@@ -25,7 +25,7 @@ constexpr int kRecentFrames = 400;
 struct IncrementalMapper::State {
   MapperOptions options;
   std::optional<PinholeCamera> camera;
-  CpuClock clock;
+  FrameClocks clocks;
   GainOracle oracle;
   MatchOracle match_oracle;
   FrameScanner scanner;
@@ -45,11 +45,11 @@ struct IncrementalMapper::State {
   bool fixed_map = false;            // of a prior map that is only localised in
   std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
 
-  State(const MapperOptions& opts, const std::optional<PinholeCamera>& cam, CpuClock clk,
+  State(const MapperOptions& opts, const std::optional<PinholeCamera>& cam, FrameClocks clks,
         GainOracle orc)
       : options(opts),
         camera(cam),
-        clock(std::move(clk)),
+        clocks(std::move(clks)),
         oracle(std::move(orc)),
         scanner(cam, opts.scan),
         stands(opts.scan.floor_z_m),
@@ -65,7 +65,7 @@ struct IncrementalMapper::State {
     if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
   }
 
-  FrameReport Begin(const Frame& frame);
+  void Begin(const Frame& frame, FrameReport& report);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   void AdjustBetweenFrames();

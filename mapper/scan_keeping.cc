@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "mapper/core/grid_geometry.h"
-#include "mapper/core/growth.h"
 
 namespace depthgrid {
 namespace {
@@ -86,7 +85,6 @@ void ScanKeeping::Add(int position, const Pose2& map_from_base) {
     places_.push_back({});
   }
   Place& place = places_[static_cast<std::size_t>(index)];
-  GrowGently(kept_);
   kept_.push_back({position, place.newest});
   place.newest = static_cast<int>(kept_.size()) - 1;
   ++place.count;

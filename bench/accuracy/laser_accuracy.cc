@@ -68,7 +68,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
         bool verbose) {
   const auto odometry = PerfectAtFirst(
       truth, DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed)), perfect_frames);
-  IncrementalMapper mapper(options, std::nullopt, ThreadCpuUs);
+  IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
   Run run;
   std::vector<Pose2> online, final;
   std::vector<FrameReport> reports;

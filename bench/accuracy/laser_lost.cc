@@ -58,7 +58,7 @@ Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Driv
                   RadFromDeg(drive.off_deg) * (random.Uniform() < 0.5 ? 1.0 : -1.0)};
   // SLAM believes to be where it was lost, but for this.
   const Pose2 new_slam = odometry[before - 1] * off * Inverse(odometry[before]);
-  IncrementalMapper mapper(options, std::nullopt, ThreadCpuUs);
+  IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
   Outcome outcome;
   for (std::size_t k = 0; k < driven.size(); ++k) {
     Frame frame;

@@ -165,7 +165,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
   const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
   const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
   const double before_mib = ResidentMib();
-  IncrementalMapper mapper(settings.mapper, std::nullopt, ThreadCpuUs);
+  IncrementalMapper mapper(settings.mapper, std::nullopt, {ThreadCpuUs, SteadyUs});
   Walker walker(floor);
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),

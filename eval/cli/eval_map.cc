@@ -149,6 +149,19 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
+// Scores are of one rectangle around all maps.
+void RequireNear(const EvalMapArguments& arguments, const GridGeometry& truth,
+                 const GridGeometry& estimate) {
+  const GridGeometry both = Union(truth, estimate);
+  if (both.size() <= kMaxMapCells) return;
+  const Eigen::Vector2d from = truth.OriginM(), to = estimate.OriginM();
+  throw InputError(arguments.estimate,
+                   fmt::format("its origin ({}, {}) lies {:.0f} m from that of {} ({}, {}), so that "
+                               "one grid around both has {} x {} cells; it may have {}",
+                               to.x(), to.y(), (to - from).norm(), arguments.reference, from.x(),
+                               from.y(), both.width_cells, both.height_cells, kMaxMapCells));
+}
+
 void PrintTable(const MapScore& score) {
   std::vector<Row> cells = {
       {"cells", "precision", "recall", "F1", "IoU", "free precision", "recall", "F1", "IoU"}};
@@ -171,6 +184,7 @@ void EvalMap(const EvalMapArguments& arguments) {
   const StateMap truth = ReadStates(arguments.reference);
   OccupancyMap estimate = ReadAligned(arguments.estimate);
   RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
+  RequireNear(arguments, truth.geometry, estimate.geometry);
   std::string observable_path = arguments.observable;
   const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
   if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
@@ -179,6 +193,11 @@ void EvalMap(const EvalMapArguments& arguments) {
     observable = ReadFreeCells(observable_path);
     RequireSameResolution(truth.geometry, arguments.reference, observable->geometry,
                           observable_path);
+    const GridGeometry all = Union(Union(truth.geometry, estimate.geometry), observable->geometry);
+    if (all.size() > kMaxMapCells) {
+      throw InputError(observable_path, "lies too far from the maps: one grid around all of them "
+                                        "would be larger than a map may be");
+    }
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
   score.quality = ScoreMapQuality(truth, estimate, observable, {});

@@ -83,6 +83,7 @@ void ScanBlock(DepthJob& job, int first, int count, int threads) {
       Frame frame;
       frame.depth = images[k];
       frame.slam_from_camera = pose.slam_from_camera;
+      frame.stamp_s = pose.stamp_s;
       frame.slam_epoch = pose.epoch;
       job.sets[i]->scans[index] = job.scanners[i].ScansOf(frame);
     }

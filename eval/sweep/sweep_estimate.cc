@@ -53,6 +53,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
     Frame frame;
     frame.depth = std::make_shared<const DepthImage>(sensor.Image(static_cast<int>(i)));
     frame.slam_from_camera = set.slam.live[i].slam_from_camera;
+    frame.stamp_s = set.slam.live[i].stamp_s;
     frame.slam_epoch = set.slam.live[i].epoch;
     set.scans[i] = scanner.ScansOf(frame);
   }

@@ -1,10 +1,24 @@
 #include "mapper/core/grid_geometry.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 #include "mapper/core/error.h"
 
 namespace depthgrid {
+
+namespace {
+
+// Cells from the lower of two places on to the higher of two ends; as many as there are numbers
+// where it would be more.
+int Extent(int low_a, int size_a, int low_b, int size_b) {
+  const std::int64_t end = std::max(std::int64_t{low_a} + size_a, std::int64_t{low_b} + size_b);
+  const std::int64_t most = std::numeric_limits<int>::max();
+  return static_cast<int>(std::min(end - std::min(low_a, low_b), most));
+}
+
+}  // namespace
 
 GridGeometry Union(const GridGeometry& a, const GridGeometry& b) {
   if (a.size() == 0) return b;
@@ -12,10 +26,8 @@ GridGeometry Union(const GridGeometry& a, const GridGeometry& b) {
   Require(a.resolution_m == b.resolution_m, "grids to unite have the same resolution");
   GridGeometry both = a;
   both.min_cell = {std::min(a.min_cell.x, b.min_cell.x), std::min(a.min_cell.y, b.min_cell.y)};
-  both.width_cells =
-      std::max(a.min_cell.x + a.width_cells, b.min_cell.x + b.width_cells) - both.min_cell.x;
-  both.height_cells =
-      std::max(a.min_cell.y + a.height_cells, b.min_cell.y + b.height_cells) - both.min_cell.y;
+  both.width_cells = Extent(a.min_cell.x, a.width_cells, b.min_cell.x, b.width_cells);
+  both.height_cells = Extent(a.min_cell.y, a.height_cells, b.min_cell.y, b.height_cells);
   return both;
 }
 

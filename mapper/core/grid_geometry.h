@@ -71,7 +71,8 @@ inline GridGeometry Widened(const GridGeometry& geometry, int margin_cells) {
 }
 
 // The smallest rectangle that contains both; an empty one (zero size) counts for nothing. Same
-// resolution required.
+// resolution required. Of two so far apart that its sides have no number they are the largest there
+// is, and size() is more than memory holds: to be compared with kMaxMapCells first.
 GridGeometry Union(const GridGeometry& a, const GridGeometry& b);
 
 // The smallest rectangle that contains all of them; of none the empty one.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 
 #include "mapper/core/angle.h"
@@ -26,6 +27,13 @@ constexpr double kSlamJumpRad = RadFromDeg(4.0);
 
 // The medians of steps, by which another one is judged; of none zero. Reorders the steps.
 SlamStep UsualOf(std::span<SlamStep> steps);
+
+// What no robot, car or hand does between two poses, however far apart in time they are.
+constexpr double kLongestStepM = 10.0;
+constexpr double kFastestMps = 50.0;
+inline bool IsTooFar(double step_m, double duration_s) {
+  return step_m > kLongestStepM + kFastestMps * std::max(0.0, duration_s);
+}
 
 // Whether the usual motion around a step does not lead where it goes, with what a hand or robot can
 // change of its speed meanwhile; neither in the step's own time nor, as stamps come bunched, in a

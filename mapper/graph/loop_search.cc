@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "mapper/core/growth.h"
 
 namespace depthgrid {
 namespace {
@@ -13,9 +12,6 @@ namespace {
 constexpr double kMaxTurnDeg = 60.0;
 // Beyond the window, so that places beside a way count.
 constexpr double kBesideM = 1.0;
-// Keyframes are `every_m` of way apart and a frame more; an adjustment does not pull them farther
-// apart than so many times that.
-constexpr double kMostStretch = 2.0;
 // Where the newest scans already lie on what was seen long ago, the adjustment sees it too.
 constexpr double kKnownShare = 0.5;
 
@@ -41,7 +37,7 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("candidates", candidates, {1, 1000}, "places that are searched, at most");
   v.Group("place", place, "which scans are searched together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
-  v.Number("max_second_score", max_second_score, {0.0, 1.0},
+  v.Number("max_second_score", max_second_score, {0.01, 1.0},
            "a pose elsewhere with more than this share of the score makes it ambiguous");
   v.Number("min_explained", min_explained, {0.0, 1.0}, "of the scans, once matched precisely");
   v.Number("max_sigma_m", max_sigma_m, {0.0, 10.0}, "of the match in its worst direction");
@@ -92,7 +88,6 @@ void LoopSearch::Walk(const std::vector<MappedFrame>& frames) {
         i == 0 ? 0.0
                : way_m_.back() +
                      Between(PoseAt(frames, i - 1), PoseAt(frames, i)).translation().norm();
-    GrowGently(way_m_);
     way_m_.push_back(way_m);
     if (!frames[static_cast<std::size_t>(i)].kept()) continue;
     if (keyframes_.empty() ||
@@ -112,21 +107,14 @@ std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames,
   std::vector<Ranked> ranked;
   const double farthest_m = options_.max_window_m + kBesideM;
   const Eigen::Vector2d here = PoseAt(frames, query).translation();
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    const int k = keyframes_[i];
+  for (const int k : keyframes_) {
     const double way_m =
         way_m_[static_cast<std::size_t>(query)] - way_m_[static_cast<std::size_t>(k)];
     if (way_m < options_.min_way_m) break;
-    // From so far away the way does not come near before the next few of them.
-    const double beyond_m = (PoseAt(frames, k).translation() - here).norm() - farthest_m;
-    if (beyond_m > options_.every_m * kMostStretch) {
-      i += static_cast<std::size_t>(beyond_m / (options_.every_m * kMostStretch)) - 1;
-      continue;
-    }
+    const double distance_m = (PoseAt(frames, k).translation() - here).norm();
+    if (distance_m > farthest_m) continue;
     const Pose2 off = Between(PoseAt(frames, k), PoseAt(frames, query));
     if (std::abs(off.yaw_rad) > RadFromDeg(kMaxTurnDeg)) continue;
-    const double distance_m = off.translation().norm();
-    if (distance_m > farthest_m) continue;
     if (distance_m > WindowM(DriftingM(known, k, query)) + kBesideM) continue;
     ranked.push_back({Separation(PoseAt(frames, k), PoseAt(frames, query)), k});
   }

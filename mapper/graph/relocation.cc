@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/graph/place_search.h"
 
@@ -84,7 +85,7 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
   v.Number("most_searches", most_searches, {1, 1e6}, "before the guess is left as it is");
   v.Group("place", place, "what is searched for together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
-  v.Number("max_second_score", max_second_score, {0.0, 1.0},
+  v.Number("max_second_score", max_second_score, {0.01, 1.0},
            "a pose elsewhere with more than this share of the score makes it ambiguous");
   v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
   v.Number("consenting", consenting, {1, 1000}, "searches in a row that must find the same");
@@ -97,7 +98,10 @@ void Relocation::Explained(double share) {
   usual_share_ = usual_share_ == 0.0 ? share : usual_share_ + kNewShare * (share - usual_share_);
 }
 
-bool Relocation::Begins(double lost_s, double share, int next_frame) {
+void Relocation::Lost(double duration_s) { unjudged_s_ = std::max(unjudged_s_, duration_s); }
+
+bool Relocation::Begins(double share, int next_frame) {
+  const double lost_s = std::exchange(unjudged_s_, 0.0);
   if (!options_.use || lost_s < options_.min_lost_s || next_frame == 0) return false;
   // Lost again before the first loss was understood: all of it is one new part.
   if (active_) {

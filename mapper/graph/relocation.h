@@ -52,9 +52,12 @@ class Relocation {
 
   // A matched frame in ordinary times: what the map explains of it.
   void Explained(double share);
-  // Whether a guess after so long without a pose, of which the map explains this share, is to be
-  // doubted. Begins the search then; the next mapped frame is the first of its part.
-  bool Begins(double lost_s, double share, int next_frame);
+  // So long there was no pose before this frame's.
+  void Lost(double duration_s);
+  // Whether the guess since the last loss is to be doubted: the first scan after it, of which the
+  // map explains this share, tells. Begins the search then; the next mapped frame is the first of
+  // its part.
+  bool Begins(double share, int next_frame);
   // Whether a match explains what a right place does.
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   bool active() const { return active_; }
@@ -75,6 +78,7 @@ class Relocation {
   RelocationOptions options_;
   PlaceMatcher matcher_;
   double usual_share_ = 0.0;
+  double unjudged_s_ = 0.0;  // the longest loss since the last scan
   bool active_ = false;
   int first_frame_ = 0;
   double lost_s_ = 0.0;

@@ -85,11 +85,23 @@ std::size_t ProbabilityGrid::WordIndex(int y, int word) const {
   return map_.geometry.Index({word * kWordCells, y}) / kWordCells;
 }
 
+namespace {
+
+GridGeometry GeometryOf(const CellMask& mask, double resolution_m) {
+  return {resolution_m,
+          {mask.first_word() * kWordCells, mask.first_row()},
+          mask.words_per_row() * kWordCells,
+          mask.rows()};
+}
+
+}  // namespace
+
+GridGeometry ProbabilityGrid::GeometryWith(const CellMask& mask) const {
+  return Union(map_.geometry, GeometryOf(mask, map_.geometry.resolution_m));
+}
+
 void ProbabilityGrid::GrowToContain(const CellMask& mask) {
-  GridGeometry needed = map_.geometry;
-  needed.min_cell = {mask.first_word() * kWordCells, mask.first_row()};
-  needed.width_cells = mask.words_per_row() * kWordCells;
-  needed.height_cells = mask.rows();
+  GridGeometry needed = GeometryOf(mask, map_.geometry.resolution_m);
   if (Union(map_.geometry, needed) == map_.geometry) return;
   map();  // so that no cell is out of date while they move
   needed.min_cell.y -= kGrowthCells;

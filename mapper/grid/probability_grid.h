@@ -23,6 +23,9 @@ class ProbabilityGrid {
   // may change with every insertion.
   const OccupancyMap& map();
 
+  // At least the rectangle that it grows to when this is inserted.
+  GridGeometry GeometryWith(const CellMask& mask) const;
+
  private:
   void GrowToContain(const CellMask& mask);
   void AddToWord(std::uint64_t hit, std::uint64_t passed, std::size_t index);

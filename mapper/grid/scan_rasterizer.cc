@@ -81,13 +81,16 @@ void ScanRasterizer::FindEndSpans(const ScanSegments& segments) {
     const Doubles high_y = hn::IfThenElse(down, from_y, to_y);
     const Doubles rise = hn::Sub(high_y, low_y);
     const Doubles divisor = hn::IfThenElse(hn::Gt(rise, hn::Zero(kDoubles)), rise, one);
-    const Doubles slope = hn::Div(hn::Sub(high_x, low_x), divisor);
+    const Doubles quotient = hn::Div(hn::Sub(high_x, low_x), divisor);
+    // As VisitSegmentSpans: along a boundary of rows, where no double holds the slope, it lies above.
+    const auto has_slope = hn::IsFinite(quotient);
+    const Doubles slope = hn::IfThenElseZero(has_slope, quotient);
     hn::StoreU(low_x, kDoubles, low_x_.data() + i);
     hn::StoreU(low_y, kDoubles, low_y_.data() + i);
     hn::StoreU(slope, kDoubles, slope_.data() + i);
 
-    const Doubles first_row = hn::Floor(low_y);
     const Doubles last_row = hn::Floor(high_y);
+    const Doubles first_row = hn::IfThenElse(has_slope, hn::Floor(low_y), last_row);
     const Doubles reach = hn::Max(hn::Sub(last_row, origin_y), hn::Sub(origin_y, first_row));
     hn::StoreU(reach, kDoubles, reach_.data() + i);
     StoreInts(first_row, first_row_.data() + i);

@@ -1,6 +1,15 @@
 #include "mapper/grid/submap.h"
 
+#include <algorithm>
+
 namespace depthgrid {
+namespace {
+
+// A square of 400 m in cells of 5 cm. A pose that would make a submap larger is wild, or SLAM began
+// anew elsewhere: no scan so near to the last ones reaches so far.
+constexpr std::size_t kMostSubmapCells = std::size_t{1} << 26;
+
+}  // namespace
 
 void SubmapOptions::Visit(OptionsVisitor& v) {
   v.Number("scans", scans, {1, 1e6}, "a submap starts every so many scans");
@@ -21,6 +30,10 @@ void Submap::Insert(const ScanCells& cells, const std::vector<WallDistance>& wal
   is_drawn_ = false;
 }
 
+std::size_t Submap::SizeWith(const ScanCells& cells) const {
+  return grid_.GeometryWith(cells.hit).size();
+}
+
 const OccupancyMap& Submap::map() {
   if (!walls_) return grid_.map();
   if (!is_drawn_) walls_->DrawOver(grid_.map(), drawn_);
@@ -29,6 +42,10 @@ const OccupancyMap& Submap::map() {
 }
 
 void ActiveSubmaps::Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base) {
+  const bool too_far = std::any_of(submaps_.begin(), submaps_.end(), [&](const Submap& submap) {
+    return submap.SizeWith(cells) > kMostSubmapCells;
+  });
+  if (too_far) submaps_.clear();
   if (scan_count_ % submap_options_.scans == 0 || submaps_.empty()) {
     if (submaps_.size() == 2) submaps_.pop_front();
     submaps_.emplace_back(submap_options_, grid_options_);

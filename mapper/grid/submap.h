@@ -34,6 +34,8 @@ class Submap {
   void Insert(const ScanCells& cells, const std::vector<WallDistance>& walls);
   // NaN where nothing was seen. The reference stays good until the next insertion.
   const OccupancyMap& map();
+  // In cells, were these inserted.
+  std::size_t SizeWith(const ScanCells& cells) const;
 
  private:
   ProbabilityGrid grid_;
@@ -48,7 +50,7 @@ class ActiveSubmaps {
   ActiveSubmaps(const SubmapOptions& submap, const GridOptions& grid)
       : submap_options_(submap), grid_options_(grid) {}
 
-  // Puts the next scan into every active submap.
+  // Puts the next scan into every active submap. One too far off for that begins them anew.
   void Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base);
   // Forgets everything and counts the next scan as the n-th.
   void RestartAt(int scan_count);

@@ -13,6 +13,7 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/core/slam_step.h"
 #include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/file.h"
@@ -25,14 +26,9 @@ namespace {
 // 20,000 readings and as many remissions fit; a longer "line" is a binary file.
 constexpr std::size_t kMaxLineBytes = 1U << 20U;
 
-// No robot moves so far and so fast between two scans: its odometry was set anew, or the line is
-// damaged.
-constexpr double kOdometryJumpM = 10.0;
-constexpr double kOdometryJumpMps = 50.0;
-
+// Its odometry was set anew, or the line is damaged.
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
-  const double distance_m = (odom_from_next.translation() - odom_from_last.translation()).norm();
-  return distance_m > std::max(kOdometryJumpM, kOdometryJumpMps * time_s);
+  return IsTooFar((odom_from_next.translation() - odom_from_last.translation()).norm(), time_s);
 }
 
 double SpeedMps(const CarmenScan& a, const CarmenScan& b) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
@@ -21,8 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRayEnding = ".depth";
-// A median above this cannot be metres in a room: the office's files are in centimetres.
+// Longer rays than this are not of a room in metres: the office's files are in centimetres. A few
+// may be: through a window, or wild.
 constexpr float kCentimetresAbove = 50.0F;
+constexpr double kNearlyAll = 0.95;
+// So many images may show nothing or be damaged before the unit is metres.
+constexpr std::size_t kImagesToTry = 20;
 
 // The first file (by name) with the ending, empty when there is none.
 std::string FileWith(const std::string& folder, const std::string& ending) {
@@ -124,24 +129,56 @@ DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
     throw InputError(place, fmt::format("holds {} ray lengths, must hold {} ({}x{})", count,
                                         image.z_m.size(), camera.width_px, camera.height_px));
   }
-  std::vector<float> sorted = image.z_m;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
-  const double unit_m = sorted[sorted.size() / 2] > kCentimetresAbove ? 0.01 : 1.0;
+  return image;
+}
+
+double RayUnitM(const DepthImage& lengths) {
+  std::vector<float> seen;
+  std::copy_if(lengths.z_m.begin(), lengths.z_m.end(), std::back_inserter(seen),
+               [](float length) { return length != kInvalidDepth; });
+  if (seen.empty()) return 0.0;
+  const auto nearly_all = static_cast<std::size_t>(kNearlyAll * static_cast<double>(seen.size()));
+  const auto longest = seen.begin() + static_cast<std::ptrdiff_t>(nearly_all);
+  std::nth_element(seen.begin(), longest, seen.end());
+  return *longest > kCentimetresAbove ? 0.01 : 1.0;
+}
+
+namespace {
+
+// One unit for a whole folder: a near wall's centimetres would pass for metres.
+double RayUnitM(const Recording& recording, const PinholeCamera& camera) {
+  const std::size_t count = std::min(recording.images.size(), kImagesToTry);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& path = recording.images[i].depth_path;
+    if (!path.ends_with(kRayEnding)) break;
+    try {
+      const double unit_m = RayUnitM(ParseRayLengths(ReadTextFile(path), camera, path));
+      if (unit_m > 0.0) return unit_m;
+    } catch (const InputError&) {  // said where the recording is read
+    }
+  }
+  return 1.0;
+}
+
+DepthImage DepthOfRays(const DepthImage& lengths, double unit_m, const PinholeCamera& camera) {
+  DepthImage image(camera.width_px, camera.height_px);
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
       const double stretch = Unproject(camera, u, v, 1.0).norm();
-      image.Row(v)[u] = static_cast<float>(image.At(u, v) * unit_m / stretch);
+      image.Row(v)[u] = static_cast<float>(lengths.At(u, v) * unit_m / stretch);
     }
   }
   return image;
 }
 
-DepthReader IclDepthReader(const CameraFile& camera, const RecordingOptions& options) {
-  return [png = PngDepthReader(DepthFormatOf(camera, options)),
-          pinhole = camera.camera](const std::string& path) {
-    return path.ends_with(kRayEnding) ? ParseRayLengths(ReadTextFile(path), pinhole, path)
-                                      : png(path);
+}  // namespace
+
+DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& options) {
+  const PinholeCamera& camera = recording.camera.camera;
+  return [png = PngDepthReader(DepthFormatOf(recording.camera, options)), camera,
+          unit_m = RayUnitM(recording, camera)](const std::string& path) {
+    if (!path.ends_with(kRayEnding)) return png(path);
+    return DepthOfRays(ParseRayLengths(ReadTextFile(path), camera, path), unit_m, camera);
   };
 }
 
@@ -156,7 +193,8 @@ std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
                                        : ReadCameraDescription(camera_path, recording.warnings);
   if (camera.y_up) poses = FlipY(std::move(poses));
   recording.camera = camera.file;
-  return OpenRecording(std::move(recording), poses, options, IclDepthReader(camera.file, options));
+  DepthReader reader = IclDepthReader(recording, options);
+  return OpenRecording(std::move(recording), poses, options, std::move(reader));
 }
 
 }  // namespace depthgrid

@@ -26,12 +26,16 @@ SlamOutput ReadIclPoses(const std::string& folder, Recording& recording);
 // ICL-NUIM's camera, unless the folder has a camera.yaml.
 CameraDescription IclCamera(const std::string& folder, std::vector<std::string>& warnings);
 
-// Ray lengths as text, in metres or (as the office's) centimetres, to z-depth. Throws InputError.
+// Ray lengths as text, row by row, in the file's unit. Throws InputError.
 DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
                            const std::string& place);
 
-// Reads either kind of depth image.
-DepthReader IclDepthReader(const CameraFile& camera, const RecordingOptions& options);
+// Of an image's ray lengths, in metres: 1, or 0.01 as of the office's files; 0 if it shows nothing.
+double RayUnitM(const DepthImage& lengths);
+
+// Reads either kind of depth image of the recording, whose camera is known. The first image that
+// shows something tells the unit of all ray lengths.
+DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& options);
 
 // The frames with the folder's own poses or with `slam`, which are turned by FlipY when the camera
 // has a negative fy, so that the world's up is -y.

@@ -95,7 +95,7 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
   sequence.y_up = camera.y_up;
   sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
   sequence.recording.camera = camera.file;
-  sequence.reader = IclDepthReader(camera.file, options.recording);
+  sequence.reader = IclDepthReader(sequence.recording, options.recording);
   return sequence;
 }
 

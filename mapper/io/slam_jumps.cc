@@ -159,7 +159,6 @@ std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
 }
 
 std::optional<double> ImpossibleSpeedMps(std::vector<double> speeds_mps) {
-  constexpr double kFastestMps = 50.0;  // cars are slower
   if (speeds_mps.size() <= kFewSteps) return {};
   const double usual_mps = UpperMedian(std::move(speeds_mps));
   return usual_mps > kFastestMps ? std::optional(usual_mps) : std::nullopt;

@@ -45,7 +45,6 @@ class LatticeScorer {
   int row_of_map_ = 0;  // rows are padded so that loads past a row's end stay inside
   std::vector<std::uint32_t>
       row_pairs_;                   // cell (x, y) in the low half, (x, y + 1) in the high half
-  std::vector<std::uint32_t> row_;  // one row, while copying
   std::uint32_t largest_ = 0;
 
   std::vector<int> cell_of_point_;  // of one block: index of its square's corner

@@ -79,10 +79,11 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
     const std::shared_ptr<const Scan> scan = SoundPart(*frame.scan);
     return {scan, frame.matched_scan ? SoundPart(*frame.matched_scan) : scan, std::nullopt};
   }
+  const int epoch = epochs_.Of(frame);
   if (!frame.depth || !frame.slam_from_camera) return {};
   Require(converter_.has_value(), "a source of depth images has a camera");
   const std::shared_ptr<const DepthImage> depth = SoundImage(frame.depth);
-  const CameraStand stand = floor_->Follow(*depth, *frame.slam_from_camera, frame.slam_epoch);
+  const CameraStand stand = floor_->Follow(*depth, *frame.slam_from_camera, epoch);
   if (slice_half_height_m_ <= 0.0) {
     const auto scan = std::make_shared<const Scan>(converter_->Convert(*depth, stand));
     return {scan, scan, stand};

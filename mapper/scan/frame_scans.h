@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
+#include "mapper/core/slam_epochs.h"
 #include "mapper/scan/depth_to_scan.h"
 #include "mapper/scan/floor_tracker.h"
 
@@ -45,6 +46,7 @@ class FrameScanner {
  private:
   std::shared_ptr<const Scan> SoundPart(const Scan& given);
 
+  SlamEpochs epochs_;
   std::optional<DepthToScan> converter_;
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched

@@ -23,6 +23,10 @@ constexpr double kReturnsLikeNoise = 4.0;
 // Of a line.
 constexpr double kFitted = 2.0;
 
+// Determinant over squared trace of returns that have one bearing but for rounding; four beams, a
+// thousand to a right angle, have 1e-6.
+constexpr double kOneBearing = 1e-12;
+
 // Beyond this, in sigmas before the reach, too few returns are left to tell where the wall is.
 constexpr double kLeastSigmas = 0.0;
 // Lines that tell less than so many returns far from the reach are there because noise put them.
@@ -100,9 +104,13 @@ ScanLineFinder::Sums ScanLineFinder::SumsOf(Span span) const {
   return {b.xx - a.xx, b.xy - a.xy, b.yy - a.yy, b.xu - a.xu, b.yu - a.yu, b.uu - a.uu};
 }
 
-// The weighted squared error of the best line.
+// The weighted squared error of the best line; of returns of one bearing, that of their mean.
 double ScanLineFinder::Chi2(const Sums& s) {
   const double determinant = s.xx * s.yy - s.xy * s.xy;
+  const double trace = s.xx + s.yy;
+  if (!(determinant > kOneBearing * trace * trace)) {
+    return s.uu - (s.xu * s.xu + s.yu * s.yu) / trace;
+  }
   const double explained = s.yy * s.xu * s.xu - 2.0 * s.xy * s.xu * s.yu + s.xx * s.yu * s.yu;
   return s.uu - explained / determinant;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mapper/core/error.h"
-#include "mapper/core/growth.h"
 
 namespace depthgrid {
 namespace {
@@ -60,7 +59,6 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
   SurfelGroup& group = groups_.back();
   ++group.frames;
   const Pose2 group_from_base = Between(group.map_from_group, map_from_base);
-  GrowGently(places_);
   places_.push_back({static_cast<int>(groups_.size()) - 1, group_from_base});
   Collect(pieces, group_from_base);
   // Room for the frames to come, as neighbouring groups are alike; not a little more each frame.
@@ -82,7 +80,6 @@ void SurfelGroups::MoveNewest(const Pose2& motion) {
 void SurfelGroups::AddTied(int tied_to, const Pose2& map_from_base) {
   const int group = places_[static_cast<std::size_t>(tied_to)].group;
   const Pose2& map_from_group = groups_[static_cast<std::size_t>(group)].map_from_group;
-  GrowGently(places_);
   places_.push_back({group, Between(map_from_group, map_from_base)});
 }
 

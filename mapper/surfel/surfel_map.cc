@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "mapper/core/error.h"
-#include "mapper/core/growth.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
 #include "mapper/surfel/pose_covariance.h"
@@ -174,7 +173,6 @@ void SurfelMap::Corrected(const Pose2& predicted_map_from_base, const Pose2& map
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                        const Eigen::Matrix3d&) {
   const std::vector<Surfel>& pieces = PiecesOf(scan);
-  GrowGently(surfels_before_);
   surfels_before_.push_back(map_.size());
   InsertInto(map_, pieces, map_from_base, static_cast<double>(groups_.places().size()));
   if (noise_.stride() == 1) {
@@ -187,7 +185,6 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
 // The map stays as it is: over hours even a perfect match would carry it along.
 void SurfelMap::InsertTied(const std::shared_ptr<const Scan>&, const Pose2& map_from_base,
                            int tied_to) {
-  GrowGently(surfels_before_);
   surfels_before_.push_back(map_.size());
   groups_.AddTied(tied_to, map_from_base);
 }

@@ -139,6 +139,29 @@ TEST_F(IclFolderTest, RayLengthsInMetresAndCentimetresWithSimPoses) {
   EXPECT_GT(lengths.front() - depths.front(), 0.3);
 }
 
+// A wall nearer than half a metre, or an image that is mostly empty, says nothing of the unit.
+TEST_F(IclFolderTest, TheFirstImageTellsTheUnitOfAllRays) {
+  WriteCamera(-kF);
+  Write("a.gt.sim", Sim(kFirst, 0.0) + Sim(kFirst, 0.0) + Sim(kFirst, 0.0));
+  const std::size_t pixels = Depths(kFirst, 0.0, true).size();
+  const auto constant = [&](const std::string& length) {
+    std::string text;
+    for (std::size_t i = 0; i < pixels; ++i) text += length + " ";
+    return text;
+  };
+  Write("scene_00_0000.depth", constant("nan"));
+  WriteRays(1, kFirst, 0.0, 100.0);
+  Write("scene_00_0002.depth", constant("40"));
+  const auto source = OpenIclFolder(folder_);
+  source->Next();
+  source->Next();
+  const std::optional<Frame> near = source->Next();
+  ASSERT_TRUE(near && near->depth);
+  const auto [least, most] = std::minmax_element(near->depth->z_m.begin(), near->depth->z_m.end());
+  EXPECT_GT(*least, 0.2F);
+  EXPECT_LE(*most, 0.4F);
+}
+
 TEST_F(IclFolderTest, SimPosesMayLackTheFirstFrame) {
   WriteCamera(-kF);
   WriteRays(0, kFirst, 0.0, 1.0);

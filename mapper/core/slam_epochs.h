@@ -1,0 +1,34 @@
+// Counts the epochs of SLAM's poses, within which the difference of two of them is a motion.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "mapper/core/frame.h"
+#include "mapper/core/slam_step.h"
+
+namespace depthgrid {
+
+class SlamEpochs {
+ public:
+  // The frame's epoch, counted from 0: another one where Frame::slam_epoch changes, and where SLAM
+  // corrected itself without a word, as a step shows that nothing drives. A frame without a pose
+  // has that of the last one with a pose. Once a frame, in the order of time.
+  int Of(const Frame& frame);
+
+ private:
+  struct Posed {
+    double stamp_s = 0.0;
+    Pose3 slam_from_camera;
+    int slam_epoch = 0;
+  };
+  bool Breaks(const Posed& last, const Posed& next);
+
+  std::optional<Posed> last_;
+  int epoch_ = 0;
+  // The last motions, by which the next step is judged: a ring.
+  std::array<SlamStep, 8> steps_;
+  std::size_t step_count_ = 0;  // ever, since nothing was forgotten
+};
+
+}  // namespace depthgrid
