@@ -17,7 +17,7 @@ struct FrameRecord {
   int index = 0;  // Frame::index
   double stamp_s = 0.0;
   std::optional<Pose3> slam_from_camera;
-  int epoch = 0;       // as SlamEpochs counts
+  int epoch = 0;        // as SlamEpochs counts
   int mapped = -1;      // position among the mapped frames, -1 if not inserted
   Pose2 map_from_slam;  // the correction as it was known at the time
   // Over the floor that is followed in the images; empty where it is not, and the pose's counts.

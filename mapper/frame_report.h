@@ -32,7 +32,8 @@ struct MatchResult {
   int iterations = 0;
 };
 
-// CPU time of a frame, and what its stages took of it (by the time that passed), microseconds. Never part of the result, only of the timing files.
+// CPU time of a frame, and what its stages took of it (by the time that passed), microseconds.
+// Never part of the result, only of the timing files.
 struct StageTimes {
   double scan_us = 0.0;
   double match_us = 0.0;

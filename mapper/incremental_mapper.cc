@@ -174,20 +174,24 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   }
 }
 
+// All that was mapped from a frame on, as one.
+void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
+  std::vector<Pose2> map_from_base;
+  for (int i = 0; i < mapped.size(); ++i) {
+    const Pose2& pose = mapped.all()[static_cast<std::size_t>(i)].map_from_base;
+    map_from_base.push_back(i < first ? pose : motion * pose);
+  }
+  mapped.ForgetMotionTo(first);
+  MoveTo(map_from_base, {}, first);
+}
+
 // All that was mapped since the loss moves to where it belongs.
 void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
   if (!relocation.active() || !report.inserted) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
-  const int first = relocation.first_frame();
-  std::vector<Pose2> map_from_base;
-  for (int i = 0; i < mapped.size(); ++i) {
-    const Pose2& pose = mapped.all()[static_cast<std::size_t>(i)].map_from_base;
-    map_from_base.push_back(i < first ? pose : *moved * pose);
-  }
-  mapped.ForgetMotionTo(first);
-  MoveTo(map_from_base, {}, first);
+  MovePart(relocation.first_frame(), *moved);
   if (loop_search) loop_search->Forget();
   report.relocated = true;
 }
@@ -220,7 +224,7 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
   const StageTimer timer(clocks, report.times.match_us);
   const FrameRecord& record = history.newest();
   const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
-  if (reference && !SameEpoch()) Anchor(BegunAt(scan));
+  if (reference && !SameEpoch()) BeginEpoch(scan);
   filter_epoch = record.epoch;
   if (prior_start) {
     filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base,

@@ -1,4 +1,6 @@
 // Where the map goes on when SLAM's poses begin a new epoch (docs/math.md, "Epochs").
+#include <limits>
+
 #include "mapper/core/level.h"
 #include "mapper/mapper_state.h"
 
@@ -33,6 +35,43 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
       went_on.near ? share_going_on >= share_carried
                    : relocation.IsUsual(share_going_on) && !relocation.IsUsual(share_carried);
   return goes_on ? going_on : carried;
+}
+
+// Where SLAM says that the camera is, after a loss that is not understood yet. SLAM finds its way
+// back into its own map, so what stood there in the map when it was there before is what counts,
+// not the correction just before the loss, when SLAM may have drifted away from its map.
+std::optional<Pose2> IncrementalMapper::State::SlamsWord() const {
+  if (!relocation.active()) return std::nullopt;
+  const Pose2 slam_from_newest = BaseOf(*history.newest().slam_from_camera);
+  std::optional<Pose2> word;
+  double least_apart = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < relocation.first_frame(); ++i) {
+    const MappedFrame& frame = mapped.all()[static_cast<std::size_t>(i)];
+    if (frame.of_prior_map()) continue;
+    const Pose2 slam_from_base = BaseOf(*history.Find(frame.frame)->slam_from_camera);
+    const double apart = Separation(slam_from_base, slam_from_newest);
+    if (apart > least_apart) continue;
+    least_apart = apart;
+    word = frame.map_from_base * Between(slam_from_base, slam_from_newest);
+  }
+  return word;
+}
+
+void IncrementalMapper::State::BeginEpoch(const std::shared_ptr<const Scan>& scan) {
+  const EpochStart start = BegunAt(scan);
+  const std::optional<Pose2> word = SlamsWord();
+  const int first = relocation.first_frame();
+  const bool stays =
+      !word || !scan ||
+      relocation.IsUsual(reference->ShareSeenBefore(scan, start.map_from_base, first));
+  if (stays) {
+    Anchor(start);
+    return;
+  }
+  // SLAM, back from a loss, has corrected where it came back to. What was seen since moves along.
+  if (mapped.size() > first) MovePart(first, *word * Inverse(start.map_from_base));
+  relocation.GuessMoved();
+  Anchor({*word, 1.0});
 }
 
 // The correction is chosen so that SLAM's newest pose lies there; `sigma_share` of kEpochSigma is

@@ -72,6 +72,7 @@ struct IncrementalMapper::State {
   void FindLoops(const FrameScans& scans, FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
+  void MovePart(int first, const Pose2& motion);
   // `covariance` as of Adjustment, of errors.Mapped(). Only the frames from `moved_apart` on were
   // moved, as one, if it is given.
   void MoveTo(const std::vector<Pose2>& map_from_base, const Eigen::MatrixXd& covariance,
@@ -91,6 +92,8 @@ struct IncrementalMapper::State {
     double sigma_share = 0.0;
   };
   EpochStart BegunAt(const std::shared_ptr<const Scan>& scan);
+  std::optional<Pose2> SlamsWord() const;
+  void BeginEpoch(const std::shared_ptr<const Scan>& scan);
   void Anchor(const EpochStart& start);
   MappedFrame AsMapped(const Pose2& map_from_base) const;
   struct FinalEstimate {

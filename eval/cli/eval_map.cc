@@ -149,17 +149,26 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
-// Scores are of one rectangle around all maps.
-void RequireNear(const EvalMapArguments& arguments, const GridGeometry& truth,
-                 const GridGeometry& estimate) {
-  const GridGeometry both = Union(truth, estimate);
-  if (both.size() <= kMaxMapCells) return;
-  const Eigen::Vector2d from = truth.OriginM(), to = estimate.OriginM();
-  throw InputError(arguments.estimate,
-                   fmt::format("its origin ({}, {}) lies {:.0f} m from that of {} ({}, {}), so that "
-                               "one grid around both has {} x {} cells; it may have {}",
-                               to.x(), to.y(), (to - from).norm(), arguments.reference, from.x(),
-                               from.y(), both.width_cells, both.height_cells, kMaxMapCells));
+// Scores are of one rectangle around all maps. Where they are far apart most of it belongs to none
+// of them, and scoring that takes minutes.
+bool IsScorable(const GridGeometry& both, std::size_t cells_of_maps) {
+  constexpr std::size_t kSoon = std::size_t{1} << 24;  // scored in seconds whatever they are
+  constexpr std::size_t kMostSpread = 16;
+  return both.size() <= kSoon ||
+         (both.size() <= kMaxMapCells && both.size() <= kMostSpread * cells_of_maps);
+}
+
+// Throws InputError for maps that lie too far from each other.
+GridGeometry Around(const GridGeometry& known, const std::string& known_path,
+                    const GridGeometry& other, const std::string& other_path) {
+  const GridGeometry both = Union(known, other);
+  if (IsScorable(both, known.size() + other.size())) return both;
+  const Eigen::Vector2d from = known.OriginM(), to = other.OriginM();
+  throw InputError(
+      other_path, fmt::format("its lower left corner ({:g}, {:g}) lies {:.0f} m from ({:g}, {:g}), "
+                              "that of {}: one grid around both would have {} x {} cells",
+                              to.x(), to.y(), (to - from).norm(), from.x(), from.y(), known_path,
+                              both.width_cells, both.height_cells));
 }
 
 void PrintTable(const MapScore& score) {
@@ -184,7 +193,8 @@ void EvalMap(const EvalMapArguments& arguments) {
   const StateMap truth = ReadStates(arguments.reference);
   OccupancyMap estimate = ReadAligned(arguments.estimate);
   RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
-  RequireNear(arguments, truth.geometry, estimate.geometry);
+  const GridGeometry both =
+      Around(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;
   const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
   if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
@@ -193,11 +203,7 @@ void EvalMap(const EvalMapArguments& arguments) {
     observable = ReadFreeCells(observable_path);
     RequireSameResolution(truth.geometry, arguments.reference, observable->geometry,
                           observable_path);
-    const GridGeometry all = Union(Union(truth.geometry, estimate.geometry), observable->geometry);
-    if (all.size() > kMaxMapCells) {
-      throw InputError(observable_path, "lies too far from the maps: one grid around all of them "
-                                        "would be larger than a map may be");
-    }
+    Around(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
   score.quality = ScoreMapQuality(truth, estimate, observable, {});

@@ -122,6 +122,12 @@ bool Relocation::Begins(double share, int next_frame) {
   return true;
 }
 
+void Relocation::GuessMoved() {
+  recent_share_ = 0.0;
+  waiting_.reset();
+  agreed_ = 0;
+}
+
 bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
                               const std::shared_ptr<const Scan>& newest, ReferenceMap& reference) {
   const double share = reference.ShareSeenBefore(newest, frames.back().map_from_base, first_frame_);

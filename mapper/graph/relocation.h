@@ -63,6 +63,9 @@ class Relocation {
   bool active() const { return active_; }
   int first_frame() const { return first_frame_; }
 
+  // All since first_frame() was moved to another guess.
+  void GuessMoved();
+
   // To be asked after each frame that was mapped while active: the motion (new map from map) of all
   // frames from first_frame() on, once that is known. Ends the search when it is, when the guess
   // turns out right, or when there is no hope left.

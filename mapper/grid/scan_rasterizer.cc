@@ -82,7 +82,8 @@ void ScanRasterizer::FindEndSpans(const ScanSegments& segments) {
     const Doubles rise = hn::Sub(high_y, low_y);
     const Doubles divisor = hn::IfThenElse(hn::Gt(rise, hn::Zero(kDoubles)), rise, one);
     const Doubles quotient = hn::Div(hn::Sub(high_x, low_x), divisor);
-    // As VisitSegmentSpans: along a boundary of rows, where no double holds the slope, it lies above.
+    // As VisitSegmentSpans: along a boundary of rows, where no double holds the slope, it lies
+    // above.
     const auto has_slope = hn::IsFinite(quotient);
     const Doubles slope = hn::IfThenElseZero(has_slope, quotient);
     hn::StoreU(low_x, kDoubles, low_x_.data() + i);

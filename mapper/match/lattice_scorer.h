@@ -44,7 +44,7 @@ class LatticeScorer {
   GridGeometry copied_;
   int row_of_map_ = 0;  // rows are padded so that loads past a row's end stay inside
   std::vector<std::uint32_t>
-      row_pairs_;                   // cell (x, y) in the low half, (x, y + 1) in the high half
+      row_pairs_;  // cell (x, y) in the low half, (x, y + 1) in the high half
   std::uint32_t largest_ = 0;
 
   std::vector<int> cell_of_point_;  // of one block: index of its square's corner

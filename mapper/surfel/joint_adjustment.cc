@@ -214,7 +214,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
   result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
   if (options.learn_persistence) {
-    result.motion_persistence = MotionPersistence(unit, map_from_group, MeanShare(shares));
+    result.motion_persistence = MotionPersistence(unit, map_from_group, shares);
   }
   return true;
 }

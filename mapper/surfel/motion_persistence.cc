@@ -56,21 +56,26 @@ void AddFollowing(const GroupLink& before, const GroupLink& link,
 
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,
-                                  const Eigen::Vector3d& share_seen) {
+                                  const std::vector<Eigen::Vector3d>& shares_seen) {
   std::vector<Eigen::Vector3d> errors;
   for (const GroupLink& link : unit) errors.push_back(LinkError(link, map_from_group));
-  int pairs = 0;
+  Eigen::Vector3d pairs = Eigen::Vector3d::Zero();
   Eigen::Vector3d agreement = Eigen::Vector3d::Zero();
   for (std::size_t i = kLag; i < unit.size(); ++i) {
     if (!IsUnbroken(unit, i)) continue;
-    ++pairs;
-    agreement += (errors[i].array() * errors[i - kLag].array()).sign().matrix();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::min(shares_seen[i][axis], shares_seen[i - kLag][axis]) < kLeastShareSeen) continue;
+      pairs[axis] += 1.0;
+      const double product = errors[i][axis] * errors[i - kLag][axis];
+      agreement[axis] += product > 0.0 ? 1.0 : (product < 0.0 ? -1.0 : 0.0);
+    }
   }
   Eigen::Vector3d persistence = Eigen::Vector3d::Zero();
-  if (pairs < kMinPairs || share_seen.minCoeff() < kLeastShareSeen) return persistence;
+  if (MeanShare(shares_seen).minCoeff() < kLeastShareSeen) return persistence;
   for (int axis = 0; axis < 3; ++axis) {
+    if (pairs[axis] < kMinPairs) continue;
     // Less a standard error: the fourth root makes much of what independent errors feign.
-    const double surely = agreement[axis] / pairs - 1.0 / std::sqrt(pairs);
+    const double surely = agreement[axis] / pairs[axis] - 1.0 / std::sqrt(pairs[axis]);
     if (surely <= 0.0) continue;
     const double correlation = CorrelationOfSigns(surely);
     persistence[axis] =

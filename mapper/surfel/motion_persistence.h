@@ -13,12 +13,13 @@ namespace depthgrid {
 
 // By axis (forward, left, yaw): what is left, in the next motion, of the error of one, from 0 (they
 // are independent) to below 1. A first-order autoregressive process, told by the signs of the
-// errors of `unit` four links apart. 0 for few links, and where on any axis little of what is known
-// of the motions was seen (`share_seen`, as of MeanShare), since the errors are those of the poses
-// then.
+// errors of `unit` four links apart, both of which were seen along the axis (`shares_seen`, one a
+// link, as of SharesSeen): the others' errors are what was made of their neighbours', and would
+// confirm it. 0 for few pairs, and on all axes where on any of them little was seen in the mean,
+// since the errors are those of the poses then.
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,
-                                  const Eigen::Vector3d& share_seen);
+                                  const std::vector<Eigen::Vector3d>& shares_seen);
 
 // Adds the motions, in order of time, to the normal equations: each error e, over its sigma, is
 // persistence * that before + something new of variance 1 - persistence^2. One that does not follow

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace depthgrid {
 namespace {
 
@@ -24,6 +26,15 @@ TEST(BoundsOf, NoCellsHaveEmptyBoundsOfTheirResolution) {
   const GridGeometry bounds = BoundsOf({}, 0.2);
   EXPECT_EQ(bounds.size(), 0U);
   EXPECT_EQ(bounds.resolution_m, 0.2);
+}
+
+TEST(Union, OfGridsTooFarApartIsTooLargeAndNothingOverflows) {
+  const GridGeometry here{0.005, {0, 0}, 10, 10};
+  const GridGeometry there{0.005, {2'000'000'000, -5}, 10, 10};
+  const GridGeometry opposite{0.005, {-2'000'000'000, 0}, 10, 10};
+  EXPECT_EQ(Union(here, there).width_cells, 2'000'000'010);
+  EXPECT_EQ(Union(here, there).height_cells, 15);
+  EXPECT_EQ(Union(there, opposite).width_cells, std::numeric_limits<int>::max());
 }
 
 }  // namespace

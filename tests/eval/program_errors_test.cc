@@ -274,6 +274,13 @@ TEST_F(ProgramErrors, MapsOfOtherPlacesAreWarnedOf) {
   EXPECT_THAT(warnings("a.yaml b.yaml"), HasSubstr("b.yaml: shares no known cell with a.yaml"));
   EXPECT_THAT(warnings("a.yaml a.yaml --observable b.yaml"),
               HasSubstr("b.yaml: of the cells that could be seen, a.yaml does not know 100 %"));
+  map("utm", "500000");
+  map("south", "-10000000");
+  ExpectRefusal("eval map utm.yaml south.yaml",
+                {"south.yaml: its lower left corner (-1e+07, 0) lies 10500000 m from"});
+  ExpectRefusal(
+      "eval map a.yaml a.yaml --observable utm.yaml",
+      {"utm.yaml: its lower left corner (500000, 0) lies 500000 m from (0, 0), that of a.yaml"});
 }
 
 TEST_F(ProgramErrors, SeedsAreWholeNumbers) {

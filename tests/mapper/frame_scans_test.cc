@@ -227,5 +227,24 @@ TEST(FrameScanner, BeamsOfAReadyScanThatAreNotFiniteSayNothing) {
   EXPECT_EQ(scans.matched->max_range_m, 6.0);
 }
 
+// SLAM's z is corrected by a third of a metre, untold, while the camera goes on.
+TEST(FrameScanner, ACorrectionThatSlamDoesNotTellLeavesTheFloorWhereItIs) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  FrameScanner scanner(camera, ScanOptions{});
+  const AnalyticRoom room;
+  for (int i = 0; i < 30; ++i) {
+    const Pose3 truth = TiltedCamera({-1.0 + 0.01 * i, 0.0, 0.0}, kCameraHeightM, 0.3, 0.0);
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.depth = std::make_shared<const DepthImage>(room.Render(camera, truth));
+    frame.slam_from_camera = truth;
+    if (i >= 15) frame.slam_from_camera->translation.z() += 0.35;
+    const FrameScans scans = scanner.ScansOf(frame);
+    ASSERT_TRUE(scans.stand);
+    EXPECT_NEAR(scans.stand->height_m, kCameraHeightM, 0.02) << i;
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -122,6 +122,20 @@ TEST(ScanRasterizer, GivesTheCellsOfThePlainReferenceOnGridLines) {
   EXPECT_EQ(cases, 48);
 }
 
+// A beam along a boundary of rows but for less than a double's slope can tell.
+TEST(ScanRasterizer, GivesTheCellsOfThePlainReferenceAlongABoundary) {
+  SegmentBuilder builder;
+  for (const double yaw_rad : {1e-310, -1e-310, 0.0}) {
+    const Pose2 pose{0.5, 0.0, yaw_rad};
+    const Scan scan{{HitAt(-0.4F, 5.0F), HitAt(0.0F, 4.0F), HitAt(0.4F, 5.0F)}, 20.0};
+    const ScanCells plain = CellsOfScanPlain(builder.Build(scan, pose, 1.0));
+    ScanRasterizer rasterizer;
+    const ScanCells& fast = rasterizer.Rasterize(scan, pose, 1.0);
+    EXPECT_EQ(fast.hit, plain.hit);
+    EXPECT_EQ(fast.passed, plain.passed) << yaw_rad;
+  }
+}
+
 TEST(ScanRasterizer, UnsortedBeamsAreStillRight) {
   const Scan scan{{HitAt(0.3F, 2.0F), HitAt(-0.2F, 3.0F), HitAt(0.1F, 1.0F)}, 6.0};
   ScanRasterizer rasterizer;

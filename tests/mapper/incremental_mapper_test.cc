@@ -229,9 +229,9 @@ TEST_F(Drifting, TheSameFramesGiveTheSameBytes) {
   MapperResult results[2];
   for (int run = 0; run < 2; ++run) {
     double fake_time_us = 0.0;  // a clock that is different in each run
-    IncrementalMapper mapper(Options(FusionMode::kKalman, 0.5), std::nullopt,
-                             {[&] { return fake_time_us += 1.0 + run; },
-                              [&] { return fake_time_us += 2.0 + run; }});
+    IncrementalMapper mapper(
+        Options(FusionMode::kKalman, 0.5), std::nullopt,
+        {[&] { return fake_time_us += 1.0 + run; }, [&] { return fake_time_us += 2.0 + run; }});
     for (int i = 0; i < 2 * kRound; ++i) {
       Frame frame = FrameAt(i, slam_[static_cast<std::size_t>(i)], 0);
       if (i == 400) frame.loops.push_back(LoopOf(100, 400, TrueBetween(100, 400)));

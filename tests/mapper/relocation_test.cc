@@ -24,8 +24,9 @@ Pose2 RoundTheRoom(int frame) {
           WrapAngle(angle_rad + 0.5 * kPi)};
 }
 
+// `blind`: frames on either side of the loss that have a pose and no scan.
 LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Path path_after,
-             bool use, MapperMethod method = MapperMethod::kSurfel) {
+             bool use, MapperMethod method = MapperMethod::kSurfel, int blind = 0) {
   constexpr int kBefore = 240, kAfter = 160;
   MapperOptions options;
   options.method = method;
@@ -45,8 +46,10 @@ LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Pat
     frame.slam_epoch = is_after ? 1 : 0;
     frame.slam_from_camera = CameraOf(off * truth, 1.0);
     const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
-    frame.scan = std::make_shared<const Scan>(
-        ScanOf(is_after ? after : before, truth, laser, 4, static_cast<std::uint32_t>(i)));
+    if (i < kBefore - blind || i >= kBefore + blind) {
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(is_after ? after : before, truth, laser, 4, static_cast<std::uint32_t>(i)));
+    }
     run.relocated += mapper.AddFrame(frame).relocated ? 1 : 0;
   }
   const MapperResult result = mapper.Finish();
@@ -70,6 +73,46 @@ TEST(Relocation, FindsTheCameraInWhatWasSeen) {
   const LostRun paper = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kPaper);
   EXPECT_EQ(paper.relocated, 1);
   EXPECT_LT(paper.final_error_m, 0.1);
+}
+
+// A covered camera tells nothing, neither of what is usual nor of the guess.
+TEST(Relocation, FramesThatSeeNothingDoNotJudge) {
+  const PlanarWorld room = FurnishedRoom();
+  const Path elsewhere = [](int frame) { return RoundTheRoom(frame + 100); };
+  const LostRun found = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kSurfel, 40);
+  EXPECT_EQ(found.relocated, 1);
+  EXPECT_LT(found.final_error_m, 0.02);
+}
+
+// SLAM comes back a metre off, sees what it has not seen before, and corrects itself twice.
+TEST(Relocation, SlamsCorrectionsMoveWhatWasSeenSinceTheLoss) {
+  constexpr int kLost = 100, kBack = 101, kFirstCorrection = 115, kSecondCorrection = 130;
+  const auto truth_at = [](int i) { return RoundTheRoom(i < kBack ? i : i + 60); };
+  IncrementalMapper mapper({}, std::nullopt);
+  std::vector<int> corrections;
+  constexpr int kFrames = 150;
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0 + (i < kBack ? 0.0 : 3.0);
+    Pose2 off;
+    if (i >= kBack) off = {1.0, -0.6, 0.5};
+    if (i >= kFirstCorrection) off = {0.3, -0.2, 0.2};
+    if (i >= kSecondCorrection) off = {0.02, 0.01, 0.005};
+    frame.slam_epoch = (i >= kBack) + (i >= kFirstCorrection) + (i >= kSecondCorrection);
+    if (i != kLost) {
+      frame.slam_from_camera = CameraOf(off * truth_at(i), 1.0);
+      const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(FurnishedRoom(), truth_at(i), laser, 6, static_cast<std::uint32_t>(i)));
+    }
+    mapper.AddFrame(frame);
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = kBack; i < kFrames; ++i) {
+    const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
+    EXPECT_LT(Between(truth_at(i), pose).translation().norm(), 0.1) << i;
+  }
 }
 
 // Never seen before: nothing is moved.
@@ -133,15 +176,21 @@ TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
   RelocationOptions options;
   Relocation relocation(options, {}, {});
   for (int i = 0; i < 50; ++i) relocation.Explained(0.9);
-  EXPECT_FALSE(relocation.Begins(1.9, 0.1, 50));  // not lost for long
-  EXPECT_FALSE(relocation.Begins(5.0, 0.6, 50));  // two thirds of what is usual
-  EXPECT_TRUE(relocation.Begins(5.0, 0.5, 50));
+  EXPECT_FALSE(relocation.Begins(0.1, 50));  // not lost at all
+  const auto begins = [](Relocation& lost, double lost_s, double share) {
+    lost.Lost(lost_s);
+    return lost.Begins(share, 50);
+  };
+  EXPECT_FALSE(begins(relocation, 1.9, 0.1));  // not lost for long
+  EXPECT_FALSE(begins(relocation, 5.0, 0.6));  // two thirds of what is usual
+  EXPECT_FALSE(relocation.Begins(0.1, 50));    // and judged once
+  EXPECT_TRUE(begins(relocation, 5.0, 0.5));
   EXPECT_TRUE(relocation.active());
   EXPECT_EQ(relocation.first_frame(), 50);
   options.use = false;
   Relocation off(options, {}, {});
   off.Explained(0.9);
-  EXPECT_FALSE(off.Begins(5.0, 0.1, 50));
+  EXPECT_FALSE(begins(off, 5.0, 0.1));
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ struct WildRun {
   MapperResult result;
 };
 
-WildRun RunWith(const std::function<void(Frame&)>& spoil) {
-  IncrementalMapper mapper({}, std::nullopt);
+WildRun RunWith(const std::function<void(Frame&)>& spoil, const MapperOptions& options = {}) {
+  IncrementalMapper mapper(options, std::nullopt);
   WildRun run;
   const auto error_m = [](const Pose3& pose, int i) {
     return Between(WildTruthAt(i), BaseOf(pose)).translation().norm();
@@ -195,6 +195,94 @@ TEST(WildInput, OneBeamThatHitsFarAwayDoesNotGrowTheMap) {
     if (frame.index == kWild) ScanOfFrame(frame).beams[20].range_m = 1e5F;
   });
   EXPECT_LT(run.result.map.geometry.width_cells, 400);
+}
+
+TEST(WildInput, BeamsOfOneBearingAreNoWallAndMoveNothing) {
+  const WildRun run = RunWith([](Frame& frame) {
+    if (frame.index != kWild && frame.index != kWild - 1) return;
+    Scan& scan = ScanOfFrame(frame);
+    const Beam middle = scan.beams[scan.beams.size() / 2];
+    scan.beams.assign(12, middle);
+  });
+  EXPECT_LT(run.worst_online_m, 0.03);
+  EXPECT_LT(run.worst_m, 0.02);
+}
+
+// Not told as another epoch, and in one submap with what was mapped before.
+TEST(WildInput, APoseFarAwayDoesNotMakeASubmapOfTheWayToIt) {
+  MapperOptions options;
+  options.method = MapperMethod::kPaper;
+  options.fusion.mode = FusionMode::kFixed;
+  const WildRun run = RunWith(
+      [&](Frame& frame) {
+        if (frame.index != kWild) return;
+        frame.stamp_s -= 0.5 / 30.0;
+        frame.slam_from_camera->translation += Eigen::Vector3d(1e5, 1e5, 0.0);
+        frame.slam_epoch = 1;
+      },
+      options);
+  EXPECT_LT(run.worst_m, 0.1);
+}
+
+// SLAM corrects itself while nothing is seen, and a loop of earlier frames moves the map.
+TEST(WildInput, ALoopWhileNothingIsSeenDoesNotForgetACorrection) {
+  const Pose2 moved{1.0, 0.4, 0.3};
+  IncrementalMapper mapper({}, std::nullopt);
+  double worst_m = 0.0;
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame = WildFrameAt(i);
+    if (i >= kWild) {
+      frame.slam_epoch = 1;
+      frame.slam_from_camera = ApplyPlanar(moved, *frame.slam_from_camera);
+      frame.scan.reset();
+    }
+    if (i == kWild + 2) {
+      LoopClosure loop;
+      loop.first_frame = 5;
+      loop.second_frame = 30;
+      loop.first_from_second =
+          Between(CameraOf(WildTruthAt(5), 0.0), CameraOf(WildTruthAt(30), 0.0));
+      frame.loops.push_back(loop);
+    }
+    const FrameReport report = mapper.AddFrame(frame);
+    EXPECT_EQ(report.loops_accepted, i == kWild + 2 ? 1 : 0);
+    const Pose2 estimate = BaseOf(*report.map_from_camera);
+    worst_m = std::max(worst_m, Between(WildTruthAt(i), estimate).translation().norm());
+  }
+  EXPECT_LT(worst_m, 0.1);
+}
+
+TEST(WildInput, ALoopToAPlaceThatIsSeenEnoughEndsAtAKeptFrame) {
+  MapperOptions options;
+  options.keep.first_frames = 10;
+  options.keep.scans_per_place = 2;
+  options.keep.more_each_doubling = 0.0;
+  options.keep.min_explained = 0.0;
+  IncrementalMapper mapper(options, std::nullopt);
+  constexpr int kAtLoop = kFrames + 7;
+  bool tied_before = false;
+  for (int i = 0; i < kFrames + 20; ++i) {
+    Frame frame = WildFrameAt(i % kFrames);
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    if (i == kAtLoop) {
+      LoopClosure loop;
+      loop.first_frame = 5;
+      loop.second_frame = i;
+      loop.first_from_second =
+          Between(CameraOf(WildTruthAt(5), 0.0), CameraOf(WildTruthAt(7), 0.0));
+      frame.loops.push_back(loop);
+    }
+    const FrameReport report = mapper.AddFrame(frame);
+    EXPECT_EQ(report.loops_accepted, i == kAtLoop ? 1 : 0);
+    if (i == kAtLoop - 1) tied_before = report.well_seen;
+  }
+  EXPECT_TRUE(tied_before);
+  const MapperResult result = mapper.Finish();
+  ASSERT_EQ(result.loops.size(), 1U);
+  const auto second = static_cast<std::size_t>(result.loops.front().second);
+  ASSERT_LT(second, result.mapped.size());
+  EXPECT_EQ(result.mapped[second].frame, kAtLoop);
 }
 
 }  // namespace
