@@ -202,6 +202,15 @@ TEST_F(ProgramErrors, ClosedStreamsAreNotTakenForFiles) {
   const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile +
                               "' run ./small.yaml -o closed <&- >&- 2>&-";
   EXPECT_EQ(std::system(command.c_str()), 0);
+TEST_F(ProgramErrors, AKeyInTheWrongGroupNamesTheRightOne) {
+  ExpectRefusal("run ./small.yaml -o out --set mapper.map.resolution=0.1",
+                {"unknown key 'mapper.map', did you mean 'mapper.grid.resolution_m'"});
+  ExpectRefusal("slam . -o out --set profile=planar_slam",
+                {"unknown key 'profile', did you mean 'slam.profile'?"});
+  ExpectRefusal("slam . -o out --set drift_scale=3",
+                {"unknown key 'drift_scale', did you mean 'slam.drift_scale'?"});
+}
+
   Succeed("run ./small.yaml -o open");
   ExpectSameBytes("open", "closed");
 }
