@@ -163,6 +163,19 @@ TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
   }
 }
 
+TEST_F(ProgramErrors, ColumnsOfASpreadsheetAreNamed) {
+  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  Write("semicolons.txt", "# t x y z\n1.0;0;0;0;0;0;0;1\n2.0;1;0;0;0;0;0;1\n");
+  Write("commas.txt", "1,0 0,0 0,0 0,0 0,0 0,0 0,0 1,0\n2,0 0,5 0,0 0,0 0,0 0,0 0,0 1,0\n");
+  Succeed("render ./small.yaml --no-colour -o seq");
+  for (const char* command : {"eval trajectory a.txt ", "map seq -o out --poses "}) {
+    ExpectRefusal(command + std::string("semicolons.txt"),
+                  {"depthgrid: semicolons.txt:2: has semicolons between its columns"});
+    ExpectRefusal(command + std::string("commas.txt"),
+                  {"depthgrid: commas.txt:1: has decimal commas, must have decimal points"});
+  }
+}
+
 TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
   Write("cube.ply", "ply\n");
   ExpectRefusal("run ./room.yaml -o out", {"room.yaml", "is a scene"});
