@@ -89,6 +89,7 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
   record.settings = ToYaml(options);
   record.warnings = mapping.warnings;
   record.mapping = &mapping;
+  if (world.path_doubt) record.warnings.push_back(*world.path_doubt);
   record.slam = &slam;
   record.truth = &truth;
   record.scores = &scores;

@@ -114,6 +114,25 @@ void CheckClearance(const Trajectory& trajectory,
   }
 }
 
+std::optional<std::string> DoubtOfPath(
+    const Trajectory& trajectory, const std::function<double(const Eigen::Vector3d&)>& distance_m,
+    const std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)>& occluded,
+    double clearance_m) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
+    const double distance = distance_m(position_m);
+    const bool crosses =
+        i > 0 && occluded(trajectory[i - 1].world_from_camera.translation, position_m);
+    if (!crosses && distance >= clearance_m) continue;
+    return fmt::format("{} is {:.3f} m from geometry{}", Shown(static_cast<int>(i), position_m),
+                       distance,
+                       crosses ? ", behind a surface as seen from the frame before: the path goes "
+                                 "through it"
+                               : ", nearer than a camera can be");
+  }
+  return {};
+}
+
 void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
                  const std::string& place) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {

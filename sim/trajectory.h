@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,13 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);
+
+// Of a path that was not made for this scene: its first frame nearer to geometry than clearance_m,
+// or behind a surface as the one before sees it, with its position and its distance.
+std::optional<std::string> DoubtOfPath(
+    const Trajectory& trajectory, const std::function<double(const Eigen::Vector3d&)>& distance_m,
+    const std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)>& occluded,
+    double clearance_m);
 
 // Throws InputError naming the first frame outside the scene's bounds.
 void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,

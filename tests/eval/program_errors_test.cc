@@ -66,6 +66,14 @@ TEST_F(ProgramErrors, ASceneOrATrajectoryThatIsNotThereIsNamedByItsLine) {
   ExpectRefusal("sweep ./rooms_sweep.yaml -o out", {"rooms_sweep.yaml:3: offce: no shipped scene"});
 }
 
+TEST_F(ProgramErrors, ATrajectoryFileThatIsNotThereIsNamedByItsLine) {
+  Write("no_file.yaml", "scene: ./room.yaml\ntrajectory: ./nix.txt\n");
+  ExpectRefusal("run ./no_file.yaml -o out", {"no_file.yaml:2: /", "/nix.txt: no such file"});
+  ExpectRefusal("render ./no_file.yaml -o out", {"no_file.yaml:2: /"});
+  ExpectRefusal("run ./small.yaml -o out --set trajectory=./nix.txt",
+                {"depthgrid: --set trajectory=./nix.txt: /", "/nix.txt: no such file"});
+}
+
 TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
   Write("map.yaml", "image: gone.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
   ExpectRefusal("eval map map.yaml map.yaml", {"map.yaml: image is 'gone.pgm': no such file"});
@@ -115,6 +123,31 @@ TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   std::filesystem::remove(Path("seq/groundtruth.txt"));
   ExpectRefusal("map seq -o out", {"needs poses", "--poses FILE"});
 }
+TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
+  // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  Write("inside.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look + "0.2 1.5 3.4 1.1" + look);
+  Write("through.txt",
+        "0 1.5 3.0 1.1" + look + "0.1 1.5 3.7 1.1" + look + "0.2 1.5 4.3 1.1" + look);
+  Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
+  const auto said = [&](const std::string& command, const std::string& file) {
+    const Outcome outcome =
+        Program(command + " ./small.yaml -o out --force --set frames=0 --set trajectory=./" + file);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(said("run", "inside.txt"), "");
+  for (const char* command : {"run", "render --no-colour"}) {
+    EXPECT_THAT(
+        said(command, "through.txt"),
+        AllOf(HasSubstr("depthgrid: warning: /"),
+              HasSubstr("through.txt: frame 2 at (1.50, 4.30, 1.10) is 0.200 m from geometry"),
+              HasSubstr("the path goes through it\n")));
+    EXPECT_THAT(said(command, "near.txt"),
+                HasSubstr("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m from geometry"));
+  }
+}
+
 
 TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("", {"--help"});
