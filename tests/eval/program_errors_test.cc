@@ -280,6 +280,9 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
 TEST_F(ProgramErrors, AShippedNameOfAnotherKindIsSaidToBeOne) {
   EXPECT_EQ(Program("sweep living_room -o out").err,
             "depthgrid: living_room: is a shipped experiment, no sweep; see `depthgrid scenes`\n");
+  Succeed("render ./small.yaml --no-colour -o seq");
+  EXPECT_EQ(Program("map seq --camera nope.yaml -o out").err,
+            "depthgrid: nope.yaml: no such file\n");
   EXPECT_EQ(Program("run kalman_gain -o out").err,
             "depthgrid: kalman_gain: is a shipped sweep, no experiment; see `depthgrid scenes`\n");
   EXPECT_EQ(Program("run living_rom -o out").err,
