@@ -81,6 +81,20 @@ TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
   ExpectRefusal("eval map map.pgm map.yaml", {"map.pgm: is a map's image", "YAML"});
 }
 
+TEST_F(ProgramErrors, AMapOfOtherCellsCanBeDrawnAgain) {
+  Succeed("run ./small.yaml -o 'a run'");
+  Succeed("regrid 'a run' --resolution 0.02");
+  ExpectRefusal("eval map 'a run/truth_map.yaml' 'a run/map_0.02.yaml'",
+                {"resolution is 0.02, must be the 0.05 of a run/truth_map.yaml; `depthgrid regrid "
+                 "'a run' --resolution 0.05` draws it so"});
+  Succeed("regrid 'a run' --resolution 0.05");
+  Succeed("eval map 'a run/truth_map.yaml' 'a run/map_0.05.yaml'");
+  std::filesystem::copy(Path("a run/map_0.02.yaml"), Path("map_0.02.yaml"));
+  std::filesystem::copy(Path("a run/map_0.02.pgm"), Path("map_0.02.pgm"));
+  ExpectRefusal("eval map 'a run/truth_map.yaml' map_0.02.yaml",
+                {"must be the 0.05 of a run/truth_map.yaml\n"});
+}
+
 TEST_F(ProgramErrors, QuotedBytesOfADamagedFileStayReadable) {
   Write("noise.txt", "\x07\x1b\xb7\xff 2 3 4 5 6 7 8\n");
   ExpectRefusal("eval trajectory noise.txt noise.txt", {"noise.txt:1: '?\?\?\?' is not a number"});
@@ -109,20 +123,6 @@ TEST_F(ProgramErrors, TrajectoriesThatDoNotFit) {
   ExpectRefusal("run ./small.yaml --set frames=0 -o out", {"look_around", "from geometry"});
 }
 
-TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
-  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
-  Write("b.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n");
-  ExpectRefusal("eval trajectory a.txt b.txt", {"b.txt", "a.txt", "stamp"});
-  Write("bad.txt", "1 0 0 zero 0 0 0 1\n");
-  ExpectRefusal("eval trajectory a.txt bad.txt", {"bad.txt:1"});
-  Write("none.txt", "# stamp tx ty tz qx qy qz qw\n");
-  ExpectRefusal("eval trajectory a.txt none.txt", {"none.txt"});
-  Succeed("render ./small.yaml --no-colour -o seq");
-  ExpectRefusal("map seq --poses b.txt -o out", {"pose"});
-  ExpectRefusal("map seq --loops a.txt -o out", {"--poses", "a.txt"});
-  std::filesystem::remove(Path("seq/groundtruth.txt"));
-  ExpectRefusal("map seq -o out", {"needs poses", "--poses FILE"});
-}
 TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
   // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
   const std::string look = " -0.7071068 0 0 0.7071068\n";
@@ -148,6 +148,33 @@ TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
   }
 }
 
+TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
+  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  Write("b.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n");
+  ExpectRefusal("eval trajectory a.txt b.txt", {"b.txt", "a.txt", "stamp"});
+  Write("bad.txt", "1 0 0 zero 0 0 0 1\n");
+  ExpectRefusal("eval trajectory a.txt bad.txt", {"bad.txt:1"});
+  Write("none.txt", "# stamp tx ty tz qx qy qz qw\n");
+  ExpectRefusal("eval trajectory a.txt none.txt", {"none.txt"});
+  Succeed("render ./small.yaml --no-colour -o seq");
+  ExpectRefusal("map seq --poses b.txt -o out", {"pose"});
+  ExpectRefusal("map seq --loops a.txt -o out", {"--poses", "a.txt"});
+  std::filesystem::remove(Path("seq/groundtruth.txt"));
+  ExpectRefusal("map seq -o out", {"needs poses", "--poses FILE"});
+}
+
+TEST_F(ProgramErrors, ColumnsOfASpreadsheetAreNamed) {
+  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  Write("semicolons.txt", "# t x y z\n1.0;0;0;0;0;0;0;1\n2.0;1;0;0;0;0;0;1\n");
+  Write("commas.txt", "1,0 0,0 0,0 0,0 0,0 0,0 0,0 1,0\n2,0 0,5 0,0 0,0 0,0 0,0 0,0 1,0\n");
+  Succeed("render ./small.yaml --no-colour -o seq");
+  for (const char* command : {"eval trajectory a.txt ", "map seq -o out --poses "}) {
+    ExpectRefusal(command + std::string("semicolons.txt"),
+                  {"depthgrid: semicolons.txt:2: has semicolons between its columns"});
+    ExpectRefusal(command + std::string("commas.txt"),
+                  {"depthgrid: commas.txt:1: has decimal commas, must have decimal points"});
+  }
+}
 
 TEST_F(ProgramErrors, BadUsage) {
   ExpectRefusal("", {"--help"});
@@ -175,6 +202,15 @@ TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
   }
 }
 
+TEST_F(ProgramErrors, AKeyInTheWrongGroupNamesTheRightOne) {
+  ExpectRefusal("run ./small.yaml -o out --set mapper.map.resolution=0.1",
+                {"unknown key 'mapper.map', did you mean 'mapper.grid.resolution_m'"});
+  ExpectRefusal("slam . -o out --set profile=planar_slam",
+                {"unknown key 'profile', did you mean 'slam.profile'?"});
+  ExpectRefusal("slam . -o out --set drift_scale=3",
+                {"unknown key 'drift_scale', did you mean 'slam.drift_scale'?"});
+}
+
 TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {
   Write("many.yaml", "experiment: ./small.yaml\naxis: {seed: [1, 2]}\n");
   ExpectRefusal("sweep ./many.yaml -o out",
@@ -193,19 +229,6 @@ TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
     // So far below the image that no ray is left.
     ExpectRefusal(std::string(command) + " ./small.yaml --set sensor.cy=20000 -o out",
                   {"sensor", "cy is 20000", "ten focal lengths"});
-  }
-}
-
-TEST_F(ProgramErrors, ColumnsOfASpreadsheetAreNamed) {
-  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
-  Write("semicolons.txt", "# t x y z\n1.0;0;0;0;0;0;0;1\n2.0;1;0;0;0;0;0;1\n");
-  Write("commas.txt", "1,0 0,0 0,0 0,0 0,0 0,0 0,0 1,0\n2,0 0,5 0,0 0,0 0,0 0,0 0,0 1,0\n");
-  Succeed("render ./small.yaml --no-colour -o seq");
-  for (const char* command : {"eval trajectory a.txt ", "map seq -o out --poses "}) {
-    ExpectRefusal(command + std::string("semicolons.txt"),
-                  {"depthgrid: semicolons.txt:2: has semicolons between its columns"});
-    ExpectRefusal(command + std::string("commas.txt"),
-                  {"depthgrid: commas.txt:1: has decimal commas, must have decimal points"});
   }
 }
 
@@ -248,15 +271,6 @@ TEST_F(ProgramErrors, ClosedStreamsAreNotTakenForFiles) {
   const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile +
                               "' run ./small.yaml -o closed <&- >&- 2>&-";
   EXPECT_EQ(std::system(command.c_str()), 0);
-TEST_F(ProgramErrors, AKeyInTheWrongGroupNamesTheRightOne) {
-  ExpectRefusal("run ./small.yaml -o out --set mapper.map.resolution=0.1",
-                {"unknown key 'mapper.map', did you mean 'mapper.grid.resolution_m'"});
-  ExpectRefusal("slam . -o out --set profile=planar_slam",
-                {"unknown key 'profile', did you mean 'slam.profile'?"});
-  ExpectRefusal("slam . -o out --set drift_scale=3",
-                {"unknown key 'drift_scale', did you mean 'slam.drift_scale'?"});
-}
-
   Succeed("run ./small.yaml -o open");
   ExpectSameBytes("open", "closed");
 }
@@ -266,6 +280,9 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
   ExpectRefusal("map log.txt --format kitti -o out", {"--format kitti: ", "carmen"});
   ExpectRefusal("map log.txt --up w -o out", {"--up w: ", "auto"});
   ExpectRefusal("map . --format carmen -o out", {".: is a folder"});
+  Succeed("render ./small.yaml --no-colour -o seq");
+  EXPECT_EQ(Program("map seq --camera nope.yaml -o out").err,
+            "depthgrid: nope.yaml: no such file\n");
   ExpectRefusal("slam . --profile orb -o out", {"--profile orb: ", "orb_slam2"});
   // CLI11's own words for these are 300 digits long.
   for (const char* resolution : {"0", "0.001", "2", "fine"}) {
@@ -280,9 +297,6 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
 TEST_F(ProgramErrors, AShippedNameOfAnotherKindIsSaidToBeOne) {
   EXPECT_EQ(Program("sweep living_room -o out").err,
             "depthgrid: living_room: is a shipped experiment, no sweep; see `depthgrid scenes`\n");
-  Succeed("render ./small.yaml --no-colour -o seq");
-  EXPECT_EQ(Program("map seq --camera nope.yaml -o out").err,
-            "depthgrid: nope.yaml: no such file\n");
   EXPECT_EQ(Program("run kalman_gain -o out").err,
             "depthgrid: kalman_gain: is a shipped sweep, no experiment; see `depthgrid scenes`\n");
   EXPECT_EQ(Program("run living_rom -o out").err,
