@@ -204,6 +204,15 @@ TEST_F(ReportPage, OfASweep) {
   const std::string means = PixelsOf("#plot canvas");
   const std::string heat = PixelsOf("#heat canvas");
   browser_->Evaluate("document.getElementById('metric').focus()");
+  // Values in centimetres are of no name that ends in metres.
+  const std::string heads = browser_->Evaluate(
+      "[...document.querySelectorAll('#table th button')].map((b) => "
+      "b.textContent.replaceAll('\\u200b', '')).join('; ')");
+  EXPECT_THAT(heads, ::testing::HasSubstr("trajectory.est.mean_euclidean (cm)"));
+  EXPECT_THAT(heads, ::testing::Not(::testing::HasSubstr("_m (cm)")));
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('metric').textContent"),
+              ::testing::Not(::testing::HasSubstr("_m (cm)")));
+
   browser_->Press("ArrowDown", 40);
   EXPECT_EQ(browser_->Evaluate("metric.name"), "map.observable.occupied.f1");
   EXPECT_NE(PixelsOf("#plot canvas"), means);
