@@ -63,6 +63,9 @@ TEST_F(ReportPage, OfARun) {
   EXPECT_GT(ColoursOf("#map"), 5);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#times .uplot').length"), 1);
 
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('changed').textContent"),
+            "Not the default: sensor.width 80, sensor.height 60");
+
   // Ten worst frames, with the surface of those that were matched: all but the first.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('.worst-card').length"), 10);
   EXPECT_GE(browser_->Evaluate("RUN.worst.filter((w) => w.surface).length").get<int>(), 9);
@@ -201,9 +204,6 @@ TEST_F(ReportPage, OfASweep) {
                                ".textContent"),
             "1");
 
-  const std::string means = PixelsOf("#plot canvas");
-  const std::string heat = PixelsOf("#heat canvas");
-  browser_->Evaluate("document.getElementById('metric').focus()");
   // Values in centimetres are of no name that ends in metres.
   const std::string heads = browser_->Evaluate(
       "[...document.querySelectorAll('#table th button')].map((b) => "
@@ -213,6 +213,9 @@ TEST_F(ReportPage, OfASweep) {
   EXPECT_THAT(browser_->Evaluate("document.getElementById('metric').textContent"),
               ::testing::Not(::testing::HasSubstr("_m (cm)")));
 
+  const std::string means = PixelsOf("#plot canvas");
+  const std::string heat = PixelsOf("#heat canvas");
+  browser_->Evaluate("document.getElementById('metric').focus()");
   browser_->Press("ArrowDown", 40);
   EXPECT_EQ(browser_->Evaluate("metric.name"), "map.observable.occupied.f1");
   EXPECT_NE(PixelsOf("#plot canvas"), means);
