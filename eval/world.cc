@@ -85,18 +85,17 @@ Trajectory FromFile(const ExperimentOptions& options) {
 // A camera's own housing keeps its middle this far from everything.
 constexpr double kLeastClearanceM = 0.05;
 
-std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const RayScene& rays,
-                                       const ExperimentOptions& options) {
+std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const TriangleMesh& mesh,
+                                       const RayScene& rays, const ExperimentOptions& options) {
   constexpr float kFarM = 10.0F;
-  const auto doubt = DoubtOfPath(
-      trajectory,
-      [&](const Eigen::Vector3d& point) {
-        return static_cast<double>(rays.DistanceToSurface(point.cast<float>(), kFarM));
-      },
-      [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-        return rays.Occluded(from.cast<float>(), to.cast<float>());
-      },
-      kLeastClearanceM);
+  const PathScene scene = {BoundsOfMesh(mesh),
+                           [&](const Eigen::Vector3d& point) -> double {
+                             return rays.DistanceToSurface(point.cast<float>(), kFarM);
+                           },
+                           [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                             return rays.Occluded(from.cast<float>(), to.cast<float>());
+                           }};
+  const auto doubt = DoubtOfPath(trajectory, scene, kLeastClearanceM);
   if (!doubt) return {};
   return options.trajectory + ": " + *doubt;
 }
@@ -127,7 +126,7 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Trajectory trajectory =
       IsFile(options.trajectory) ? FromFile(options) : FromScene(scene, rays, options);
   std::optional<std::string> doubt;
-  if (IsFile(options.trajectory)) doubt = DoubtOfFile(trajectory, rays, options);
+  if (IsFile(options.trajectory)) doubt = DoubtOfFile(trajectory, scene.mesh, rays, options);
   std::string hash = HashOf(scene);
   return {
       std::move(scene),      std::move(hash), std::move(rays), camera, SensorRange(options.sensor),

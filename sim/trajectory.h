@@ -60,12 +60,16 @@ void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);
 
+struct PathScene {
+  Eigen::AlignedBox3d bounds;
+  std::function<double(const Eigen::Vector3d&)> distance_m;
+  std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)> occluded;
+};
+
 // Of a path that was not made for this scene: its first frame nearer to geometry than clearance_m,
-// or behind a surface as the one before sees it, with its position and its distance.
-std::optional<std::string> DoubtOfPath(
-    const Trajectory& trajectory, const std::function<double(const Eigen::Vector3d&)>& distance_m,
-    const std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)>& occluded,
-    double clearance_m);
+// behind a surface as the one before sees it, or beside the scene, with its position.
+std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
+                                       double clearance_m);
 
 // Throws InputError naming the first frame outside the scene's bounds.
 void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,

@@ -136,7 +136,10 @@ TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.err;
   };
+  Write("beside.txt", "0 9 3.0 1.1" + look + "0.1 9 3.2 1.1" + look);
   EXPECT_EQ(said("run", "inside.txt"), "");
+  EXPECT_THAT(said("run", "beside.txt"),
+              HasSubstr("beside.txt: frame 0 at (9.00, 3.00, 1.10) is outside the scene"));
   for (const char* command : {"run", "render --no-colour"}) {
     EXPECT_THAT(
         said(command, "through.txt"),
