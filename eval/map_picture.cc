@@ -88,6 +88,7 @@ constexpr int kTextScale = 2;
 constexpr double kPathWidthPx = 2.5;
 constexpr double kBeneathWidthPx = 7.0;
 constexpr double kDotRadiusPx = 5.0;
+constexpr double kDotStepPx = 12.0;  // in the legend, from one to the next
 
 double WidthOf(const Path& path) {
   return path.style == PathStyle::kBeneath ? kBeneathWidthPx : kPathWidthPx;
@@ -111,7 +112,9 @@ class Legend {
     for (const Path& path : paths_) {
       width_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
     }
-    if (!paths_.empty()) width_px += 4 * kMarginPx + Canvas::TextWidth(dot_text_, kTextScale);
+    if (!paths_.empty()) {
+      width_px += DotsPx() + 2 * kMarginPx + Canvas::TextWidth(dot_text_, kTextScale);
+    }
     return width_px;
   }
   static int HeightPx() { return Canvas::TextHeight(kTextScale) + 2 * kMarginPx; }
@@ -134,11 +137,19 @@ class Legend {
       left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
     }
     if (paths_.empty()) return;
-    canvas.Disc({left + kDotRadiusPx, middle}, kDotRadiusPx, kInk);
-    canvas.Text(left + 2 * kMarginPx, text_top, dot_text_, kTextScale, kInk);
+    for (std::size_t i = 0; i < paths_.size(); ++i) {
+      const double centre = left + kDotRadiusPx + static_cast<double>(i) * kDotStepPx;
+      canvas.Disc({centre, middle}, kDotRadiusPx, paths_[i].colour);
+    }
+    canvas.Text(left + DotsPx(), text_top, dot_text_, kTextScale, kInk);
   }
 
  private:
+  // Every path's own, and a gap behind them.
+  int DotsPx() const {
+    return static_cast<int>(kDotStepPx * static_cast<double>(paths_.size())) + kMarginPx;
+  }
+
   std::string dot_text_;
   std::string bar_text_;
   int bar_px_;

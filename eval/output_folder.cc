@@ -21,8 +21,21 @@ namespace fs = std::filesystem;
 // Follows links, and drops a trailing slash, so that siblings are siblings.
 fs::path Resolved(const std::string& path) {
   if (path.empty()) throw InputError("-o", "must name a folder");
+  RequireReachable(path);
   fs::path resolved = fs::weakly_canonical(fs::absolute(path));
   return resolved.has_filename() ? resolved : resolved.parent_path();
+}
+
+// An empty one would be replaced, and the shell be left in a folder that is no more.
+void RequireNotCurrent(const fs::path& target, const std::string& shown) {
+  std::error_code gone;
+  const fs::path current = fs::canonical(".", gone);
+  if (gone) return;
+  const auto [rest, inside] =
+      std::mismatch(target.begin(), target.end(), current.begin(), current.end());
+  if (rest != target.end()) return;
+  throw InputError("-o", fmt::format("{} {} the current folder, must be a folder of its own", shown,
+                                     inside == current.end() ? "is" : "holds"));
 }
 
 void RequireUsable(const fs::path& target, const std::string& shown, bool force) {
@@ -81,8 +94,28 @@ bool IsNamed(int folder, const fs::path& name) {
 
 }  // namespace
 
+void RequireReachable(const std::string& path) {
+  if (path.empty()) return;
+  // A link's name with a slash behind it is that of what it links to.
+  const fs::path given = path;
+  const fs::path plain = given.has_filename() ? given : given.parent_path();
+  std::error_code error;
+  const fs::file_status there = fs::status(plain, error);
+  if (there.type() == fs::file_type::not_found) {
+    if (!fs::is_symlink(fs::symlink_status(plain, error))) return;
+    throw InputError(path,
+                     fmt::format("is a link to {}, which is not there; the output must be a folder",
+                                 fs::read_symlink(plain).string()));
+  }
+  if (error) throw InputError(path, "cannot be created: " + error.message());
+  if (fs::is_directory(there) && ::access(plain.c_str(), R_OK | W_OK | X_OK) != 0) {
+    throw InputError(path, "cannot be written: " + std::generic_category().message(errno));
+  }
+}
+
 OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
     : target_(Resolved(path)), superseded_(std::move(superseded)) {
+  RequireNotCurrent(target_, path);
   RequireUsable(target_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);

@@ -11,11 +11,16 @@
 
 namespace depthgrid {
 
+// Throws InputError when `path` is a link to nothing, or lies or is where this user may not write.
+// To be asked first: whoever looks into such a folder fails on a file that no user has named.
+void RequireReachable(const std::string& path);
+
 class OutputFolder {
  public:
-  // Throws InputError when `path` is a file, a folder that is not empty unless `force`, or one that
-  // another program is about to write. `superseded`: which files there an earlier result left;
-  // those go that are not written again, so that no two results are mixed.
+  // Throws InputError for what RequireReachable() refuses, and when `path` is a file, a folder that
+  // is not empty unless `force`, the current folder or one around it, or one that another program
+  // is about to write. `superseded`: which files there an earlier result left; those go that are
+  // not written again, so that no two results are mixed.
   OutputFolder(const std::string& path, bool force, FileRule superseded = {});
   // Removes everything again unless Commit() was called.
   ~OutputFolder();

@@ -45,7 +45,8 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   if (record.truth != nullptr) {
     paths.push_back({"truth", palette::kTruth, record.truth->trajectory, PathStyle::kBeneath});
   }
-  paths.push_back({"slam", palette::kSlam, SlamTrajectory(*record.mapping)});
+  const char* input = record.mapping->camera ? "slam" : "odometry";
+  paths.push_back({input, palette::kSlam, SlamTrajectory(*record.mapping)});
   paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});
   const GridGeometry part = ShownPart(StatesOf(map), paths);
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));
@@ -88,6 +89,7 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
   RunRecord record;
   record.settings = ToYaml(options);
   record.warnings = mapping.warnings;
+  if (world.path_doubt) record.warnings.push_back(*world.path_doubt);
   record.mapping = &mapping;
   record.slam = &slam;
   record.truth = &truth;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eval/changed_settings.h"
 #include "eval/map_picture.h"
 #include "eval/prior_run.h"
 #include "eval/report_json_impl.h"
@@ -203,6 +204,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   const auto est = PosesAt(run.est, stamps_s);
   Json json;
   json["subtitle"] = SubtitleOf(settings, run.frames.rows);
+  json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(settings), ", "));
   json["settings"] = run.settings;
   json["warnings"] = run.warnings;
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 
 #include "eval/hash.h"
@@ -63,7 +64,14 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
   return trajectory;
 }
 
+void RequireTrajectoryFile(const ExperimentOptions& options) {
+  std::error_code error;
+  if (std::filesystem::exists(options.trajectory, error)) return;
+  throw InputError(options.trajectory_place, options.trajectory + ": no such file");
+}
+
 Trajectory FromFile(const ExperimentOptions& options) {
+  RequireTrajectoryFile(options);
   Trajectory trajectory = ReadTrajectory(options.trajectory);
   const auto wanted = static_cast<std::size_t>(options.frames);
   if (wanted > trajectory.size()) {
@@ -72,6 +80,24 @@ Trajectory FromFile(const ExperimentOptions& options) {
   }
   if (wanted > 0) trajectory.resize(wanted);
   return trajectory;
+}
+
+// A camera's own housing keeps its middle this far from everything.
+constexpr double kLeastClearanceM = 0.05;
+
+std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const TriangleMesh& mesh,
+                                       const RayScene& rays, const ExperimentOptions& options) {
+  constexpr float kFarM = 10.0F;
+  const PathScene scene = {BoundsOfMesh(mesh),
+                           [&](const Eigen::Vector3d& point) -> double {
+                             return rays.DistanceToSurface(point.cast<float>(), kFarM);
+                           },
+                           [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                             return rays.Occluded(from.cast<float>(), to.cast<float>());
+                           }};
+  const auto doubt = DoubtOfPath(trajectory, scene, kLeastClearanceM);
+  if (!doubt) return {};
+  return options.trajectory + ": " + *doubt;
 }
 
 bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
@@ -83,6 +109,7 @@ std::string WorldHash(const ExperimentOptions& options) {
   ContentHash hash;
   hash.Text(HashOf(scene));
   if (IsFile(options.trajectory)) {
+    RequireTrajectoryFile(options);
     hash.Text(ReadFile(options.trajectory));
   } else {
     const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
@@ -98,10 +125,12 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   const PinholeCamera camera = SensorCamera(options.sensor);
   Trajectory trajectory =
       IsFile(options.trajectory) ? FromFile(options) : FromScene(scene, rays, options);
+  std::optional<std::string> doubt;
+  if (IsFile(options.trajectory)) doubt = DoubtOfFile(trajectory, scene.mesh, rays, options);
   std::string hash = HashOf(scene);
   return {
-      std::move(scene),     std::move(hash), std::move(rays), camera, SensorRange(options.sensor),
-      std::move(trajectory)};
+      std::move(scene),      std::move(hash), std::move(rays), camera, SensorRange(options.sensor),
+      std::move(trajectory), std::move(doubt)};
 }
 
 }  // namespace depthgrid

@@ -1,6 +1,7 @@
 // The true side of an experiment: the room, the camera and where the camera went.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "eval/experiment_options.h"
@@ -18,6 +19,8 @@ struct World {
   PinholeCamera camera;
   DepthRange depth_range;
   Trajectory trajectory;
+  // What is amiss with a path that was read from a file, named in it; those of scenes are refused.
+  std::optional<std::string> path_doubt;
 };
 
 // Of the room and the path that an experiment names: another one when any of the files was changed.

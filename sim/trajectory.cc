@@ -114,16 +114,43 @@ void CheckClearance(const Trajectory& trajectory,
   }
 }
 
+namespace {
+
+std::string OutsideText(int frame, const Eigen::Vector3d& position_m,
+                        const Eigen::AlignedBox3d& bounds) {
+  return fmt::format(
+      "{} is outside the scene, which spans ({:.2f}, {:.2f}, {:.2f}) to ({:.2f}, {:.2f}, {:.2f})",
+      Shown(frame, position_m), bounds.min().x(), bounds.min().y(), bounds.min().z(),
+      bounds.max().x(), bounds.max().y(), bounds.max().z());
+}
+
+}  // namespace
+
+std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
+                                       double clearance_m) {
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const int frame = static_cast<int>(i);
+    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
+    const double distance = scene.distance_m(position_m);
+    const std::string near =
+        fmt::format("{} is {:.3f} m from geometry", Shown(frame, position_m), distance);
+    if (i > 0 && scene.occluded(trajectory[i - 1].world_from_camera.translation, position_m)) {
+      return near + ", behind a surface as seen from the frame before: the path goes through it";
+    }
+    if (distance < clearance_m) return near + ", nearer than a camera can be";
+    Eigen::Vector3d in_plane = position_m;
+    in_plane.z() = scene.bounds.min().z();  // a camera may look over walls
+    if (!scene.bounds.contains(in_plane)) return OutsideText(frame, position_m, scene.bounds);
+  }
+  return {};
+}
+
 void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
                  const std::string& place) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
     if (bounds.contains(position_m)) continue;
-    throw InputError(place, fmt::format("{} is outside the scene, which spans ({:.2f}, {:.2f}, "
-                                        "{:.2f}) to ({:.2f}, {:.2f}, {:.2f})",
-                                        Shown(static_cast<int>(i), position_m), bounds.min().x(),
-                                        bounds.min().y(), bounds.min().z(), bounds.max().x(),
-                                        bounds.max().y(), bounds.max().z()));
+    throw InputError(place, OutsideText(static_cast<int>(i), position_m, bounds));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,17 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);
+
+struct PathScene {
+  Eigen::AlignedBox3d bounds;
+  std::function<double(const Eigen::Vector3d&)> distance_m;
+  std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)> occluded;
+};
+
+// Of a path that was not made for this scene: its first frame nearer to geometry than clearance_m,
+// behind a surface as the one before sees it, or beside the scene, with its position.
+std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
+                                       double clearance_m);
 
 // Throws InputError naming the first frame outside the scene's bounds.
 void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,

@@ -7,6 +7,7 @@ namespace depthgrid::cli {
 OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
                         const std::vector<std::string>& inputs) {
   const std::string& folder = arguments.output;
+  RequireReachable(folder);
   RequireNoOtherResult(folder, kind);
   RequireNamesFree(folder, kind);
   const FileRule written = FilesOf(kind);

@@ -9,6 +9,7 @@
 #include "eval/cli/console.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics_json.h"
+#include "eval/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/map_file.h"
 
@@ -27,13 +28,21 @@ bool HoldsProbabilities(const OccupancyMap& map) {
                      [](float prob) { return prob > 0.0F && prob < 1.0F; });
 }
 
+// A run's map can be drawn again with other cells; nothing for maps of anywhere else.
+std::string RemedyOf(const std::string& map, double resolution_m) {
+  const fs::path beside = fs::path(map).parent_path();
+  if (!fs::exists(beside / "run.yaml") || !fs::exists(beside / "scans.bin")) return "";
+  return fmt::format("; `depthgrid regrid {} --resolution {}` draws it so",
+                     beside.empty() ? "." : ShellWord(beside.string()), resolution_m);
+}
+
 // The same length to a millionth: files print it in decimal.
 void RequireSameResolution(const GridGeometry& a, const std::string& place_a, GridGeometry& b,
-                           const std::string& place_b) {
+                           const std::string& place_b, const std::string& remedy = "") {
   constexpr double kRelativeTolerance = 1e-6;
   if (std::abs(a.resolution_m - b.resolution_m) > kRelativeTolerance * a.resolution_m) {
-    throw InputError(place_b, fmt::format("resolution is {}, must be the {} of {}", b.resolution_m,
-                                          a.resolution_m, place_a));
+    throw InputError(place_b, fmt::format("resolution is {}, must be the {} of {}{}",
+                                          b.resolution_m, a.resolution_m, place_a, remedy));
   }
   b.resolution_m = a.resolution_m;
 }
@@ -192,7 +201,8 @@ void PrintTable(const MapScore& score) {
 void EvalMap(const EvalMapArguments& arguments) {
   const StateMap truth = ReadStates(arguments.reference);
   OccupancyMap estimate = ReadAligned(arguments.estimate);
-  RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
+  RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate,
+                        RemedyOf(arguments.estimate, truth.geometry.resolution_m));
   const GridGeometry both =
       Around(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;

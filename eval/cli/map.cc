@@ -219,6 +219,13 @@ void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
       kPercent * doubt->better_misfit, RemedyOf(*doubt)));
 }
 
+// The map of another axis than up is a cut through the walls, and looks like a map.
+void CheckUp(const Config& config, const Sequence& sequence, std::vector<std::string>& warnings) {
+  if (!sequence.up_doubt) return;
+  warnings.push_back(fmt::format("{}: the floor seen in the images says {}, if they are upright",
+                                 config.PlaceOfKey("sequence.world_up"), *sequence.up_doubt));
+}
+
 // Only one of the two can be right; which one, the mapper cannot know.
 void CheckScale(const MapArguments& arguments, const MappingRun& run,
                 std::vector<std::string>& warnings) {
@@ -338,6 +345,7 @@ void Map(const MapArguments& given) {
   bar.Say("writing the map and the report");
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   CheckPoses(arguments, input, warnings);
+  CheckUp(request.config, input, warnings);
   const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Poses read the wrong way have another scale too.
@@ -347,6 +355,7 @@ void Map(const MapArguments& given) {
   if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
+  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
   record.settings = ToYaml(settings);
   record.mapping = &run;
   record.scan = settings.mapper.scan;

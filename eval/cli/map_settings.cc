@@ -66,12 +66,12 @@ MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
   return arguments;
 }
 
+}  // namespace
+
 std::string FromEverywhere(const std::string& path) {
   namespace fs = std::filesystem;
   return path.empty() ? path : fs::weakly_canonical(fs::absolute(path)).string();
 }
-
-}  // namespace
 
 void MapSettings::Visit(OptionsVisitor& v) {
   v.Text("input", input, "the recorded sequence");
@@ -101,7 +101,6 @@ MapRequest ReadMapRequest(const MapArguments& given) {
   settings.final_poses = FromEverywhere(arguments.final_poses);
   settings.loops = FromEverywhere(arguments.loops);
   settings.map = FromEverywhere(arguments.map);
-  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
   settings.localise = arguments.localise;
   return request;
 }

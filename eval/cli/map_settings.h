@@ -28,9 +28,14 @@ struct MapSettings {
 struct MapRequest {
   MapArguments arguments;  // with the files of a run.yaml that the command line does not name anew
   Config config;
-  MapSettings settings;  // files by absolute paths, so that run.yaml means the same from everywhere
+  // Files by absolute paths, so that run.yaml means the same from everywhere; sequence.camera as it
+  // is given until it was read, for messages.
+  MapSettings settings;
 };
 MapRequest ReadMapRequest(const MapArguments& given);
+
+// A file's absolute path; none stays none.
+std::string FromEverywhere(const std::string& path);
 
 // The files and folders that it is read from, as they are named.
 std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& request);

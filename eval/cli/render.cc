@@ -45,6 +45,7 @@ void Render(const RenderArguments& arguments) {
   const std::string cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
+  if (world.path_doubt) Warn({*world.path_doubt});
   const ExperimentOptions options = Completed(given, world.scene);
   RequireUsableScans(world, options.mapper);  // they set the true map's band: now, not at the end
   const SyntheticSensor sensor(world, options, cache_folder);

@@ -37,6 +37,7 @@ void WriteInPlace(const std::string& folder) {
 }
 
 void WriteElsewhere(const ReportArguments& arguments) {
+  RequireReachable(arguments.output);
   RequireNoOtherResult(arguments.output, ResultKind::kPage);
   RequireNamesFree(arguments.output, ResultKind::kPage);
   OutputFolder output(arguments.output, arguments.force);

@@ -10,6 +10,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/interrupts.h"
+#include "eval/output_folder.h"
 #include "eval/shell_word.h"
 #include "eval/shipped.h"
 #include "eval/sweep/slurm.h"
@@ -48,6 +49,7 @@ Shard ShardOf(const std::string& text) {
 class SweepFolder {
  public:
   SweepFolder(const std::string& path, bool force) : path_(path) {
+    RequireReachable(path);
     if (fs::exists(path) && !fs::is_directory(path)) {
       throw InputError(path, "is a file, the output must be a folder");
     }

@@ -42,9 +42,11 @@ function initScores() {
       nameOf(name), compact(stage.error), compact(stage.owned),
       stage.owned_interval95 ? `${compact(stage.owned_interval95[0])} to ${compact(stage.owned_interval95[1])}` : "–",
       percent(stage.share), barOf(score, stage, name, at), compact(stage.p_holm)]);
+    const unit = unitOf(metric);
+    const inUnit = (text) => (unit ? `${text} (${unit})` : text);
     const what = score.error_is === "the score" ? metric : `1 − ${metric}`;
-    byId("scores").append(make("h3", {}, `${what}: ${compact(score.error)} as it is`),
-      make("div", { class: "scroll" }, tableOf(["truth for", "error", "owned", "95 % interval", "share", "", "p"], rows)));
+    byId("scores").append(make("h3", {}, `${what}: ${compact(score.error)}${unit ? ` ${unit}` : ""} as it is`),
+      make("div", { class: "scroll" }, tableOf(["truth for", ...["error", "owned", "95 % interval"].map(inUnit), "share", "", "p"], rows)));
   }
 }
 

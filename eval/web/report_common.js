@@ -25,6 +25,12 @@ function metres(value) {
   if (size < 1) return `${fixed(value * 100, 1)} cm`;
   return `${fixed(value, 2)} m`;
 }
+// The unit is the end of a metric's name.
+function unitOf(name) {
+  if (name.endsWith("_us")) return "µs";
+  const found = name.match(/_(m|rad|deg|s|mib|cells)$/);
+  return found ? { m: "m", rad: "rad", deg: "°", s: "s", mib: "MiB", cells: "cells" }[found[1]] : "";
+}
 const percent = (value) => (isNumber(value) ? `${fixed(value * 100, 1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 

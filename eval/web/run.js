@@ -58,6 +58,7 @@ function headline() {
   }
   byId("headline").append(...cards);
   byId("subtitle").textContent = RUN.subtitle;
+  if (RUN.changed) byId("changed").textContent = `Not the default: ${RUN.changed}`;
 }
 
 // ---- warnings, samples, numbers, settings ----

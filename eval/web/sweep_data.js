@@ -5,13 +5,8 @@ const SWEEP = JSON.parse(byId("data").textContent);
 const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(compact) : axis.texts }));
 const POINTS = SWEEP.points;
 
-// The unit is the end of a metric's name.
-function unitOf(name) {
-  if (name.endsWith("_us")) return "µs";
-  const found = name.match(/_(m|rad|deg|s|mib|cells)$/);
-  return found ? { m: "m", rad: "rad", deg: "°", s: "s", mib: "MiB", cells: "cells" }[found[1]] : "";
-}
-// Metrics as they are shown: small lengths in centimetres, angles in degrees.
+// Metrics as they are shown: small lengths in centimetres, angles in degrees. `label` is the name
+// without a unit that the values are not in.
 const METRICS = SWEEP.metrics.map((metric) => {
   const unit = unitOf(metric.name);
   const largest = Math.max(...metric.mean.map((v) => Math.abs(v ?? 0)));
@@ -19,11 +14,12 @@ const METRICS = SWEEP.metrics.map((metric) => {
   if (unit === "m" && largest < 1) [factor, shown] = [100, "cm"];
   if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
   const scale = (values) => values.map((v) => (v === null ? null : v * factor));
-  return { ...metric, unit: shown, factor, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
+  const label = shown === unit ? metric.name : metric.name.replace(/_[a-z]+$/, "");
+  return { ...metric, label, unit: shown, factor, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
 }).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.name.localeCompare(b.name));
 let metric = METRICS[0];
 const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m.unit ? ` ${m.unit}` : ""}` : "–");
-const metricLabel = (m = metric) => (m.unit ? `${m.name} (${m.unit})` : m.name);
+const metricLabel = (m = metric) => (m.unit ? `${m.label} (${m.unit})` : m.label);
 const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : a < b);
 
 // The axis a reader comes for: the numeric one of the most values, the gain before others of as many.

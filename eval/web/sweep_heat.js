@@ -117,7 +117,7 @@ function heatPicture(cells, best, width) {
     drawHeatKey(context, ...key, sorted, low, high);
     if (cells.flat().includes(null)) sayCrossedOut(context, key[0], key[1] + key[2] + 14);
   };
-  const canvas = paintedCanvas(width, height, `${metric.name} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
+  const canvas = paintedCanvas(width, height, `${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
   canvas.cellAt = (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)];
   return canvas;
 }

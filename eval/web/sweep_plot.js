@@ -66,7 +66,7 @@ function drawAlong() {
   keepFocus(byId("plot-controls"), controls);
   const { x, series } = plotSeries(free);
   drawPlot(byId("plot"), {
-    title: `${metric.name} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
+    title: `${metric.label} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
   const seeds = Math.max(...POINTS.map((p) => p.runs));
@@ -96,7 +96,7 @@ function drawBest() {
   byId("best-section").hidden = !lines.length;
   byId("regret").replaceChildren();
   if (!lines.length) return;
-  byId("best-note").textContent = `Of ${axis.key}, for ${metric.name} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
+  byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
     "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;

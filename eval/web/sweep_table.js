@@ -14,7 +14,7 @@ function columnsOf(what) {
     const shown = METRICS.filter((m) => m.main || m === metric);
     return [...axes, { title: "runs", numeric: true, at: (row) => POINTS[row].runs },
       ...shown.flatMap((m) => [
-        { title: m.name, unit: m.unit, numeric: true, at: (row) => m.mean[row] },
+        { title: m.label, unit: m.unit, numeric: true, at: (row) => m.mean[row] },
         ...(m === metric ? [{ title: "95 % low", unit: m.unit, numeric: true, at: (row) => m.low[row] }, { title: "95 % high", unit: m.unit, numeric: true, at: (row) => m.high[row] },
           { title: "median", unit: m.unit, numeric: true, at: (row) => m.median[row] }] : [])])];
   }
@@ -23,7 +23,7 @@ function columnsOf(what) {
     { title: "page", link: true, at: (row) => (runs.failures[row] ? "failed" : runs.folder[row] ? "open" : "command") }, ...axes,
     ...(SWEEP.seed_keys.length ? [{ title: SWEEP.seed_keys.join(" "), numeric: SWEEP.seed_keys.length === 1, at: (row) => (SWEEP.seed_keys.length === 1 ? Number(runs.seeds[row]) : runs.seeds[row]) }] : []),
     ...shown.map((m) => ({
-      title: m.name, unit: m.unit, numeric: true,
+      title: m.label, unit: m.unit, numeric: true,
       at: (row) => (runs.metrics[m.name][row] === null ? null : runs.metrics[m.name][row] * m.factor),
     }))];
 }

@@ -32,7 +32,7 @@ SlamStep UsualOf(std::span<SlamStep> steps);
 constexpr double kLongestStepM = 10.0;
 constexpr double kFastestMps = 50.0;
 inline bool IsTooFar(double step_m, double duration_s) {
-  return step_m > kLongestStepM + kFastestMps * std::max(0.0, duration_s);
+  return step_m > std::max(kLongestStepM, kFastestMps * duration_s);
 }
 
 // Whether the usual motion around a step does not lead where it goes, with what a hand or robot can

@@ -192,7 +192,10 @@ std::string Config::ToYaml() const {
   return std::string(emitter.c_str()) + "\n";
 }
 
-std::unique_ptr<OptionsVisitor> Config::Reader() const { return MakeYamlReader(*tree_); }
+std::unique_ptr<OptionsVisitor> Config::Reader(
+    std::function<std::vector<std::string>()> all_keys) const {
+  return MakeYamlReader(*tree_, std::move(all_keys));
+}
 
 void Config::FinishReading(OptionsVisitor& reader) { RequireAllKeysUsed(reader); }
 

@@ -1,7 +1,9 @@
 // Option structs from YAML and back (mapper/core/options.h). Every key of a file must be known: an
-// unknown one is an error that names the nearest known key, with file and line.
+// unknown one is an error that names the nearest known key, with file and line. That is one that
+// ends in the same word, wherever it is, else the nearest of its own group, else the nearest word.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +14,20 @@
 namespace depthgrid {
 
 struct ConfigEntry;
+
+namespace internal {
+std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out);
+std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out);
+std::unique_ptr<OptionsVisitor> MakeKeyPathLister(std::vector<std::string>& out);
+}  // namespace internal
+
+// The path of every key, "mapper.fusion.gain", in the order the structs declare them.
+template <typename Options>
+std::vector<std::string> KeyPathsOf(Options options) {
+  std::vector<std::string> out;
+  options.Visit(*internal::MakeKeyPathLister(out));
+  return out;
+}
 
 class Config {
  public:
@@ -67,7 +83,8 @@ class Config {
   // type or a value out of range. Keys not in the tree keep the value they have.
   template <typename Options>
   void Read(Options& options) const {
-    const std::unique_ptr<OptionsVisitor> reader = Reader();
+    const std::unique_ptr<OptionsVisitor> reader =
+        Reader([&options] { return KeyPathsOf(options); });
     options.Visit(*reader);
     FinishReading(*reader);
   }
@@ -76,7 +93,8 @@ class Config {
 
  private:
   explicit Config(std::unique_ptr<Tree> tree);
-  std::unique_ptr<OptionsVisitor> Reader() const;
+  // `all_keys` is asked when one is unknown.
+  std::unique_ptr<OptionsVisitor> Reader(std::function<std::vector<std::string>()> all_keys) const;
   static void FinishReading(OptionsVisitor& reader);
 
   std::unique_ptr<Tree> tree_;
@@ -89,11 +107,6 @@ struct ConfigEntry {
   std::optional<Config> map;                      // the value, if it is a map of keys
   std::optional<std::vector<std::string>> items;  // the elements' YAML texts, if it is a list
 };
-
-namespace internal {
-std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out);
-std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out);
-}  // namespace internal
 
 // Every effective key, in the order the structs declare them; reading it back gives the same
 // values.
@@ -120,5 +133,10 @@ std::string NearestWord(const std::string& word, const std::vector<std::string>&
 // ", did you mean 'prefixNEAREST'?" for the end of a message, or "" when no candidate is near.
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates,
                        const std::string& prefix = "");
+
+// The same of key paths, by their last words: those that end as `key_path` does or, when none does
+// and `or_near`, in the word nearest to its last; at most three, the ones most like it.
+std::string DidYouMeanKey(const std::string& key_path, const std::vector<std::string>& key_paths,
+                          bool or_near);
 
 }  // namespace depthgrid

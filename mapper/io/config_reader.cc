@@ -15,7 +15,8 @@ namespace {
 
 class YamlReader final : public OptionsVisitor {
  public:
-  explicit YamlReader(const Config::Tree& tree) : tree_(tree) {
+  YamlReader(const Config::Tree& tree, std::function<std::vector<std::string>()> all_keys)
+      : tree_(tree), all_keys_(std::move(all_keys)) {
     levels_.push_back({tree.root, "", {}});
   }
 
@@ -177,13 +178,32 @@ class YamlReader final : public OptionsVisitor {
       for (const auto& known : level.known) used = used || known == key;
       if (used) continue;
       const std::string prefix = level.path.empty() ? "" : level.path + ".";
-      throw InputError(
-          tree_.PlaceOfKey(prefix + key, entry.first),
-          fmt::format("unknown key '{}{}'{}", prefix, key, DidYouMean(key, level.known, prefix)));
+      throw InputError(tree_.PlaceOfKey(prefix + key, entry.first),
+                       fmt::format("unknown key '{}{}'{}", prefix, key,
+                                   Hint(prefix, key, entry.second, level.known)));
     }
+  }
+  // A group is known by its own name before the keys in it are; a key may be of another group.
+  std::string Hint(const std::string& prefix, const std::string& key, const YAML::Node& value,
+                   const std::vector<std::string>& siblings) const {
+    const std::string path = prefix + key + FirstPathIn(value);
+    const std::string near_sibling = DidYouMean(key, siblings, prefix);
+    const std::string same = DidYouMeanKey(path, all_keys_(), false);
+    if (!same.empty() && (near_sibling.empty() || !value.IsMap())) return same;
+    return near_sibling.empty() ? DidYouMeanKey(path, all_keys_(), true) : near_sibling;
+  }
+  static std::string FirstPathIn(YAML::Node node) {
+    std::string path;
+    while (node.IsMap() && node.size() > 0) {
+      const auto first = *node.begin();
+      path += "." + first.first.Scalar();
+      node.reset(first.second);
+    }
+    return path;
   }
 
   const Config::Tree& tree_;
+  std::function<std::vector<std::string>()> all_keys_;
   std::vector<Level> levels_;
 };
 
@@ -248,8 +268,9 @@ std::vector<ConfigOverride> Config::Tree::OverridesBelow(const std::string& key)
   return below;
 }
 
-std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree) {
-  return std::make_unique<YamlReader>(tree);
+std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree,
+                                               std::function<std::vector<std::string>()> all_keys) {
+  return std::make_unique<YamlReader>(tree, std::move(all_keys));
 }
 
 void RequireAllKeysUsed(OptionsVisitor& reader) {

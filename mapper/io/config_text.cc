@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "mapper/io/config.h"
 
@@ -58,6 +60,29 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
                        const std::string& prefix) {
   const std::string nearest = NearestWord(word, candidates);
   return nearest.empty() ? "" : fmt::format(", did you mean '{}{}'?", prefix, nearest);
+}
+
+std::string DidYouMeanKey(const std::string& key_path, const std::vector<std::string>& key_paths,
+                          bool or_near) {
+  constexpr std::size_t kMost = 3;
+  const auto last_of = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
+  std::set<std::string> lasts;
+  for (const std::string& path : key_paths) lasts.insert(last_of(path));
+  std::string last = last_of(key_path);
+  if (or_near && !lasts.contains(last)) last = NearestWord(last, {lasts.begin(), lasts.end()});
+  std::vector<std::string> found;
+  std::ranges::copy_if(key_paths, std::back_inserter(found), [&](const std::string& path) {
+    return path != key_path && last_of(path) == last;
+  });
+  std::ranges::stable_sort(found, {},
+                           [&](const std::string& path) { return EditDistance(key_path, path); });
+  found.resize(std::min(found.size(), kMost));
+  std::string hint;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const char* joint = i == 0 ? ", did you mean " : i + 1 == found.size() ? " or " : ", ";
+    hint += fmt::format("{}'{}'", joint, found[i]);
+  }
+  return hint.empty() ? "" : hint + "?";
 }
 
 }  // namespace depthgrid

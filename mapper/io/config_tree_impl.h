@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,8 +42,9 @@ std::string FlowText(const YAML::Node& node);
 // Throws InputError for a list or a map.
 std::string TextIn(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node);
 
-// Fills options from `tree`, which must outlive it.
-std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree);
+// Fills options from `tree`, which must outlive it. `all_keys`: their key paths, for errors.
+std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree,
+                                               std::function<std::vector<std::string>()> all_keys);
 // Throws InputError for a key of the tree that a reader of MakeYamlReader was not asked for.
 void RequireAllKeysUsed(OptionsVisitor& reader);
 

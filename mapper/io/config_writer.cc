@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <functional>
+#include <utility>
+
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/config_text.h"
@@ -79,9 +82,13 @@ class YamlWriter final : public OptionsVisitor {
   int depth_ = 0;
 };
 
+// What is said of each key.
+using KeyLine = std::function<void(const std::string& path, const std::string& value,
+                                   const std::string& allowed, std::string_view meaning)>;
+
 class KeyLister final : public OptionsVisitor {
  public:
-  explicit KeyLister(std::string& out) : out_(out) {}
+  explicit KeyLister(KeyLine line) : line_(std::move(line)) {}
 
   void Number(std::string_view key, double& value, Interval allowed,
               std::string_view meaning) override {
@@ -134,9 +141,9 @@ class KeyLister final : public OptionsVisitor {
  private:
   void Line(std::string_view key, const std::string& value, const std::string& allowed,
             std::string_view meaning) {
-    out_ += fmt::format("{}{} = {} ({}): {}\n", fmt::join(path_, ""), key, value, allowed, meaning);
+    line_(fmt::format("{}{}", fmt::join(path_, ""), key), value, allowed, meaning);
   }
-  std::string& out_;
+  KeyLine line_;
   std::vector<std::string> path_;
 };
 
@@ -147,7 +154,15 @@ std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out) {
   return std::make_unique<YamlWriter>(out);
 }
 std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out) {
-  return std::make_unique<KeyLister>(out);
+  return std::make_unique<KeyLister>([&out](const std::string& path, const std::string& value,
+                                            const std::string& allowed, std::string_view meaning) {
+    out += fmt::format("{} = {} ({}): {}\n", path, value, allowed, meaning);
+  });
+}
+std::unique_ptr<OptionsVisitor> MakeKeyPathLister(std::vector<std::string>& out) {
+  return std::make_unique<KeyLister>([&out](const std::string& path, const std::string&,
+                                            const std::string&,
+                                            std::string_view) { out.push_back(path); });
 }
 }  // namespace internal
 

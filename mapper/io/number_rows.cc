@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -21,6 +22,27 @@ std::vector<std::string_view> Split(std::string_view line) {
     if (begin == std::string_view::npos) return fields;
     const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
     fields.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+// "0,5 1,25 3": whole numbers apart, and others in two halves.
+bool HasDecimalCommas(std::string_view line) {
+  int commas = 0, words = 0;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) return words > 1 && commas > 0;
+    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    if (word.find_first_not_of("+-0123456789,eE") != std::string_view::npos) return false;
+    const std::size_t comma = word.find(',');
+    if (comma != std::string_view::npos) {
+      if (comma == 0 || comma + 1 == word.size() || word.find(',', comma + 1) != word.npos) {
+        return false;
+      }
+      ++commas;
+    }
+    ++words;
     line.remove_prefix(end);
   }
 }
@@ -87,6 +109,21 @@ std::string_view RestOf(const TextRow& row, std::size_t field) {
 void RequireText(const TextRow& row, const std::string& path) {
   if (RestOf(row, 0).find('\0') == std::string_view::npos) return;
   throw InputError(PlaceOfLine(path, row.line), "has zero bytes (UTF-16?), must be UTF-8 text");
+}
+
+void RequirePlainColumns(const std::vector<TextRow>& rows, const std::string& path) {
+  constexpr std::size_t kLooksAt = 10;  // a few of which may be damaged, or words
+  const std::size_t looked_at = std::min(kLooksAt, rows.size());
+  const auto require_few = [&](bool (*is_so)(std::string_view), const char* what) {
+    std::vector<int> lines;
+    for (std::size_t i = 0; i < looked_at; ++i) {
+      if (is_so(RestOf(rows[i], 0))) lines.push_back(rows[i].line);
+    }
+    if (2 * lines.size() > looked_at) throw InputError(PlaceOfLine(path, lines.front()), what);
+  };
+  require_few([](std::string_view line) { return line.find(';') != std::string_view::npos; },
+              "has semicolons between its columns, must have spaces or commas");
+  require_few(HasDecimalCommas, "has decimal commas, must have decimal points");
 }
 
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path) {

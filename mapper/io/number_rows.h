@@ -42,6 +42,10 @@ std::string_view RestOf(const TextRow& row, std::size_t field);
 // zero bytes.
 void RequireText(const TextRow& row, const std::string& path);
 
+// Throws InputError for columns as spreadsheets of some languages write them, that other errors
+// would only count: semicolons between them, or numbers with decimal commas.
+void RequirePlainColumns(const std::vector<TextRow>& rows, const std::string& path);
+
 // All fields of a row as numbers; throws InputError unless there are exactly `count`.
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);
 

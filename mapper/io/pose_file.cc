@@ -60,6 +60,7 @@ Trajectory StampedMatrices(const std::string& text, const std::string& place,
 
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings) {
+  RequirePlainColumns(SplitRows(text), place);
   Trajectory poses;
   if (HoldsMatrices(text)) {
     poses = StampedMatrices(text, place, frames, warnings);

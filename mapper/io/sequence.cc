@@ -34,6 +34,9 @@ constexpr double kDriftingAxisRad = RadFromDeg(3.0);
 // and the camera has turned by more than SLAM errs.
 constexpr std::size_t kCheckedPairs = 24;
 constexpr double kPairApartS = 0.5;
+// A given axis farther than this from what the floor says is another one: axes are 90 degrees
+// apart, and a world that is as oblique to all of them has none.
+const double kSureOfAxis = std::cos(RadFromDeg(45.0));
 // A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
 constexpr double kFloorIsZeroM = 0.02;
 
@@ -196,6 +199,29 @@ std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
   }
 }
 
+// Up as the floor in the images has it, one of the axes where it is near enough to one.
+Eigen::Vector3d SnappedUp(const Gravity& gravity) {
+  const double unsure_rad =
+      gravity.drifts ? std::max(gravity.wander_rad, kDriftingAxisRad) : gravity.wander_rad;
+  const WorldUp axis = NearestAxis(gravity.up_in_world, unsure_rad);
+  return axis == WorldUp::kAuto ? gravity.up_in_world : AxisOf(axis);
+}
+
+// "z" or "(0.000, 0.707, 0.707)".
+std::string ShownUp(const Eigen::Vector3d& up) {
+  const WorldUp axis = NearestAxis(up);
+  return axis == WorldUp::kAuto ? fmt::format("({:.3f}, {:.3f}, {:.3f})", up.x(), up.y(), up.z())
+                                : NameOf(axis);
+}
+
+// Of a given axis, which is taken whatever the images say.
+std::optional<std::string> DoubtOfUp(const DepthSequence& sequence,
+                                     const SequenceOptions& options) {
+  const auto gravity = FindGravity(sequence, options.recording);
+  if (!gravity || gravity->up_in_world.dot(AxisOf(options.world_up)) > kSureOfAxis) return {};
+  return ShownUp(SnappedUp(*gravity));
+}
+
 // Which way is up, and what is to be said about it.
 Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& options,
                        Sequence& result) {
@@ -205,17 +231,10 @@ Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& op
         fmt::format("no floor seen in the images, taking {} as up", NameOf(sequence.usual_up)));
     return AxisOf(sequence.usual_up);
   }
-  const double unsure_rad =
-      gravity->drifts ? std::max(gravity->wander_rad, kDriftingAxisRad) : gravity->wander_rad;
-  const WorldUp axis = NearestAxis(gravity->up_in_world, unsure_rad);
-  const Eigen::Vector3d up = axis == WorldUp::kAuto ? gravity->up_in_world : AxisOf(axis);
+  const Eigen::Vector3d up = SnappedUp(*gravity);
   result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
   const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));
-  result.notes.push_back(
-      axis == WorldUp::kAuto
-          ? fmt::format("up is ({:.3f}, {:.3f}, {:.3f}), removed {:.1f} degrees", up.x(), up.y(),
-                        up.z(), removed_deg)
-          : fmt::format("up is {}, removed {:.1f} degrees", NameOf(axis), removed_deg));
+  result.notes.push_back(fmt::format("up is {}, removed {:.1f} degrees", ShownUp(up), removed_deg));
   result.notes.push_back(
       fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
                   gravity->camera_height_m, *result.floor_z_m));
@@ -306,6 +325,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   if (!slam) FindCorrections(path, sequence, result.notes);
   result.pose_doubt = CheckPoses(sequence, options.recording);
+  if (options.world_up != WorldUp::kAuto) result.up_doubt = DoubtOfUp(sequence, options);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(sequence, options.recording, result)
                                  : AxisOf(options.world_up);

@@ -40,6 +40,9 @@ struct Sequence {
   Trajectory final_poses;
   // Where the images fit the poses only if these are read otherwise.
   std::optional<PoseDoubt> pose_doubt;
+  // What the floor seen in the images says is up, where another axis was given: "z", "-y" or a
+  // direction.
+  std::optional<std::string> up_doubt;
 };
 
 // The kind a path looks like. Throws InputError when it is none that is known.

@@ -62,7 +62,9 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
 
 TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place) {
   TrajectoryFile file;
-  for (const TextRow& row : SplitRows(text)) file.damage.Try([&] { AddRow(row, place, file); });
+  const std::vector<TextRow> rows = SplitRows(text);
+  RequirePlainColumns(rows, place);
+  for (const TextRow& row : rows) file.damage.Try([&] { AddRow(row, place, file); });
   file.damage.RequireMostGood(text);
   const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
   const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };

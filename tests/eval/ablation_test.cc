@@ -99,6 +99,21 @@ TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
             6 * json["scores"].size());
   EXPECT_THAT(browser.Evaluate("document.body.innerText").get<std::string>(),
               HasSubstr("matched poses are true"));
+  // Of the first score, which is a length, and of one that is none.
+  const auto heads_of = [&](const std::string& title) {
+    return browser
+        .Evaluate(
+            "(() => { const h = [...document.querySelectorAll('#scores h3')].find((e) => "
+            "e.textContent.startsWith('" +
+            title +
+            "')); return [...h.nextElementSibling."
+            "querySelectorAll('th')].map((th) => th.textContent).join('; '); })()")
+        .get<std::string>();
+  };
+  EXPECT_THAT(heads_of("trajectory.est.mean_euclidean_m"),
+              HasSubstr("error (m); owned (m); 95 % interval (m); share"));
+  EXPECT_THAT(heads_of("1 − map.observable.occupied.f1"),
+              HasSubstr("error; owned; 95 % interval; share"));
   browser.Open(Path("out/report.html"), 400);
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }

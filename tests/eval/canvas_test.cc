@@ -124,6 +124,25 @@ TEST(MapPicture, TheDotIsAtTheStartOrWhereItIsNow) {
   EXPECT_EQ(pictures, 2);
 }
 
+TEST(MapPicture, TheLegendHasEveryPathsDotInItsColour) {
+  const GridGeometry geometry{0.05, {0, 0}, 300, 20};
+  const std::vector<Path> paths = {{"truth", {255, 0, 0}, {}, PathStyle::kBeneath},
+                                   {"estimate", {0, 0, 255}, {}}};
+  const RgbImage image = AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, paths);
+  // Above the middle, where a dot is and no stroke of that colour.
+  const int row = image.height_px - 12 - Canvas::TextHeight(2) / 2 - 3;
+  int dots = 0;
+  for (const Path& path : paths) {
+    int width_px = 0;
+    for (int column = 0; column < image.width_px; ++column) {
+      width_px += At(image, column, row) == path.colour ? 1 : 0;
+    }
+    EXPECT_GT(width_px, 1);
+    ++dots;
+  }
+  EXPECT_EQ(dots, 2);
+}
+
 TEST(MapPicture, TheLegendIsNotCut) {
   const std::vector<Path> paths = {
       {"truth", {255, 0, 0}, {}}, {"odometry", {0, 255, 0}, {}}, {"estimate", {0, 0, 255}, {}}};
@@ -131,7 +150,7 @@ TEST(MapPicture, TheLegendIsNotCut) {
   for (const auto& [width, height] : {std::pair{617, 300}, {5, 2000}, {899, 10}, {1000, 20}}) {
     const GridGeometry geometry{0.05, {0, 0}, width, height};
     const RgbImage image = AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, paths);
-    // After the last stroke of colour there is text, which ends before the picture does.
+    // After the last dot of colour there is text, which ends before the picture does.
     const int row = image.height_px - 12 - Canvas::TextHeight(2) / 2;
     int stroke = 0;
     int ink = 0;
@@ -142,7 +161,7 @@ TEST(MapPicture, TheLegendIsNotCut) {
       }
     }
     EXPECT_GT(stroke, 0) << width;
-    EXPECT_GE(ink - stroke, Canvas::TextWidth(paths.back().name, 2) - 8) << width;
+    EXPECT_GE(ink - stroke, Canvas::TextWidth("start", 2) - 8) << width;
     EXPECT_LT(ink, image.width_px - 1) << width;
     EXPECT_LT(image.height_px, 4100);
     ++pictures;

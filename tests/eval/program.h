@@ -47,11 +47,11 @@ class ProgramTest : public ::testing::Test {
     WriteFile(Path(name), text);
   }
 
-  // `arguments` as in a shell whose working folder is the test's.
-  Outcome Program(const std::string& arguments) const {
+  // `arguments` as in a shell whose working folder is the test's; `as`: what starts the program.
+  Outcome Program(const std::string& arguments, const std::string& as = "") const {
     const std::string out = Path(".stdout");
     const std::string err = Path(".stderr");
-    const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile + "' " +
+    const std::string command = "cd '" + root_.string() + "' && " + as + "'" + kProgramFile + "' " +
                                 arguments + " >'" + out + "' 2>'" + err + "'";
     const int status = std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(out), ReadFile(err)};

@@ -66,11 +66,33 @@ TEST_F(ProgramErrors, ASceneOrATrajectoryThatIsNotThereIsNamedByItsLine) {
   ExpectRefusal("sweep ./rooms_sweep.yaml -o out", {"rooms_sweep.yaml:3: offce: no shipped scene"});
 }
 
+TEST_F(ProgramErrors, ATrajectoryFileThatIsNotThereIsNamedByItsLine) {
+  Write("no_file.yaml", "scene: ./room.yaml\ntrajectory: ./nix.txt\n");
+  ExpectRefusal("run ./no_file.yaml -o out", {"no_file.yaml:2: /", "/nix.txt: no such file"});
+  ExpectRefusal("render ./no_file.yaml -o out", {"no_file.yaml:2: /"});
+  ExpectRefusal("run ./small.yaml -o out --set trajectory=./nix.txt",
+                {"depthgrid: --set trajectory=./nix.txt: /", "/nix.txt: no such file"});
+}
+
 TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
   Write("map.yaml", "image: gone.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
   ExpectRefusal("eval map map.yaml map.yaml", {"map.yaml: image is 'gone.pgm': no such file"});
   Write("map.pgm", "P5 1 1 255\n0");
   ExpectRefusal("eval map map.pgm map.yaml", {"map.pgm: is a map's image", "YAML"});
+}
+
+TEST_F(ProgramErrors, AMapOfOtherCellsCanBeDrawnAgain) {
+  Succeed("run ./small.yaml -o 'a run'");
+  Succeed("regrid 'a run' --resolution 0.02");
+  ExpectRefusal("eval map 'a run/truth_map.yaml' 'a run/map_0.02.yaml'",
+                {"resolution is 0.02, must be the 0.05 of a run/truth_map.yaml; `depthgrid regrid "
+                 "'a run' --resolution 0.05` draws it so"});
+  Succeed("regrid 'a run' --resolution 0.05");
+  Succeed("eval map 'a run/truth_map.yaml' 'a run/map_0.05.yaml'");
+  std::filesystem::copy(Path("a run/map_0.02.yaml"), Path("map_0.02.yaml"));
+  std::filesystem::copy(Path("a run/map_0.02.pgm"), Path("map_0.02.pgm"));
+  ExpectRefusal("eval map 'a run/truth_map.yaml' map_0.02.yaml",
+                {"must be the 0.05 of a run/truth_map.yaml\n"});
 }
 
 TEST_F(ProgramErrors, QuotedBytesOfADamagedFileStayReadable) {
@@ -101,6 +123,34 @@ TEST_F(ProgramErrors, TrajectoriesThatDoNotFit) {
   ExpectRefusal("run ./small.yaml --set frames=0 -o out", {"look_around", "from geometry"});
 }
 
+TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
+  // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  Write("inside.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look + "0.2 1.5 3.4 1.1" + look);
+  Write("through.txt",
+        "0 1.5 3.0 1.1" + look + "0.1 1.5 3.7 1.1" + look + "0.2 1.5 4.3 1.1" + look);
+  Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
+  const auto said = [&](const std::string& command, const std::string& file) {
+    const Outcome outcome =
+        Program(command + " ./small.yaml -o out --force --set frames=0 --set trajectory=./" + file);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  Write("beside.txt", "0 9 3.0 1.1" + look + "0.1 9 3.2 1.1" + look);
+  EXPECT_EQ(said("run", "inside.txt"), "");
+  EXPECT_THAT(said("run", "beside.txt"),
+              HasSubstr("beside.txt: frame 0 at (9.00, 3.00, 1.10) is outside the scene"));
+  for (const char* command : {"run", "render --no-colour"}) {
+    EXPECT_THAT(
+        said(command, "through.txt"),
+        AllOf(HasSubstr("depthgrid: warning: /"),
+              HasSubstr("through.txt: frame 2 at (1.50, 4.30, 1.10) is 0.200 m from geometry"),
+              HasSubstr("the path goes through it\n")));
+    EXPECT_THAT(said(command, "near.txt"),
+                HasSubstr("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m from geometry"));
+  }
+}
+
 TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
   Write("b.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n");
@@ -114,6 +164,19 @@ TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   ExpectRefusal("map seq --loops a.txt -o out", {"--poses", "a.txt"});
   std::filesystem::remove(Path("seq/groundtruth.txt"));
   ExpectRefusal("map seq -o out", {"needs poses", "--poses FILE"});
+}
+
+TEST_F(ProgramErrors, ColumnsOfASpreadsheetAreNamed) {
+  Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  Write("semicolons.txt", "# t x y z\n1.0;0;0;0;0;0;0;1\n2.0;1;0;0;0;0;0;1\n");
+  Write("commas.txt", "1,0 0,0 0,0 0,0 0,0 0,0 0,0 1,0\n2,0 0,5 0,0 0,0 0,0 0,0 0,0 1,0\n");
+  Succeed("render ./small.yaml --no-colour -o seq");
+  for (const char* command : {"eval trajectory a.txt ", "map seq -o out --poses "}) {
+    ExpectRefusal(command + std::string("semicolons.txt"),
+                  {"depthgrid: semicolons.txt:2: has semicolons between its columns"});
+    ExpectRefusal(command + std::string("commas.txt"),
+                  {"depthgrid: commas.txt:1: has decimal commas, must have decimal points"});
+  }
 }
 
 TEST_F(ProgramErrors, BadUsage) {
@@ -140,6 +203,15 @@ TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
     const std::string setting = std::string("--set ") + key + "=4";
     ExpectRefusal("slam seq -o out " + setting, {setting + ": give --seed N"});
   }
+}
+
+TEST_F(ProgramErrors, AKeyInTheWrongGroupNamesTheRightOne) {
+  ExpectRefusal("run ./small.yaml -o out --set mapper.map.resolution=0.1",
+                {"unknown key 'mapper.map', did you mean 'mapper.grid.resolution_m'"});
+  ExpectRefusal("slam . -o out --set profile=planar_slam",
+                {"unknown key 'profile', did you mean 'slam.profile'?"});
+  ExpectRefusal("slam . -o out --set drift_scale=3",
+                {"unknown key 'drift_scale', did you mean 'slam.drift_scale'?"});
 }
 
 TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {
@@ -211,6 +283,9 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
   ExpectRefusal("map log.txt --format kitti -o out", {"--format kitti: ", "carmen"});
   ExpectRefusal("map log.txt --up w -o out", {"--up w: ", "auto"});
   ExpectRefusal("map . --format carmen -o out", {".: is a folder"});
+  Succeed("render ./small.yaml --no-colour -o seq");
+  EXPECT_EQ(Program("map seq --camera nope.yaml -o out").err,
+            "depthgrid: nope.yaml: no such file\n");
   ExpectRefusal("slam . --profile orb -o out", {"--profile orb: ", "orb_slam2"});
   // CLI11's own words for these are 300 digits long.
   for (const char* resolution : {"0", "0.001", "2", "fine"}) {

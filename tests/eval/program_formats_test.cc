@@ -163,6 +163,22 @@ TEST_F(ProgramFormats, WhatHasNoEffectIsSaid) {
   }
 }
 
+TEST_F(ProgramFormats, AnAxisThatIsNotUpIsWarnedOf) {
+  const auto said = [&](const std::string& arguments) {
+    const Outcome outcome = Program("map seq --poses seq/groundtruth.txt -o out --force" +
+                                    std::string(kTrustPoses) + " " + arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(said("--up z"), "");
+  EXPECT_THAT(said("--up x"),
+              HasSubstr("depthgrid: warning: --up x: the floor seen in the images says z, if they "
+                        "are upright\n"));
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), HasSubstr("--up x: the floor"));
+  EXPECT_THAT(said("--set sequence.world_up=-z"),
+              HasSubstr("warning: --set sequence.world_up=-z: the floor"));
+}
+
 TEST_F(ProgramFormats, PosesThatMeanSomethingElseAreNamed) {
   Succeed("render ./small.yaml --no-colour --set frames=150 -o long");
   const Trajectory truth = ReadTrajectory(Path("long/groundtruth.txt"));

@@ -63,6 +63,9 @@ TEST_F(ReportPage, OfARun) {
   EXPECT_GT(ColoursOf("#map"), 5);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#times .uplot').length"), 1);
 
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('changed').textContent"),
+            "Not the default: sensor.width 80, sensor.height 60");
+
   // Ten worst frames, with the surface of those that were matched: all but the first.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('.worst-card').length"), 10);
   EXPECT_GE(browser_->Evaluate("RUN.worst.filter((w) => w.surface).length").get<int>(), 9);
@@ -200,6 +203,15 @@ TEST_F(ReportPage, OfASweep) {
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody tr:last-child td:nth-child(2)')"
                                ".textContent"),
             "1");
+
+  // Values in centimetres are of no name that ends in metres.
+  const std::string heads = browser_->Evaluate(
+      "[...document.querySelectorAll('#table th button')].map((b) => "
+      "b.textContent.replaceAll('\\u200b', '')).join('; ')");
+  EXPECT_THAT(heads, ::testing::HasSubstr("trajectory.est.mean_euclidean (cm)"));
+  EXPECT_THAT(heads, ::testing::Not(::testing::HasSubstr("_m (cm)")));
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('metric').textContent"),
+              ::testing::Not(::testing::HasSubstr("_m (cm)")));
 
   const std::string means = PixelsOf("#plot canvas");
   const std::string heat = PixelsOf("#heat canvas");

@@ -110,6 +110,30 @@ TEST(Config, ErrorsOfASetKeyNameTheAssignment) {
   EXPECT_THAT(ErrorAfterSet("frames=-1"), ::testing::StartsWith("--set frames=-1: frames is '-1'"));
 }
 
+// A key of the right word in the wrong group, or in none.
+TEST(Config, AnUnknownKeyIsLookedForInEveryGroup) {
+  EXPECT_EQ(ErrorAfterSet("gain=0.3"),
+            "--set gain=0.3: unknown key 'gain', did you mean 'fusion.gain'?");
+  EXPECT_EQ(ErrorAfterSet("fusion.seed=3"),
+            "--set fusion.seed=3: unknown key 'fusion.seed', did you mean 'seed'?");
+  EXPECT_EQ(ErrorAfterSet("matcher.weights.gian=3"),
+            "--set matcher.weights.gian=3: unknown key 'matcher', did you mean 'fusion.gain'?");
+  EXPECT_EQ(ErrorAfterSet("map.step=1"),
+            "--set map.step=1: unknown key 'map', did you mean 'step_m'?");
+  EXPECT_EQ(ErrorAfterSet("fuson.gain=1"),
+            "--set fuson.gain=1: unknown key 'fuson', did you mean 'fusion'?");
+  EXPECT_EQ(ErrorAfterSet("map={}"), "--set map={}: unknown key 'map'");
+}
+
+TEST(Config, SeveralKeysOfOneWordAreAllNamed) {
+  const std::vector<std::string> keys = {"a.gain", "b.c.gain", "sensor.gain", "b.d.gain", "b.mode"};
+  EXPECT_EQ(DidYouMeanKey("b.gain", keys, false),
+            ", did you mean 'a.gain', 'b.c.gain' or 'b.d.gain'?");
+  EXPECT_EQ(DidYouMeanKey("mod", keys, false), "");
+  EXPECT_EQ(DidYouMeanKey("mod", keys, true), ", did you mean 'b.mode'?");
+  EXPECT_EQ(DidYouMeanKey("weights", keys, true), "");
+}
+
 TEST(Config, ASubtreeStillKnowsWhatWasSet) {
   Config config = Config::FromText("fusion: {mode: kalman}\n", "run.yaml");
   config.Set("fusion.gain=7");

@@ -120,6 +120,24 @@ TEST_F(SequenceTest, AFixedAxisIsTakenAsSaid) {
   EXPECT_FALSE(sequence.floor_z_m);
 }
 
+TEST_F(SequenceTest, AnAxisThatTheFloorSpeaksAgainstIsDoubted) {
+  const Trajectory truth = WriteRoom();
+  const auto doubt = [&](WorldUp up, const Trajectory& poses) {
+    SequenceOptions options;
+    options.world_up = up;
+    return OpenSequence(folder_, options, SlamOutputOf(poses)).up_doubt.value_or("none");
+  };
+  EXPECT_EQ(doubt(WorldUp::kZ, truth), "none");
+  EXPECT_EQ(doubt(WorldUp::kAuto, truth), "none");
+  for (const WorldUp wrong : {WorldUp::kX, WorldUp::kMinusY, WorldUp::kMinusZ}) {
+    EXPECT_EQ(doubt(wrong, truth), "z");
+  }
+  const Pose3 tilted{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())),
+                     Eigen::Vector3d::Zero()};
+  EXPECT_EQ(doubt(WorldUp::kZ, Turned(truth, tilted)), "none");
+  EXPECT_THAT(doubt(WorldUp::kX, Turned(truth, tilted)), ::testing::StartsWith("(0.0"));
+}
+
 TEST_F(SequenceTest, KindsAreDetected) {
   WriteRoom();
   EXPECT_EQ(DetectFormat(folder_), SequenceFormat::kTum);

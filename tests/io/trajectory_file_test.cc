@@ -81,6 +81,11 @@ TEST(TrajectoryFile, SurvivesDamageInsideALongFile) {
 
 TEST(TrajectoryFile, NamesTheBadLine) {
   EXPECT_EQ(TrajectoryFileRefusal("# c\n1 2 3\n"), "t.txt:2: has 3 columns, must have 8");
+  EXPECT_EQ(TrajectoryFileRefusal("# c\n1;2;3;4;5;6;7;8\n"),
+            "t.txt:2: has semicolons between its columns, must have spaces or commas");
+  EXPECT_EQ(TrajectoryFileRefusal("1,5 0 0 0 0 0 0 1\n2,5 0,5 0 0 0 0 0 1\n3 0,5 0 0 0 0 0 1\n"),
+            "t.txt:1: has decimal commas, must have decimal points");
+  EXPECT_EQ(TrajectoryFileRefusal("1, 0, 0, 0, 0, 0, 0, 1\n2,1,0,0,0,0,0,1\n"), "no error");
   EXPECT_EQ(TrajectoryFileRefusal("1 0 0 0 0 0 0 1\n1 0 x 0 0 0 0 1\n"),
             "t.txt:2: 'x' is not a number");
   EXPECT_EQ(TrajectoryFileRefusal("nan 0 0 0 0 0 0 1\n"), "t.txt:1: the stamp must be finite");

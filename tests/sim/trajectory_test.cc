@@ -226,6 +226,27 @@ TEST(CheckClearance, NamesThePlace) {
   }
 }
 
+TEST(DoubtOfPath, IsOfTheFirstFrameAtOrBehindASurface) {
+  // A thin wall at x = 3.25, lower than the camera is high.
+  const Eigen::AlignedBox3d room(Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(6, 5, 1));
+  const auto to_wall = [](const Eigen::Vector3d& p) { return std::abs(3.25 - p.x()); };
+  const auto occluded = [](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return (from.x() < 3.25) != (to.x() < 3.25);
+  };
+  const auto doubt = [&](std::initializer_list<double> xs) {
+    return DoubtOfPath(Line(xs), {room, to_wall, occluded}, 0.1).value_or("");
+  };
+  EXPECT_EQ(doubt({0.0, 2.0, 3.0}), "");
+  EXPECT_EQ(doubt({5.0, 5.5, 6.0, 6.5}),
+            "frame 3 at (6.50, 1.00, 1.20) is outside the scene, which spans (-1.00, -1.00, 0.00) "
+            "to (6.00, 5.00, 1.00)");
+  EXPECT_EQ(doubt({0.0, 3.125, 3.1875, 3.25}),
+            "frame 2 at (3.19, 1.00, 1.20) is 0.062 m from geometry, nearer than a camera can be");
+  EXPECT_EQ(doubt({2.0, 3.0, 3.5, 3.25}),
+            "frame 2 at (3.50, 1.00, 1.20) is 0.250 m from geometry, behind a surface as seen from "
+            "the frame before: the path goes through it");
+}
+
 TEST(CheckInside, NamesThePlace) {
   const Eigen::AlignedBox3d room(Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(2, 5, 2));
   CheckInside(Line({0.0, 2.0}), room, "path");

@@ -1,0 +1,88 @@
+#include "eval/changed_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "eval/experiment_options.h"
+#include "mapper/core/error.h"
+#include "mapper/io/sequence.h"
+
+namespace depthgrid {
+namespace {
+
+// All that a run.yaml of `run` or of `map` may have, files aside.
+struct AllSettings {
+  ExperimentOptions experiment;
+  SequenceOptions sequence;
+
+  void Visit(OptionsVisitor& v) {
+    experiment.Visit(v);
+    v.Group("sequence", sequence, "how the recorded sequence is read");
+  }
+};
+
+// Of the keys below a map, by their paths.
+std::vector<std::pair<std::string, std::string>> Leaves(const Config& tree,
+                                                        const std::string& prefix = "") {
+  std::vector<std::pair<std::string, std::string>> leaves;
+  for (const ConfigEntry& entry : tree.Entries()) {
+    if (!entry.map) {
+      leaves.emplace_back(prefix + entry.key, entry.text);
+      continue;
+    }
+    const auto below = Leaves(*entry.map, prefix + entry.key + ".");
+    leaves.insert(leaves.end(), below.begin(), below.end());
+  }
+  return leaves;
+}
+
+AllSettings DefaultsFor(const std::string& profile) {
+  AllSettings defaults;
+  Config config;
+  try {
+    config.Set("slam.profile", profile, "run.yaml");
+    config.Read(defaults);
+  } catch (const InputError&) {  // of another version: its values all show
+  }
+  return defaults;
+}
+
+bool IsKnownElsewhere(const std::string& key, bool noise_of_profile) {
+  static const std::set<std::string> kKeys = {"scene",
+                                              "trajectory",
+                                              "frames",
+                                              "seed",
+                                              "slam.profile",
+                                              "sensor.noise",
+                                              "mapper.method",
+                                              "mapper.fusion.mode",
+                                              "mapper.fusion.gain",
+                                              "sequence.camera",
+                                              "mapper.scan.floor_z_m"};
+  constexpr const char* kNoise = "mapper.fusion.slam_noise.";
+  return kKeys.contains(key) ||
+         (noise_of_profile && key.starts_with(kNoise) && !key.ends_with(".source"));
+}
+
+}  // namespace
+
+std::vector<std::string> ChangedSettings(const Config& run_yaml) {
+  const std::string profile = run_yaml.Text("slam.profile");
+  const bool noise_of_profile = run_yaml.Text("mapper.fusion.slam_noise.source") == "profile";
+  const std::string yaml = ToYaml(profile.empty() ? AllSettings() : DefaultsFor(profile));
+  std::map<std::string, std::string> defaults;
+  for (const auto& [key, value] : Leaves(Config::FromText(yaml, "defaults"))) defaults[key] = value;
+  std::vector<std::string> changed;
+  for (const auto& [key, value] : Leaves(run_yaml)) {
+    const auto usual = defaults.find(key);
+    if (usual == defaults.end() || usual->second == value) continue;
+    if (!IsKnownElsewhere(key, noise_of_profile)) changed.push_back(key + " " + value);
+  }
+  return changed;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,17 @@
+// The settings of a run that are not the program's defaults, wherever they were set: what a reader
+// of its page would otherwise look for among hundreds of keys.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mapper/io/config.h"
+
+namespace depthgrid {
+
+// "mapper.grid.resolution_m 0.02" of a run.yaml, in its order. Left out: names of files, what a
+// page's first line says, and what follows from the scene or the profile. Defaults of `slam` are
+// those of its profile. Keys of other versions are no matter.
+std::vector<std::string> ChangedSettings(const Config& run_yaml);
+
+}  // namespace depthgrid

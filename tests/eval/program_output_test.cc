@@ -1,0 +1,73 @@
+// Where a command may put what it writes, said before any work.
+#include <sys/stat.h>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ProgramOutput : public ProgramTest {};
+
+TEST_F(ProgramOutput, TheCurrentFolderIsNeverReplaced) {
+  fs::create_directory(Path("here"));
+  // In a folder below the test's, as a shell would be.
+  const auto refusal = [&](const std::string& output) {
+    const Outcome outcome = Program("render ../room.yaml --no-colour -o " + output, "cd here && ");
+    EXPECT_EQ(outcome.exit_code, 2) << output;
+    return outcome.err;
+  };
+  const std::string is = " is the current folder, must be a folder of its own\n";
+  EXPECT_EQ(refusal("."), "depthgrid: -o: ." + is);
+  EXPECT_EQ(refusal("./ --force"), "depthgrid: -o: ./" + is);
+  EXPECT_EQ(refusal("../here"), "depthgrid: -o: ../here" + is);
+  EXPECT_EQ(refusal(".. --force"),
+            "depthgrid: -o: .. holds the current folder, must be a folder of its own\n");
+  EXPECT_EQ(FilesIn(""), (std::vector<std::string>{"room.yaml", "small.yaml"}));
+  EXPECT_TRUE(fs::is_empty(Path("here")));
+  EXPECT_EQ(Program("render ../room.yaml --no-colour --set frames=2 -o ../here2", "cd here && ")
+                .exit_code,
+            0);
+}
+
+TEST_F(ProgramOutput, ALinkToNothingIsRefusedBeforeTheWork) {
+  fs::create_symlink("gone", Path("link"));
+  for (const char* command : {"run ./small.yaml", "render ./room.yaml", "sweep kalman_gain"}) {
+    ExpectRefusal(std::string(command) + " -o link",
+                  {"depthgrid: link: is a link to gone, which is not there"});
+    ExpectRefusal(std::string(command) + " -o link/", {"link/: is a link to gone"});
+  }
+  EXPECT_TRUE(fs::is_symlink(Path("link")));
+  EXPECT_FALSE(fs::exists(Path(".link.partial")));
+  fs::create_symlink("loop", Path("loop"));
+  EXPECT_EQ(Program("run ./small.yaml -o loop").err,
+            "depthgrid: loop: cannot be created: Too many levels of symbolic links\n");
+}
+
+TEST_F(ProgramOutput, AFolderThatMayNotBeEnteredIsNamedAsGiven) {
+  fs::create_directories(Path("closed/full"));
+  ASSERT_EQ(::chmod(Path("closed").c_str(), 0000), 0);
+  // Root may go everywhere.
+  const std::string nobody =
+      ::geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  const bool runs = Program("--version", nobody).exit_code == 0;
+  std::vector<std::pair<std::string, std::string>> said;
+  for (const std::string command : {"run ./small.yaml", "map .", "sweep kalman_gain"}) {
+    if (!runs) break;
+    const Outcome below = Program(command + " -o closed/full", nobody);
+    const Outcome itself = Program(command + " -o closed --force", nobody);
+    said.emplace_back(below.err, itself.err);
+    EXPECT_EQ(below.exit_code, 2);
+    EXPECT_EQ(itself.exit_code, 2);
+  }
+  ASSERT_EQ(::chmod(Path("closed").c_str(), 0755), 0);
+  if (!runs) GTEST_SKIP() << "no unprivileged user runs the program";
+  for (const auto& [below, itself] : said) {
+    EXPECT_EQ(below, "depthgrid: closed/full: cannot be created: Permission denied\n");
+    EXPECT_EQ(itself, "depthgrid: closed: cannot be written: Permission denied\n");
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
