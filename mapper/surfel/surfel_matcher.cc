@@ -17,6 +17,14 @@ constexpr double kConvergedRad = 4e-6;
 // match would be believed less and stay with it; so many steps are taken before the misfit is
 // asked (1 is too few, 3 no better: docs/tried.md, "When a match is judged").
 constexpr int kStepsBeforeJudging = 2;
+// Surfels drawn in the mean by the last so many frames, a third of a second, may be of something
+// that moves (5, 7 and 20 do the same or less: docs/tried.md, "What moves").
+constexpr double kYoungFrames = 10.0;
+// It does where they lie so far, as a mean chi-square, from where the others have them.
+constexpr double kMovingChi2 = 6.0;
+// As long as these and the prediction know every direction by such a share of what all know.
+constexpr double kLeastShareWithoutYoung = 0.1;
+constexpr int kStepsWithoutYoung = 4;
 // The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
 constexpr double kLeastVariance = 1e-10;
 // The linearised equations are not followed farther than this from where they were evaluated; what
@@ -55,6 +63,8 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
          "whether a match whose surfels fit worse than their noise explains is believed less");
   v.Flag("judge_sharing", judge_sharing,
          "whether it is when neighbours err alike, as the joint adjustment found");
+  v.Flag("judge_moving", judge_moving,
+         "whether what was just drawn is left out where it moves against all else");
   v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
   v.Number("normal_floor_share", normal_floor_share, {0.0, 1.0},
            "nor than this share of the variance that one scan's line has");
@@ -73,12 +83,8 @@ PairGates SurfelMatcher::Gates() const {
           options_.normal_floor_share};
 }
 
-PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base,
-                                       bool judged) {
-  const PairGates gates = Gates();
-  pairs_.Associate(map, gates, map_from_base);
-  PairEvaluation evaluation = pairs_.Evaluate(gates, map_from_base);
-  if (judged && options_.judge_misfit) {
+PairEvaluation SurfelMatcher::Judged(PairEvaluation evaluation) const {
+  if (options_.judge_misfit) {
     evaluation.equations.h /= evaluation.variance_factor;
     evaluation.equations.g /= evaluation.variance_factor;
     evaluation.equations.false_h /= evaluation.variance_factor;
@@ -86,37 +92,95 @@ PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_
   return evaluation;
 }
 
-MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
-                                 const Prediction& prediction, std::vector<MapPart>* parts) {
-  MatchResult match;
-  match.map_from_base = prediction.map_from_base;
-  const Eigen::Matrix3d prior_h =
-      (prediction.covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse();
-  Pose2 pose = prediction.map_from_base;
-  PairEvaluation evaluation;
-  NormalEquations seen;
-  pairs_.Assign(pieces, options_.judge_sharing ? correlation_ : 0.0);
+PairEvaluation SurfelMatcher::Evaluate(const SurfelStore& map, const Pose2& map_from_base,
+                                       bool judged) {
+  const PairGates gates = Gates();
+  pairs_.Associate(map, gates, map_from_base);
+  PairEvaluation evaluation = pairs_.Evaluate(gates, map_from_base);
+  return judged ? Judged(evaluation) : evaluation;
+}
+
+Eigen::Vector3d SurfelMatcher::Step(const Prior& prior, Solution& solution) const {
+  solution.seen = Debiased(solution.evaluation.equations, options_.debias);
+  const Eigen::Vector3d back = Between(solution.map_from_base, prior.map_from_base).vector();
+  const Eigen::Vector3d step = (solution.seen.h + prior.information)
+                                   .ldlt()
+                                   .solve(solution.seen.g + prior.information * back);
+  solution.map_from_base = solution.map_from_base * Pose2::FromVector(step);
+  solution.seen.g -= solution.seen.h * step;  // as it is after the step
+  return step;
+}
+
+SurfelMatcher::Solution SurfelMatcher::Solve(const SurfelStore& map, const Prior& prior) {
+  Solution solution;
+  solution.map_from_base = prior.map_from_base;
   const int unjudged =
       options_.judge_misfit ? std::min(kStepsBeforeJudging, options_.max_iterations - 1) : 0;
-  while (match.iterations < options_.max_iterations) {
-    const bool judged = match.iterations >= unjudged;
-    evaluation = Evaluate(map, pose, judged);
-    ++match.iterations;
-    if (evaluation.used < kMinPieces) return match;
-    seen = Debiased(evaluation.equations, options_.debias);
-    const Eigen::Vector3d back = Between(pose, prediction.map_from_base).vector();
-    const Eigen::Vector3d step = (seen.h + prior_h).ldlt().solve(seen.g + prior_h * back);
-    pose = pose * Pose2::FromVector(step);
-    seen.g -= seen.h * step;  // as it is after the step
+  while (solution.iterations < options_.max_iterations) {
+    const bool judged = solution.iterations >= unjudged;
+    solution.evaluation = Evaluate(map, solution.map_from_base, judged);
+    ++solution.iterations;
+    if (solution.evaluation.used < kMinPieces) return solution;
+    const Eigen::Vector3d step = Step(prior, solution);
     const bool converged =
         step.head<2>().norm() < kConvergedM && std::abs(step.z()) < kConvergedRad;
     if (judged && converged) break;
   }
-  if (parts != nullptr) pairs_.PartsOf(Gates(), pose, *parts);
+  solution.found = true;
+  return solution;
+}
+
+// With the surfels that the pieces belong to now. Empty where the others tell too little.
+std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double frame,
+                                                                        const Prior& prior,
+                                                                        const Solution& with_all) {
+  pairs_.LeaveOutYoung(frame);
+  Solution solution = with_all;
+  solution.map_from_base = prior.map_from_base;
+  for (int i = 0; i < kStepsWithoutYoung; ++i) {
+    solution.evaluation = pairs_.Evaluate(Gates(), solution.map_from_base);
+    if (i >= kStepsBeforeJudging) solution.evaluation = Judged(solution.evaluation);
+    Step(prior, solution);
+    if (i > 0) continue;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> share(
+        solution.seen.h + prior.information, with_all.seen.h + prior.information);
+    if (share.eigenvalues()[0] < kLeastShareWithoutYoung) return std::nullopt;
+  }
+  return solution;
+}
+
+// Somebody who walks is drawn anew with each frame and matched where they were the frame before.
+// What has stood for longer and the prediction tell another motion then.
+void SurfelMatcher::LeaveOutMoving(double frame, const Prior& prior, Solution& solution) {
+  const SurfelPairs::YoungPairs young = pairs_.YoungAt(frame, solution.map_from_base);
+  if (young.count < kMinPieces || young.others < kMinPieces) return;
+  const std::optional<Solution> without = SolveWithoutYoung(frame, prior, solution);
+  pairs_.TakeInAll();
+  if (!without || pairs_.YoungAt(frame, without->map_from_base).chi2 <= kMovingChi2) return;
+  pairs_.LeaveOutYoung(frame);
+  solution = *without;
+}
+
+MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
+                                 const Prediction& prediction, std::vector<MapPart>* parts) {
+  const Prior prior{
+      prediction.map_from_base,
+      (prediction.covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse()};
+  pairs_.Assign(pieces, options_.judge_sharing ? correlation_ : 0.0);
+  Solution solution = Solve(map, prior);
+  MatchResult match;
+  match.map_from_base = prediction.map_from_base;
+  match.iterations = solution.iterations;
+  if (!solution.found) return match;
+  if (options_.judge_moving) {
+    LeaveOutMoving(map.newest_frame() - kYoungFrames, prior, solution);
+  }
+  if (parts != nullptr) pairs_.PartsOf(Gates(), solution.map_from_base, *parts);
   match.found = true;
-  match.map_from_base = pose * Pose2::FromVector(SeenStep(seen));
-  match.information = seen.h;
-  match.score = static_cast<double>(evaluation.explained) / static_cast<double>(pieces.size());
+  match.map_from_base = solution.map_from_base * Pose2::FromVector(SeenStep(solution.seen));
+  match.information = solution.seen.h;
+  match.score =
+      static_cast<double>(solution.evaluation.explained) / static_cast<double>(pieces.size());
   return match;
 }
 

@@ -1,6 +1,7 @@
 // A scan's surfels against those of the map: robust point-to-line least squares.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mapper/core/options.h"
@@ -16,6 +17,7 @@ struct SurfelMatchOptions {
   double huber_sigmas = 2.5;        // larger residuals count linearly
   bool judge_misfit = true;         // information over the Misfit of the matched surfels
   bool judge_sharing = true;        // and over what neighbours share of their errors
+  bool judge_moving = true;         // whether what was just drawn may have moved
   double normal_floor_rad = 0.01;   // no normal is known better
   double normal_floor_share = 0.3;  // nor than this share of the variance that its piece's line has
   double debias = 3.0;              // threshold of Debiased()
@@ -39,7 +41,26 @@ class SurfelMatcher {
                     const Prediction& prediction, std::vector<MapPart>* parts = nullptr);
 
  private:
+  // What is known without the scan.
+  struct Prior {
+    Pose2 map_from_base;
+    Eigen::Matrix3d information;
+  };
+  struct Solution {
+    Pose2 map_from_base;
+    NormalEquations seen;  // debiased, there
+    PairEvaluation evaluation;
+    int iterations = 0;
+    bool found = false;
+  };
   PairGates Gates() const;
+  PairEvaluation Judged(PairEvaluation evaluation) const;
+  // Towards the maximum a posteriori; returns the step.
+  Eigen::Vector3d Step(const Prior& prior, Solution& solution) const;
+  Solution Solve(const SurfelStore& map, const Prior& prior);
+  std::optional<Solution> SolveWithoutYoung(double frame, const Prior& prior,
+                                            const Solution& with_all);
+  void LeaveOutMoving(double frame, const Prior& prior, Solution& solution);
   PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base, bool judged);
 
   SurfelMatchOptions options_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/surfel/misfit.h"
 #include "mapper/surfel/shared_errors.h"
@@ -21,6 +22,8 @@ constexpr DoubleLanes kDoubles;
 constexpr double kExplainedSigmas = 3.0;
 // Belongs to a surfel for no distance at all: it is looked for again.
 constexpr double kNever = -1.0;
+// Five standard deviations: what is farther off is off, by how much does not matter.
+constexpr double kMostChi2 = 25.0;
 
 double SumOf(Doubles lanes) { return hn::GetLane(hn::SumOfLanes(kDoubles, lanes)); }
 
@@ -116,6 +119,45 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   block.normal_variance[lane] =
       std::max({1.0 / surfel.normal_information, gates.normal_floor_rad * gates.normal_floor_rad,
                 gates.normal_floor_share / piece.normal_information});
+}
+
+SurfelPairs::YoungPairs SurfelPairs::YoungAt(double frame, const Pose2& map_from_base) const {
+  YoungPairs young;
+  const Motion2 motion(map_from_base);
+  for (const Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (block.information[lane] <= 0.0) continue;
+      if (block.mapped[lane] <= frame) {
+        ++young.others;
+        continue;
+      }
+      const Eigen::Vector2d point_m(block.x_m[lane], block.y_m[lane]);
+      const Eigen::Vector2d surfel_m(block.surfel_x_m[lane], block.surfel_y_m[lane]);
+      const Eigen::Vector2d normal(block.normal_x[lane], block.normal_y[lane]);
+      const double sigmas = normal.dot(motion * point_m - surfel_m) * block.per_sigma[lane];
+      ++young.count;
+      young.chi2 += std::min(sigmas * sigmas, kMostChi2);
+    }
+  }
+  if (young.count > 0) young.chi2 /= young.count;
+  return young;
+}
+
+void SurfelPairs::LeaveOutYoung(double frame) {
+  for (Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (block.mapped[lane] <= frame) continue;
+      block.left_out[lane] = std::exchange(block.information[lane], 0.0);
+    }
+  }
+}
+
+void SurfelPairs::TakeInAll() {
+  for (Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      block.information[lane] += std::exchange(block.left_out[lane], 0.0);
+    }
+  }
 }
 
 void SurfelPairs::PartsOf(const PairGates& gates, const Pose2& map_from_base,

@@ -37,6 +37,16 @@ class SurfelPairs {
   // call before. The map must not change between Assign() and the last of these calls.
   void Associate(const SurfelStore& map, const PairGates& gates, const Pose2& map_from_base);
   PairEvaluation Evaluate(const PairGates& gates, const Pose2& map_from_base);
+  // Those whose surfels were drawn by frames after this one (SurfelStore::FrameOf), at a pose.
+  struct YoungPairs {
+    int count = 0;
+    int others = 0;
+    double chi2 = 0.0;  // mean, of which none counts more than 25
+  };
+  YoungPairs YoungAt(double frame, const Pose2& map_from_base) const;
+  // Leaves them out until the next association, or takes them in again.
+  void LeaveOutYoung(double frame);
+  void TakeInAll();
   // What the map's surfels each contribute there.
   void PartsOf(const PairGates& gates, const Pose2& map_from_base,
                std::vector<MapPart>& parts) const;
@@ -57,6 +67,7 @@ class SurfelPairs {
     Lanes per_sigma{};     // its square root
     Lanes normal_variance{};
     Lanes mapped{}, noise_share{};  // as MapPart
+    Lanes left_out{};               // their information, while they are
   };
   void AssociateOne(const SurfelStore& map, const PairGates& gates, const Motion2& motion,
                     std::size_t piece);

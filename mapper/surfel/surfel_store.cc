@@ -104,6 +104,7 @@ Association SurfelStore::NearestFirmly(const Surfel& piece, const AssociationGat
 }
 
 int SurfelStore::Merge(const Surfel& piece, const AssociationGate& gate, double frame) {
+  newest_frame_ = std::max(newest_frame_, frame);
   const int index = Nearest(piece, gate);
   if (index < 0) return Add(piece, frame);
   Surfel& surfel = surfels_[static_cast<std::size_t>(index)];
@@ -135,6 +136,7 @@ int SurfelStore::Add(const Surfel& surfel, double frame) {
 void SurfelStore::Clear() {
   surfels_.clear();
   frames_.clear();
+  newest_frame_ = 0.0;
   next_in_cell_.clear();
   tile_of_key_.Clear();
   tiles_.clear();

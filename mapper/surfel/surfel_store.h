@@ -52,6 +52,8 @@ class SurfelStore {
   double FrameOf(int index) const {
     return static_cast<double>(frames_[static_cast<std::size_t>(index)]);
   }
+  // The newest frame that saw a surfel.
+  double newest_frame() const { return newest_frame_; }
   void Clear();
 
  private:
@@ -82,6 +84,7 @@ class SurfelStore {
   }
 
   std::vector<Surfel> surfels_;
+  double newest_frame_ = 0.0;
   std::vector<float> frames_;      // parallel to surfels_
   std::vector<int> next_in_cell_;  // parallel to surfels_
   KeyIndex tile_of_key_;
