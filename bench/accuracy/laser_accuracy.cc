@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <future>
+#include <map>
+#include <string>
 
 #include "bench/accuracy/laser_run.h"
+#include "bench/accuracy/people.h"
 #include "bench/guarded_main.h"
 #include "eval/consistency.h"
 #include "mapper/core/cpu_clock.h"
@@ -64,8 +67,8 @@ struct Run {
 };
 
 Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOptions& laser,
-        const OdometryOptions& odo, const MapperOptions& options, int seed, int perfect_frames,
-        bool verbose) {
+        const OdometryOptions& odo, const MapperOptions& options, People people, int seed,
+        int perfect_frames, bool verbose) {
   const auto odometry = PerfectAtFirst(
       truth, DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed)), perfect_frames);
   IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
@@ -77,7 +80,8 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     Frame frame;
     frame.index = static_cast<int>(k);
     frame.stamp_s = static_cast<double>(k) / 30.0;
-    frame.scan = SimulatedScan(world, truth[k], laser, seed, static_cast<int>(k));
+    frame.scan = SimulatedScan(WithPeople(world, people, truth, k), truth[k], laser, seed,
+                               static_cast<int>(k));
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
     stamped_truth.push_back({frame.stamp_s, CameraOf(truth[k], 0.0)});
     const FrameReport report = mapper.AddFrame(frame);
@@ -132,6 +136,7 @@ int Measure(int argc, char** argv) {
   OdometryOptions odo;
   int first_seed = 1, seeds = 3, threads = 2, perfect_frames = 0;
   bool verbose = false;
+  People people = People::kNone;
   app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
   app.add_option("--seeds", seeds);
   app.add_option("--first-seed", first_seed);
@@ -148,6 +153,9 @@ int Measure(int argc, char** argv) {
   app.add_option("--jitter", odo.jitter_m);
   app.add_option("--jitter-deg", odo.jitter_deg);
   app.add_option("--perfect-frames", perfect_frames, "the prior errs from this frame on only");
+  app.add_option("--people", people, "none, crossing or ahead")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, People>{
+          {"none", People::kNone}, {"crossing", People::kCrossing}, {"ahead", People::kAhead}}));
   app.add_option("--set", sets);
   app.add_flag("-v", verbose);
   CLI11_PARSE(app, argc, argv);
@@ -165,8 +173,8 @@ int Measure(int argc, char** argv) {
     for (int t = 0; t < threads; ++t) {
       jobs.push_back(std::async(std::launch::async, [&, t] {
         for (int i = t; i < seeds; i += threads)
-          runs[static_cast<std::size_t>(i)] =
-              Map(world, truth, laser, odo, options, first_seed + i, perfect_frames, verbose);
+          runs[static_cast<std::size_t>(i)] = Map(world, truth, laser, odo, options, people,
+                                                  first_seed + i, perfect_frames, verbose);
       }));
     }
     for (auto& j : jobs) j.get();

@@ -1,0 +1,55 @@
+// People in a simulated laser world: what moves while the robot does.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/pose2.h"
+#include "sim/laser_world.h"
+
+namespace depthgrid {
+
+enum class People {
+  kNone,
+  kCrossing,  // three, one after the other, walk through the view
+  kAhead,     // one walks on before the robot, for three quarters of the time
+};
+
+constexpr double kPersonRadiusM = 0.22;
+constexpr double kWalkMps = 1.2;
+constexpr double kFrameRateHz = 30.0;
+constexpr double kPersonAheadM = 1.5;  // of the robot; three who cross are .8 m nearer and farther
+
+inline void AddPerson(const Eigen::Vector2d& at_m, LaserWorld& world) {
+  constexpr int kSides = 12;
+  const auto corner = [&](int i) -> Eigen::Vector2d {
+    const double angle_rad = 2.0 * kPi * i / kSides;
+    return at_m + kPersonRadiusM * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+  };
+  for (int i = 0; i < kSides; ++i) world.walls.push_back({corner(i), corner(i + 1)});
+}
+
+// The world as it is at a frame of this path.
+inline LaserWorld WithPeople(const LaserWorld& world, People people,
+                             const std::vector<Pose2>& world_from_base, std::size_t frame) {
+  LaserWorld peopled = world;
+  const std::size_t count = world_from_base.size();
+  if (people == People::kCrossing) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t met = count * (2 * i + 1) / 6;
+      const double since_s = (static_cast<double>(frame) - static_cast<double>(met)) / kFrameRateHz;
+      const double ahead_m = kPersonAheadM + 0.8 * (static_cast<double>(i) - 1.0);
+      if (std::abs(since_s) > 3.0) continue;
+      AddPerson(world_from_base[met] * Eigen::Vector2d(ahead_m, -kWalkMps * since_s), peopled);
+    }
+  }
+  constexpr std::size_t kRound = 400, kAheadFrames = 300;
+  if (people == People::kAhead && frame % kRound < kAheadFrames) {
+    AddPerson(world_from_base[frame] * Eigen::Vector2d(kPersonAheadM, 0.0), peopled);
+  }
+  return peopled;
+}
+
+}  // namespace depthgrid
