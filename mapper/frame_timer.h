@@ -9,8 +9,8 @@ namespace depthgrid {
 
 // Only FrameReport::times depends on them; without either all times stay zero.
 struct FrameClocks {
-  // Processor time of the calling thread, microseconds. Mostly a system call (0.2 us, 2 us on some
-  // virtual machines), so a frame asks for it twice.
+  // Processor time of the calling thread, microseconds. Mostly a system call (2 us on a virtual
+  // machine: docs/bench.md), so a frame asks for it twice.
   std::function<double()> cpu_us;
   // Time that passes, microseconds: a few hundredths of a microsecond. It tells a frame's stages.
   std::function<double()> steady_us;

@@ -121,6 +121,13 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
                 gates.normal_floor_share / piece.normal_information});
 }
 
+double SurfelPairs::SigmasOff(const Block& block, std::size_t lane, const Motion2& motion) {
+  const Eigen::Vector2d point_m(block.x_m[lane], block.y_m[lane]);
+  const Eigen::Vector2d surfel_m(block.surfel_x_m[lane], block.surfel_y_m[lane]);
+  const Eigen::Vector2d normal(block.normal_x[lane], block.normal_y[lane]);
+  return normal.dot(motion * point_m - surfel_m) * block.per_sigma[lane];
+}
+
 SurfelPairs::YoungPairs SurfelPairs::YoungAt(double frame, const Pose2& map_from_base) const {
   YoungPairs young;
   const Motion2 motion(map_from_base);
@@ -131,10 +138,7 @@ SurfelPairs::YoungPairs SurfelPairs::YoungAt(double frame, const Pose2& map_from
         ++young.others;
         continue;
       }
-      const Eigen::Vector2d point_m(block.x_m[lane], block.y_m[lane]);
-      const Eigen::Vector2d surfel_m(block.surfel_x_m[lane], block.surfel_y_m[lane]);
-      const Eigen::Vector2d normal(block.normal_x[lane], block.normal_y[lane]);
-      const double sigmas = normal.dot(motion * point_m - surfel_m) * block.per_sigma[lane];
+      const double sigmas = SigmasOff(block, lane, motion);
       ++young.count;
       young.chi2 += std::min(sigmas * sigmas, kMostChi2);
     }
@@ -168,10 +172,8 @@ void SurfelPairs::PartsOf(const PairGates& gates, const Pose2& map_from_base,
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if (block.information[lane] <= 0.0) continue;
       const Eigen::Vector2d point_m(block.x_m[lane], block.y_m[lane]);
-      const Eigen::Vector2d surfel_m(block.surfel_x_m[lane], block.surfel_y_m[lane]);
       const Eigen::Vector2d normal(block.normal_x[lane], block.normal_y[lane]);
-      const double sigmas =
-          std::abs(normal.dot(motion * point_m - surfel_m)) * block.per_sigma[lane];
+      const double sigmas = std::abs(SigmasOff(block, lane, motion));
       const double weight = block.information[lane] * std::min(1.0, gates.huber_sigmas / sigmas);
       const Eigen::Vector3d row = OffsetJacobian(motion.TurnBack(normal), point_m);
       parts.push_back(

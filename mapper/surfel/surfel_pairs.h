@@ -69,6 +69,8 @@ class SurfelPairs {
     Lanes mapped{}, noise_share{};  // as MapPart
     Lanes left_out{};               // their information, while they are
   };
+  // The distance of a piece from its surfel along the normal, in standard deviations.
+  static double SigmasOff(const Block& block, std::size_t lane, const Motion2& motion);
   void AssociateOne(const SurfelStore& map, const PairGates& gates, const Motion2& motion,
                     std::size_t piece);
 
