@@ -33,6 +33,10 @@ struct MappedFrame {
   bool of_prior_map() const { return frame < 0; }
 };
 
+inline const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
+  return frames[static_cast<std::size_t>(i)];
+}
+
 // A loop between two mapped frames, already projected to the plane.
 struct PlanarLoop {
   int first = 0;  // indices into the vector of MappedFrame

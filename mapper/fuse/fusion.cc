@@ -67,8 +67,8 @@ Eigen::Matrix3d InformationFor(const Prediction& prediction, const MatchResult& 
                                double tilt_rad) {
   const Eigen::Matrix3d information = InformationIn(prediction.map_from_base, match);
   if (tilt_rad <= 0.0) return information;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(
-      prediction.covariance.topLeftCorner<2, 2>());
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(prediction.covariance.topLeftCorner<2, 2>());
   const Eigen::Vector2d known_least = solver.eigenvectors().col(1);
   const Eigen::Vector2d across(-known_least.y(), known_least.x());
   const Eigen::Matrix2d told = information.topLeftCorner<2, 2>();

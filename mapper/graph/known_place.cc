@@ -4,13 +4,6 @@
 #include <utility>
 
 namespace depthgrid {
-namespace {
-
-const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)];
-}
-
-}  // namespace
 
 std::vector<CutScan> CutScans(SurfelMap& map, const std::vector<MappedFrame>& frames,
                               const std::vector<int>& members, int middle) {

@@ -26,10 +26,6 @@ constexpr double kOverconfidence = 4.0;
 constexpr double kLeastSigmaM = 0.02;
 constexpr double kLeastSigmaRad = 0.005;
 
-const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)];
-}
-
 struct JointMatch {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
@@ -140,7 +136,8 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
   if (eigen.eigenvalues()[0] <= 0.0) return false;
   const Eigen::Matrix3d covariance = information.inverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar(covariance.topLeftCorner<2, 2>());
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar;
+  planar.computeDirect(covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   const double sigma_m = std::sqrt(planar.eigenvalues()[1]);
   const double sigma_rad = std::sqrt(covariance(2, 2));
   if (sigma_m > options_.max_sigma_m || sigma_rad > RadFromDeg(options_.max_sigma_deg)) {

@@ -14,7 +14,7 @@ namespace {
 // Neighbouring errors share the pose between them, with opposite signs; links so far apart share
 // none.
 constexpr std::size_t kLag = 4;
-constexpr int kMinPairs = 20;
+constexpr int kMinLinkPairs = 20;
 // Errors that never end would be a slope that nothing bounds.
 constexpr double kMostPersistence = 0.97;
 
@@ -73,7 +73,7 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
   Eigen::Vector3d persistence = Eigen::Vector3d::Zero();
   if (MeanShare(shares_seen).minCoeff() < kLeastShareSeen) return persistence;
   for (int axis = 0; axis < 3; ++axis) {
-    if (pairs[axis] < kMinPairs) continue;
+    if (pairs[axis] < kMinLinkPairs) continue;
     // Less a standard error: the fourth root makes much of what independent errors feign.
     const double surely = agreement[axis] / pairs[axis] - 1.0 / std::sqrt(pairs[axis]);
     if (surely <= 0.0) continue;
