@@ -319,7 +319,9 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
   frame.map_from_base = map_from_base;
-  if (!mapped.empty() && !mapped.back().of_prior_map()) {
+  // Where the guess after a loss is doubted, so is SLAM's motion over it.
+  const bool doubted = relocation.active() && mapped.size() == relocation.first_frame();
+  if (!doubted && !mapped.empty() && !mapped.back().of_prior_map()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
     if (before.epoch == record.epoch) {
       frame.slam_motion =

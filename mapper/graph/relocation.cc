@@ -9,7 +9,10 @@
 namespace depthgrid {
 namespace {
 
-// Means over the last ten frames or so.
+// What is usual is the mean of so many frames. Of the last ten it would be what a new room, entered
+// just before SLAM was lost there, shows: nearly nothing, and then any guess is right.
+constexpr int kUsualFrames = 1000;
+// The mean over the last ten frames or so.
 constexpr double kNewShare = 0.1;
 constexpr int kFramesToJudge = 15;
 // Old frames are drawn when they are so far from the one drawn before, and no more than so many.
@@ -95,7 +98,8 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
 
 void Relocation::Explained(double share) {
   if (active_) return;
-  usual_share_ = usual_share_ == 0.0 ? share : usual_share_ + kNewShare * (share - usual_share_);
+  explained_frames_ = std::min(explained_frames_ + 1, kUsualFrames);
+  usual_share_ += (share - usual_share_) / explained_frames_;
 }
 
 void Relocation::Lost(double duration_s) { unjudged_s_ = std::max(unjudged_s_, duration_s); }

@@ -16,7 +16,8 @@ struct RelocationOptions {
   // Without a pose for less than this, the last motion or SLAM's own relocalisation is near enough
   // for matching.
   double min_lost_s = 2.0;
-  // A guess is right when the map explains at least this share of what it did before the loss.
+  // A guess is right when the map explains at least this share of what it usually did before the
+  // loss.
   double min_share = 0.6;
   // The search reaches so far around the last pose, and farther by what may have been walked since;
   // every heading is tried.
@@ -81,7 +82,8 @@ class Relocation {
   RelocationOptions options_;
   PlaceMatcher matcher_;
   double usual_share_ = 0.0;
-  double unjudged_s_ = 0.0;  // the longest loss since the last scan
+  int explained_frames_ = 0;  // of which it is the mean, at most kUsualFrames
+  double unjudged_s_ = 0.0;   // the longest loss since the last scan
   bool active_ = false;
   int first_frame_ = 0;
   double lost_s_ = 0.0;

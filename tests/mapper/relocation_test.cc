@@ -115,6 +115,32 @@ TEST(Relocation, SlamsCorrectionsMoveWhatWasSeenSinceTheLoss) {
   }
 }
 
+// SLAM is lost for three seconds and comes back without a word of a new epoch.
+TEST(Relocation, MotionOverADoubtedLossIsNotBelieved) {
+  constexpr int kBack = 101, kFrames = 110;
+  for (const bool is_right : {true, false}) {
+    IncrementalMapper mapper({}, std::nullopt);
+    for (int i = 0; i < kFrames; ++i) {
+      const Pose2 truth = RoundTheRoom(i);
+      Frame frame;
+      frame.index = i;
+      frame.stamp_s = i / 30.0 + (i < kBack ? 0.0 : 3.0);
+      const Pose2 off = i < kBack || is_right ? Pose2{} : Pose2{1.0, -0.6, 0.5};
+      frame.slam_from_camera = CameraOf(off * truth, 1.0);
+      const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(FurnishedRoom(), truth, laser, 7, static_cast<std::uint32_t>(i)));
+      mapper.AddFrame(frame);
+    }
+    const std::vector<MappedFrame> mapped = mapper.Finish().mapped;
+    const auto back = std::find_if(mapped.begin(), mapped.end(),
+                                   [](const MappedFrame& f) { return f.frame == kBack; });
+    ASSERT_NE(back, mapped.end());
+    EXPECT_EQ(back->slam_motion.has_value(), is_right);
+    EXPECT_TRUE(std::next(back)->slam_motion.has_value());
+  }
+}
+
 // Never seen before: nothing is moved.
 TEST(Relocation, AnotherRoomIsNotFound) {
   PlanarWorld other = RectangleWorld(0.0, 0.0, 5.2, 4.1);
@@ -170,6 +196,15 @@ TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
     EXPECT_LT(worst_online_m, 0.1);
     EXPECT_LT(worst_m, 0.1);
   }
+}
+
+TEST(Relocation, AnUnknownRoomBeforeTheLossDoesNotMakeAnyGuessRight) {
+  Relocation relocation({}, {}, {});
+  for (int i = 0; i < 150; ++i) relocation.Explained(0.9);
+  for (int i = 0; i < 100; ++i) relocation.Explained(0.0);
+  EXPECT_FALSE(relocation.IsUsual(0.2));
+  relocation.Lost(5.0);
+  EXPECT_TRUE(relocation.Begins(0.2, 250));
 }
 
 TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
