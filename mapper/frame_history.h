@@ -28,6 +28,8 @@ class FrameHistory {
  public:
   // Starts the record of a frame. Throws InputError for an index that came before.
   void Start(const Frame& frame);
+  // The newest frame's pose is not reached from the one before by the motion between them.
+  void BeginEpoch() { records_.back().epoch = epochs_.BeginAtLast(); }
 
   const std::vector<FrameRecord>& records() const { return records_; }
   const FrameRecord& newest() const { return records_.back(); }

@@ -71,8 +71,9 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   const FrameScans scans = state_->ScansOf(frame, report);
   state_->CloseLoops(frame, scans, report);
   if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
-  const Prediction prediction = state_->Predict(scans.matched, report);
+  Prediction prediction = state_->Predict(scans.matched, report);
   state_->Match(scans.matched, prediction, report);
+  prediction = state_->AfterSlip(scans.matched, prediction, report);
   state_->DoubtGuess(report);
   const FusedPose fused = state_->Fuse(prediction, report);
   state_->Insert(scans, prediction, fused, report);

@@ -36,6 +36,8 @@ struct IncrementalMapper::State {
   PoseErrors errors;
   MatchNoise match_noise;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
+  std::shared_ptr<const Scan> last_scan;
+  double last_share = 0.0;  // of it, what the map explained
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
   Relocation relocation;
@@ -80,6 +82,8 @@ struct IncrementalMapper::State {
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
+  Prediction AfterSlip(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
+                       FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);
   void TellMotion(const FusedPose& fused, FrameReport& report);
   void Insert(const FrameScans& scans, const Prediction& prediction, const FusedPose& fused,
@@ -87,6 +91,9 @@ struct IncrementalMapper::State {
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
+  bool Slipped(const FrameReport& report) const;
+  std::optional<Pose2> TurnedTo(const std::shared_ptr<const Scan>& scan,
+                                const Prediction& prediction, FrameReport& report);
   struct EpochStart {
     Pose2 map_from_base;
     double sigma_share = 0.0;

@@ -15,6 +15,8 @@ class SlamEpochs {
   // corrected itself without a word, as a step shows that nothing drives. A frame without a pose
   // has that of the last one with a pose. Once a frame, in the order of time.
   int Of(const Frame& frame);
+  // The last frame begins another epoch as well, as something else told.
+  int BeginAtLast() { return ++epoch_; }
 
  private:
   struct Posed {

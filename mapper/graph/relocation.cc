@@ -77,6 +77,8 @@ std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std:
 
 void RelocationOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether the camera is searched for after SLAM was lost");
+  v.Number("slip_deg", slip_deg, {0.0, 180.0},
+           "headings tried when the map suddenly explains little of a scan, degrees; 0: none");
   v.Number("min_lost_s", min_lost_s, {0.0, 1e6}, "without a pose for so long, at least");
   v.Number("min_share", min_share, {0.0, 1.0},
            "of what the map explained before: guesses that reach it are right");

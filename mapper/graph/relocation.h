@@ -13,6 +13,9 @@ namespace depthgrid {
 
 struct RelocationOptions {
   bool use = true;
+  // Odometry slips and SLAM errs by a few degrees within a frame. When the map suddenly explains
+  // little of a scan, headings are tried up to this far from the prediction; 0: none.
+  double slip_deg = 12.0;
   // Without a pose for less than this, the last motion or SLAM's own relocalisation is near enough
   // for matching.
   double min_lost_s = 2.0;
@@ -61,6 +64,7 @@ class Relocation {
   bool Begins(double share, int next_frame);
   // Whether a match explains what a right place does.
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
+  double usual_share() const { return usual_share_; }
   bool active() const { return active_; }
   int first_frame() const { return first_frame_; }
 

@@ -158,6 +158,39 @@ TEST(Relocation, ACorridorIsAmbiguous) {
   EXPECT_EQ(Lose(corridor, corridor, along, farther, true).relocated, 0);
 }
 
+// Wheels slip on a step: within a frame odometry is some degrees off, twice.
+double MeanErrorWithSlips(double slip_deg, bool searched) {
+  constexpr int kFirstSlip = 120, kSecondSlip = 200, kFrames = 280;
+  MapperOptions options;
+  if (!searched) options.loops.relocation.slip_deg = 0.0;
+  IncrementalMapper mapper(options, std::nullopt);
+  double sum_m = 0.0;
+  for (int i = 0; i < kFrames; ++i) {
+    Pose2 off;
+    for (const int at : {kFirstSlip, kSecondSlip}) {
+      const Pose2 slip = RoundTheRoom(at) * Pose2{0.0, 0.0, RadFromDeg(slip_deg)};
+      if (i >= at) off = off * slip * Inverse(RoundTheRoom(at));
+    }
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.slam_from_camera = CameraOf(off * RoundTheRoom(i), 1.0);
+    const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, 8, static_cast<std::uint32_t>(i)));
+    const FrameReport report = mapper.AddFrame(frame);
+    sum_m += Between(RoundTheRoom(i), BaseOf(*report.map_from_camera)).translation().norm();
+  }
+  return sum_m / kFrames;
+}
+
+TEST(Slip, OfAFewDegreesIsTakenBackAtOnce) {
+  for (const double slip_deg : {-4.0, 7.0}) {
+    EXPECT_LT(MeanErrorWithSlips(slip_deg, true), 0.01) << slip_deg;
+    EXPECT_GT(MeanErrorWithSlips(slip_deg, false), 0.015) << slip_deg;
+  }
+}
+
 // SLAM is lost for 1.5 s and finds itself again, 2 cm off; the camera meanwhile turned to what it
 // had not seen. Nothing ties what comes after to what came before but SLAM's own word.
 TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
