@@ -16,6 +16,9 @@ constexpr double kWhollyExplained = 0.8;
 // What a heading must explain of what the last scan's did.
 constexpr double kMendedShare = 0.8;
 constexpr int kDrawnLately = 30;  // frames
+// Less, a match finds by itself.
+constexpr double kLeastSlipM = 0.05;
+constexpr double kLeastSlipRad = RadFromDeg(2.0);
 // Headings tried, and how far a match may go from one.
 constexpr double kHeadingStepRad = RadFromDeg(1.0);
 const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
@@ -132,6 +135,8 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
     const Pose2 turned = prediction.map_from_base * Pose2{0.0, 0.0, i * kHeadingStepRad};
     const MatchResult match = reference->Match(scan, {turned, covariance});
     if (!match.found || match.score <= best) continue;
+    const Pose2 slip = Between(prediction.map_from_base, match.map_from_base);
+    if (std::abs(slip.yaw_rad) < kLeastSlipRad && slip.translation().norm() < kLeastSlipM) continue;
     best = match.score;
     found = match.map_from_base;
   }
