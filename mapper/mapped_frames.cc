@@ -87,7 +87,7 @@ std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
 }
 
 PlanarLoop BetweenKept(const PlanarLoop& loop, const std::vector<MappedFrame>& frames) {
-  const auto at = [&](int i) -> const MappedFrame& { return frames[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) -> const MappedFrame& { return FrameAt(frames, i); };
   PlanarLoop moved = loop;
   if (const MappedFrame& first = at(loop.first); !first.kept()) {
     moved.first = first.tied_to;

@@ -1,4 +1,6 @@
 // Where the map goes on when SLAM's poses begin a new epoch (docs/math.md, "Epochs").
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mapper/core/level.h"
@@ -7,15 +9,15 @@
 namespace depthgrid {
 namespace {
 
-// A slip is sudden: the last pose was so short ago, the scan then was explained as usual, and this
-// one by less than this share of it.
+// Where wheels slip (docs/tried.md, "Slips"). It is sudden: the last pose was so short ago, the
+// scan then was explained as usual, and this one by less than this share of it.
 constexpr double kLongestSlipS = 0.5;
 constexpr double kSlippedShare = 0.5;
 // Of a laser's scans nearly all is explained. Of depth images it is half, and goes up and down.
 constexpr double kWhollyExplained = 0.8;
 // What a heading must explain of what the last scan's did.
 constexpr double kMendedShare = 0.8;
-constexpr int kDrawnLately = 30;  // frames
+constexpr int kDrawnLatelyFrames = 30;
 // Less, a match finds by itself.
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
@@ -122,7 +124,7 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
                                                         const Prediction& prediction,
                                                         FrameReport& report) {
   const StageTimer timer(clocks, report.times.match_us);
-  const int before = std::max(0, mapped.size() - kDrawnLately);
+  const int before = std::max(0, mapped.size() - kDrawnLatelyFrames);
   const Pose2 last =
       filter.map_from_slam() * BaseOf(*history.PosedBefore(history.newest())->slam_from_camera);
   const double lasting_share = reference->ShareSeenBefore(last_scan, last, before);

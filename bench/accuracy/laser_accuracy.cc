@@ -60,6 +60,35 @@ std::vector<Pose2> PerfectAtFirst(const std::vector<Pose2>& truth,
   return later;
 }
 
+// How the prior errs.
+struct PriorOptions {
+  OdometryOptions odometry;
+  int perfect_frames = 0;  // the first
+  int slips = 0;           // evenly spread, to either side in turn
+  double slip_deg = 5.0;   // within a frame
+};
+
+std::vector<Pose2> WithSlips(const std::vector<Pose2>& odometry, const PriorOptions& prior) {
+  std::vector<Pose2> slipped = {odometry.front()};
+  const auto slips_before = [&](std::size_t k) {
+    return k * static_cast<std::size_t>(prior.slips + 1) / odometry.size();
+  };
+  for (std::size_t k = 1; k < odometry.size(); ++k) {
+    Pose2 motion = Between(odometry[k - 1], odometry[k]);
+    if (slips_before(k) > slips_before(k - 1)) {
+      const double side = slips_before(k) % 2 == 1 ? 1.0 : -1.0;
+      motion = motion * Pose2{0.0, 0.0, side * RadFromDeg(prior.slip_deg)};
+    }
+    slipped.push_back(slipped.back() * motion);
+  }
+  return slipped;
+}
+
+std::vector<Pose2> PriorOf(const std::vector<Pose2>& truth, const PriorOptions& prior, int seed) {
+  const auto drifting = DisturbOdometry(truth, prior.odometry, static_cast<std::uint64_t>(seed));
+  return WithSlips(PerfectAtFirst(truth, drifting, prior.perfect_frames), prior);
+}
+
 struct Run {
   Scores prior, online, final;
   std::vector<ChiSquareSample> nis, nees;
@@ -67,10 +96,9 @@ struct Run {
 };
 
 Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOptions& laser,
-        const OdometryOptions& odo, const MapperOptions& options, People people, int seed,
-        int perfect_frames, bool verbose) {
-  const auto odometry = PerfectAtFirst(
-      truth, DisturbOdometry(truth, odo, static_cast<std::uint64_t>(seed)), perfect_frames);
+        const PriorOptions& prior, const MapperOptions& options, People people, int seed,
+        bool verbose) {
+  const std::vector<Pose2> odometry = PriorOf(truth, prior, seed);
   IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
   Run run;
   std::vector<Pose2> online, final;
@@ -133,8 +161,8 @@ int Measure(int argc, char** argv) {
   CLI::App app;
   std::vector<std::string> worlds, sets;
   LaserOptions laser;
-  OdometryOptions odo;
-  int first_seed = 1, seeds = 3, threads = 2, perfect_frames = 0;
+  PriorOptions prior;
+  int first_seed = 1, seeds = 3, threads = 2;
   bool verbose = false;
   People people = People::kNone;
   app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
@@ -148,11 +176,14 @@ int Measure(int argc, char** argv) {
   app.add_option("--noise-corr", laser.noise_correlation);
   app.add_option("--outliers", laser.outlier_share);
   app.add_option("--max-range", laser.max_range_m);
-  app.add_option("--drift", odo.mean_error_m);
-  app.add_option("--bias-time", odo.bias_time_frames);
-  app.add_option("--jitter", odo.jitter_m);
-  app.add_option("--jitter-deg", odo.jitter_deg);
-  app.add_option("--perfect-frames", perfect_frames, "the prior errs from this frame on only");
+  app.add_option("--drift", prior.odometry.mean_error_m);
+  app.add_option("--bias-time", prior.odometry.bias_time_frames);
+  app.add_option("--jitter", prior.odometry.jitter_m);
+  app.add_option("--jitter-deg", prior.odometry.jitter_deg);
+  app.add_option("--perfect-frames", prior.perfect_frames,
+                 "the prior errs from this frame on only");
+  app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread");
+  app.add_option("--slip-deg", prior.slip_deg, "by so much");
   app.add_option("--people", people, "none, crossing or ahead")
       ->transform(CLI::CheckedTransformer(std::map<std::string, People>{
           {"none", People::kNone}, {"crossing", People::kCrossing}, {"ahead", People::kAhead}}));
@@ -173,8 +204,8 @@ int Measure(int argc, char** argv) {
     for (int t = 0; t < threads; ++t) {
       jobs.push_back(std::async(std::launch::async, [&, t] {
         for (int i = t; i < seeds; i += threads)
-          runs[static_cast<std::size_t>(i)] = Map(world, truth, laser, odo, options, people,
-                                                  first_seed + i, perfect_frames, verbose);
+          runs[static_cast<std::size_t>(i)] =
+              Map(world, truth, laser, prior, options, people, first_seed + i, verbose);
       }));
     }
     for (auto& j : jobs) j.get();

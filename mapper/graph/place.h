@@ -22,7 +22,7 @@ struct PlaceOptions {
 
 // Where the mapped frame of this position is, map from base.
 inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
-  return frames[static_cast<std::size_t>(i)].map_from_base;
+  return FrameAt(frames, i).map_from_base;
 }
 
 // Positions among the mapped frames, in order of time. Frames whose scan was not kept do not count.

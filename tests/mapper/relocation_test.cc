@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "tests/mapper/match_world.h"
