@@ -217,19 +217,36 @@ std::optional<MetricComparison> CompareMetric(const SweepResults& a, const Sweep
   result.better = BetterOf(name);
   result.paired =
       ComparePaired(of_a, of_b, result.better, Resamples(of_a.size(), options.bootstrap));
-  if (result.paired.mean_difference != 0.0 && of_a.size() > 1) {
-    result.seeds_needed =
-        SeedsNeededByRanks(result.paired.mean_difference, result.paired.std_difference);
-  }
   return result;
 }
 
-Verdict VerdictOf(const MetricComparison& c, double level) {
-  // All differences of one sign give the smallest p-value there is.
-  if (std::ldexp(2.0, -c.paired.pairs) >= level) return Verdict::kTooFew;
+// `least_p_holm`: the row's p-value if in every row all differences had one sign.
+Verdict VerdictOf(const MetricComparison& c, double least_p_holm, double level) {
+  if (least_p_holm >= level) return Verdict::kTooFew;
   if (c.p_holm >= level) return Verdict::kNotToldApart;
   const bool b_is_higher = c.paired.wilcoxon.rank_biserial > 0.0;
   return b_is_higher == (c.better == Better::kHigher) ? Verdict::kBBetter : Verdict::kABetter;
+}
+
+int MostRowsToldApart(const std::vector<MetricComparison>& rows, double level) {
+  int pairs = 0;
+  for (const MetricComparison& row : rows) pairs = std::max(pairs, row.paired.pairs);
+  int most = static_cast<int>(rows.size());
+  while (most > 0 && most * LeastWilcoxonP(pairs) >= level) --most;
+  return most;
+}
+
+// Of a table of that many rows: each is judged as the first of them is, whose p-value Holm takes
+// times all of them. What so many pairs did not show takes more.
+std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, double level) {
+  const PairedComparison& paired = c.paired;
+  if (paired.mean_difference == 0.0 || paired.pairs < 2) return std::nullopt;
+  TestPlan plan;
+  plan.level = level / static_cast<double>(rows);
+  auto needed = SeedsNeededByRanks(paired.mean_difference, paired.std_difference, plan);
+  const bool is_shown = c.verdict == Verdict::kABetter || c.verdict == Verdict::kBBetter;
+  if (needed && !is_shown) needed = std::max(*needed, paired.pairs + 1);
+  return needed;
 }
 
 }  // namespace
@@ -237,19 +254,23 @@ Verdict VerdictOf(const MetricComparison& c, double level) {
 Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options) {
   Comparison comparison;
   const Pairs pairs = PairsOf(a, b, options, comparison);
-  std::vector<double> p_values;
+  std::vector<double> p_values, least_p_values;
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
     if (auto compared = CompareMetric(a, b, name, pairs, options)) {
       p_values.push_back(compared->paired.wilcoxon.p_value);
+      least_p_values.push_back(LeastWilcoxonP(compared->paired.pairs));
       comparison.metrics.push_back(std::move(*compared));
     }
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
+  const std::vector<double> least = HolmAdjusted(least_p_values);
   for (std::size_t i = 0; i < adjusted.size(); ++i) {
     MetricComparison& compared = comparison.metrics[i];
     compared.p_holm = adjusted[i];
-    compared.verdict = VerdictOf(compared, options.level);
+    compared.verdict = VerdictOf(compared, least[i], options.level);
+    compared.seeds_needed = SeedsNeededIn(adjusted.size(), compared, options.level);
   }
+  comparison.most_rows = MostRowsToldApart(comparison.metrics, options.level);
   return comparison;
 }
 

@@ -27,7 +27,7 @@ enum class Verdict {
   kABetter,
   kBBetter,
   kNotToldApart,
-  kTooFew,  // whatever the values, so few pairs cannot decide
+  kTooFew,  // whatever the values, so few pairs cannot decide in a table of so many rows
 };
 
 struct MetricComparison {
@@ -36,8 +36,8 @@ struct MetricComparison {
   PairedComparison paired;
   double p_holm = 1.0;
   Verdict verdict = Verdict::kNotToldApart;
-  // Seeds at which a difference as large as this one would be seen with 80 % power; empty where it
-  // is zero.
+  // Seeds at which a difference as large as this one would be seen with 80 % power in a table of as
+  // many rows, more than there are unless it is seen now; empty where it is zero.
   std::optional<int> seeds_needed;
 };
 
@@ -48,6 +48,7 @@ struct Comparison {
   int runs_a = 0;  // that meet the conditions and did not fail
   int runs_b = 0;
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
+  int most_rows = 0;                      // of these, that so many pairs can tell apart at once
 };
 
 // Throws InputError for a metric or axis that is not there, runs that make no pair, and runs that

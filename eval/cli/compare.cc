@@ -71,6 +71,13 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
                                                  "seeds needed", "verdict"}};
   for (const MetricComparison& compared : comparison.metrics) rows.push_back(RowOf(compared));
   fmt::print("\n\n{}", Table(rows));
+  const int most = comparison.most_rows;
+  if (most > 0 && most < static_cast<int>(comparison.metrics.size())) {
+    fmt::print(
+        "\nToo few pairs for Holm's correction over {}, enough for {}: choose with --metric "
+        "what is asked, before looking.\n",
+        Counted(static_cast<int>(comparison.metrics.size()), "row"), most);
+  }
 }
 
 }  // namespace

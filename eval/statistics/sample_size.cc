@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "eval/statistics/distributions.h"
+#include "eval/statistics/wilcoxon.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 
@@ -46,7 +47,9 @@ std::optional<int> SeedsNeededByRanks(double effect, double std_of_differences,
   const auto by_t = SeedsNeeded(effect, std_of_differences, plan);
   if (!by_t) return std::nullopt;
   const double efficiency = 3.0 / kPi;
-  return static_cast<int>(std::ceil(*by_t / efficiency));
+  int pairs = static_cast<int>(std::ceil(*by_t / efficiency));
+  while (LeastWilcoxonP(pairs) >= plan.level) ++pairs;
+  return pairs;
 }
 
 }  // namespace depthgrid

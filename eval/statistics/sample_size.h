@@ -18,7 +18,7 @@ double PairedPower(int pairs, double effect_in_std, double level = TestPlan{}.le
 std::optional<int> SeedsNeeded(double effect, double std_of_differences, const TestPlan& plan = {});
 
 // For the signed-rank test: more by its asymptotic relative efficiency on normal differences,
-// pi / 3 (Lehmann 1975), rounded up.
+// pi / 3 (Lehmann 1975), rounded up; and so many that its p-value can fall below the level at all.
 std::optional<int> SeedsNeededByRanks(double effect, double std_of_differences,
                                       const TestPlan& plan = {});
 

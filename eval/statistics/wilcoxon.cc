@@ -66,6 +66,8 @@ double NormalPValue(int n, double statistic, double tie_sum) {
 
 }  // namespace
 
+double LeastWilcoxonP(int pairs) { return std::min(1.0, std::ldexp(2.0, -pairs)); }
+
 WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod method) {
   std::vector<double> ranked;
   for (const double d : differences) {

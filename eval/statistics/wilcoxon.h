@@ -25,6 +25,9 @@ struct WilcoxonResult {
   double rank_biserial = 0.0;
 };
 
+// The smallest p-value that so many differences can give: all of one sign, 2 of 2^n.
+double LeastWilcoxonP(int pairs);
+
 WilcoxonResult Wilcoxon(const std::vector<double>& differences,
                         WilcoxonMethod method = WilcoxonMethod::kAuto);
 

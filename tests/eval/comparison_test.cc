@@ -122,6 +122,43 @@ TEST(Compare, FewPairsCannotDecide) {
   EXPECT_EQ(equal.metrics[0].seeds_needed, std::nullopt);
 }
 
+// Holm takes the smallest p-value of 7 pairs, 2 / 2^7, times the number of rows: three can fall
+// below 5 %, four cannot.
+TEST(Compare, FewPairsCannotDecideManyRows) {
+  SweepResults a = Sweep({{"1", {1, 2, 3, 4, 5, 6, 7}}});
+  SweepResults b = Sweep({{"1", {2.1, 3, 4, 5, 6, 7, 8}}});
+  CompareOptions options;
+  options.metrics = {"all"};
+  const auto with_rows = [&](std::size_t rows) {
+    for (SweepResults* side : {&a, &b}) {
+      side->metrics.resize(rows, side->metrics[0]);
+      for (std::size_t i = 0; i < rows; ++i) side->metrics[i].name = fmt::format("{}_m", i);
+    }
+    return Compare(a, b, options);
+  };
+  const Comparison three = with_rows(3);
+  EXPECT_NEAR(three.metrics[0].p_holm, 3.0 / 64, 1e-12);
+  EXPECT_EQ(three.metrics[0].verdict, Verdict::kABetter);
+  EXPECT_EQ(three.metrics[0].seeds_needed, 7);
+  EXPECT_EQ(three.most_rows, 3);
+  const Comparison four = with_rows(4);
+  EXPECT_NEAR(four.metrics[0].p_holm, 4.0 / 64, 1e-12);
+  EXPECT_EQ(four.metrics[0].verdict, Verdict::kTooFew);
+  EXPECT_EQ(four.metrics[0].seeds_needed, 8);
+  EXPECT_EQ(four.most_rows, 3);
+}
+
+// By their sizes six such differences are enough, by the ranks of these the p-value is 4 / 2^6.
+TEST(Compare, WhatIsNotToldApartNeedsMoreThanThereIs) {
+  const std::vector<double> zero(6, 0.0);
+  CompareOptions options;
+  options.metrics = {kError};
+  const Comparison c =
+      Compare(Sweep({{"1", zero}}), Sweep({{"1", {-.01, 3, 3.1, 3.2, 3.3, 3.4}}}), options);
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kNotToldApart);
+  EXPECT_EQ(c.metrics[0].seeds_needed, 7);
+}
+
 // Runs' folders with what is read of them.
 class ProgramCompare : public ProgramTest {
  protected:

@@ -130,6 +130,9 @@ TEST(SampleSize, AgreesWithSciPy) {
   EXPECT_EQ(SeedsNeeded(1e-5, 1.0), std::nullopt);
   EXPECT_EQ(SeedsNeededByRanks(0.5, 1.0), 36);  // ceil(34 * pi / 3)
   EXPECT_EQ(SeedsNeededByRanks(1e-5, 1.0), std::nullopt);
+  // Always seen, once 2 / 2^n is below the level.
+  EXPECT_EQ(SeedsNeededByRanks(1.0, 0.0), 6);
+  EXPECT_EQ(SeedsNeededByRanks(1.0, 0.0, {.level = 0.05 / 13}), 10);
 }
 
 TEST(BestSetting, HandWorked) {
