@@ -38,6 +38,21 @@ void RequirePlanar(const std::string& place, const Pose2& pose, const std::strin
                               "), must be finite and within 10,000 km");
 }
 
+void RequireKept(const std::string& place, const Scan& scan) {
+  if (!(scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m))) {
+    throw InputError(place, "its scan's max_range_m is " + std::to_string(scan.max_range_m) +
+                                ", must be 0 (unknown) or more");
+  }
+  for (const Beam& beam : scan.beams) {
+    if (CanBeKept(beam)) continue;
+    throw InputError(place, "its scan has a beam at bearing " + std::to_string(beam.bearing_rad) +
+                                " with range " + std::to_string(beam.range_m) + ", clear from " +
+                                std::to_string(beam.clear_from_m) + " to " +
+                                std::to_string(beam.clear_to_m) +
+                                ", must be finite and from 1 mm to 1 km");
+  }
+}
+
 void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
   if (!frame.of_prior_map()) {
     throw InputError(place, "is frame " + std::to_string(frame.frame) + ", must be below 0");
@@ -49,6 +64,7 @@ void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
     throw InputError(place, "its stamp is " + std::to_string(frame.stamp_s) + ", must be seconds");
   }
   RequirePlanar(place, frame.map_from_base, "its pose");
+  for (const auto& scan : {frame.scan, frame.obstacles}) RequireKept(place, *scan);
 }
 
 void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera) {

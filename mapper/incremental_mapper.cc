@@ -62,24 +62,30 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
   state_->prior_start = prior.map_from_slam;
 }
 
-// The paper's Fig. 1.
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   RequireSound(frame, state_->camera);
   FrameReport report;
-  const FrameTimer total(state_->clocks, report.times);
-  state_->Begin(frame, report);
-  const FrameScans scans = state_->ScansOf(frame, report);
-  state_->CloseLoops(frame, scans, report);
-  if (!frame.slam_from_camera) return report;  // SLAM is lost: nothing is known of this frame
-  Prediction prediction = state_->Predict(scans.matched, report);
-  state_->Match(scans.matched, prediction, report);
-  prediction = state_->AfterSlip(scans.matched, prediction, report);
-  state_->DoubtGuess(report);
-  const FusedPose fused = state_->Fuse(prediction, report);
-  state_->Insert(scans, prediction, fused, report);
-  state_->Relocate(scans, report);
-  state_->FindLoops(scans, report);
+  {
+    const FrameTimer total(state_->clocks, report.times);  // tells when it ends
+    state_->Map(frame, report);
+  }
   return report;
+}
+
+// The paper's Fig. 1.
+void IncrementalMapper::State::Map(const Frame& frame, FrameReport& report) {
+  Begin(frame, report);
+  const FrameScans scans = ScansOf(frame, report);
+  CloseLoops(frame, scans, report);
+  if (!frame.slam_from_camera) return;  // SLAM is lost: nothing is known of this frame
+  Prediction prediction = Predict(scans.matched, report);
+  Match(scans.matched, prediction, report);
+  prediction = AfterSlip(scans.matched, prediction, report);
+  DoubtGuess(report);
+  const FusedPose fused = Fuse(prediction, report);
+  Insert(scans, prediction, fused, report);
+  Relocate(scans, report);
+  FindLoops(scans, report);
 }
 
 void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
@@ -292,7 +298,7 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
 void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction& prediction,
                                       const FusedPose& fused, FrameReport& report) {
   const StageTimer timer(clocks, report.times.insert_us);
-  if (!scans.matched || fixed_map) return;
+  if (!scans.matched || fixed_map || !IsOnAMap(fused.map_from_base)) return;
   MappedFrame frame = AsMapped(fused.map_from_base);
   frame.match = report.match;
   history.newest().mapped = mapped.size();

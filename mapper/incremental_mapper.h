@@ -63,7 +63,7 @@ class IncrementalMapper {
 
   // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
   // InputError, and nothing was begun, when a frame's number, pose, stamp or scans are not as
-  // PriorMap wants them, or `map_from_slam` is not finite.
+  // PriorMap wants them, a beam is none that CanBeKept(), or `map_from_slam` is not finite.
   void StartFrom(PriorMap prior);
 
   // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never

@@ -9,23 +9,12 @@
 namespace depthgrid {
 namespace {
 
-// Where wheels slip (docs/tried.md, "Slips"). It is sudden: the last pose was so short ago, the
-// scan then was explained as usual, and this one by less than this share of it.
-constexpr double kLongestSlipS = 0.5;
-constexpr double kSlippedShare = 0.5;
-// Of a laser's scans nearly all is explained. Of depth images it is half, and goes up and down.
-constexpr double kWhollyExplained = 0.8;
-// What a heading must explain of what the last scan's did.
-constexpr double kMendedShare = 0.8;
-constexpr int kDrawnLatelyFrames = 30;
-// Less, a match finds by itself.
-constexpr double kLeastSlipM = 0.05;
-constexpr double kLeastSlipRad = RadFromDeg(2.0);
-// Headings tried, and how far a match may go from one.
-constexpr double kHeadingStepRad = RadFromDeg(1.0);
-const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
-// Of kEpochSigma: how well the place of the best one is known before it is matched once more.
+// Of kEpochSigma: how well the place after a slip is known before it is matched once more.
 constexpr double kSlipSigmaShare = 0.3;
+
+double ShareExplained(const FrameReport& report) {
+  return report.match.found ? report.match.score : 0.0;
+}
 
 }  // namespace
 
@@ -107,45 +96,18 @@ void IncrementalMapper::State::Anchor(const EpochStart& start) {
   filter_epoch = record.epoch;
 }
 
-// Whether the map explained the last scan and all at once explains hardly any of this one.
-bool IncrementalMapper::State::Slipped(const FrameReport& report) const {
-  const FrameRecord* last = history.PosedBefore(history.newest());
-  return options.loops.relocation.use && options.loops.relocation.slip_deg > 0.0 &&
-         options.method == MapperMethod::kSurfel && !relocation.active() && last != nullptr &&
-         last->epoch == history.newest().epoch && report.stamp_s - last->stamp_s < kLongestSlipS &&
-         relocation.usual_share() >= kWhollyExplained && relocation.IsUsual(last_share) &&
-         report.match.score < kSlippedShare * last_share;
+bool IncrementalMapper::State::SearchesSlips() const {
+  return options.loops.relocation.use && options.method == MapperMethod::kSurfel &&
+         !relocation.active();
 }
 
-// The pose at another heading at which the map explains the scan about as well as the last one.
-// Somebody who fills the view was drawn lately and is found where they are now, so what has stood
-// for longer must want that heading as well.
 std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<const Scan>& scan,
                                                         const Prediction& prediction,
                                                         FrameReport& report) {
   const StageTimer timer(clocks, report.times.match_us);
-  const int before = std::max(0, mapped.size() - kDrawnLatelyFrames);
-  const Pose2 last =
-      filter.map_from_slam() * BaseOf(*history.PosedBefore(history.newest())->slam_from_camera);
-  const double lasting_share = reference->ShareSeenBefore(last_scan, last, before);
-  const Eigen::Matrix3d covariance = prediction.covariance + Squared(kHeadingSigma);
-  const int most =
-      static_cast<int>(RadFromDeg(options.loops.relocation.slip_deg) / kHeadingStepRad);
-  std::optional<Pose2> found;
-  double best = kMendedShare * last_share;
-  for (int i = -most; i <= most; ++i) {
-    const Pose2 turned = prediction.map_from_base * Pose2{0.0, 0.0, i * kHeadingStepRad};
-    const MatchResult match = reference->Match(scan, {turned, covariance});
-    if (!match.found || match.score <= best) continue;
-    const Pose2 slip = Between(prediction.map_from_base, match.map_from_base);
-    if (std::abs(slip.yaw_rad) < kLeastSlipRad && slip.translation().norm() < kLeastSlipM) continue;
-    best = match.score;
-    found = match.map_from_base;
-  }
-  if (!found || reference->ShareSeenBefore(scan, *found, before) < kMendedShare * lasting_share) {
-    return {};
-  }
-  return found;
+  const FrameRecord& last = *history.Find(slips.last_frame());
+  const Pose2 map_from_last = filter.map_from_slam() * BaseOf(*last.slam_from_camera);
+  return slips.Find(scan, prediction, map_from_last, mapped.size(), *reference);
 }
 
 // Where wheels slipped, or SLAM turned by less than shows in its poses, an epoch begins.
@@ -153,7 +115,7 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
                                                const Prediction& prediction, FrameReport& report) {
   if (!reference || !scan || mapped.empty() || match_oracle) return prediction;
   Prediction mended = prediction;
-  if (Slipped(report)) {
+  if (SearchesSlips() && slips.IsSuspected(history.newest(), ShareExplained(report), relocation)) {
     if (const std::optional<Pose2> turned = TurnedTo(scan, prediction, report)) {
       history.BeginEpoch();
       Anchor({*turned, kSlipSigmaShare});
@@ -161,8 +123,7 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
     }
     Match(scan, mended, report);
   }
-  last_share = report.match.found ? report.match.score : 0.0;
-  last_scan = scan;
+  slips.Placed(history.newest(), scan, ShareExplained(report));
   return mended;
 }
 

@@ -15,6 +15,7 @@
 #include "mapper/mapped_frames.h"
 #include "mapper/reference_factory.h"
 #include "mapper/scan/frame_scans.h"
+#include "mapper/slip_search.h"
 
 namespace depthgrid {
 
@@ -36,11 +37,10 @@ struct IncrementalMapper::State {
   PoseErrors errors;
   MatchNoise match_noise;
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
-  std::shared_ptr<const Scan> last_scan;
-  double last_share = 0.0;  // of it, what the map explained
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
   Relocation relocation;
+  SlipSearch slips;
   AdjustmentRounds rounds;
   MappedFrames mapped;
   int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
@@ -59,6 +59,7 @@ struct IncrementalMapper::State {
         errors(opts.submap.scans),
         loop_closer(opts.loops),
         relocation(opts.loops.relocation, opts.loops.search, opts.loops.overlap),
+        slips(opts.loops.relocation.slip_deg),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
         mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)) {
@@ -67,6 +68,7 @@ struct IncrementalMapper::State {
     if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
   }
 
+  void Map(const Frame& frame, FrameReport& report);
   void Begin(const Frame& frame, FrameReport& report);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
@@ -91,7 +93,7 @@ struct IncrementalMapper::State {
 
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
-  bool Slipped(const FrameReport& report) const;
+  bool SearchesSlips() const;
   std::optional<Pose2> TurnedTo(const std::shared_ptr<const Scan>& scan,
                                 const Prediction& prediction, FrameReport& report);
   struct EpochStart {

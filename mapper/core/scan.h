@@ -54,6 +54,12 @@ inline bool IsSound(const Beam& beam, float reach_m) {
   return !beam.hit || (beam.range_m >= kNearestHitM && beam.range_m <= reach_m);
 }
 
+// What a mapper can have kept, whatever the scan's reach was.
+inline bool CanBeKept(const Beam& beam) {
+  constexpr auto kReachM = static_cast<float>(kFarthestSeenM);
+  return IsSound(beam, kReachM) && std::isfinite(beam.range_m) && beam.clear_to_m <= kReachM;
+}
+
 inline Eigen::Vector2d EndPoint(const Beam& beam) {
   return {beam.range_m * std::cos(beam.bearing_rad), beam.range_m * std::sin(beam.bearing_rad)};
 }

@@ -185,12 +185,16 @@ CellSet ReadFreeCells(const std::string& path) {
   return free;
 }
 
+std::string MapImageOf(const std::string& yaml_path, MapMode mode) {
+  const char* ending = mode == MapMode::kScale ? ".scale.png" : ".pgm";
+  return fs::path(yaml_path).replace_extension(ending).string();
+}
+
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode,
               const StateThresholds& thresholds) {
   Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,
           "a map to write has cells");
-  const fs::path image_path =
-      fs::path(yaml_path).replace_extension(mode == MapMode::kScale ? ".scale.png" : ".pgm");
+  const fs::path image_path = MapImageOf(yaml_path, mode);
   // Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
   const StateThresholds written = mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : thresholds;
   const Eigen::Vector2d origin = map.geometry.OriginM();

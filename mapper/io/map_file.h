@@ -38,8 +38,11 @@ StateMap ReadStates(const std::string& path);
 // The cells a map file calls free: in observable.yaml those that could be seen.
 CellSet ReadFreeCells(const std::string& path);
 
-// Writes a map of at least one cell: `yaml_path` and the image beside it: the same name with .pgm,
-// or for `scale`, which needs transparency, .scale.png.
+// The image beside a map: the same name with .pgm, or for `scale`, which needs transparency,
+// .scale.png.
+std::string MapImageOf(const std::string& yaml_path, MapMode mode);
+
+// Writes a map of at least one cell: `yaml_path` and the image beside it.
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map,
               MapMode mode = MapMode::kTrinary, const StateThresholds& thresholds = {});
 void WriteMap(const std::string& yaml_path, const StateMap& map);

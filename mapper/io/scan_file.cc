@@ -70,12 +70,6 @@ class Reader {
 // Without its beams.
 constexpr std::size_t kScanBytes = 3 * sizeof(std::uint32_t) + 5 * sizeof(double) + 1;
 
-// What a mapper can have kept, whatever the scan's reach was.
-bool IsPossible(const Beam& beam) {
-  constexpr auto kReachM = static_cast<float>(kFarthestSeenM);
-  return IsSound(beam, kReachM) && std::isfinite(beam.range_m) && beam.clear_to_m <= kReachM;
-}
-
 // Scans one after the other: bearings that stay the same are not repeated.
 class ScanTaker {
  public:
@@ -110,7 +104,7 @@ class ScanTaker {
     require(IsOnAMap(stored.map_from_base), "a pose that is not finite or beyond 10,500 km");
     require(scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m),
             "a range limit that is not finite or below 0");
-    require(std::all_of(scan.beams.begin(), scan.beams.end(), IsPossible),
+    require(std::all_of(scan.beams.begin(), scan.beams.end(), CanBeKept),
             "a beam that is not finite or beyond 1 km");
   }
 

@@ -56,7 +56,7 @@ struct RayOfRow {
 };
 
 // Of a function of rays, f . (a, b, 1), along rows.
-HWY_INLINE Linear AlongRows(Vec fx, Vec fy, Vec f1, const RayOfRow& ray, const ImageAxes& axes) {
+HWY_INLINE Linear LinearInRow(Vec fx, Vec fy, Vec f1, const RayOfRow& ray, const ImageAxes& axes) {
   const Vec slope = Times(1.0 / axes.fy_px, hn::Add(hn::Mul(fx, ray.a_slope), fy));
   return {hn::Sub(hn::Add(hn::Mul(fx, ray.a_at_b0), f1), Times(axes.cy_px, slope)), slope};
 }
@@ -85,8 +85,8 @@ void FindLanes(const ImageAxes& axes, const BlockDirections& directions, Bearing
     const Vec across = off_plane(0);  // how much faster than rows a column leaves the bearing
     const Vec inverse = hn::Div(none, across);
     const RayOfRow ray{hn::Mul(off_plane(2), inverse), hn::Mul(off_plane(1), inverse)};
-    const Linear horizontal = AlongRows(along(0), along(1), along(2), ray, axes);
-    const Linear height = AlongRows(up(0), up(1), up(2), ray, axes);
+    const Linear horizontal = LinearInRow(along(0), along(1), along(2), ray, axes);
+    const Linear height = LinearInRow(up(0), up(1), up(2), ray, axes);
     const Vec u_slope = Times(1.0 / axes.fy_px, Times(axes.fx_px, ray.a_slope));
     const Vec u_at_row_0 = hn::Sub(hn::Add(hn::Set(d, axes.cx_px), Times(axes.fx_px, ray.a_at_b0)),
                                    Times(axes.cy_px, u_slope));

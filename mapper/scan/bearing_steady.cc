@@ -27,7 +27,7 @@ struct Sum {
   HWY_INLINE Vec Mean() const { return hn::Div(sum, count); }
 };
 
-struct Rows {
+struct CoreRows {
   Vec first, last;
 
   HWY_INLINE Mask Contain(Vec row) const { return hn::And(hn::Ge(row, first), hn::Le(row, last)); }
@@ -43,8 +43,8 @@ HWY_INLINE Vec RowAtSlope(const BearingLineBlock& lines, std::size_t at, Vec slo
                  hn::Sub(hn::Load(d, &lines.g1[at]), hn::Mul(slope, hn::Load(d, &lines.h1[at]))));
 }
 
-HWY_INLINE Rows CoreRowsOf(const BearingLineBlock& lines, std::size_t at, const SliceBand& slice,
-                           Vec range) {
+HWY_INLINE CoreRows CoreRowsOf(const BearingLineBlock& lines, std::size_t at,
+                               const SliceBand& slice, Vec range) {
   const Floats d;
   const Vec a = RowAtSlope(lines, at, hn::Div(hn::Set(d, 0.5F * slice.high_m), range));
   const Vec b = RowAtSlope(lines, at, hn::Div(hn::Set(d, 0.5F * slice.low_m), range));
@@ -96,7 +96,7 @@ void SteadyLanes(const ImageBands& bands, const BlockLane& width_m, const Bearin
     const auto around = [&](Vec centre) HWY_ATTR {
       return Window{hn::Sub(centre, half), hn::Min(hn::Add(centre, half), max_range)};
     };
-    const Rows rows = CoreRowsOf(*block.lines, i, bands.slice, range);
+    const CoreRows rows = CoreRowsOf(*block.lines, i, bands.slice, range);
     Sum before{zero, zero}, core{zero, zero}, after{zero, zero};
     ForSamples(block, band, i, around(range), [&](Vec row, Mask inside, Vec sample) HWY_ATTR {
       const Mask is_before = hn::Lt(row, rows.first), is_after = hn::Gt(row, rows.last);

@@ -157,6 +157,13 @@ TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
   EXPECT_NE(reports[0][kFirst].map_from_camera, reports[1][kFirst].map_from_camera);
 }
 
+KeptScan WithABeamOf(float range_m) {
+  Scan scan = PriorScanAt(6, 1);
+  scan.beams[7].hit = true;
+  scan.beams[7].range_m = range_m;
+  return ScanArchive().Keep(scan);
+}
+
 std::string WhyNotBegun(const PriorMap& prior) {
   IncrementalMapper mapper({}, std::nullopt);
   try {
@@ -185,6 +192,9 @@ TEST(PriorMap, SaysWhatIsWrongWithIt) {
          p.frames[5].map_from_base = {1e9, 0.0, 0.0};
        },
        "entry 5: its pose is"},
+      {[](PriorMap& p) { p.frames[6].scan = WithABeamOf(0.0F); }, "entry 6: its scan has a beam"},
+      {[](PriorMap& p) { p.frames[6].obstacles = WithABeamOf(1e30F); },
+       "with range 1000000015047466219876688855040.000000"},
       {[&](PriorMap& p) {
          p.map_from_slam = {nan, 0.0, 0.0};
        },
@@ -194,6 +204,18 @@ TEST(PriorMap, SaysWhatIsWrongWithIt) {
     spoil(prior);
     EXPECT_THAT(WhyNotBegun(prior), testing::HasSubstr(why));
   }
+}
+
+// Each of two far places is possible, both together lie beyond what cells can number.
+TEST(PriorMap, AFrameBeyondTheMapIsNotMapped) {
+  PriorMap prior = FinishedRound();
+  prior.map_from_slam = {9e6, 0.0, 0.0};
+  IncrementalMapper mapper({}, std::nullopt);
+  mapper.StartFrom(prior);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(mapper.AddFrame(PriorFrameAt(i, Pose2{9e6, 0.0, 0.0} * TruthAt(i))).inserted);
+  }
+  EXPECT_LT(mapper.Finish().map.geometry.width_cells, 400);
 }
 
 // What is asked for between two frames does not touch what comes after it.
