@@ -26,18 +26,6 @@ fs::path Resolved(const std::string& path) {
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
-// An empty one would be replaced, and the shell be left in a folder that is no more.
-void RequireNotCurrent(const fs::path& target, const std::string& shown) {
-  std::error_code gone;
-  const fs::path current = fs::canonical(".", gone);
-  if (gone) return;
-  const auto [rest, inside] =
-      std::mismatch(target.begin(), target.end(), current.begin(), current.end());
-  if (rest != target.end()) return;
-  throw InputError("-o", fmt::format("{} {} the current folder, must be a folder of its own", shown,
-                                     inside == current.end() ? "is" : "holds"));
-}
-
 void RequireUsable(const fs::path& target, const std::string& shown, bool force) {
   if (!fs::exists(target)) return;
   if (!fs::is_directory(target)) throw InputError(shown, "is a file, the output must be a folder");
@@ -94,6 +82,19 @@ bool IsNamed(int folder, const fs::path& name) {
 
 }  // namespace
 
+// An empty one would be replaced, and the shell be left in a folder that is no more.
+void RequireNotCurrent(const std::string& path) {
+  const fs::path target = Resolved(path);
+  std::error_code gone;
+  const fs::path current = fs::canonical(".", gone);
+  if (gone) return;
+  const auto [rest, inside] =
+      std::mismatch(target.begin(), target.end(), current.begin(), current.end());
+  if (rest != target.end()) return;
+  throw InputError("-o", fmt::format("{} {} the current folder, must be a folder of its own", path,
+                                     inside == current.end() ? "is" : "holds"));
+}
+
 void RequireReachable(const std::string& path) {
   if (path.empty()) return;
   // A link's name with a slash behind it is that of what it links to.
@@ -115,7 +116,7 @@ void RequireReachable(const std::string& path) {
 
 OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
     : target_(Resolved(path)), superseded_(std::move(superseded)) {
-  RequireNotCurrent(target_, path);
+  RequireNotCurrent(path);
   RequireUsable(target_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);

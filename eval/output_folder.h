@@ -14,6 +14,9 @@ namespace depthgrid {
 // Throws InputError when `path` is a link to nothing, or lies or is where this user may not write.
 // To be asked first: whoever looks into such a folder fails on a file that no user has named.
 void RequireReachable(const std::string& path);
+// Throws InputError when `path` is the current folder or one around it, which are not looked into
+// either: they may be as large as a disk.
+void RequireNotCurrent(const std::string& path);
 
 class OutputFolder {
  public:

@@ -8,6 +8,7 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
                         const std::vector<std::string>& inputs) {
   const std::string& folder = arguments.output;
   RequireReachable(folder);
+  RequireNotCurrent(folder);
   RequireNoOtherResult(folder, kind);
   RequireNamesFree(folder, kind);
   const FileRule written = FilesOf(kind);

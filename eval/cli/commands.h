@@ -148,6 +148,7 @@ struct RegridArguments {
   std::string folder;
   std::string resolution;  // as given, for the message; metres
   MapMode map_mode = MapMode::kTrinary;
+  bool force = false;
 };
 void Regrid(const RegridArguments& arguments);
 

@@ -2,16 +2,38 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 
 #include "eval/cli/usage.h"
+#include "eval/shipped.h"
 
 namespace depthgrid::cli {
+namespace {
+
+// A file named on the command line is meant from the working folder; one named in an experiment,
+// whose keys these override, from the experiment's folder.
+std::string WithFileFromHere(std::string assignment) {
+  for (const std::string key : {"scene=", "trajectory="}) {
+    if (!assignment.starts_with(key)) continue;
+    const std::string name = assignment.substr(key.size());
+    if (IsFileName(name)) return key + std::filesystem::absolute(name).string();
+  }
+  return assignment;
+}
+
+}  // namespace
 
 void AddSet(CLI::App& app, CommonArguments& common) {
   app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
       ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->transform(CLI::Validator(
+          [](std::string& assignment) {
+            assignment = WithFileFromHere(std::move(assignment));
+            return std::string();
+          },
+          ""));
 }
 
 void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning) {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/kept_inputs.h"
@@ -56,6 +58,30 @@ void PrintDrift(const TrajectoryScore& score) {
   for (const Drift& drift : score.drift_over_time) add("s", drift);
   for (const Drift& drift : score.drift_over_path) add("m", drift);
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
+}
+
+// What makes errors say something else than they seem to.
+std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajectoryArguments& of) {
+  constexpr double kFewShare = 0.5;
+  constexpr double kOtherUnits = 1.5;
+  std::vector<std::string> doubts;
+  const int fewer = std::min(score.reference_poses, score.estimate_poses);
+  if (score.matched_poses < kFewShare * fewer || score.matched_poses < 2) {
+    doubts.push_back(
+        fmt::format("{}: only {} of its {} poses have a stamp of {}'s {}; the errors are "
+                    "of those alone",
+                    of.estimate, score.matched_poses, score.estimate_poses, of.reference,
+                    score.reference_poses));
+  }
+  // Of hardly any path no scale can be told.
+  if (score.sim3_scale && score.reference_path_m > 1.0 &&
+      (*score.sim3_scale > kOtherUnits || *score.sim3_scale * kOtherUnits < 1.0)) {
+    doubts.push_back(
+        fmt::format("{}: fits {} best {:.4g} times as large: is it in other units, or "
+                    "without scale?",
+                    of.estimate, of.reference, *score.sim3_scale));
+  }
+  return doubts;
 }
 
 // The matched poses as two trajectories of the same stamps.
@@ -117,6 +143,7 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
     throw InputError(arguments.estimate, fmt::format("shares no stamp with {} (within {} s)",
                                                      arguments.reference, limit_s));
   }
+  Warn(DoubtsOf(*score, arguments));
   if (!arguments.errors.empty()) WriteFile(arguments.errors, ErrorsCsv(pairs));
   if (arguments.json) {
     fmt::print("{}", MetricsJson({{"est", score}}, nullptr));

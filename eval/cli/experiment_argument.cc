@@ -16,19 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file named on the command line is meant from the working directory, one named in an experiment
-// from the experiment's folder.
 ExperimentOptions Read(Config config, const std::vector<std::string>& set,
                        const std::string& base_folder) {
   for (const std::string& assignment : set) config.Set(assignment);
-  const Config copy = config;  // which does not know the lines that errors name
-  ExperimentOptions options = ReadExperiment(std::move(config), base_folder);
-  const ExperimentOptions from_here = ReadExperiment(copy, "");
-  for (const std::string& assignment : set) {
-    if (assignment.starts_with("scene=")) options.scene = from_here.scene;
-    if (assignment.starts_with("trajectory=")) options.trajectory = from_here.trajectory;
-  }
-  return options;
+  return ReadExperiment(std::move(config), base_folder);
 }
 
 }  // namespace

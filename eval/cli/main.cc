@@ -301,6 +301,7 @@ void AddRegrid(Program& program) {
       ->required()
       ->type_name("FLOAT");
   AddMapMode(*app, arguments->map_mode);
+  app->add_flag("--force", arguments->force, "Replace a map of that name");
 }
 
 // One line, whatever the message holds.

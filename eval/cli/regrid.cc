@@ -54,11 +54,13 @@ void Regrid(const RegridArguments& arguments) {
   RequireWritable(arguments.folder);
   GridOptions options = GridOptionsOf((folder / "run.yaml").string());
   resolution.Read(options);
+  const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
+  RequireNewFile(map.string(), arguments.force);
+  RequireNewFile(MapImageOf(map.string(), arguments.map_mode), arguments.force);
   const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
   if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
   MapDrawing drawing(options);
   for (const StoredScan& stored : scans) drawing.Add(*stored.scan, stored.map_from_base);
-  const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
   const std::string replaced = ImageOfMap(map.string());
   WriteMap(map.string(), drawing.Map(), arguments.map_mode);
   // The same map in another mode has an image of another name.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string_view>
 
 #include "eval/ablation_report.h"
 #include "eval/cli/commands.h"
@@ -13,6 +14,7 @@
 #include "eval/sweep/sweep_database.h"
 #include "eval/sweep_report.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -31,8 +33,20 @@ void WriteReport(const std::string& folder, const ReportPlace& place) {
   }
 }
 
+// So ends every page's title (eval/web).
+constexpr std::string_view kEndOfTitle = " - depthgrid</title>";
+
+// Only a page is replaced by a page: what else is called report.html may be somebody's only copy.
+void RequireNoneButAPage(const std::string& path) {
+  if (!fs::exists(path)) return;
+  if (ReadFile(path).find(kEndOfTitle) == std::string::npos) {
+    throw InputError(path, "is no page of depthgrid's, and stays; -o names another folder for it");
+  }
+}
+
 void WriteInPlace(const std::string& folder) {
   RequireWritable(folder, "; -o names another folder for the page");
+  RequireNoneButAPage(folder + "/report.html");
   WriteReport(folder, {folder});
 }
 
@@ -50,7 +64,11 @@ void WriteElsewhere(const ReportArguments& arguments) {
 }  // namespace
 
 void Report(const ReportArguments& arguments) {
-  if (!fs::is_directory(arguments.folder)) throw InputError(arguments.folder, "no such folder");
+  if (!fs::is_directory(arguments.folder)) {
+    throw InputError(arguments.folder, fs::exists(arguments.folder)
+                                           ? "is a file, must be the folder of a result"
+                                           : "no such folder");
+  }
   std::error_code not_there;
   if (arguments.output.empty() || fs::equivalent(arguments.folder, arguments.output, not_there)) {
     WriteInPlace(arguments.folder);

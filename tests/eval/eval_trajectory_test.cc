@@ -68,6 +68,25 @@ TEST_F(EvalTrajectory, AFileOfErrorsIsCheckedBeforeTheWork) {
   EXPECT_THAT(ReadFile(Path("errors.csv")), StartsWith("stamp_s,"));
 }
 
+TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
+  EXPECT_EQ(Program("eval trajectory truth.txt estimate.txt").err, "");
+  Write("one.txt", "3 3 0 0 0 0 0 1\n500 3 0 0 0 0 0 1\n501 3 0 0 0 0 0 1\n");
+  const Outcome one = Program("eval trajectory truth.txt one.txt");
+  EXPECT_EQ(one.exit_code, 0);
+  EXPECT_THAT(one.err, HasSubstr("one.txt: only 1 of its 3 poses have a stamp of truth.txt's 13"));
+  std::string metres;
+  std::string millimetres;
+  for (int i = 0; i <= 12; ++i) {
+    metres += fmt::format("{} {} {} 0 0 0 0 1\n", i, i, i % 3);
+    millimetres += fmt::format("{} {} {} 0 0 0 0 1\n", i, 1000 * i, 1000 * (i % 3));
+  }
+  Write("m.txt", metres);
+  Write("mm.txt", millimetres);
+  EXPECT_EQ(Program("eval trajectory m.txt m.txt").err, "");
+  EXPECT_THAT(Program("eval trajectory m.txt mm.txt").err,
+              HasSubstr("mm.txt: fits m.txt best 0.001 times as large"));
+}
+
 // evo takes the nearest stamp within 0.01 s, TUM's scripts within 0.02 s.
 TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
   std::string late;

@@ -221,7 +221,7 @@ TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
 TEST_F(KeptFiles, RegridReplacesTheImageOfAnotherMode) {
   Succeed("map one.log -o m");
   const auto drawn = [&](const std::string& mode) {
-    Succeed("regrid m --resolution 0.02 --map-mode " + mode);
+    Succeed("regrid m --resolution 0.02 --force --map-mode " + mode);
     std::vector<std::string> files = FilesIn("m");
     std::erase_if(files, [](const std::string& file) { return !file.starts_with("map_"); });
     return files;
@@ -232,6 +232,26 @@ TEST_F(KeptFiles, RegridReplacesTheImageOfAnotherMode) {
   // An image that the map does not name is somebody else's.
   Write("m/map_0.02.scale.png", "mine");
   EXPECT_THAT(drawn("trinary"), ElementsAre("map_0.02.pgm", "map_0.02.scale.png", "map_0.02.yaml"));
+}
+
+TEST_F(KeptFiles, RegridReplacesAMapWithForceOnly) {
+  Succeed("map one.log -o m");
+  for (const char* name : {"m/map_0.02.yaml", "m/map_0.04.pgm", "m/map_0.06.scale.png"}) {
+    Write(name, "mine");
+  }
+  ExpectRefusal("regrid m --resolution 0.02", "m/map_0.02.yaml: is there already");
+  ExpectRefusal("regrid m --resolution 0.04", "m/map_0.04.pgm: is there already");
+  ExpectRefusal("regrid m --resolution 0.06 --map-mode scale", "m/map_0.06.scale.png: is there");
+  EXPECT_EQ(ReadFile(Path("m/map_0.04.pgm")), "mine");
+  Succeed("regrid m --resolution 0.02 --force");
+}
+
+TEST_F(KeptFiles, ReportReplacesNothingButAPage) {
+  Succeed("map one.log -o m");
+  Succeed("report m");
+  Write("m/report.html", "<title>my notes on depthgrid</title>");
+  ExpectRefusal("report m", "m/report.html: is no page of depthgrid's");
+  EXPECT_EQ(ReadFile(Path("m/report.html")), "<title>my notes on depthgrid</title>");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where a command may put what it writes, said before any work.
+// Where a command may put what it writes, said before any work, and finds what it reads.
 #include <sys/stat.h>
 
 #include "tests/eval/program.h"
@@ -24,6 +24,8 @@ TEST_F(ProgramOutput, TheCurrentFolderIsNeverReplaced) {
   EXPECT_EQ(refusal("../here"), "depthgrid: -o: ../here" + is);
   EXPECT_EQ(refusal(".. --force"),
             "depthgrid: -o: .. holds the current folder, must be a folder of its own\n");
+  EXPECT_EQ(refusal("/"),
+            "depthgrid: -o: / holds the current folder, must be a folder of its own\n");
   EXPECT_EQ(FilesIn(""), (std::vector<std::string>{"room.yaml", "small.yaml"}));
   EXPECT_TRUE(fs::is_empty(Path("here")));
   EXPECT_EQ(Program("render ../room.yaml --no-colour --set frames=2 -o ../here2", "cd here && ")
@@ -67,6 +69,22 @@ TEST_F(ProgramOutput, AFolderThatMayNotBeEnteredIsNamedAsGiven) {
     EXPECT_EQ(below, "depthgrid: closed/full: cannot be created: Permission denied\n");
     EXPECT_EQ(itself, "depthgrid: closed: cannot be written: Permission denied\n");
   }
+}
+
+TEST_F(ProgramOutput, AnExperimentsFilesAreFoundFromAnywhere) {
+  const std::filesystem::path elsewhere = Path("else where");
+  std::filesystem::create_directories(elsewhere / "rooms");
+  std::filesystem::copy_file(Path("room.yaml"), elsewhere / "rooms/other.yaml");
+  const auto from_elsewhere = [&](const std::string& arguments) {
+    return Program(arguments, "cd '" + elsewhere.string() + "' && ");
+  };
+  EXPECT_EQ(from_elsewhere("run ../small.yaml -o out").err, "");
+  EXPECT_EQ(from_elsewhere("run '" + Path("small.yaml") + "' -o out2").err, "");
+  // What --set names is meant from where the user is.
+  EXPECT_EQ(from_elsewhere("run ../small.yaml --set scene=rooms/other.yaml -o out3").err, "");
+  EXPECT_THAT(ReadFile((elsewhere / "out3/run.yaml").string()), HasSubstr("rooms/other.yaml"));
+  EXPECT_TRUE(SameFile("else where/out/map.pgm", "else where/out3/map.pgm"));
+  EXPECT_TRUE(SameFile("else where/out/map.pgm", "else where/out2/map.pgm"));
 }
 
 }  // namespace
