@@ -205,6 +205,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   Json json;
   json["subtitle"] = SubtitleOf(settings, run.frames.rows);
   json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(settings), ", "));
+  json["method"] = SettingOf(settings, "mapper.method");
   json["settings"] = run.settings;
   json["warnings"] = run.warnings;
   json["metrics"] = run.metrics_json.empty() ? Json(nullptr) : Json::parse(run.metrics_json);

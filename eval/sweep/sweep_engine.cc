@@ -19,6 +19,9 @@ namespace {
 // Scans are held for as many groups at once as fit in here: enough that threads seldom wait for
 // each other at the end of a batch (20 sets of 900 frames), little beside what a laptop has.
 constexpr std::size_t kBatchBytes = std::size_t{512} << 20U;
+// And for so many at most: runs are recorded at the end of a batch's scans, and what a kill loses
+// is one batch. Each reads the images that it shares with the others from the cache anew.
+constexpr std::size_t kBatchGroups = 16;
 
 using Clock = std::chrono::steady_clock;
 
@@ -61,7 +64,7 @@ class Engine {
       Prepare(group);
       bytes += BytesOf(group.scans);
       batch.push_back(&group);
-      if (bytes < kBatchBytes) continue;
+      if (bytes < kBatchBytes && batch.size() < kBatchGroups) continue;
       DoBatch(batch);
       for (Group* done : batch) *done = {};
       batch.clear();

@@ -116,7 +116,7 @@ function digitsOn(scale, least) {
 function seriesOf(s) {
   const say = (u, v, i) => `${s.digits === undefined ? compact(v) : fixed(v, digitsOn(u.scales.y, s.digits))}${s.unit ? ` ${s.unit}` : ""}${s.notes && i != null ? ` ${s.notes[i]}` : ""}`;
   return {
-    label: s.label, stroke: colour(s.colour), width: 1.6, dash: s.dash, show: s.show !== false,
+    label: s.label, stroke: colour(s.colour), width: s.width ?? 1.6, dash: s.dash, show: s.show !== false,
     points: { show: Boolean(s.points) && !s.weights, size: 7, fill: colour(s.colour) }, spanGaps: Boolean(s.spanGaps), paths: s.onlyPoints ? () => null : undefined,
     value: (u, v, k, i) => (isNumber(v) ? say(u, v, i) : "–"),
   };

@@ -180,6 +180,9 @@ function worstCard(worst) {
 function initWorst() {
   if (!RUN.worst.length) { byId("worst-section").remove(); return; }
   byId("worst-note").textContent = RUN.worst_by;
+  if (RUN.method === "surfel") {
+    byId("worst-how").append(" This map was matched as surfels, which know walls finer than these cells: bright spots may lie half a cell from where they matched.");
+  }
   const errors = [["SLAM's error", "slam_error_m"], ["error at the time", "map_error_m"], ["error at the end", "est_error_m"]].filter(([, name]) => frames[name]);
   const head = ["frame", "time", ...errors.map(([label]) => label), "match score", "innovation", ""];
   const rows = RUN.worst.map(({ row: i }) => {

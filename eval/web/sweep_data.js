@@ -5,13 +5,14 @@ const SWEEP = JSON.parse(byId("data").textContent);
 const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(compact) : axis.texts }));
 const POINTS = SWEEP.points;
 
-// Metrics as they are shown: small lengths in centimetres, angles in degrees. `label` is the name
+// Metrics as they are shown: lengths in the unit that suits most of them, angles in degrees. `label` is the name
 // without a unit that the values are not in.
 const METRICS = SWEEP.metrics.map((metric) => {
   const unit = unitOf(metric.name);
-  const largest = Math.max(...metric.mean.map((v) => Math.abs(v ?? 0)));
+  const sizes = metric.mean.filter((v) => v !== null).map(Math.abs).sort((a, b) => a - b);
+  const usual = sizes[Math.floor((sizes.length - 1) / 2)] ?? 0;
   let [factor, shown] = [1, unit];
-  if (unit === "m" && largest < 1) [factor, shown] = [100, "cm"];
+  if (unit === "m" && usual < 1) [factor, shown] = usual < 0.01 ? [1000, "mm"] : [100, "cm"];
   if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
   const scale = (values) => values.map((v) => (v === null ? null : v * factor));
   const label = shown === unit ? metric.name : metric.name.replace(/_[a-z]+$/, "");

@@ -65,13 +65,13 @@ function bestOfColumns(cells) {
 function heatPicture(cells, best, width) {
   const [columns, rows] = [cells.length, cells[0].length];
   const longest = Math.max(...HEAT_AXES[heat.y].labels.map((t) => t.length));
-  const edge = { left: Math.min(130, 34 + 7 * longest), right: 92, top: 10, bottom: 46 };
+  const means = cells.flat().filter(Boolean).map((c) => c.mean);
+  const sorted = [...means].sort((a, b) => a - b);
+  const keyTexts = heatKeyValues(sorted).map(heatKeyText);
+  const edge = { left: Math.min(130, 34 + 7 * longest), right: 40 + 7 * Math.max(9, ...keyTexts.map((t) => t.length)), top: 10, bottom: 46 };
   const height = Math.max(160, Math.min(460, rows * 34)) + edge.top + edge.bottom;
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
-  const means = cells.flat().filter(Boolean).map((c) => c.mean);
-  const [low, high] = [Math.min(...means), Math.max(...means)];
   // A few bad corners must not make all else one colour: colours follow the rank of the value.
-  const sorted = [...means].sort((a, b) => a - b);
   const rank = (value) => (sorted.length < 2 ? 0.5 : sorted.filter((v) => v < value).length / (sorted.length - 1));
   const shade = (value) => viridis(metric.better === "higher" ? rank(value) : 1 - rank(value));
   const u = (c) => edge.left + c * w;
@@ -114,7 +114,7 @@ function heatPicture(cells, best, width) {
     context.fillText(AXES[heat.y].key, 0, 0);
     context.restore();
     const key = [width - edge.right + 14, edge.top, height - edge.top - edge.bottom];
-    drawHeatKey(context, ...key, sorted, low, high);
+    drawHeatKey(context, ...key, keyTexts);
     if (cells.flat().includes(null)) sayCrossedOut(context, key[0], key[1] + key[2] + 14);
   };
   const canvas = paintedCanvas(width, height, `${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
@@ -169,7 +169,11 @@ function drawBestMarks(context, best, u, v) {
   });
 }
 
-function drawHeatKey(context, left, top, height, sorted, low, high) {
+// Least, middle and most; `sorted` by size.
+const heatKeyValues = (sorted) => [0, 0.5, 1].map((share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0);
+const heatKeyText = (value) => withUnit(Number(value.toPrecision(3)));
+
+function drawHeatKey(context, left, top, height, texts) {
   for (let i = 0; i < height; ++i) {
     const share = 1 - i / height;
     context.fillStyle = rgb(viridis(metric.better === "higher" ? share : 1 - share));
@@ -177,9 +181,8 @@ function drawHeatKey(context, left, top, height, sorted, low, high) {
   }
   context.fillStyle = colour("muted");
   context.textAlign = "left";
-  for (const share of [0, 0.5, 1]) {
-    const value = share === 0 ? low : share === 1 ? high : sorted[Math.floor((sorted.length - 1) / 2)];
-    context.fillText(withUnit(Number(value.toPrecision(3))), left + 18, top + (1 - share) * height + (share === 1 ? 10 : share === 0 ? 0 : 4));
+  for (const [i, share] of [0, 0.5, 1].entries()) {
+    context.fillText(texts[i], left + 18, top + (1 - share) * height + (share === 1 ? 10 : share === 0 ? 0 : 4));
   }
 }
 

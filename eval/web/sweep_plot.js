@@ -1,6 +1,15 @@
 // The metric along an axis, a line a value of another; and the best value of the axis.
 "use strict";
-const along = { axis: mainAxis(), by: -1, held: {}, logX: false, logY: false };
+// Whether values lie more evenly in their logarithm, as those of `scale: log` do.
+function isLogarithmic({ numeric, numbers }) {
+  if (!numeric || numbers.length < 3 || numbers.some((v) => v <= 0)) return false;
+  const unevenness = (values) => {
+    const steps = [...values].sort((a, b) => a - b).map((v, i, all) => v - all[i - 1]).slice(1);
+    return Math.max(...steps) / Math.max(Math.min(...steps), 1e-12);
+  };
+  return unevenness(numbers.map(Math.log)) < unevenness(numbers);
+}
+const along = { axis: mainAxis(), by: -1, held: {}, logX: isLogarithmic(AXES[mainAxis()]), logY: false };
 const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
 const MOST_LINES = PALETTE.length;
 
@@ -49,7 +58,7 @@ function drawAlong() {
   const used = along.by < 0 ? [along.axis] : [along.axis, along.by];
   const free = freeAxes(used);
   const controls = [
-    select("Axis", "plot-axis", AXES.map((axis, i) => [i, axis.key]), along.axis, (value) => { along.axis = Number(value); if (along.by === along.axis) along.by = -1; drawAlong(); }),
+    select("Axis", "plot-axis", AXES.map((axis, i) => [i, axis.key]), along.axis, (value) => { along.axis = Number(value); along.logX = isLogarithmic(AXES[along.axis]); if (along.by === along.axis) along.by = -1; drawAlong(); }),
     select("A line each", "plot-by", [[-1, "none"], ...AXES.map((axis, i) => [i, axis.key]).filter(([i]) => i !== along.axis && AXES[i].texts.length > 1)], along.by, (value) => { along.by = Number(value); drawAlong(); }),
     ...holders("plot", along.held, free, drawAlong),
   ];
@@ -123,6 +132,8 @@ function drawBest() {
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
     title: `Regret along ${axis.key}: mean loss to the best value of each seed`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
-    series: some.map((line, k) => ({ label: heldText(line), values: line.regret_of_seed.map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true })),
+    logX: along.logX && axis.numbers.every((v) => v > 0),
+    series: some.map((line, k) => ({ label: heldText(line), values: line.regret_of_seed.map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true,
+      width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0
   });
 }
