@@ -19,8 +19,8 @@ namespace {
 // Scans are held for as many groups at once as fit in here: enough that threads seldom wait for
 // each other at the end of a batch (20 sets of 900 frames), little beside what a laptop has.
 constexpr std::size_t kBatchBytes = std::size_t{512} << 20U;
-// And for so many at most: runs are recorded at the end of a batch's scans, and what a kill loses
-// is one batch. Each reads the images that it shares with the others from the cache anew.
+// Or for so many, where the next one is of other images: runs are recorded when a batch has its
+// scans, and a kill loses what was not.
 constexpr std::size_t kBatchGroups = 16;
 
 using Clock = std::chrono::steady_clock;
@@ -52,7 +52,7 @@ class Engine {
   Engine(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context)
       : plan_(plan), database_(database), context_(context), inputs_(context.threads) {}
 
-  // Runs in the order of their groups, a batch of groups at a time.
+  // A batch of groups at a time; those that are read from the same images one after the other.
   void Do(const std::vector<const PlannedRun*>& runs, const std::vector<int>& group_of_run) {
     std::map<int, Group> groups;
     for (const PlannedRun* run : runs) {
@@ -60,17 +60,22 @@ class Engine {
     }
     std::vector<Group*> batch;
     std::size_t bytes = 0;
-    for (auto& [number, group] : groups) {
-      Prepare(group);
-      bytes += BytesOf(group.scans);
-      batch.push_back(&group);
-      if (bytes < kBatchBytes && batch.size() < kBatchGroups) continue;
+    const auto finish_batch = [&] {
       DoBatch(batch);
       for (Group* done : batch) *done = {};
       batch.clear();
       bytes = 0;
+    };
+    for (const std::vector<Group*>& alike : ByImages(groups)) {
+      for (Group* group : alike) {
+        Prepare(*group);
+        bytes += BytesOf(group->scans);
+        batch.push_back(group);
+        if (bytes >= kBatchBytes) finish_batch();
+      }
+      if (batch.size() >= kBatchGroups) finish_batch();
     }
-    DoBatch(batch);
+    finish_batch();
   }
 
   void SetProgress(int done, int total) {
@@ -105,6 +110,21 @@ class Engine {
       group.scans.failure = error.what();
     }
     Tick();
+  }
+
+  // Groups whose scans are made from the same images, in the order of the first of each. Their
+  // poses are not held meanwhile: there may be thousands.
+  std::vector<std::vector<Group*>> ByImages(std::map<int, Group>& groups) {
+    std::map<std::string, std::size_t> position;
+    std::vector<std::vector<Group*>> alike;
+    for (auto& [number, group] : groups) {
+      Prepare(group);
+      const std::string key = group.scans.failure.empty() ? DepthKey(group.scans) : "";
+      if (position.try_emplace(key, alike.size()).second) alike.emplace_back();
+      alike[position[key]].push_back(&group);
+      group.scans = {};
+    }
+    return alike;
   }
 
   void DoBatch(const std::vector<Group*>& batch) {
