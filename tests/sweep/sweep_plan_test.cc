@@ -211,5 +211,15 @@ TEST(SlurmArray, IsWrittenInRanges) {
   EXPECT_EQ(ArrayText({1, 3, 4}), "1,3-4");
 }
 
+TEST_F(SweepPlanTest, AnExperimentThatIsNotThereIsNamedByItsLine) {
+  Write("lost.yaml", "axes: {seed: {seeds: 2}}\nexperiment: nope\n");
+  try {
+    ReadSweepPlan(Path("lost.yaml"), {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("lost.yaml:2: nope: no shipped experiment"));
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
