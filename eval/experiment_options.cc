@@ -27,14 +27,6 @@ std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::stri
   return place;
 }
 
-void RequireScene(const std::string& scene, const std::string& place) {
-  try {
-    ResolveName(scene, ShippedKind::kScene);
-  } catch (const InputError& error) {
-    throw InputError(place, error.what());
-  }
-}
-
 }  // namespace
 
 void ExperimentOptions::Visit(OptionsVisitor& v) {
@@ -60,7 +52,7 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
   if (options.scene.empty()) throw InputError(layers.front()->Place(), "key 'scene' is missing");
   ResolveFile(options.scene, base_folder);
   ResolveFile(options.trajectory, base_folder);
-  RequireScene(options.scene, PlaceOfKey(layers, "scene"));
+  ResolveNameAt(PlaceOfKey(layers, "scene"), options.scene, ShippedKind::kScene);
   options.trajectory_place = PlaceOfKey(layers, "trajectory");
   return options;
 }

@@ -79,4 +79,13 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
                              (hint.empty() ? "; see `depthgrid scenes`" : hint));
 }
 
+std::string ResolveNameAt(const std::string& place, const std::string& name, ShippedKind kind,
+                          const std::string& base_folder) {
+  try {
+    return ResolveName(name, kind, base_folder);
+  } catch (const InputError& error) {
+    throw InputError(place, error.what());
+  }
+}
+
 }  // namespace depthgrid

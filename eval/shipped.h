@@ -18,6 +18,10 @@ bool IsFileName(const std::string& name);
 std::string ResolveName(const std::string& name, ShippedKind kind,
                         const std::string& base_folder = "");
 
+// The same for a name that another file gives at `place`, with which errors begin.
+std::string ResolveNameAt(const std::string& place, const std::string& name, ShippedKind kind,
+                          const std::string& base_folder = "");
+
 // Names of all shipped files of a kind, sorted. Throws InputError when nothing shipped is there.
 std::vector<std::string> ShippedNames(ShippedKind kind);
 

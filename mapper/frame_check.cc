@@ -38,11 +38,14 @@ void RequirePlanar(const std::string& place, const Pose2& pose, const std::strin
                               "), must be finite and within 10,000 km");
 }
 
+void RequireReach(const std::string& place, const Scan& scan) {
+  if (scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m)) return;
+  throw InputError(place, "its scan's max_range_m is " + std::to_string(scan.max_range_m) +
+                              ", must be 0 (unknown) or more");
+}
+
 void RequireKept(const std::string& place, const Scan& scan) {
-  if (!(scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m))) {
-    throw InputError(place, "its scan's max_range_m is " + std::to_string(scan.max_range_m) +
-                                ", must be 0 (unknown) or more");
-  }
+  RequireReach(place, scan);
   for (const Beam& beam : scan.beams) {
     if (CanBeKept(beam)) continue;
     throw InputError(place, "its scan has a beam at bearing " + std::to_string(beam.bearing_rad) +
@@ -86,12 +89,6 @@ void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera
   }
 }
 
-void RequireReach(const Frame& frame, const Scan& scan) {
-  if (scan.max_range_m >= 0.0 && std::isfinite(scan.max_range_m)) return;
-  Refuse(frame, "its scan's max_range_m is " + std::to_string(scan.max_range_m) +
-                    ", must be 0 (unknown) or more");
-}
-
 void RequireLoop(const Frame& frame, const LoopClosure& loop) {
   const std::string name = "the loop closure of frames " + std::to_string(loop.first_frame) +
                            " and " + std::to_string(loop.second_frame);
@@ -113,7 +110,7 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
   if (frame.depth) RequireDepth(frame, camera);
   if (frame.matched_scan && !frame.scan) Refuse(frame, "has a matched_scan, but no scan");
   for (const auto& scan : {frame.scan, frame.matched_scan}) {
-    if (scan) RequireReach(frame, *scan);
+    if (scan) RequireReach(NameOf(frame), *scan);
   }
   for (const LoopClosure& loop : frame.loops) RequireLoop(frame, loop);
 }

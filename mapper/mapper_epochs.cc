@@ -1,6 +1,4 @@
 // Where the map goes on when SLAM's poses begin a new epoch (docs/math.md, "Epochs").
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "mapper/core/level.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapper/core/level.h"
+#include "mapper/core/angle.h"
 #include "mapper/fuse/fusion.h"
 
 namespace depthgrid {

@@ -62,8 +62,9 @@ void PrintDrift(const TrajectoryScore& score) {
 
 // What makes errors say something else than they seem to.
 std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajectoryArguments& of) {
-  constexpr double kFewShare = 0.5;
-  constexpr double kOtherUnits = 1.5;
+  constexpr double kFewShare = 0.5;    // more are missing than there
+  constexpr double kOtherScale = 1.5;  // no SLAM that knows its scale is off by half
+  constexpr double kLeastPathM = 1.0;  // of less, noise tells the scale
   std::vector<std::string> doubts;
   const int fewer = std::min(score.reference_poses, score.estimate_poses);
   if (score.matched_poses < kFewShare * fewer || score.matched_poses < 2) {
@@ -73,9 +74,8 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajec
                     of.estimate, score.matched_poses, score.estimate_poses, of.reference,
                     score.reference_poses));
   }
-  // Of hardly any path no scale can be told.
-  if (score.sim3_scale && score.reference_path_m > 1.0 &&
-      (*score.sim3_scale > kOtherUnits || *score.sim3_scale * kOtherUnits < 1.0)) {
+  if (score.sim3_scale && score.reference_path_m > kLeastPathM &&
+      (*score.sim3_scale > kOtherScale || *score.sim3_scale * kOtherScale < 1.0)) {
     doubts.push_back(
         fmt::format("{}: fits {} best {:.4g} times as large: is it in other units, or "
                     "without scale?",

@@ -149,16 +149,6 @@ void EnumerateRuns(const SweepFileOptions& file, const std::string& place, Sweep
   plan.size_text = Counted(points.size(), "point") + " x " + Counted(seeds.size(), "seed");
 }
 
-// Its file; `place` is where the sweep names it.
-std::string ExperimentOf(const SweepFileOptions& file, const std::string& base_folder,
-                         const std::string& place) {
-  try {
-    return ResolveName(file.experiment, ShippedKind::kExperiment, base_folder);
-  } catch (const InputError& error) {
-    throw InputError(place, error.what());
-  }
-}
-
 // Before anything is made of the runs: from the sizes of the axes alone.
 void RequireFewEnough(const SweepFileOptions& file, const std::vector<SweepAxis>& axes,
                       const std::string& place) {
@@ -264,7 +254,8 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   SweepFileOptions file;
   config.Read(file);
   RequireFewEnough(file, plan.axes, path);
-  const std::string experiment = ExperimentOf(file, fs::path(path).parent_path().string(), place);
+  const std::string experiment = ResolveNameAt(place, file.experiment, ShippedKind::kExperiment,
+                                               fs::path(path).parent_path().string());
   plan.base_folder = fs::path(experiment).parent_path().string();
   const Config own = Config::FromFile(experiment);
   ReadExperiment(own, plan.base_folder);  // so that its own errors name its own file
