@@ -70,6 +70,9 @@ inline float DepthBetween(float z0, float z1, float share_of_1) {
 // Columns are kept between 0 and this, so that there always is a pixel to the right.
 inline float LastColumn(int width_px) { return static_cast<float>(width_px - 1) - 0.001F; }
 
+// The depth on a line at row v, between the pixels' own.
+float DepthOn(const DepthImage& image, const BearingLine& line, int v);
+
 // The sample of a line at row v.
 float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits, int v);
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "mapper/core/error.h"
+#include "mapper/scan/farthest_seen.h"
 
 namespace depthgrid {
 namespace {
@@ -76,11 +77,20 @@ void DropBeyond(double reach_m, std::vector<BlockHits>& hits) {
   }
 }
 
-Scan ScanOf(ScanMemory& memory, std::vector<BlockHits>& hits, double camera_height_m,
-            const ScanOptions& options, Scan scan = {}) {
-  DropBeyond(options.max_range_m, hits);
-  return ScanOf(memory.fan.bearings, memory.views, hits, camera_height_m, options, memory.beams,
-                std::move(scan));
+// One of an image's scans: what was read, and within which limits.
+struct Band {
+  const ScanOptions& options;
+  const ReturnLimits& limits;
+  double camera_height_m;
+};
+
+Scan ScanOf(const DepthImage& image, const Band& band, std::vector<BlockHits>& hits,
+            ScanMemory& memory, Scan scan = {}) {
+  DropBeyond(band.options.max_range_m, hits);
+  scan = ScanOf(memory.fan.bearings, memory.views, hits, band.camera_height_m, band.options,
+                memory.beams, std::move(scan));
+  EndWhereNothingWasSeen(image, memory.lines, band.limits, scan);
+  return scan;
 }
 
 // A band of this half height above a floor that lies as far below the camera.
@@ -128,7 +138,7 @@ Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) con
   ImageReturns& returns =
       FindReturns(*reading.image, memory.lines, limits, std::nullopt, window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
-  return ScanOf(memory, returns.obstacles, stand.height_m, options_);
+  return ScanOf(*reading.image, {options_, limits, stand.height_m}, returns.obstacles, memory);
 }
 
 ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& stand,
@@ -146,8 +156,10 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
                                                 static_cast<float>(options_.slice_agree_sigmas)},
                                       window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
-  return {ScanOf(memory, returns.obstacles, stand.height_m, options_, std::move(scans.obstacles)),
-          ScanOf(memory, returns.slice, slice_half_height_m, slice_options, std::move(scans.slice)),
+  return {ScanOf(*reading.image, {options_, limits, stand.height_m}, returns.obstacles, memory,
+                 std::move(scans.obstacles)),
+          ScanOf(*reading.image, {slice_options, slice_limits, slice_half_height_m}, returns.slice,
+                 memory, std::move(scans.slice)),
           window};
 }
 

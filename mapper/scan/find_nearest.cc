@@ -75,14 +75,18 @@ RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits) {
   return {std::max(line.first_row, limits.first_row), std::min(line.last_row, limits.last_row)};
 }
 
-float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,
-               int v) {
+float DepthOn(const DepthImage& image, const BearingLine& line, int v) {
   const auto row = static_cast<float>(v);
   const float u = std::min(std::max(line.u0 + line.u1 * row, 0.0F), LastColumn(image.width_px));
   const int column = static_cast<int>(u);
-  const float share = u - static_cast<float>(column);
   const float* pixel = image.Row(v) + column;
-  const float z_m = DepthBetween(pixel[0], pixel[1], share);
+  return DepthBetween(pixel[0], pixel[1], u - static_cast<float>(column));
+}
+
+float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,
+               int v) {
+  const auto row = static_cast<float>(v);
+  const float z_m = DepthOn(image, line, v);
   if (!(z_m >= limits.min_depth_m)) return kUnusable;
   const float range_m = z_m * (line.h0 + line.h1 * row);
   const float height_m = z_m * (line.g0 + line.g1 * row);

@@ -189,6 +189,48 @@ TEST(DepthToScan, FloorAndCeilingOnlyClear) {
   EXPECT_NEAR(middle.clear_to_m, 1.05 / std::tan(top_rad), 0.01);
 }
 
+// Two rows of a wall are too few for a hit, and yet nothing behind it was seen.
+TEST(DepthToScan, WhereTooLittleOfAWallIsSeenNothingBehindItIsFree) {
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
+  const auto two_rows_at = [&](double wall_m) {
+    const DepthImage whole = RoomWithWallAt(wall_m).Render(camera, pose);
+    DepthImage image(camera.width_px, camera.height_px);
+    for (const int v : {400, 410}) std::copy_n(whole.Row(v), image.width_px, image.Row(v));
+    return image;
+  };
+  // The two rays are at the band's lower edge at 3.14 m and at 2.96 m.
+  const DepthToScan converter(camera, {});
+  const Beam behind = converter.Convert(two_rows_at(5.0), pose).beams[320];
+  EXPECT_FALSE(behind.hit);
+  EXPECT_NEAR(behind.clear_from_m, 1.05 / (170.5 / 480.0), 1e-3);
+  EXPECT_NEAR(behind.clear_to_m, 1.05 / (160.5 / 480.0), 1e-3);
+  const Beam between = converter.Convert(two_rows_at(3.0), pose).beams[320];
+  EXPECT_EQ(between.clear_from_m, behind.clear_from_m);
+  EXPECT_NEAR(between.clear_to_m, 3.0, 2e-3);
+  const Beam before = converter.Convert(two_rows_at(2.0), pose).beams[320];
+  EXPECT_FALSE(before.hit);
+  EXPECT_EQ(before.clear_from_m, before.clear_to_m);
+}
+
+// The row of the optical axis alone, and in most bearings it sees a thing of one row.
+TEST(DepthToScan, RowModesClearNoFartherThanTheySaw) {
+  const PinholeCamera camera;
+  const Pose3 pose = CameraOf({}, kCameraHeightM);
+  DepthImage image = RoomWithWallAt(7.0).Render(camera, pose);
+  for (int v = 0; v < image.height_px; ++v) {
+    if (v != 240) std::fill_n(image.Row(v), image.width_px, kInvalidDepth);
+  }
+  ScanOptions options;
+  options.mode = ScanMode::kRowBand;
+  const auto middle = [&] { return DepthToScan(camera, options).Convert(image, pose).beams[320]; };
+  EXPECT_FALSE(middle().hit);
+  EXPECT_NEAR(middle().clear_to_m, 6.0, 1e-3);
+  std::fill_n(image.Row(240), image.width_px, 2.0F);
+  EXPECT_FALSE(middle().hit);
+  EXPECT_NEAR(middle().clear_to_m, 2.0, 2e-3);
+}
+
 TEST(DepthToScan, RowModesReadLikeALaser) {
   AnalyticRoom room = RoomWithWallAt(4.0);
   room.boxes.push_back({{2.0, -0.5, 0.0}, {2.5, 0.5, 0.9}});  // below the optical axis
