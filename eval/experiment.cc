@@ -7,7 +7,6 @@
 #include "sim/slam_surrogate.h"
 
 namespace depthgrid {
-namespace {}  // namespace
 
 RunScores Score(const MappingRun& run, const TruthRecord& truth, const MetricsOptions& options) {
   RunScores scores;

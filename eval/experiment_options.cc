@@ -18,15 +18,6 @@ void ResolveFile(std::string& name, const std::string& base_folder) {
     name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
 }
 
-// Where the last layer that has the key has it; empty where none has.
-std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key) {
-  std::string place;
-  for (const Config* layer : layers) {
-    if (layer->Has(key)) place = layer->PlaceOfKey(key);
-  }
-  return place;
-}
-
 }  // namespace
 
 void ExperimentOptions::Visit(OptionsVisitor& v) {
@@ -57,12 +48,20 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
   return options;
 }
 
+void RequireSound(const ExperimentOptions& options, const std::vector<const Config*>& layers) {
+  RequireInRange(options, "", [&](const std::string& key) { return PlaceOfKey(layers, key); });
+  const std::string place = PlaceOfKey(layers, "sensor");
+  SensorCamera(options.sensor, place.empty() ? "sensor" : place + ": sensor");
+}
+
 ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {
   config.Take("provenance");  // a run.yaml may be run again
   if (config.Has("cases")) {
     throw InputError(config.Place(), "holds several experiments; only `depthgrid run` takes it");
   }
-  return ReadExperiment({&config}, base_folder);
+  ExperimentOptions options = ReadExperiment({&config}, base_folder);
+  RequireSound(options, {&config});
+  return options;
 }
 
 std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,

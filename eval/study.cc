@@ -142,6 +142,7 @@ Study ReadStudy(Config config, const Config& overrides, const std::string& base_
   for (const Config& entry : cases) {
     const Config own = Without(entry, kCaseHeadKeys);
     study.experiments.push_back(ReadExperiment({&shared, &own, &overrides}, base_folder));
+    RequireSound(study.experiments.back(), {&shared, &own, &overrides});
   }
   WarnOfIdle(shared, cases, overrides, study);
   WarnOfRepeats(study);

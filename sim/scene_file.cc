@@ -313,6 +313,11 @@ class SceneReader {
     config.Read(options);
     if (options.file.empty()) throw InputError(config.Place(), "'file' is missing");
     const auto file = std::filesystem::path(path_).parent_path() / options.file;
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) {
+      throw InputError(config.PlaceOfKey("file"),
+                       fmt::format("file is '{}': no such file", options.file));
+    }
     MeshFile read = ReadMeshFile(file.string(), 1.0, options.up);
     if (!options.item.material.empty()) {
       const std::uint16_t material = MaterialIndex(options.item.material, config.Place());

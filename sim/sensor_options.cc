@@ -69,6 +69,13 @@ DepthRange ModelRange(DepthNoiseModel model) {
   return {};
 }
 
+DepthRange RangeOf(const SensorOptions& options) {
+  DepthRange range = ModelRange(options.noise);
+  if (options.min_range_m > 0) range.min_m = options.min_range_m;
+  if (options.max_range_m > 0) range.max_m = options.max_range_m;
+  return range;
+}
+
 }  // namespace
 
 void SensorOptions::Visit(OptionsVisitor& v) {
@@ -106,6 +113,8 @@ void SensorOptions::Visit(OptionsVisitor& v) {
            "nearer depths are invalid, 0: the model's limit");
   v.Number("max_range_m", max_range_m, {0, 1000},
            "farther depths are invalid, 0: the model's limit");
+  const DepthRange range = RangeOf(*this);
+  v.Less("min_range_m", range.min_m, "max_range_m", range.max_m);
   v.Number("grazing_limit_deg", grazing_limit_deg, {0, 90},
            "incidence beyond which noisy models lose the pixel, 90: never");
   v.Number("grazing_softness_deg", grazing_softness_deg, {0, 30},
@@ -118,7 +127,7 @@ void SensorOptions::Visit(OptionsVisitor& v) {
            "instruction set of the ray kernels: they differ by up to a micrometre");
 }
 
-PinholeCamera SensorCamera(const SensorOptions& options) {
+PinholeCamera SensorCamera(const SensorOptions& options, const std::string& place) {
   PinholeCamera camera = PresetCamera(options.camera);
   const int width_px = options.width_px > 0 ? options.width_px : camera.width_px;
   const int height_px = options.height_px > 0 ? options.height_px : camera.height_px;
@@ -135,19 +144,13 @@ PinholeCamera SensorCamera(const SensorOptions& options) {
   if (options.fy_px > 0) camera.fy_px = options.fy_px;
   if (options.cx_px >= 0) camera.cx_px = options.cx_px;
   if (options.cy_px >= 0) camera.cy_px = options.cy_px;
-  Validate(camera, "sensor");
+  Validate(camera, place);
   return camera;
 }
 
 DepthRange SensorRange(const SensorOptions& options) {
-  DepthRange range = ModelRange(options.noise);
-  if (options.min_range_m > 0) range.min_m = options.min_range_m;
-  if (options.max_range_m > 0) range.max_m = options.max_range_m;
-  if (range.min_m >= range.max_m) {
-    throw InputError("sensor", "min_range_m is " + std::to_string(range.min_m) +
-                                   ", must be below max_range_m, " + std::to_string(range.max_m));
-  }
-  return range;
+  RequireInRange(options, "sensor");
+  return RangeOf(options);
 }
 
 }  // namespace depthgrid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/options.h"
@@ -78,8 +79,9 @@ struct DepthRange {
   double max_m = std::numeric_limits<double>::infinity();
 };
 
-// The preset's camera with the overrides. Throws InputError for a camera nobody can build.
-PinholeCamera SensorCamera(const SensorOptions& options);
+// The preset's camera with the overrides. Throws InputError, "PLACE: cx is ...", for a camera
+// nobody can build.
+PinholeCamera SensorCamera(const SensorOptions& options, const std::string& place = "sensor");
 
 // The noise model's range with the overrides. Throws InputError when nothing is left of it.
 DepthRange SensorRange(const SensorOptions& options);

@@ -14,10 +14,13 @@ namespace {
 
 void RequireSize(const std::vector<double>& values, std::size_t size, const char* key,
                  const std::string& place) {
-  if (values.size() != size) {
-    throw InputError(
-        place, fmt::format("{} has {}, must have {}", key, Counted(values.size(), "number"), size));
+  if (values.size() == size) return;
+  if (size == 0) throw InputError(place, fmt::format("{} is for hand-held paths only", key));
+  if (values.empty()) {
+    throw InputError(place, fmt::format("{} is missing, must be {} numbers", key, size));
   }
+  throw InputError(
+      place, fmt::format("{} has {}, must have {}", key, Counted(values.size(), "number"), size));
 }
 
 double RoundedStamp(int frame, double rate_hz) { return std::round(frame / rate_hz * 1e6) / 1e6; }

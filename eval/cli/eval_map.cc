@@ -20,6 +20,14 @@ namespace fs = std::filesystem;
 
 using Row = std::vector<std::string>;
 
+// A run's folder holds both maps.
+void RequireNoFolder(const std::string& path, const char* name) {
+  const fs::path inside = fs::path(path) / name;
+  if (!fs::exists(inside)) return;
+  throw InputError(path, fmt::format("is a folder, must be a map's YAML file, such as {}",
+                                     ShellWord(inside.string())));
+}
+
 OccupancyMap ReadAligned(const std::string& path) { return AlignedMap(ReadMap(path)); }
 
 // A trinary file keeps states only, of which a calibration would say nothing.
@@ -199,6 +207,8 @@ void PrintTable(const MapScore& score) {
 }  // namespace
 
 void EvalMap(const EvalMapArguments& arguments) {
+  RequireNoFolder(arguments.reference, "truth_map.yaml");
+  RequireNoFolder(arguments.estimate, "map.yaml");
   const StateMap truth = ReadStates(arguments.reference);
   OccupancyMap estimate = ReadAligned(arguments.estimate);
   RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate,

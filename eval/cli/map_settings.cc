@@ -90,6 +90,8 @@ MapRequest ReadMapRequest(const MapArguments& given) {
   request.config = ConfigOf(given, given.common.set);
   MapSettings& settings = request.settings;
   request.config.Read(settings);
+  RequireInRange(settings, "",
+                 [&](const std::string& key) { return PlaceOfKey({&request.config}, key); });
   request.arguments = WithFilesOf(settings, given);
   const MapArguments& arguments = request.arguments;
   if (arguments.localise && arguments.map.empty()) {

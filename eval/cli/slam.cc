@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
@@ -21,6 +22,10 @@ namespace {
 
 // The true pose of each frame of a TUM folder, at the frame's stamp.
 Trajectory TrueFrames(const std::string& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    RequireFile(folder);
+    throw InputError(folder, "is a file, must be a sequence's folder with a groundtruth.txt");
+  }
   const std::string truth_path = folder + "/groundtruth.txt";
   const Trajectory truth = ReadTrajectory(truth_path);
   std::vector<double> stamps_s;

@@ -239,7 +239,8 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
   for (std::size_t i = 0; i < parameter_keys.size(); ++i) {
     config.Set(parameter_keys[i], run.values[i], parameter_keys[i] + "=" + run.values[i]);
   }
-  return ReadExperiment(std::move(config), base_folder);
+  config.Take("provenance");
+  return ReadExperiment({&config}, base_folder);
 }
 
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
@@ -258,7 +259,8 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
                                                fs::path(path).parent_path().string());
   plan.base_folder = fs::path(experiment).parent_path().string();
   const Config own = Config::FromFile(experiment);
-  ReadExperiment(own, plan.base_folder);  // so that its own errors name its own file
+  // So that its own errors name its own file; a copy would not know its lines.
+  ReadExperiment(Config::FromFile(experiment), plan.base_folder);
   Config changes;
   for (const ConfigEntry& entry : fixed.Entries()) changes.Set(entry.key, entry.text, entry.place);
   for (const std::string& assignment : set) changes.Set(assignment);

@@ -1,6 +1,7 @@
 #include "mapper/core/camera.h"
 
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "mapper/core/error.h"
@@ -10,8 +11,9 @@ namespace depthgrid {
 void Validate(const PinholeCamera& camera, const std::string& place) {
   const auto require = [&](bool holds, const char* key, double value, const char* rule) {
     if (!holds) {
-      throw InputError(place,
-                       std::string(key) + " is " + std::to_string(value) + ", must be " + rule);
+      std::ostringstream message;
+      message << key << " is " << value << ", must be " << rule;
+      throw InputError(place, message.str());
     }
   };
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };

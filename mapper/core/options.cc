@@ -22,7 +22,7 @@ std::string Shown(double value) {
 
 class RangeCheck final : public OptionsVisitor {
  public:
-  explicit RangeCheck(const std::string& place) : path_(place) {}
+  RangeCheck(const std::string& path, KeyPlaces places) : path_(path), places_(std::move(places)) {}
 
   void Number(std::string_view key, double& value, Interval allowed, std::string_view) override {
     Check(key, value, allowed);
@@ -49,6 +49,13 @@ class RangeCheck final : public OptionsVisitor {
                std::string_view) override {
     CheckAll(key, values, allowed);
   }
+  void Less(std::string_view low_key, double low, std::string_view high_key, double high) override {
+    CheckPair(low < high, low_key, low, "below", high_key, high);
+  }
+  void NotMore(std::string_view low_key, double low, std::string_view high_key,
+               double high) override {
+    CheckPair(low <= high, low_key, low, "at most", high_key, high);
+  }
 
  protected:
   void ChoiceIndex(std::string_view key, int& index, const std::vector<std::string_view>& names,
@@ -56,11 +63,11 @@ class RangeCheck final : public OptionsVisitor {
     if (index >= 0) return;
     std::string all;
     for (const std::string_view name : names) all.append(all.empty() ? "" : ", ").append(name);
-    throw InputError(path_ + "." + std::string(key), "is none of its values, " + all);
+    Fail(key, "", "is none of its values, " + all);
   }
   bool Begin(std::string_view key, std::string_view) override {
     lengths_.push_back(path_.size());
-    path_.append(".").append(key);
+    path_ = PathOf(key);
     return true;
   }
   void End() override {
@@ -71,15 +78,37 @@ class RangeCheck final : public OptionsVisitor {
  private:
   void Check(std::string_view key, double value, const Interval& allowed) const {
     if (std::isfinite(value) && value >= allowed.low && value <= allowed.high) return;
-    throw InputError(path_ + "." + std::string(key),
-                     "is " + Shown(value) + ", must be " + depthgrid::Shown(allowed));
+    Fail(key, "", "is " + Shown(value) + ", must be " + depthgrid::Shown(allowed));
+  }
+  void CheckPair(bool holds, std::string_view low_key, double low, const char* rule,
+                 std::string_view high_key, double high) const {
+    if (holds) return;
+    Fail(low_key, high_key,
+         "is " + Shown(low) + ", must be " + rule + " " + std::string(high_key) + ", " +
+             Shown(high));
   }
   void CheckAll(std::string_view key, std::span<const double> values,
                 const Interval& allowed) const {
     for (const double value : values) Check(key, value, allowed);
   }
 
+  std::string PathOf(std::string_view key) const {
+    return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  }
+  std::string PlaceOf(std::string_view key) const {
+    return places_ && !key.empty() ? places_(PathOf(key)) : "";
+  }
+  // The other key may be the one that was given its value.
+  [[noreturn]] void Fail(std::string_view key, std::string_view other_key,
+                         const std::string& message) const {
+    std::string place = PlaceOf(key);
+    if (place.empty()) place = PlaceOf(other_key);
+    if (place.empty()) throw InputError(PathOf(key), message);
+    throw InputError(place, PathOf(key) + " " + message);
+  }
+
   std::string path_;
+  KeyPlaces places_;
   std::vector<std::size_t> lengths_;  // of the path around each group that is open
 };
 
@@ -95,8 +124,8 @@ std::string Shown(const Interval& interval) {
 }
 
 namespace internal {
-std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& place) {
-  return std::make_unique<RangeCheck>(place);
+std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& path, KeyPlaces places) {
+  return std::make_unique<RangeCheck>(path, std::move(places));
 }
 }  // namespace internal
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -49,6 +50,13 @@ class OptionsVisitor {
   virtual void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
                        std::string_view meaning) = 0;
 
+  // Two keys of this group of which the first must be less than the second, or not more. Only
+  // RequireInRange asks: whoever reads a file may be told one of them in another.
+  virtual void Less(std::string_view /*low_key*/, double /*low*/, std::string_view /*high_key*/,
+                    double /*high*/) {}
+  virtual void NotMore(std::string_view /*low_key*/, double /*low*/, std::string_view /*high_key*/,
+                       double /*high*/) {}
+
   // One of a fixed set of names.
   template <typename Enum>
   void Choice(std::string_view key, Enum& value,
@@ -82,15 +90,19 @@ class OptionsVisitor {
   virtual void End() = 0;
 };
 
+// Where a key, "mapper.scan.beams", was given its value; empty where nobody gave it one.
+using KeyPlaces = std::function<std::string(const std::string& key_path)>;
+
 namespace internal {
-std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& place);
+std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& path, KeyPlaces places);
 }  // namespace internal
 
-// For options that were set in code: throws InputError for the first value outside its interval,
-// "PLACE.group.key: is 2, must be from 0 to 1".
+// For options that were set in code or in several places: throws InputError for the first value
+// outside its interval, "PATH.group.key: is 2, must be from 0 to 1", or beyond another's, "must be
+// below max_range_m, 1"; and with its place in front, where that is known.
 template <typename Options>
-void RequireInRange(Options options, const std::string& place) {
-  options.Visit(*internal::MakeRangeCheck(place));
+void RequireInRange(Options options, const std::string& path, KeyPlaces places = {}) {
+  options.Visit(*internal::MakeRangeCheck(path, std::move(places)));
 }
 
 }  // namespace depthgrid

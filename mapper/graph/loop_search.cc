@@ -33,6 +33,8 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("max_window_m", max_window_m, {0.0, 100.0}, "at most");
   v.Number("min_window_deg", min_window_deg, {0.0, 180.0}, "half angle of the search, at least");
   v.Number("max_window_deg", max_window_deg, {0.0, 180.0}, "at most");
+  v.NotMore("min_window_m", min_window_m, "max_window_m", max_window_m);
+  v.NotMore("min_window_deg", min_window_deg, "max_window_deg", max_window_deg);
   v.Number("candidates", candidates, {1, 1000}, "places that are searched, at most");
   v.Group("place", place, "which scans are searched together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");

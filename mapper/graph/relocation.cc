@@ -85,6 +85,7 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
   v.Number("window_m", window_m, {0.1, 1e3}, "half width of the search, metres");
   v.Number("speed_mps", speed_mps, {0.0, 100.0}, "and so much more for each second lost");
   v.Number("max_window_m", max_window_m, {0.1, 1e3}, "at most");
+  v.NotMore("window_m", window_m, "max_window_m", max_window_m);
   v.Number("every_m", every_m, {0.01, 100.0}, "way between two searches");
   v.Number("every_deg", every_deg, {1.0, 360.0}, "or turn between them");
   v.Number("most_searches", most_searches, {1, 1e6}, "before the guess is left as it is");

@@ -195,7 +195,7 @@ CarmenLine ParseCarmenLine(std::string_view line) {
   if (name == "ROBOTLASER1") return ParseRobotLaser(tokens);
   if (name == "PARAM") return ParseParameter(tokens);
   if (IsMessageName(name)) return CarmenOther{};
-  return CarmenDamage{"a line that begins with no message name", false};
+  return CarmenDamage{kNamelessLine, false};
 }
 
 std::string RobotLaserLine(const CarmenScan& scan, double accuracy) {

@@ -28,6 +28,8 @@ struct CarmenMaximum {
 
 // A line that is no scan: another message, a comment, an empty line.
 struct CarmenOther {};
+// The reason of a line that is not of such a log at all.
+inline const std::string kNamelessLine = "a line that begins with no message name";
 // A damaged line, and what is wrong with it.
 struct CarmenDamage {
   std::string reason;

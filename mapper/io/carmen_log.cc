@@ -122,11 +122,7 @@ class CarmenLogSource : public FrameSource {
       : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     RequireUncompressed(path_);
-    if (!(options_.min_range_m < MostRangeM(options_))) {
-      throw InputError("sequence.laser.min_range_m",
-                       fmt::format("is {:g}, must be below sequence.laser.max_range_m ({:g})",
-                                   options_.min_range_m, MostRangeM(options_)));
-    }
+    RequireInRange(options_, "sequence.laser");
     Rewind();
     std::vector<double> speeds_mps;
     std::optional<CarmenScan> last;
@@ -154,6 +150,13 @@ class CarmenLogSource : public FrameSource {
     }
     if (names_.stamps_s.empty()) {
       if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
+      if (const auto nameless = problems_.find(kNamelessLine);
+          nameless != problems_.end() && problems_.size() == 1) {
+        throw InputError(
+            fmt::format("{}:{}", path_, nameless->second.first_line),
+            "begins with no message name, must be a CARMEN log's; images are given by their folder "
+            "and poses by --poses");
+      }
       throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
                                           Counted(lines, "line"),
                                           warnings_.empty() ? "" : "; first: " + warnings_[0]));
@@ -301,6 +304,7 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
            "degrees from the first to the last reading of a FLASER line; 0: a half circle");
   v.Flag("upside_down", upside_down, "whether the readings are written from left to right");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
+  v.Less("min_range_m", min_range_m, "max_range_m", MostRangeM(*this));
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
   v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},

@@ -145,6 +145,13 @@ std::string Config::PlaceOfKey(const std::string& key_path) const {
   return tree_->PlaceOfKey(key_path, node.IsDefined() ? node : tree_->root);
 }
 
+std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key_path) {
+  for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
+    if ((*layer)->Has(key_path)) return (*layer)->PlaceOfKey(key_path);
+  }
+  return "";
+}
+
 bool Config::Has(const std::string& key_path) const {
   return Find(tree_->root, key_path).IsDefined();
 }

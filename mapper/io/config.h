@@ -100,6 +100,9 @@ class Config {
   std::unique_ptr<Tree> tree_;
 };
 
+// Where the last of these trees that has the key has it; empty where none has.
+std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key_path);
+
 struct ConfigEntry {
   std::string key;
   std::string place;                              // file and line, for errors

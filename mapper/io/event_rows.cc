@@ -14,9 +14,6 @@
 namespace depthgrid::internal {
 namespace {
 
-constexpr std::size_t kCsvColumns = 14;
-constexpr std::size_t kCsvColumnsWithStamps = 17;
-
 void RequirePossible(LoopClosure& loop, const std::string& place) {
   const double norm = loop.first_from_second.rotation.norm();
   if (!(std::abs(norm - 1.0) <= kMaxNormError)) {

@@ -10,6 +10,10 @@
 
 namespace depthgrid::internal {
 
+// Of a row of loops.csv.
+constexpr std::size_t kCsvColumns = 14;
+constexpr std::size_t kCsvColumnsWithStamps = 17;
+
 // The frame of a stamp; nothing when the recording has none that near.
 class FrameFinder {
  public:

@@ -20,6 +20,16 @@ using internal::FrameFinder;
 // Stamps of loops.csv are copies of the recording's.
 constexpr double kSameStampS = 1e-3;
 
+// Whether anything in the text is of a loops.csv.
+bool LooksLikeCsv(std::string_view text) {
+  const auto begins_a_line = [text](std::string_view word) {
+    return text.starts_with(word) || text.find("\n" + std::string(word)) != std::string_view::npos;
+  };
+  const std::size_t columns = SplitAtCommas(text.substr(0, text.find('\n'))).size();
+  return columns == internal::kCsvColumns || columns == internal::kCsvColumnsWithStamps ||
+         begins_a_line("kind,") || begins_a_line("loop,") || begins_a_line("relocalisation,");
+}
+
 bool IsHeader(std::string_view row) {
   return row.starts_with("kind,frame,epoch,") &&
          (row.ends_with(",sigma_rotation_rad") || row.ends_with(",second_stamp_s"));
@@ -152,6 +162,18 @@ SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
   const std::string_view first = rows.front().fields.front();
   const bool stamped = ParseNumber(first).has_value();
   const bool orb = first == "LOOP" || first == "RELOC" || first == "GBA_DONE";
+  constexpr std::size_t kPoseColumns = 8;
+  if (stamped && rows.front().fields.size() == kPoseColumns) {
+    throw InputError(PlaceOfLine(place, rows.front().line),
+                     "has 8 columns as a trajectory has, must be SLAM's events");
+  }
+  if (!stamped && !orb && !LooksLikeCsv(text)) {
+    throw InputError(
+        PlaceOfLine(place, rows.front().line),
+        fmt::format("begins with '{}', must be SLAM's events: a loops.csv, ORB-SLAM2's or stamped "
+                    "loops",
+                    first.substr(0, 40)));
+  }
   SlamEvents result;
   RowDamage damage;
   int missing = 0;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "mapper/core/error.h"
 #include "mapper/scan/farthest_seen.h"
@@ -113,20 +112,12 @@ void RequireUsable(const PinholeCamera& camera) {
   }
 }
 
-void RequireBelow(const char* low_key, double low, const char* high_key, double high) {
-  if (low < high) return;
-  std::ostringstream rule;
-  rule << "is " << low << ", must be below " << high_key << ", " << high;
-  throw InputError(std::string("mapper.scan.") + low_key, rule.str());
-}
-
 }  // namespace
 
 DepthToScan::DepthToScan(const PinholeCamera& camera, const ScanOptions& options)
     : camera_(camera), options_(options) {
   RequireUsable(camera);
-  RequireBelow("band_low_m", options.band_low_m, "band_high_m", options.band_high_m);
-  RequireBelow("min_range_m", options.min_range_m, "max_range_m", options.max_range_m);
+  RequireInRange(options, "mapper.scan");
 }
 
 Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) const {

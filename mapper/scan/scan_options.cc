@@ -13,6 +13,8 @@ void ScanOptions::Visit(OptionsVisitor& v) {
   v.Number("band_high_m", band_high_m, {-10.0, 100.0}, "upper edge of the obstacle band");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer depth is not trusted");
   v.Number("max_range_m", max_range_m, {0.1, 1000.0}, "farther returns only clear");
+  v.Less("band_low_m", band_low_m, "band_high_m", band_high_m);
+  v.Less("min_range_m", min_range_m, "max_range_m", max_range_m);
   v.Number("band_rows", band_rows, {1, 16384}, "rows of mode row_band");
   v.Number("min_returns", min_returns, {1, 1000}, "rows that must agree on an obstacle");
   v.Number("max_gap_m", max_gap_m, {0.0, 10.0}, "largest unseen height in free space");

@@ -55,5 +55,41 @@ TEST(Options, AreInTheirIntervalsOrTheFirstThatIsNotIsNamed) {
   EXPECT_EQ(Fault(options), "node.frames: is 0, must be from 1 to 1000000000");
 }
 
+struct Range {
+  double low_m = 1.0, high_m = 2.0;
+  void Visit(OptionsVisitor& v) {
+    v.Number("low_m", low_m, {}, "");
+    v.Number("high_m", high_m, {}, "");
+    v.NotMore("low_m", low_m, "high_m", high_m);
+  }
+};
+struct WithRange {
+  Range range;
+  void Visit(OptionsVisitor& v) { v.Group("range", range, ""); }
+};
+
+TEST(Options, OfAPairThatContradictsItselfTheOneThatWasGivenIsNamed) {
+  WithRange options;
+  std::string given;
+  const auto fault = [&] {
+    try {
+      RequireInRange(options, "", [&](const std::string& key) {
+        return key == given ? "a.yaml:3" : std::string();
+      });
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  options.range.low_m = 2.0;
+  EXPECT_EQ(fault(), "");
+  options.range.low_m = 3.5;
+  EXPECT_EQ(fault(), "range.low_m: is 3.5, must be at most high_m, 2");
+  for (const std::string key : {"range.low_m", "range.high_m"}) {
+    given = key;
+    EXPECT_EQ(fault(), "a.yaml:3: range.low_m is 3.5, must be at most high_m, 2");
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid

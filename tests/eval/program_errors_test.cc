@@ -231,8 +231,15 @@ TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
                   {"mapper.scan.min_range_m", "max_range_m"});
     // So far below the image that no ray is left.
     ExpectRefusal(std::string(command) + " ./small.yaml --set sensor.cy=20000 -o out",
-                  {"sensor", "cy is 20000", "ten focal lengths"});
+                  {"--set sensor.cy=20000: sensor: cy is 20000, must be within ten focal lengths"});
+    ExpectRefusal(
+        std::string(command) +
+            " ./small.yaml --set sensor.min_range_m=30 --set sensor.max_range_m=20 -o out",
+        {"--set sensor.min_range_m=30: sensor.min_range_m is 30, must be below max_ra"});
   }
+  // Of two keys it is the one that was set that is at fault.
+  Write("low.yaml", "scene: ./room.yaml\nmapper:\n  scan: {band_high_m: 0.1}\n");
+  ExpectRefusal("run ./low.yaml -o out", {"low.yaml:3: mapper.scan.band_low_m is 0.1, must be"});
 }
 
 TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
@@ -242,6 +249,9 @@ TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
   ExpectRefusal("ablate ./room.yaml -o out", {"room.yaml", "is a scene"});
   Write("many.yaml", "experiment: ./small.yaml\naxes: {seed: [1, 2]}\n");
   ExpectRefusal("run ./many.yaml -o out", {"many.yaml", "is a sweep", "depthgrid sweep"});
+  std::filesystem::create_directory(Path("done"));
+  Write("done/run.yaml", "");
+  ExpectRefusal("run ./done -o out", {"./done: is a folder; the run.yaml in it can be run again"});
 }
 
 TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {

@@ -36,7 +36,7 @@ TEST(CameraFile, NamesKeyAndRule) {
   EXPECT_EQ(CameraFileRefusal("width: 0\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),
             "camera.yaml:1: width is '0', must be from 1 to 16384");
   EXPECT_EQ(CameraFileRefusal("width: 64\nheight: 48\nfx: 50\nfy: 50\ncx: 31.5\ncy: 549\n"),
-            "camera.yaml: cy is 549.000000, must be within ten focal lengths of the image");
+            "camera.yaml: cy is 549, must be within ten focal lengths of the image");
 }
 
 }  // namespace

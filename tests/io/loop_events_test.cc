@@ -76,7 +76,10 @@ TEST(LoopEvents, OneClearLineForEachFault) {
   EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 1 0.1\n"), HasSubstr("10 columns, must have 9"));
   EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 3\n"), HasSubstr("norm 3, must be 1"));
   EXPECT_THAT(EventsRefusal("10.0 nan 0 0 0 0 0 0 1\n"), HasSubstr("finite"));
-  EXPECT_THAT(EventsRefusal("leap,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14 or 17"));
+  EXPECT_THAT(EventsRefusal("leap,1\n"),
+              HasSubstr("e.txt:1: begins with 'leap', must be SLAM's events"));
+  EXPECT_THAT(EventsRefusal("loop,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14 or 17"));
+  EXPECT_THAT(EventsRefusal("1.0 0 0 0 0 0 0 1\n"), HasSubstr("e.txt:1: has 8 columns as a traj"));
 }
 
 }  // namespace

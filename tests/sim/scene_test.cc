@@ -221,7 +221,8 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
   Write("parts.yaml", materials);
   EXPECT_EQ(ErrorOf("include: parts.yaml\n" + materials),
             "~/s.yaml:2: material 'oak' is given twice");
-  EXPECT_EQ(ErrorOf("shapes: [{shape: mesh, file: none.obj}]\n"), "~/none.obj: no such file");
+  EXPECT_EQ(ErrorOf("shapes: [{shape: mesh, file: none.obj}]\n"),
+            "~/s.yaml:1: file is 'none.obj': no such file");
   EXPECT_EQ(ErrorOf("shapes: [{shape: mesh}]\n"), "~/s.yaml:1: 'file' is missing");
   EXPECT_EQ(ErrorOf("materials: {a: {texture: wod}}\n"),
             "~/s.yaml:1: texture is 'wod', must be one of plain, wood, checker, stripes, fabric, "
