@@ -1,8 +1,11 @@
 #include "eval/ablation_report.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "eval/ablation.h"
+#include "eval/changed_settings.h"
 #include "eval/report_json_impl.h"
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
@@ -16,8 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-Json PageJson(const Json& ablation, const std::string& settings) {
+Json PageJson(const Json& ablation, const std::string& settings, const Config& config) {
   Json json;
+  std::vector<std::string> keys = config.Keys();
+  std::erase(keys, "seed");  // the first one's
+  json["of"] = MainSettings(config.Only(keys));
+  json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(config), ", "));
   json["seeds"] = ablation.at("seeds");
   json["scores"] = ablation.at("scores");
   json["stages"] = Json::array();
@@ -37,10 +44,10 @@ bool IsAblationFolder(const std::string& folder) { return fs::exists(folder + "/
 void WriteAblationReport(const std::string& folder, const ReportPlace& place) {
   const std::string path = folder + "/ablation.json";
   const std::string settings = ReadFile(folder + "/experiment.yaml");
-  const std::string scene =
-      SettingOf(Config::FromText(settings, folder + "/experiment.yaml"), "scene");
+  const Config config = Config::FromText(settings, folder + "/experiment.yaml");
+  const std::string scene = SettingOf(config, "scene");
   try {
-    const Json json = PageJson(Json::parse(ReadFile(path)), settings);
+    const Json json = PageJson(Json::parse(ReadFile(path)), settings, config);
     WriteFile(
         place.into + "/report.html",
         FillPage("ablation.html", "Ablation of " + fs::path(scene).stem().string(), json.dump()));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/experiment_options.h"
+#include "eval/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 
@@ -83,6 +84,22 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
     if (!IsKnownElsewhere(key, noise_of_profile)) changed.push_back(key + " " + value);
   }
   return changed;
+}
+
+std::string MainSettings(const Config& run_yaml) {
+  std::string text;
+  const auto add = [&](const char* name, const char* key) {
+    const std::string value = SettingOf(run_yaml, key);
+    if (!value.empty()) text += fmt::format(", {} {}", name, value);
+  };
+  add("trajectory", "trajectory");
+  add("SLAM", "slam.profile");
+  add("depth noise", "sensor.noise");
+  add("seed", "seed");
+  add("mapper", "mapper.method");
+  add("fusion", "mapper.fusion.mode");
+  if (SettingOf(run_yaml, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
+  return text;
 }
 
 }  // namespace depthgrid

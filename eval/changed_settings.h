@@ -14,4 +14,7 @@ namespace depthgrid {
 // those of its profile. Keys of other versions are no matter.
 std::vector<std::string> ChangedSettings(const Config& run_yaml);
 
+// What a page's first line says: ", trajectory handheld, SLAM orb_slam2, ...", of what there is.
+std::string MainSettings(const Config& run_yaml);
+
 }  // namespace depthgrid

@@ -43,7 +43,7 @@ std::string SettingText(const std::string& yaml, const std::string& key) {
 // "GROUP.KEY is VALUE" of one of the options' own keys.
 template <typename Options>
 std::string Stands(const Options& options, const std::string& group, const std::string& key) {
-  return fmt::format("{}.{} is {}", group, key, SettingText(ToYaml(options), key));
+  return fmt::format("{}.{} is {}", group, key, ValueOf(options, key));
 }
 
 bool Drifts(const SlamOptions& slam) {

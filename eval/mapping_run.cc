@@ -1,5 +1,7 @@
 #include "eval/mapping_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -78,6 +80,28 @@ MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
   return std::move(run_);
 }
 
+std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
+  const auto add = [&](bool FrameReport::*happened, const char* what,
+                       std::vector<std::string>& lines) {
+    constexpr std::size_t kMostNamed = 5;
+    std::vector<int> frames;
+    for (const FrameReport& report : reports) {
+      if (report.*happened) frames.push_back(report.index);
+    }
+    if (frames.empty()) return;
+    const std::size_t named = std::min(frames.size(), kMostNamed);
+    lines.push_back(fmt::format(
+        "poses: {} at frame{} {}{}", what, frames.size() == 1 ? "" : "s",
+        fmt::join(frames.begin(), frames.begin() + named, ", "),
+        named < frames.size() ? fmt::format(" and {} more", frames.size() - named) : ""));
+  };
+  std::vector<std::string> lines;
+  add(&FrameReport::slipped, "a sudden turn that the scans do not show was taken out", lines);
+  add(&FrameReport::relocated, "what was mapped since they were lost was moved to its place",
+      lines);
+  return lines;
+}
+
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle, const MatchOracle& match_oracle,
@@ -92,6 +116,7 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
   }
   MappingRun run = recorder.Finish(final_poses);
   run.warnings = source.Warnings();
+  for (std::string& line : MendedPoses(run.reports)) run.warnings.push_back(std::move(line));
   return run;
 }
 

@@ -57,6 +57,9 @@ class FrameRecorder {
   MappingRun run_;
 };
 
+// What the mapper did about poses that were wrong, a line each: slips and losses of SLAM.
+std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
+
 // The whole of a source, front to back.
 // `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
 // fusion.mode `oracle` only, `match_oracle` for every match when it is given. With `prior` the run

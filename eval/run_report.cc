@@ -172,22 +172,6 @@ std::string TitleOf(const Config& settings) {
   return "Run";
 }
 
-std::string SubtitleOf(const Config& settings, std::size_t frames) {
-  std::string text = Counted(frames, "frame");
-  const auto add = [&](const char* name, const char* key) {
-    const std::string value = SettingOf(settings, key);
-    if (!value.empty()) text += fmt::format(", {} {}", name, value);
-  };
-  add("trajectory", "trajectory");
-  add("SLAM", "slam.profile");
-  add("depth noise", "sensor.noise");
-  add("seed", "seed");
-  add("mapper", "mapper.method");
-  add("fusion", "mapper.fusion.mode");
-  if (SettingOf(settings, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
-  return text;
-}
-
 // All else of run.yaml does not matter to what a frame was matched against.
 std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings, bool went_on_in_a_map) {
   GridOptions grid;
@@ -203,7 +187,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   const std::vector<double>& stamps_s = run.frames.Column("stamp_s");
   const auto est = PosesAt(run.est, stamps_s);
   Json json;
-  json["subtitle"] = SubtitleOf(settings, run.frames.rows);
+  json["subtitle"] = Counted(run.frames.rows, "frame") + MainSettings(settings);
   json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(settings), ", "));
   json["method"] = SettingOf(settings, "mapper.method");
   json["settings"] = run.settings;

@@ -67,6 +67,7 @@ struct FrameReport {
   int beams = 0;                     // beams with a hit
   int loops_accepted = 0;            // loop events of this frame that entered the graph
   int loops_rejected = 0;
+  bool slipped = false;    // SLAM's motion to here did not fit what is seen: it was put right
   bool relocated = false;  // what was mapped since a loss of SLAM was moved to where it belongs
   bool inserted = false;   // its scan is kept for the map
   bool well_seen = false;  // its place was seen enough: the frame moves with another's

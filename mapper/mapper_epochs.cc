@@ -117,6 +117,7 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
     if (const std::optional<Pose2> turned = TurnedTo(scan, prediction, report)) {
       history.BeginEpoch();
       Anchor({*turned, kSlipSigmaShare});
+      report.slipped = true;
       mended = filter.Predict(BaseOf(*history.newest().slam_from_camera), report.stamp_s);
     }
     Match(scan, mended, report);

@@ -35,18 +35,26 @@ function barOf(score, stage, name, at) {
   return picture;
 }
 
+// Over the bars: where none and all of the error is.
+function scaleHead(at) {
+  const labels = [[0, "0"], [1, "100 %"]].map(([share, text]) => svg("text", { x: Math.min(Math.max(at(share), 4), BAR_WIDTH - 22), y: 15, "text-anchor": "middle" }, text));
+  return svg("svg", { class: "share", viewBox: `0 0 ${BAR_WIDTH} ${BAR_HEIGHT}`, role: "img", "aria-label": "share of the error" }, ...labels);
+}
+
 function initScores() {
   for (const [metric, score] of Object.entries(ABLATION.scores)) {
     const at = scaleOf(score);
-    const rows = Object.entries(score.truth_for).map(([name, stage]) => [
-      nameOf(name), compact(stage.error), compact(stage.owned),
-      stage.owned_interval95 ? `${compact(stage.owned_interval95[0])} to ${compact(stage.owned_interval95[1])}` : "–",
-      percent(stage.share), barOf(score, stage, name, at), compact(stage.p_holm)]);
-    const unit = unitOf(metric);
+    const stages = Object.entries(score.truth_for);
+    const anyShare = stages.some(([, stage]) => isNumber(stage.share));
+    const { unit, factor, label } = suitedUnit(metric, [score.error, ...stages.map(([, stage]) => stage.error)]);
+    const show = (value) => (isNumber(value) ? compact(value * factor) : "–");
+    const rows = stages.map(([name, stage]) => [
+      nameOf(name), percent(stage.share), ...(anyShare ? [barOf(score, stage, name, at)] : []), show(stage.error), show(stage.owned),
+      stage.owned_interval95 ? `${show(stage.owned_interval95[0])} to ${show(stage.owned_interval95[1])}` : "–", compact(stage.p_holm)]);
     const inUnit = (text) => (unit ? `${text} (${unit})` : text);
-    const what = score.error_is === "the score" ? metric : `1 − ${metric}`;
-    byId("scores").append(make("h3", {}, `${what}: ${compact(score.error)}${unit ? ` ${unit}` : ""} as it is`),
-      make("div", { class: "scroll" }, tableOf(["truth for", ...["error", "owned", "95 % interval"].map(inUnit), "share", "", "p"], rows)));
+    const what = score.error_is === "the score" ? label : `1 − ${label}`;
+    byId("scores").append(make("h3", {}, `${what}: ${show(score.error)}${unit ? ` ${unit}` : ""} as it is`),
+      make("div", { class: "scroll" }, tableOf(["truth for", "share", ...(anyShare ? [scaleHead(at)] : []), ...["error", "owned", "95 % interval"].map(inUnit), "p"], rows)));
   }
 }
 
@@ -57,7 +65,8 @@ function initStages() {
 }
 
 initTheme();
-byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? ": fewer than 6 prove nothing" : ""}`;
+byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? " (fewer than 6 prove nothing)" : ""}${ABLATION.of}`;
+if (ABLATION.changed) byId("changed").textContent = `Not the default: ${ABLATION.changed}`;
 initStages();
 initScores();
 byId("settings").textContent = ABLATION.settings;

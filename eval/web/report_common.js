@@ -31,6 +31,17 @@ function unitOf(name) {
   const found = name.match(/_(m|rad|deg|s|mib|cells)$/);
   return found ? { m: "m", rad: "rad", deg: "°", s: "s", mib: "MiB", cells: "cells" }[found[1]] : "";
 }
+// The unit that suits most of the values: millimetres or centimetres where lengths are small, degrees for radians.
+// `label` is the name without a unit that they are not in.
+function suitedUnit(name, values) {
+  const unit = unitOf(name);
+  const sizes = values.filter(isNumber).map(Math.abs).sort((a, b) => a - b);
+  const usual = sizes[Math.floor((sizes.length - 1) / 2)] ?? 0;
+  let [factor, shown] = [1, unit];
+  if (unit === "m" && usual < 1) [factor, shown] = usual < 0.01 ? [1000, "mm"] : [100, "cm"];
+  if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
+  return { factor, unit: shown, label: shown === unit ? name : name.replace(/_[a-z]+$/, "") };
+}
 const percent = (value) => (isNumber(value) ? `${fixed(value * 100, 1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 

@@ -21,7 +21,7 @@ function headline() {
     cards.push(card(rough(metric.mean[best]), `best mean, at ${place.join(", ") || "the only point"}`));
     if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
   }
-  const line = linesAlong(along.axis).find((l) => l.points.includes(best)) ?? linesAlong(along.axis)[0];
+  const line = linesAlong(along.axis).find((l) => l.points.includes(best));
   if (line) {
     const axis = AXES[along.axis];
     const held = heldText(line);

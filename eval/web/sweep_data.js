@@ -5,18 +5,11 @@ const SWEEP = JSON.parse(byId("data").textContent);
 const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(compact) : axis.texts }));
 const POINTS = SWEEP.points;
 
-// Metrics as they are shown: lengths in the unit that suits most of them, angles in degrees. `label` is the name
-// without a unit that the values are not in.
+// Metrics as they are shown.
 const METRICS = SWEEP.metrics.map((metric) => {
-  const unit = unitOf(metric.name);
-  const sizes = metric.mean.filter((v) => v !== null).map(Math.abs).sort((a, b) => a - b);
-  const usual = sizes[Math.floor((sizes.length - 1) / 2)] ?? 0;
-  let [factor, shown] = [1, unit];
-  if (unit === "m" && usual < 1) [factor, shown] = usual < 0.01 ? [1000, "mm"] : [100, "cm"];
-  if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
-  const scale = (values) => values.map((v) => (v === null ? null : v * factor));
-  const label = shown === unit ? metric.name : metric.name.replace(/_[a-z]+$/, "");
-  return { ...metric, label, unit: shown, factor, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
+  const suited = suitedUnit(metric.name, metric.mean);
+  const scale = (values) => values.map((v) => (v === null ? null : v * suited.factor));
+  return { ...metric, ...suited, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
 }).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.name.localeCompare(b.name));
 let metric = METRICS[0];
 const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m.unit ? ` ${m.unit}` : ""}` : "–");
@@ -69,11 +62,16 @@ function firstKnown(axis) {
   return known.length ? Math.min(...known) : 0;
 }
 
-// Held values of the free axes, one a part of the page: {axis: index into its texts, or -1 for any}.
+// Held values of the free axes, one a part of the page: {axis: index into its texts, or -1 for any}. Each offers what
+// there is with those before it held: of axes that change together not every combination is there.
 function holders(prefix, held, free, redraw) {
+  let points = POINTS;
   return free.map((i) => {
     held[i] ??= firstKnown(i);
-    const options = [...AXES[i].labels.map((text, k) => [k, text]), [-1, "any"]];
+    const there = new Set(points.map(({ values }) => values[i]));
+    if (held[i] !== -1 && !there.has(held[i])) held[i] = Math.min(...there);
+    points = points.filter(({ values }) => held[i] === -1 || values[i] === held[i]);
+    const options = [...AXES[i].labels.map((text, k) => [k, text]).filter(([k]) => there.has(k)), [-1, "any"]];
     return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
   });
 }

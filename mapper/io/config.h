@@ -19,6 +19,7 @@ namespace internal {
 std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out);
 std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out);
 std::unique_ptr<OptionsVisitor> MakeKeyPathLister(std::vector<std::string>& out);
+std::unique_ptr<OptionsVisitor> MakeValueFinder(const std::string& key_path, std::string& out);
 }  // namespace internal
 
 // The path of every key, "mapper.fusion.gain", in the order the structs declare them.
@@ -27,6 +28,14 @@ std::vector<std::string> KeyPathsOf(Options options) {
   std::vector<std::string> out;
   options.Visit(*internal::MakeKeyPathLister(out));
   return out;
+}
+
+// The value of one key as ListKeys shows it; empty when there is no such key.
+template <typename Options>
+std::string ValueOf(Options options, const std::string& key_path) {
+  std::string value;
+  options.Visit(*internal::MakeValueFinder(key_path, value));
+  return value;
 }
 
 class Config {

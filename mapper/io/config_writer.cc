@@ -88,7 +88,9 @@ using KeyLine = std::function<void(const std::string& path, const std::string& v
 
 class KeyLister final : public OptionsVisitor {
  public:
-  explicit KeyLister(KeyLine line) : line_(std::move(line)) {}
+  // `only`: a key path, to skip the groups it is not in.
+  explicit KeyLister(KeyLine line, std::string only = "")
+      : line_(std::move(line)), only_(std::move(only)) {}
 
   void Number(std::string_view key, double& value, Interval allowed,
               std::string_view meaning) override {
@@ -134,7 +136,9 @@ class KeyLister final : public OptionsVisitor {
   }
   bool Begin(std::string_view key, std::string_view) override {
     path_.push_back(std::string(key) + ".");
-    return true;
+    if (only_.empty() || only_.starts_with(fmt::format("{}", fmt::join(path_, "")))) return true;
+    path_.pop_back();
+    return false;
   }
   void End() override { path_.pop_back(); }
 
@@ -144,6 +148,7 @@ class KeyLister final : public OptionsVisitor {
     line_(fmt::format("{}{}", fmt::join(path_, ""), key), value, allowed, meaning);
   }
   KeyLine line_;
+  std::string only_;
   std::vector<std::string> path_;
 };
 
@@ -163,6 +168,14 @@ std::unique_ptr<OptionsVisitor> MakeKeyPathLister(std::vector<std::string>& out)
   return std::make_unique<KeyLister>([&out](const std::string& path, const std::string&,
                                             const std::string&,
                                             std::string_view) { out.push_back(path); });
+}
+std::unique_ptr<OptionsVisitor> MakeValueFinder(const std::string& key_path, std::string& out) {
+  return std::make_unique<KeyLister>(
+      [&out, key_path](const std::string& path, const std::string& value, const std::string&,
+                       std::string_view) {
+        if (path == key_path) out = value;
+      },
+      key_path);
 }
 }  // namespace internal
 

@@ -110,10 +110,10 @@ TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
             "querySelectorAll('th')].map((th) => th.textContent).join('; '); })()")
         .get<std::string>();
   };
-  EXPECT_THAT(heads_of("trajectory.est.mean_euclidean_m"),
-              HasSubstr("error (m); owned (m); 95 % interval (m); share"));
+  EXPECT_THAT(heads_of("trajectory.est.mean_euclidean: "),
+              HasSubstr("truth for; share; 0100 %; error (mm); owned (mm); 95 % interval (mm); p"));
   EXPECT_THAT(heads_of("1 − map.observable.occupied.f1"),
-              HasSubstr("error; owned; 95 % interval; share"));
+              HasSubstr("error; owned; 95 % interval; p"));
   browser.Open(Path("out/report.html"), 400);
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
