@@ -31,12 +31,12 @@ Statistics Summarise(const std::vector<double>& values) {
 
 double Percentile(std::vector<double> values, double fraction) {
   Require(!values.empty(), "a percentile is of at least one value");
-  std::sort(values.begin(), values.end());
   const double position = fraction * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  const double weight = position - static_cast<double>(below);
-  return values[below] + weight * (values[above] - values[below]);
+  const auto below = values.begin() + static_cast<std::ptrdiff_t>(position);
+  std::nth_element(values.begin(), below, values.end());
+  if (below + 1 == values.end()) return *below;
+  const double above = *std::min_element(below + 1, values.end());
+  return *below + (position - std::floor(position)) * (above - *below);
 }
 
 }  // namespace depthgrid
