@@ -224,6 +224,7 @@ TEST(FrameScanner, BeamsOfAReadyScanThatAreNotFiniteSayNothing) {
   ASSERT_EQ(scans.matched->beams.size(), 2U);
   EXPECT_EQ(scans.matched->beams[0], scan->beams.front());
   EXPECT_EQ(scans.matched->beams[1].clear_to_m, 5.0F);
+  EXPECT_TRUE(CanBeKept(scans.matched->beams[1]));
   EXPECT_EQ(scans.matched->max_range_m, 6.0);
 }
 
