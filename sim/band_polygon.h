@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "mapper/core/error.h"
 #include "mapper/core/grid_geometry.h"
 #include "sim/triangle_mesh.h"
 
@@ -16,13 +17,16 @@ struct HeightBand {
   double high_z_m = 0.0;
 };
 
-// Convex: a triangle cut by two pairs of planes has at most seven corners. Corners are
+// Convex: a triangle cut by three pairs of planes has at most nine corners. Corners are
 // (x in cells, y in cells, z in metres); x and y may well enclose no area, as a wall's do.
 class BandPolygon {
  public:
   using Corner = std::array<double, 3>;
 
-  void Add(const Corner& corner) { corners_[static_cast<std::size_t>(size_++)] = corner; }
+  void Add(const Corner& corner) {
+    Require(static_cast<std::size_t>(size_) < corners_.size(), "each cut adds one corner at most");
+    corners_[static_cast<std::size_t>(size_++)] = corner;
+  }
   const Corner* begin() const { return corners_.data(); }
   const Corner* end() const { return corners_.data() + size_; }
   bool empty() const { return size_ == 0; }
@@ -33,7 +37,7 @@ class BandPolygon {
   double Max(std::size_t axis) const;
 
  private:
-  std::array<Corner, 8> corners_;
+  std::array<Corner, 9> corners_;
   int size_ = 0;
 };
 

@@ -79,17 +79,19 @@ WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod m
   result.zeros = static_cast<int>(differences.size() - ranked.size());
   if (ranked.empty()) return result;
   const Ranks ranks = RanksOf(ranked);
-  int plus = 0;
+  // Of 46,341 pairs and more the sums exceed an int.
+  double plus = 0.0;
   for (std::size_t i = 0; i < ranked.size(); ++i) plus += ranked[i] > 0.0 ? ranks.doubled[i] : 0;
-  const int total = result.pairs * (result.pairs + 1);
-  const int smaller = std::min(plus, total - plus);
+  const double total = static_cast<double>(result.pairs) * (result.pairs + 1);
+  const double smaller = std::min(plus, total - plus);
   result.rank_sum = 0.5 * plus;
   result.statistic = 0.5 * smaller;
   result.rank_biserial = (2.0 * plus - total) / total;
   result.exact = method == WilcoxonMethod::kExact ||
                  (method == WilcoxonMethod::kAuto && result.pairs <= kWilcoxonExactPairs);
-  result.p_value = result.exact ? std::min(1.0, 2.0 * ShareUpTo(ranks.doubled, smaller))
-                                : NormalPValue(result.pairs, result.statistic, ranks.tie_sum);
+  result.p_value = result.exact
+                       ? std::min(1.0, 2.0 * ShareUpTo(ranks.doubled, static_cast<int>(smaller)))
+                       : NormalPValue(result.pairs, result.statistic, ranks.tie_sum);
   return result;
 }
 

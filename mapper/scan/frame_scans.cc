@@ -27,7 +27,7 @@ void CopySound(const Scan& given, Scan& sound) {
     Beam& kept = sound.beams.emplace_back(beam);
     kept.clear_to_m = std::min(beam.clear_to_m, reach_m);
     // Drivers write infinity where nothing came back; files and prior maps hold numbers only.
-    if (!beam.hit) kept.range_m = 0.0F;
+    if (!std::isfinite(beam.range_m)) kept.range_m = 0.0F;
   }
   const auto before = [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; };
   if (!std::is_sorted(sound.beams.begin(), sound.beams.end(), before)) {

@@ -63,6 +63,15 @@ TEST(Wilcoxon, ChoosesTheMethodAsSciPyDoes) {
 //   x = x[x != 0]; r = rankdata(abs(x)); T = (r * (x > 0)).sum(); n = len(x)
 //   W = ((np.arange(2**n)[:, None] >> np.arange(n)) & 1) @ r
 //   2 * min((W <= T).mean(), (W >= T).mean())
+// Where the sum of all ranks is more than an int holds.
+TEST(Wilcoxon, OfManyPairs) {
+  std::vector<double> differences;
+  for (int i = 1; i <= 50000; ++i) differences.push_back(i % 4 == 0 ? -i : i);
+  const WilcoxonResult result = Wilcoxon(differences);
+  EXPECT_NEAR(result.rank_biserial, 0.5, 1e-3);
+  EXPECT_EQ(result.p_value, 0.0);
+}
+
 TEST(Wilcoxon, TiesAndZeros) {
   const std::vector<double> x = {1, -1, 2, 2, -3, 4, 0, 0, 5, 5, -2, 7, 8, 1};
   const WilcoxonResult normal = Wilcoxon(x, WilcoxonMethod::kNormal);
