@@ -153,7 +153,7 @@ class CarmenLogSource : public FrameSource {
       if (const auto nameless = problems_.find(kNamelessLine);
           nameless != problems_.end() && problems_.size() == 1) {
         throw InputError(
-            fmt::format("{}:{}", path_, nameless->second.first_line),
+            PlaceOfLine(path_, nameless->second.first_line),
             "begins with no message name, must be a CARMEN log's; images are given by their folder "
             "and poses by --poses");
       }
