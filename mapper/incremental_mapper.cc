@@ -195,7 +195,7 @@ void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
 // All that was mapped since the loss moves to where it belongs.
 void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
-  if (!relocation.active() || !report.inserted) return;
+  if (!relocation.active() || !(report.inserted || report.well_seen)) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
   MovePart(relocation.first_frame(), *moved);
@@ -234,8 +234,8 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
   if (reference && !SameEpoch()) BeginEpoch(scan);
   filter_epoch = record.epoch;
   if (prior_start) {
-    filter.Commit(slam_from_base, record.stamp_s, *prior_start * slam_from_base,
-                  Squared(kStartSigma));
+    filter.Restart(slam_from_base, record.stamp_s, *prior_start * slam_from_base,
+                   Squared(kStartSigma));
     prior_start.reset();
   }
   return filter.Predict(slam_from_base, record.stamp_s);
@@ -307,8 +307,10 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   if (reference) explained = report.match.found ? report.match.score : 0.0;
   // Loops that came with a frame end at it.
   const bool ends_loops = report.loops_accepted + report.loops_rejected > 0;
-  if (relocation.active() || ends_loops) explained.reset();
-  const MappedFrame& added = mapped.Add(std::move(frame), scans, explained);
+  if (ends_loops) explained.reset();
+  // Where it lies to what was seen before a loss that is not understood is a guess.
+  const int from = relocation.active() ? relocation.first_frame() : 0;
+  const MappedFrame& added = mapped.Add(std::move(frame), scans, explained, from);
   report.inserted = added.kept();
   report.well_seen = !added.kept();
   if (!reference) return;

@@ -10,6 +10,12 @@ namespace {
 // Of kEpochSigma: how well the place after a slip is known before it is matched once more.
 constexpr double kSlipSigmaShare = 0.3;
 
+// SLAM comes back into its own map to a centimetre. Where the map explains little of what is seen
+// then, a match is made against what only looks alike and is surer than it is right.
+constexpr double kWordSigmaShare = 0.1;
+
+Eigen::Matrix3d AddedBy(double sigma_share) { return Squared(sigma_share * kEpochSigma); }
+
 double ShareExplained(const FrameReport& report) {
   return report.match.found ? report.match.score : 0.0;
 }
@@ -32,13 +38,15 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
     const std::shared_ptr<const Scan>& scan) {
   const Extrapolation went_on = Extrapolated(history, filter.map_from_slam());
   const EpochStart going_on{went_on.map_from_base, went_on.sigma_share};
-  const EpochStart carried{CarriedOn(), 1.0};
+  EpochStart carried{CarriedOn(), 1.0};
   if (!scan || mapped.empty()) return went_on.near ? going_on : carried;
   const auto share = [&](const EpochStart& guess) {
-    const MatchResult match = reference->Match(scan, {guess.map_from_base, filter.covariance()});
+    const MatchResult match = reference->Match(
+        scan, {guess.map_from_base, filter.covariance() + AddedBy(guess.sigma_share)});
     return match.found ? match.score : 0.0;
   };
   const double share_going_on = share(going_on), share_carried = share(carried);
+  if (!relocation.IsUsual(share_carried)) carried.sigma_share = kWordSigmaShare;
   // After a longer gap the last motion says nothing, and SLAM is believed unless it is plainly
   // wrong.
   const bool goes_on =
@@ -88,9 +96,10 @@ void IncrementalMapper::State::BeginEpoch(const std::shared_ptr<const Scan>& sca
 // how well it is known to.
 void IncrementalMapper::State::Anchor(const EpochStart& start) {
   const FrameRecord& record = history.newest();
-  filter.Commit(BaseOf(*record.slam_from_camera), record.stamp_s, start.map_from_base,
-                filter.covariance() + Squared(start.sigma_share * kEpochSigma));
-  errors.Break();
+  const Eigen::Matrix3d added = AddedBy(start.sigma_share);
+  filter.Restart(BaseOf(*record.slam_from_camera), record.stamp_s, start.map_from_base,
+                 filter.covariance() + added);
+  errors.BeginEpoch(start.map_from_base, added, filter.step().new_bias);
   filter_epoch = record.epoch;
 }
 

@@ -51,7 +51,7 @@ double ScanKeeping::RoomAfter(std::size_t frames, bool explained) const {
 }
 
 std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
-                                      const Pose2& map_from_base, bool explained) const {
+                                      const Pose2& map_from_base, bool explained, int from) const {
   const std::size_t count = frames.size();
   if (options_.first_frames == 0 || count < static_cast<std::size_t>(options_.first_frames)) {
     return std::nullopt;
@@ -59,12 +59,16 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
   const int index = place_of_key_.Find(KeyOf(map_from_base));
   if (index < 0) return std::nullopt;
   const Place& place = places_[static_cast<std::size_t>(index)];
-  if (place.count < RoomAfter(count, explained)) return std::nullopt;
+  const double room = RoomAfter(count, explained);
+  if (place.count < room) return std::nullopt;
   std::optional<int> nearest;
   double least_apart = std::numeric_limits<double>::infinity();
+  int counted = 0;
   int before = -1;
-  for (int i = place.newest; i >= 0; i = before) {
+  for (int i = place.newest; i >= 0; i = before) {  // the newest first
     const Kept& kept = kept_[static_cast<std::size_t>(i)];
+    if (kept.position < from) break;
+    ++counted;
     before = kept.before;
     const double apart =
         Separation(frames[static_cast<std::size_t>(kept.position)].map_from_base, map_from_base);
@@ -72,7 +76,7 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
     least_apart = apart;
     nearest = kept.position;
   }
-  return nearest;
+  return counted < room ? std::nullopt : nearest;
 }
 
 void ScanKeeping::Add(int position, const Pose2& map_from_base) {

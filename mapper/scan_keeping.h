@@ -37,9 +37,9 @@ class ScanKeeping {
   explicit ScanKeeping(const KeepOptions& options);
 
   // The kept frame that one there is to be tied to: the nearest of a place that is well seen. Empty
-  // where its scan is to be kept. `frames` are those before it.
+  // where its scan is to be kept. `frames` are those before it; those before `from` do not count.
   std::optional<int> TieOf(const std::vector<MappedFrame>& frames, const Pose2& map_from_base,
-                           bool explained) const;
+                           bool explained, int from = 0) const;
   // The frame at this position was kept there.
   void Add(int position, const Pose2& map_from_base);
   // The frames were moved.

@@ -107,8 +107,8 @@ FilterStep CorrectionFilter::StepTo(const Pose2& slam_from_base, double stamp_s)
   return step;
 }
 
-void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
-                              const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
+void CorrectionFilter::Place(const Pose2& slam_from_base, double stamp_s,
+                             const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
   step_ = StepTo(slam_from_base, stamp_s);
   last_gain_.setZero();
   if (!(map_from_slam_ * slam_from_base == map_from_base)) {
@@ -116,14 +116,26 @@ void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
   }
   covariance_ = covariance;
   last_ = Last{slam_from_base, stamp_s};
+}
+
+void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
+                              const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
+  Place(slam_from_base, stamp_s, map_from_base, covariance);
   if (Learns()) tracker_.Commit(slam_from_base, map_from_base, covariance, last_match_);
+  last_match_ = MatchResult{};
+}
+
+void CorrectionFilter::Restart(const Pose2& slam_from_base, double stamp_s,
+                               const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
+  Place(slam_from_base, stamp_s, map_from_base, covariance);
+  if (Learns()) tracker_.Restart(slam_from_base, map_from_base, covariance);
   last_match_ = MatchResult{};
 }
 
 void CorrectionFilter::SetCorrection(const Pose2& map_from_slam) {
   map_from_slam_ = map_from_slam;
   if (Learns() && last_) {
-    tracker_.Commit(last_->slam_from_base, map_from_slam * last_->slam_from_base, covariance_, {});
+    tracker_.Restart(last_->slam_from_base, map_from_slam * last_->slam_from_base, covariance_);
   }
 }
 

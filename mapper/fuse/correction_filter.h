@@ -30,6 +30,11 @@ class CorrectionFilter {
   void Commit(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance);
 
+  // SLAM's newest pose, of a new epoch or the run's first, lies there, known like this; as Commit()
+  // otherwise.
+  void Restart(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
+               const Eigen::Matrix3d& covariance);
+
   // The map was corrected: the last pose is now where this correction puts it.
   void SetCorrection(const Pose2& map_from_slam);
 
@@ -52,6 +57,8 @@ class CorrectionFilter {
   // `humble`: the match, its information divided by `match_overconfidence`.
   FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
                        const MatchResult& humble, const Eigen::Vector3d& outside_gain);
+  void Place(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
+             const Eigen::Matrix3d& covariance);
   FilterStep StepTo(const Pose2& slam_from_base, double stamp_s) const;
   Eigen::Vector3d AdaptedGain(const Eigen::Vector3d& innovation);
 

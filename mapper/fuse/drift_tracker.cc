@@ -74,12 +74,27 @@ FilterStep DriftTracker::StepTo(const Pose2& predicted) const {
   return step;
 }
 
+DriftState DriftTracker::AnewAt(const Pose2& map_from_base,
+                                const Eigen::Matrix3d& covariance) const {
+  DriftState state;
+  state.map_from_base = map_from_base;
+  state.covariance.topLeftCorner<3, 3>() = covariance;
+  state.covariance.bottomRightCorner<3, 3>() = Squared(noise_.bias);
+  return state;
+}
+
+void DriftTracker::Restart(const Pose2& slam_from_base, const Pose2& map_from_base,
+                           const Eigen::Matrix3d& covariance) {
+  step_ = StepTo(map_from_base);
+  step_.new_bias = learnt_.bias;
+  state_ = AnewAt(map_from_base, covariance);
+  last_ = Last{slam_from_base, {}};
+  learner_.Break();
+}
+
 void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
                           const Eigen::Matrix3d& covariance, const MatchResult& match) {
-  DriftState next;
-  next.map_from_base = map_from_base;
-  next.covariance.topLeftCorner<3, 3>() = covariance;
-  next.covariance.bottomRightCorner<3, 3>() = noise_.bias.cwiseProduct(noise_.bias).asDiagonal();
+  DriftState next = AnewAt(map_from_base, covariance);
   std::optional<MatchResult> matched;
   step_ = StepTo(map_from_base);
   step_.new_bias = learnt_.bias;

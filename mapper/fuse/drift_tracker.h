@@ -21,6 +21,10 @@ class DriftTracker {
   // set from outside and the filter starts from it.
   void Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance, const MatchResult& match);
+  // SLAM's newest pose lies there, whatever came before: nothing of the bias is known. What was
+  // learnt of SLAM's noise stays.
+  void Restart(const Pose2& slam_from_base, const Pose2& map_from_base,
+               const Eigen::Matrix3d& covariance);
 
   // How SLAM's motion errs, as an adjustment of all poses tells. What is learnt from the matches
   // alone is bounded by it: these are made against what the filter's own estimates drew, whose
@@ -37,6 +41,7 @@ class DriftTracker {
     Pose2 slam_from_base;
     std::optional<MatchResult> match;
   };
+  DriftState AnewAt(const Pose2& map_from_base, const Eigen::Matrix3d& covariance) const;
   DriftState StateAt(const Pose2& slam_from_base) const;
   FilterStep StepTo(const Pose2& predicted) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);

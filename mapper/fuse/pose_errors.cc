@@ -65,32 +65,44 @@ std::vector<int> PoseErrors::Mapped() const {
   return mapped;
 }
 
+Eigen::Matrix3d PoseErrors::FromBase(const Pose2& map_from_base) const {
+  return AdjointOf(Between(origin_, map_from_base));
+}
+
+Eigen::Matrix3d PoseErrors::ToBase(const Pose2& map_from_base) const {
+  return AdjointOf(Between(map_from_base, origin_));
+}
+
 void PoseErrors::Adjusted(const Eigen::MatrixXd& covariance,
                           const std::optional<Eigen::Vector3d>& bias) {
   if (covariance.size() == 0) return;
   Require(covariance.rows() == 3 * static_cast<Eigen::Index>(knots_.size()),
           "an adjustment tells the errors of the remembered frames");
-  const Eigen::Index last = covariance.rows() - 3;
+  const Eigen::Matrix3d from_map = AdjointOf(Inverse(origin_));
+  const auto told = [&](std::size_t row, std::size_t column) -> Eigen::Matrix3d {
+    return from_map *
+           covariance.block<3, 3>(3 * static_cast<Eigen::Index>(row),
+                                  3 * static_cast<Eigen::Index>(column)) *
+           from_map.transpose();
+  };
+  const std::size_t last = knots_.size() - 1;
   const Eigen::Matrix3d map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
   const Eigen::Matrix3d old_bias = newest_.block<3, 3>(kBias, kBias);
   newest_.setZero();
   knots_with_newest_.setZero();
   for (const int row : {kPose, kCamera}) {
     for (const int column : {kPose, kCamera}) {
-      newest_.block<3, 3>(row, column) = covariance.block<3, 3>(last, last);
+      newest_.block<3, 3>(row, column) = told(last, last);
     }
   }
   newest_.block<3, 3>(kMapNoise, kMapNoise) = map_noise;
   newest_.block<3, 3>(kBias, kBias) = bias ? Eigen::Matrix3d(Squared(*bias)) : old_bias;
   for (std::size_t i = 0; i < knots_.size(); ++i) {
-    const auto row = 3 * static_cast<Eigen::Index>(i);
     for (const int column : {kPose, kCamera}) {
-      knots_with_newest_.block<3, 3>(3 * knots_[i].slot, column) =
-          covariance.block<3, 3>(row, last);
+      knots_with_newest_.block<3, 3>(3 * knots_[i].slot, column) = told(i, last);
     }
     for (std::size_t k = 0; k < knots_.size(); ++k) {
-      covariance_.block<3, 3>(3 * knots_[i].slot, 3 * knots_[k].slot) =
-          covariance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(k));
+      covariance_.block<3, 3>(3 * knots_[i].slot, 3 * knots_[k].slot) = told(i, k);
     }
   }
 }
@@ -99,7 +111,9 @@ void PoseErrors::Add(const FilterStep& step, int index, int mapped,
                      const Eigen::Matrix3d& information, std::span<const MapPart> parts) {
   ++frame_;
   innovation_.reset();
-  if (!knots_.empty()) {  // the first pose is the origin
+  if (knots_.empty()) {
+    origin_ = {step.predicted.x_m, step.predicted.y_m, 0.0};
+  } else {
     if (knots_.back().frame - knots_[marked_].frame >= stretch_frames_) marked_ = knots_.size() - 1;
     Predict(step, parts);
     Take(step, See(step, information, parts));
@@ -112,7 +126,7 @@ void PoseErrors::Add(const FilterStep& step, int index, int mapped,
 
 // SLAM's motion: the bias, which is kept in base axes, adds to the pose.
 void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts) {
-  const Eigen::Matrix3d map_from_step = AdjointOf(step.predicted);
+  const Eigen::Matrix3d map_from_step = FromBase(step.predicted);
   const double noise_kept = 1.0 - 1.0 / (1.0 + kNoiseAge * AgeOf(parts, knots_.back().mapped + 1));
   Matrix9 f = Matrix9::Identity();
   f.block<3, 3>(kPose, kBias) = map_from_step;
@@ -125,13 +139,23 @@ void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts)
   knots_with_newest_.middleCols<3>(kPose).noalias() += knots_with_bias * map_from_step.transpose();
   knots_with_bias = (knots_with_bias * step.bias_kept.asDiagonal()).eval();
   knots_with_newest_.middleCols<3>(kMapNoise) *= noise_kept;
-  if (step.new_bias) {
-    state.middleRows<3>(kBias).setZero();
-    state.middleCols<3>(kBias).setZero();
-    state.block<3, 3>(kBias, kBias) = Squared(*step.new_bias);
-    knots_with_bias.setZero();
-  }
   newest_.topLeftCorner<9, 9>() = state;
+  if (step.new_bias) RenewBias(*step.new_bias);
+}
+
+void PoseErrors::RenewBias(const Eigen::Vector3d& bias) {
+  newest_.middleRows<3>(kBias).setZero();
+  newest_.middleCols<3>(kBias).setZero();
+  newest_.block<3, 3>(kBias, kBias) = Squared(bias);
+  knots_with_newest_.middleCols<3>(kBias).setZero();
+}
+
+void PoseErrors::BeginEpoch(const Pose2& map_from_base, const Eigen::Matrix3d& added,
+                            const std::optional<Eigen::Vector3d>& bias) {
+  Break();
+  if (knots_.empty()) return;
+  newest_.block<3, 3>(kPose, kPose) += Turned(added, FromBase(map_from_base));
+  if (bias) RenewBias(*bias);
 }
 
 // The slot of the frame that drew this: the nearest remembered one; -1 for what was there before
@@ -147,7 +171,7 @@ int PoseErrors::SlotOf(double mapped) const {
 }
 
 // A match's error is the mean of the errors of what it was made against, weighed by information:
-// error = (sum H_k)^-1 sum H_k error_k, in map axes.
+// error = (sum H_k)^-1 sum H_k error_k, in axes of the origin.
 void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_base) {
   for (const int slot : shared_) share_[static_cast<std::size_t>(slot)].setZero();
   shared_.clear();
@@ -159,8 +183,8 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
     if (std::find(shared_.begin(), shared_.end(), slot) == shared_.end()) shared_.push_back(slot);
     share_[static_cast<std::size_t>(slot)] += part.information;
   }
-  const Eigen::Matrix3d mean = AdjointOf(map_from_base) * SeenInverse(all);
-  const Eigen::Matrix3d step_from_map = AdjointOf(Inverse(map_from_base));
+  const Eigen::Matrix3d mean = FromBase(map_from_base) * SeenInverse(all);
+  const Eigen::Matrix3d step_from_map = ToBase(map_from_base);
   for (const int slot : shared_) {
     Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
     share = (mean * share * step_from_map).eval();
@@ -176,7 +200,7 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
   if (parts.empty()) return match;
   Weigh(parts, step.predicted);
   const double noise_share = ShareOfMapNoise(parts);
-  const Eigen::Matrix3d noise = Turned(SeenInverse(information), AdjointOf(step.predicted));
+  const Eigen::Matrix3d noise = Turned(SeenInverse(information), FromBase(step.predicted));
   auto map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
   map_noise += PositivePart(noise_share * noise - map_noise);
   for (const int slot : shared_) {
@@ -200,8 +224,8 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
 // With i = pose + jitter - match the error of the innovation: state -= G i, camera = pose + jitter
 // - K i.
 void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
-  const Eigen::Matrix3d map_from_step = AdjointOf(step.predicted);
-  const Eigen::Matrix3d step_from_map = AdjointOf(Inverse(step.predicted));
+  const Eigen::Matrix3d map_from_step = FromBase(step.predicted);
+  const Eigen::Matrix3d step_from_map = ToBase(step.predicted);
   const Eigen::Matrix3d k = map_from_step * step.gain * step_from_map;
   Matrix93 g = Matrix93::Zero();
   g.middleRows<3>(kPose) = map_from_step * step.state_gain.topRows<3>() * step_from_map;
@@ -271,7 +295,7 @@ Eigen::Matrix3d PoseErrors::MotionCovariance(const Pose2& map_from_base) const {
   const Eigen::Matrix3d cross = knots_with_newest_.block<3, 3>(slot, kCamera);
   const Eigen::Matrix3d both = newest_.block<3, 3>(kCamera, kCamera) +
                                covariance_.block<3, 3>(slot, slot) - cross - cross.transpose();
-  const Eigen::Matrix3d motion = Turned(both, AdjointOf(Inverse(map_from_base)));
+  const Eigen::Matrix3d motion = Turned(both, ToBase(map_from_base));
   return 0.5 * (motion + motion.transpose());
 }
 

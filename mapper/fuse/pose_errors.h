@@ -26,8 +26,12 @@ class PoseErrors {
   // `parts` what it was made against; none: the frame was not matched.
   void Add(const FilterStep& step, int index, int mapped, const Eigen::Matrix3d& information,
            std::span<const MapPart> parts);
-  // The map was corrected, or SLAM began anew: no motion goes on from before.
+  // The map was corrected: no motion goes on from before.
   void Break() { broken_ = true; }
+  // SLAM began anew: the next frame lies at this pose, which errs by so much in addition (base
+  // axes), and nothing goes on from before, the bias neither.
+  void BeginEpoch(const Pose2& map_from_base, const Eigen::Matrix3d& added,
+                  const std::optional<Eigen::Vector3d>& bias);
 
   // The positions, among the mapped frames, of those whose errors are remembered.
   std::vector<int> Mapped() const;
@@ -68,16 +72,22 @@ class PoseErrors {
     Matrix93 with_state;
   };
 
+  // Errors are kept in axes of the origin, which lie as the map's. Far away a heading's error would
+  // be so large an error of place that nothing were left of the digits.
+  Eigen::Matrix3d FromBase(const Pose2& map_from_base) const;
+  Eigen::Matrix3d ToBase(const Pose2& map_from_base) const;
   void Predict(const FilterStep& step, std::span<const MapPart> parts);
   void Weigh(std::span<const MapPart> parts, const Pose2& map_from_base);
   MatchError See(const FilterStep& step, const Eigen::Matrix3d& information,
                  std::span<const MapPart> parts);
   void Take(const FilterStep& step, const MatchError& match);
+  void RenewBias(const Eigen::Vector3d& bias);
   void Keep(int index, int mapped);
   int SlotOf(double mapped) const;
   std::size_t Spare() const;
 
   int stretch_frames_;
+  Pose2 origin_;  // where the first pose lies
   bool broken_ = false;
   std::optional<Eigen::Matrix3d> innovation_;
   int frame_ = -1;

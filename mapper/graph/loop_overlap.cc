@@ -11,6 +11,9 @@
 namespace depthgrid {
 namespace {
 
+// Nobody gets so far within the frames of a place, unless there are few a second.
+constexpr double kPlaceReachM = 10.0;
+
 GridOptions PlaceGrid(const OverlapOptions& options) {
   GridOptions grid;
   grid.resolution_m = options.resolution_m;
@@ -126,7 +129,10 @@ std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middl
   for (int step = -steps; step <= steps; ++step) {
     const int index = middle + step * options.stride;
     if (index < 0 || index >= end) continue;
-    if (frames[static_cast<std::size_t>(index)].scan) members.push_back(index);
+    const MappedFrame& frame = frames[static_cast<std::size_t>(index)];
+    const Pose2 apart =
+        Between(frames[static_cast<std::size_t>(middle)].map_from_base, frame.map_from_base);
+    if (frame.scan && apart.translation().norm() < kPlaceReachM) members.push_back(index);
   }
   return members;
 }

@@ -43,6 +43,7 @@ struct SeenPlace {
 };
 
 // The frames whose scans stand for the place of one of them, as if there were none from `end` on.
+// Those that lie elsewhere do not, as where SLAM jumped.
 std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middle,
                                const OverlapOptions& options, int end);
 SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,

@@ -86,6 +86,14 @@ void Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
   }
 }
 
+// From the group before, across a gap.
+GroupLink GapLink(const Problem& problem, std::size_t group) {
+  const int second = static_cast<int>(group);
+  return {second - 1, second,
+          Between(problem.groups[group - 1].map_from_group, problem.groups[group].map_from_group),
+          kEpochSigma, kGapHuberSigmas};
+}
+
 // What is known of groups apart from SLAM's motion: ties to earlier ones than the one before, and
 // how the groups of a prior map lie.
 std::vector<GroupLink> SettledLinks(const Problem& problem) {
@@ -95,10 +103,7 @@ std::vector<GroupLink> SettledLinks(const Problem& problem) {
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
     if (!motion.known) {
-      links.push_back(
-          {second - 1, second,
-           Between(problem.groups[g - 1].map_from_group, problem.groups[g].map_from_group),
-           kEpochSigma, kGapHuberSigmas});
+      links.push_back(GapLink(problem, g));
       continue;
     }
     if (!motion.of_prior_map) continue;
@@ -113,11 +118,15 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
   std::vector<GroupLink> links = loops;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
     const int second = static_cast<int>(g);
-    const std::optional<GroupLink>& tie = problem.motions[g].tie;
-    const int first = tie ? tie->first : second - 1;
+    const GroupMotion& motion = problem.motions[g];
+    if (!motion.known && !motion.tie) {
+      links.push_back(GapLink(problem, g));
+      continue;
+    }
+    const int first = motion.tie ? motion.tie->first : second - 1;
     links.push_back({first, second,
                      Between(map_from_group[static_cast<std::size_t>(first)], map_from_group[g]),
-                     problem.motions[g].of_prior_map ? kPriorMapSigma : kOnlineSigma, 0.0});
+                     motion.of_prior_map ? kPriorMapSigma : kOnlineSigma, 0.0});
   }
   for (int i = 0; i < kLoopIterations; ++i) {
     const auto h = MatrixOf(ChainEnvelope(problem.groups.size(), 1, links));

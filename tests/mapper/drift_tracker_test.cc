@@ -123,6 +123,25 @@ TEST(DriftTracker, WhereNothingIsSeenSlamIsNotTakenForPerfect) {
   EXPECT_EQ(tracker.step().walk.y(), 0.003);
 }
 
+// SLAM, long known to be good, starts anew where it is predicted to be, known to a decimetre.
+TEST(DriftTracker, RestartedWhereItIsPredictedToBeItKnowsNoMoreThanItIsTold) {
+  DriftTracker tracker;
+  Pose2 slam;
+  ErrorAfterM(tracker, slam, 500, 0.0, 7);
+  const Eigen::Matrix3d told = Squared(Eigen::Vector3d(0.1, 0.1, 0.05));
+  const Prediction before = tracker.Predict(slam);
+  ASSERT_LT(before.covariance(0, 0), 1e-4);
+  tracker.Restart(slam, before.map_from_base, told);
+  EXPECT_EQ(tracker.Predict(slam).map_from_base, before.map_from_base);
+  EXPECT_GE(tracker.Predict(slam).covariance(0, 0), 0.01);
+  EXPECT_TRUE(tracker.step().new_bias);
+  // A match 8 cm away is believed.
+  RandomStream random(8, RandomStage::kTest);
+  MatchResult match = NoisyMatch(random);
+  match.map_from_base.x_m = before.map_from_base.x_m + 0.08;
+  EXPECT_NEAR(tracker.Fuse(slam, match).map_from_base.x_m, match.map_from_base.x_m, 0.001);
+}
+
 TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   DriftTracker tracker;
   Pose2 slam;

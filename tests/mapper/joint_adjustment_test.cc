@@ -102,6 +102,27 @@ TEST(JointAdjustment, ALoopBendsWhatIsNewAndNotThePriorMap) {
   EXPECT_LT(moved_m(kPrior - 1), 0.02 * moved_m(kGroups - 1));
 }
 
+// SLAM came back 20 m away from where it was lost, in the middle of the way, and one loop says
+// where it really was.
+TEST(JointAdjustment, OneLoopClosesAWideGap) {
+  constexpr std::size_t kBack = kGroups / 2;
+  Corridor corridor = WalkWithAJump(0.001);
+  corridor.motions[kBack].known = false;
+  for (std::size_t g = kBack; g < kGroups; ++g) {
+    Pose2& pose = corridor.groups[g].map_from_group;
+    pose = Pose2{20.0, 3.0, 0.5} * pose;
+  }
+  const Pose2 measured{(kGroups - 11) * kStepM, 0.0, 0.0};
+  const GroupLink loop{10, kGroups - 1, measured, {0.02, 0.02, 0.01}};
+  const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {loop}, {});
+  EXPECT_TRUE(result.loop_accepted[0]);
+  for (std::size_t g = 0; g < kGroups; ++g) {
+    const Pose2& pose = result.map_from_group[g];
+    EXPECT_NEAR(pose.x_m, static_cast<double>(g) * kStepM, 0.02) << g;
+    EXPECT_NEAR(pose.y_m, 0.0, 0.02) << g;
+  }
+}
+
 // Two loops that contradict what was seen along the way; each alone is taken out.
 TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
   const Corridor corridor = WalkWithAJump(0.001);

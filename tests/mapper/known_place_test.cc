@@ -67,6 +67,15 @@ TEST(SeenPlace, OfAllIsTheSameWithAndWithoutHalves) {
   EXPECT_LT(halves.odd.points.size(), all.points.size());
 }
 
+// SLAM jumped far away after frame 19 and back before frame 30.
+TEST(SeenPlace, EndsWhereSlamJumpedFarAway) {
+  ScanArchive archive;
+  std::vector<MappedFrame> frames = StraightOn(40, archive);
+  for (int i = 20; i < 30; ++i) frames[static_cast<std::size_t>(i)].map_from_base.x_m += 3000.0;
+  EXPECT_EQ(FramesOfPlace(frames, 15, {}, 40), (std::vector<int>{0, 5, 10, 15, 30, 35}));
+  EXPECT_EQ(FramesOfPlace(frames, 24, {}, 40), (std::vector<int>{24, 29}));
+}
+
 // A wall counts for every cell within the tolerance and for none beyond.
 TEST(SeenPlace, WallsReachAsFarAsTheTolerance) {
   ScanArchive archive;

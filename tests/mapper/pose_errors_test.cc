@@ -229,6 +229,41 @@ TEST(PoseErrors, GoOnWithANewBiasAfterAnAdjustment) {
   EXPECT_TRUE(errors.MotionCovariance(TruePose(3)).isApprox(expected, 1e-9));
 }
 
+// Poses in a country's coordinates.
+TEST(PoseErrors, AreTheSameFarAway) {
+  const Pose2 far{450000.0, 5400000.0, 0.0};
+  PoseErrors errors(1000), far_errors(1000);
+  for (int i = 0; i < 400; ++i) {
+    const MapPart part = PartOf(std::max(i - 10, 0));
+    FilterStep step = StepAt(i, {0.3, 0.3, 0.3});
+    errors.Add(step, i, i, MatchInformation(), {&part, 1});
+    step.predicted = far * step.predicted;
+    far_errors.Add(step, i, i, MatchInformation(), {&part, 1});
+  }
+  const Eigen::Matrix3d expected = errors.MotionCovariance(TruePose(399));
+  EXPECT_TRUE(far_errors.MotionCovariance(far * TruePose(399)).isApprox(expected, 1e-6));
+}
+
+// SLAM begins anew at the fourth frame, which is matched against what the first one drew.
+TEST(PoseErrors, KnowHowUncertainlyAnEpochBegins) {
+  const Eigen::Vector3d start(0.1, 0.05, 0.02), bias(0.002, 0.001, 0.003);
+  PoseErrors errors(1000);
+  for (int i = 0; i < 4; ++i) {
+    errors.Add(StepAt(i, Eigen::Vector3d::Zero()), i, i, Eigen::Matrix3d::Zero(), {});
+  }
+  const Eigen::Matrix3d before = errors.MotionCovariance(TruePose(3));
+  errors.BeginEpoch(TruePose(4), Squared(start), bias);
+  const MapPart part = PartOf(0.0);
+  FilterStep step = StepAt(4, Eigen::Vector3d::Zero());
+  step.bias_kept.setOnes();
+  errors.Add(step, 4, 4, MatchInformation(), {&part, 1});
+  const Eigen::Matrix3d expected = Transported(before, Between(TruePose(3), TruePose(4))) +
+                                   Squared(start) + Squared(bias) + Squared(kWalk) +
+                                   Squared(kMatchSigma);
+  EXPECT_TRUE(errors.innovation_covariance()->isApprox(expected, 1e-9));
+  EXPECT_EQ(errors.motion_from(), 4);
+}
+
 TEST(PoseErrors, StayWhereAnAdjustmentDoesNotTellThem) {
   PoseErrors errors(1000);
   for (int i = 0; i < 5; ++i) {

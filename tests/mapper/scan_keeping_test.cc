@@ -51,6 +51,15 @@ TEST(ScanKeeping, TiesToTheNearestOfAFullPlace) {
   EXPECT_FALSE(keeping.TieOf(frames, {0.02, 0.1, 3.0}, true));
 }
 
+TEST(ScanKeeping, WhatWasSeenBeforeALossDoesNotCount) {
+  ScanKeeping keeping(Few());
+  const std::vector<MappedFrame> frames = RowOf(6);
+  keeping.Rebuild(frames);
+  EXPECT_EQ(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true), 0);
+  EXPECT_EQ(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, 3), 3);  // three since then: enough
+  EXPECT_FALSE(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, 4));
+}
+
 TEST(ScanKeeping, WhatTheMapDoesNotExplainHasMoreRoom) {
   KeepOptions options = Few();
   options.more_each_doubling = 0.0;
