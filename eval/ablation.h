@@ -61,6 +61,10 @@ struct ErrorShares {
   std::vector<StageShare> stages;
 };
 
+// Less the seeds that give what an earlier one gave in every variant and score, as where nothing is
+// random or a seed of its own holds it still: counted again they would make sure what is not.
+std::vector<AblationRun> WithoutRepeatedSeeds(const std::vector<AblationRun>& runs);
+
 // For the scores that say most; those not defined in every run are left out.
 std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs);
 

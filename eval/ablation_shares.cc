@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "eval/ablation.h"
@@ -71,6 +72,22 @@ ErrorShares SharesOfScore(const std::vector<AblationRun>& runs, const std::strin
 }
 
 }  // namespace
+
+std::vector<AblationRun> WithoutRepeatedSeeds(const std::vector<AblationRun>& runs) {
+  std::map<std::uint64_t, std::string> scores_of_seed;
+  for (const AblationRun& run : runs) {
+    std::string& scores = scores_of_seed[run.seed];
+    scores += run.variant;
+    for (const auto& [name, value] : run.metrics) scores += fmt::format(" {}", value);
+  }
+  std::map<std::string, std::uint64_t> first_with;
+  std::vector<AblationRun> kept;
+  for (const AblationRun& run : runs) {
+    const auto first = first_with.try_emplace(scores_of_seed[run.seed], run.seed).first;
+    if (first->second == run.seed) kept.push_back(run);
+  }
+  return kept;
+}
 
 std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs) {
   Require(!runs.empty(), "shares are of at least one run");

@@ -57,18 +57,27 @@ void Ablate(const AblateArguments& arguments) {
   ProgressBar bar("ablating");
   context.progress = bar.AsProgress();
   const std::vector<AblationRun> runs = RunAblation(plan, context);
-  const std::vector<ErrorShares> shares = SharesOf(runs);
-  const std::string json = AblationJson(shares, plan.seeds.size());
+  const std::vector<AblationRun> counted = WithoutRepeatedSeeds(runs);
+  const std::size_t seeds = counted.size() / AblationVariants().size();
+  const std::vector<ErrorShares> shares = SharesOf(counted);
+  const std::string json = AblationJson(shares, seeds);
   WriteFile(folder.File("experiment.yaml"), ToYaml(plan.experiment));
   WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
   WriteFile(folder.File("ablation.json"), json);
   WriteAblationReport(folder.work().string(), {folder.work().string()});
   folder.Commit();
+  bar.Clear();
+  if (seeds < plan.seeds.size()) {
+    Warn(
+        {fmt::format("{} of {} give what another gave and do not count: nothing here "
+                     "depends on the seed",
+                     plan.seeds.size() - seeds, Counted(plan.seeds.size(), "seed"))});
+  }
   if (arguments.json) {
     fmt::print("{}", json);
     return;
   }
-  PrintLegend(plan.seeds.size());
+  PrintLegend(seeds);
   for (const ErrorShares& score : shares) PrintShares(score);
   SayReport(arguments.common.output);
 }

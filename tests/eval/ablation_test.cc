@@ -57,7 +57,35 @@ TEST(SharesOf, OfNoErrorAreNone) {
   EXPECT_NE(AblationJson(shares, 1).find(R"("share": null)"), std::string::npos);
 }
 
+// Seeds 1 and 3 give the same everywhere; of seed 2 one variant differs.
+TEST(WithoutRepeatedSeeds, KeepsWhatIsNew) {
+  std::vector<AblationRun> runs;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const char* variant : {"as_it_is", "poses"}) {
+      const bool differs = seed == 2 && std::string(variant) == "poses";
+      runs.push_back({variant, seed, {{"map.coverage", differs ? 0.5 : 1.0}, {"map.ssim", NAN}}});
+    }
+  }
+  const std::vector<AblationRun> kept = WithoutRepeatedSeeds(runs);
+  ASSERT_EQ(kept.size(), 4U);
+  EXPECT_EQ(kept[1].seed, 1U);
+  EXPECT_EQ(kept[3].seed, 2U);
+}
+
 class ProgramAblate : public ProgramTest {};
+
+TEST_F(ProgramAblate, SeedsThatChangeNothingAreOneMeasurement) {
+  const Outcome outcome = Program(
+      "ablate ./small.yaml --seeds 3 --set slam_seed=1 --set depth_seed=1 -o out --threads 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err,
+            "depthgrid: warning: 2 of 3 seeds give what another gave and do not count: nothing "
+            "here depends on the seed\n");
+  EXPECT_THAT(outcome.out, HasSubstr("1 seed;"));
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(Path("out/ablation.json")))["seeds"], 1);
+  const std::string csv = ReadFile(Path("out/ablation.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 7);  // as they were run
+}
 
 TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
   const Outcome first = Program("ablate ./small.yaml --seeds 2 --threads 1 -o one");
