@@ -10,10 +10,13 @@
 
 #include "eval/metrics/statistics.h"
 #include "eval/report_json_impl.h"
+#include "eval/shell_word.h"
+#include "eval/shipped.h"
 #include "eval/statistics/metric_direction.h"
 #include "eval/sweep_grid.h"
 #include "eval/web_assets.h"
 #include "mapper/core/error.h"
+#include "mapper/io/config.h"
 #include "mapper/io/file.h"
 
 namespace depthgrid {
@@ -58,10 +61,21 @@ BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
   return options;
 }
 
-Json AxesJson(const SweepGrid& grid) {
+// A value as the command of a run takes it, which is started in the sweep's folder.
+std::string SetText(const SweepResults& results, const std::string& key, const std::string& text) {
+  const auto folder = results.environment.find("files_from");
+  const bool is_file = IsFileKey(key) && IsFileName(text);
+  if (!is_file || folder == results.environment.end()) return text;
+  return (fs::path(folder->second) / text).lexically_normal().string();
+}
+
+Json AxesJson(const SweepResults& results, const SweepGrid& grid) {
   Json json = Json::array();
   for (const GridAxis& axis : grid.axes) {
     Json one = {{"key", axis.key}, {"numeric", axis.numeric}, {"texts", axis.texts}};
+    for (const std::string& text : axis.texts) {
+      one["set"].push_back(ShellWord(SetText(results, axis.key, text)));
+    }
     if (axis.numeric) one["numbers"] = axis.numbers;
     json.push_back(one);
   }
@@ -192,7 +206,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   for (const SweepParameter& parameter : results.parameters) {
     if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
   }
-  json["axes"] = AxesJson(grid);
+  json["axes"] = AxesJson(results, grid);
   json["points"] = PointsJson(grid);
   json["metrics"] = MetricsJson(results, grid);
   json["runs"] = results.rows() <= kMostRuns ? RunsJson(results, grid) : Json(nullptr);
@@ -204,12 +218,24 @@ std::string TextOf(const SweepResults& results, const char* key) {
   return found != results.environment.end() ? found->second : "";
 }
 
+// What every run starts from: the keys given for it, so that an axis over a preset (slam.profile)
+// sets what it set in the sweep. A sweep of an earlier version knows every effective key alone.
+std::string ExperimentYaml(const SweepResults& results) {
+  const std::string given = TextOf(results, "given");
+  if (given.empty()) return TextOf(results, "experiment");
+  Config experiment;
+  for (const ConfigEntry& entry : Config::FromText(given, results.folder).Entries()) {
+    experiment.Set(entry.key, entry.text);
+  }
+  return experiment.ToYaml();
+}
+
 }  // namespace
 
 void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   const SweepResults results = ReadSweep(folder);
   if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
-  const std::string experiment = TextOf(results, "experiment");
+  const std::string experiment = ExperimentYaml(results);
   if (!experiment.empty()) WriteFile(place.into + "/experiment.yaml", experiment);
   const std::string title = TextOf(results, "title");
   Json json = SweepJson(results, GridOf(results));

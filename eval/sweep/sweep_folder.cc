@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <sstream>
@@ -25,19 +26,37 @@ constexpr const char* kLockName = "/.lock";
 
 using Environment = std::map<std::string, std::string>;
 
+// Whether a value of an axis is a file's name, which is relative to the experiment's folder.
+bool HasFilesOnAxes(const SweepPlan& plan) {
+  const auto& keys = plan.parameter_keys;
+  return std::any_of(keys.begin(), keys.end(), IsFileKey);
+}
+
 std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
 
 Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
-  return {{"title", plan.title},
-          {"sweep", plan.sweep_text},
-          {"experiment", plan.experiment_yaml},
-          {"version", DEPTHGRID_VERSION},
-          {"instruction_set", DEPTHGRID_ARCH},
-          {"shard", ShardText(shard)},
-          {"rooms", RoomsText(plan)}};
+  Environment environment = {{"title", plan.title},
+                             {"sweep", plan.sweep_text},
+                             {"experiment", plan.experiment_yaml},
+                             {"given", plan.given_text},
+                             {"version", DEPTHGRID_VERSION},
+                             {"instruction_set", DEPTHGRID_ARCH},
+                             {"shard", ShardText(shard)},
+                             {"rooms", RoomsText(plan)}};
+  if (HasFilesOnAxes(plan)) environment["files_from"] = fs::absolute(plan.base_folder).string();
+  return environment;
 }
 
-// The first line in which two texts differ, for people.
+const std::vector<std::string> kWhatMakesASweep = {"version", "instruction_set", "experiment",
+                                                   "given",   "sweep",           "rooms"};
+
+// Whether `line` is one of the lines of `text`.
+bool HasLine(const std::string& text, const std::string& line) {
+  return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
+}
+
+// The first line in which two texts differ, for people. Where only one has it, nothing stands
+// against it.
 std::string Difference(const std::string& a, const std::string& b) {
   std::istringstream lines_a(a);
   std::istringstream lines_b(b);
@@ -49,7 +68,10 @@ std::string Difference(const std::string& a, const std::string& b) {
     if (!more_a && !more_b) return "";
     if (!more_a) line_a.clear();
     if (!more_b) line_b.clear();
-    if (line_a != line_b) return fmt::format("'{}' there, '{}' here", line_a, line_b);
+    if (line_a == line_b) continue;
+    const std::string here = HasLine(a, line_b) ? "" : line_b;
+    const std::string there = HasLine(b, line_a) ? "" : line_a;
+    return fmt::format("'{}' there, '{}' here", there, here);
   }
 }
 
@@ -62,6 +84,7 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
     if (there_is->second == here_is->second) continue;
     const std::string what = respect == "sweep"        ? "another sweep"
                              : respect == "experiment" ? "a sweep of another experiment"
+                             : respect == "given"      ? "a sweep with other keys given"
                              : respect == "rooms"      ? "runs in a scene or path that has changed"
                                                        : "a sweep of another " + respect;
     throw InputError(place, fmt::format("holds {}: {}; {}", what,
@@ -160,8 +183,9 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
   const Environment here = EnvironmentOf(plan, shard);
   if (SweepDatabase::Exists(folder)) {
     SweepDatabase database = SweepDatabase::Open(folder);
-    RequireSame(folder, database.Environment(), here,
-                {"version", "instruction_set", "experiment", "sweep", "shard", "rooms"},
+    RequireSame(folder, database.Environment(), here, kWhatMakesASweep,
+                "choose another folder, or remove this one");
+    RequireSame(folder, database.Environment(), here, {"shard"},
                 "choose another folder, or remove this one");
     return database;
   }
@@ -180,8 +204,7 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
   for (const std::string& folder : folders) {
     parts.push_back(ReadSweep(folder));
     const SweepResults& part = parts.back();
-    RequireSame(folder, part.environment, parts[0].environment,
-                {"version", "instruction_set", "experiment", "sweep", "rooms"},
+    RequireSame(folder, part.environment, parts[0].environment, kWhatMakesASweep,
                 "parts are of one sweep");
     const auto missing = part.planned_runs - static_cast<int>(part.rows());
     if (missing > 0) {

@@ -197,9 +197,24 @@ std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
   std::string text = ToYaml(file) + "axes:\n";
   for (const SweepAxis& axis : plan.axes) {
     text += fmt::format("  {}:", fmt::join(axis.keys, ", "));
-    if (axis.range) text += fmt::format(" {} to {}", axis.range->from, axis.range->to);
+    if (axis.range) {
+      const char* scale = axis.range->scale == RangeScale::kLog ? ", log" : "";
+      text += fmt::format(" {} to {}{}", axis.range->from, axis.range->to, scale);
+    }
     for (const auto& value : axis.values) text += fmt::format(" [{}]", fmt::join(value, ", "));
     text += "\n";
+  }
+  return text;
+}
+
+// The lines of given_text: of the `effective` keys below `prefix` those that `base` has.
+std::string GivenText(const Config& effective, const Config& base, const std::string& prefix = "") {
+  std::string text;
+  for (const ConfigEntry& entry : effective.Entries()) {
+    const std::string path = prefix + entry.key;
+    if (!base.Has(path)) continue;
+    text += entry.map ? GivenText(*entry.map, base, path + ".")
+                      : fmt::format("{}: {}\n", path, entry.text);
   }
   return text;
 }
@@ -272,6 +287,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   };
   plan.base = base_with(set);
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
+  plan.given_text = GivenText(Config::FromText(plan.experiment_yaml, path), plan.base);
   CheckValues(plan);
   CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);

@@ -39,6 +39,9 @@ struct SweepPlan {
   std::string title;
   std::string sweep_text;       // what decides the runs, axes written out; the same for the same
   std::string experiment_yaml;  // every effective key of the experiment
+  // Of these the ones that a file or --set gives, a line each with its whole path: they stay when
+  // an axis chooses another preset (slam.profile), which sets all others.
+  std::string given_text;
   std::vector<SweepAxis> axes;
   std::vector<std::string> parameter_keys;  // of the axes, in the file's order
   StopOptions stop;

@@ -32,6 +32,8 @@ bool IsSeedKey(const std::string& key) {
   return key == "seed" || key == "depth_seed" || key == "slam_seed" || key == "trajectory_seed";
 }
 
+bool IsFileKey(const std::string& key) { return key == "scene" || key == "trajectory"; }
+
 bool SweepParameter::IsSeed() const { return IsSeedKey(key); }
 
 bool SweepParameter::IsNumeric() const {

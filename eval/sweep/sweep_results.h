@@ -44,6 +44,8 @@ struct SweepResults {
 
 // Whether an experiment's key is a seed.
 bool IsSeedKey(const std::string& key);
+// Whether its value may be a file's name.
+bool IsFileKey(const std::string& key);
 
 // The database's name in a sweep's folder; a folder is a sweep's when it holds one.
 constexpr const char* kSweepDatabaseName = "results.sqlite";

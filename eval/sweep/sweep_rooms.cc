@@ -24,8 +24,7 @@ std::string HashOrNone(const ExperimentOptions& options) {
 std::string RoomsText(const SweepPlan& plan) {
   std::vector<std::size_t> naming;  // positions of the keys that choose room and path
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
-    const std::string& key = plan.parameter_keys[i];
-    if (key == "scene" || key == "trajectory") naming.push_back(i);
+    if (IsFileKey(plan.parameter_keys[i])) naming.push_back(i);
   }
   std::set<std::vector<std::string>> seen;
   std::string text;

@@ -66,8 +66,9 @@ function someOf(items) {
 }
 
 function initEnvironment() {
+  const meaning = { experiment: "every effective key", given: "the keys among them that a file or --set gives", sweep: "with its axes written out" };
   for (const [key, text] of Object.entries(SWEEP.environment)) {
-    byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}`));
+    byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, meaning[key] ? `${key}: ${meaning[key]}` : key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}`));
   }
 }
 

@@ -46,10 +46,9 @@ function matcher(text, numeric) {
 // The command that makes a run again, to be started in this folder.
 function commandOf(row) {
   const runs = SWEEP.runs;
-  const set = AXES.map((axis, i) => [axis.key, axis.texts[POINTS[runs.point[row]].values[i]]]);
+  const set = AXES.map((axis, i) => [axis.key, axis.set[POINTS[runs.point[row]].values[i]]]);
   runs.seeds[row].split(" ").forEach((seed, i) => { if (SWEEP.seed_keys[i]) set.push([SWEEP.seed_keys[i], seed]); });
-  const quoted = (text) => (/^[\w.+-]*$/.test(text) ? text : `'${text}'`);
-  return `depthgrid run experiment.yaml ${set.map(([key, value]) => `--set ${key}=${quoted(value)}`).join(" ")} -o runs/${runs.run[row]}`;
+  return `depthgrid run experiment.yaml ${set.map(([key, value]) => `--set ${key}=${value}`).join(" ")} -o runs/${runs.run[row]}`;
 }
 
 function linkCell(row, text) {

@@ -1,6 +1,8 @@
 // The report pages as a browser shows them.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "eval/sweep/sweep_database.h"
 #include "tests/eval/browser.h"
 #include "tests/eval/program.h"
@@ -249,6 +251,33 @@ TEST_F(ReportPage, OfASweep) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
   browser_->Open(Path("sweep/report.html"), 400);
   ExpectFits();
+}
+
+// The command that a page shows, given in the sweep's folder, makes the very run: along presets,
+// and with files that lie beside the experiment.
+TEST_F(ReportPage, ItsCommandsRepeatTheRunsOfASweep) {
+  std::filesystem::create_directory(Path("rooms"));
+  Write("rooms/it's one.yaml", kRoom);
+  Write("rooms/small.yaml", kExperiment);
+  Write("rooms/room.yaml", kRoom);
+  Write("sweep.yaml",
+        "experiment: ./rooms/small.yaml\naxes: {scene: [./room.yaml, \"./it's one.yaml\"], "
+        "slam.profile: [ground_truth, planar_slam], seed: [9007199254740993]}\n");
+  Succeed("sweep ./sweep.yaml -o out");
+  browser_->Open(Path("out/report.html"));
+  const std::string error = "trajectory.slam.mean_euclidean_m";
+  const std::vector<double> errors = ReadSweep(Path("out")).Metric(error);
+  ASSERT_EQ(errors.size(), 4U);
+  for (std::size_t row = 0; row < errors.size(); ++row) {
+    std::string command = browser_->Evaluate("commandOf(" + std::to_string(row) + ")");
+    ASSERT_TRUE(command.starts_with("depthgrid run experiment.yaml --set scene="));
+    command = "cd '" + Path("out") + "' && '" + kProgramFile + "'" + command.substr(9);
+    EXPECT_EQ(std::system((command + " >/dev/null").c_str()), 0) << command;
+    const std::string folder = "out/runs/" + std::to_string(row);
+    const auto metrics = nlohmann::json::parse(ReadFile(Path(folder + "/metrics.json")));
+    EXPECT_EQ(metrics["trajectory"]["slam"]["mean_euclidean_m"], errors[row]) << command;
+  }
+  EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 
 // What is held at first is a value at which there is something to see.

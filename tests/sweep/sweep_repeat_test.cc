@@ -1,0 +1,99 @@
+// A sweep's runs done again by the page's command, and sweeps that were killed before they began.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "eval/sweep/sweep_database.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+
+class SweepRepeat : public ProgramTest {
+ protected:
+  // What `folder`'s metrics.json has under each of the sweep's names is what the sweep's row has.
+  void ExpectScoresOfRow(const std::string& folder, const SweepResults& results,
+                         std::size_t row) const {
+    const auto metrics = nlohmann::json::parse(ReadFile(Path(folder + "/metrics.json")));
+    int compared = 0;
+    for (const SweepColumn& column : results.metrics) {
+      std::string pointer = "/" + column.name;
+      std::replace(pointer.begin(), pointer.end(), '.', '/');
+      const auto& value = metrics[nlohmann::json::json_pointer(pointer)];
+      if (value.is_null()) continue;
+      EXPECT_EQ(value.get<double>(), column.values[row]) << column.name;
+      ++compared;
+    }
+    EXPECT_GT(compared, 40);
+  }
+  // Row by row what the axes say, put behind the experiment.yaml that lies beside the page.
+  void ExpectEachRunCanBeRepeated(const std::string& sweep) const {
+    const SweepResults results = ReadSweep(Path(sweep));
+    for (std::size_t row = 0; row < results.rows(); ++row) {
+      std::string command = "run " + sweep + "/experiment.yaml";
+      for (const SweepParameter& axis : results.parameters) {
+        command += " --set " + axis.key + "=" + axis.texts[row];
+      }
+      const std::string folder = sweep + "_again" + std::to_string(row);
+      Succeed(command + " -o " + folder);
+      ExpectScoresOfRow(folder, results, row);
+    }
+  }
+};
+
+// What a profile or a scenario presets is not to be held by what the sweep's base had of it.
+TEST_F(SweepRepeat, AlongAPreset) {
+  Write("profiles.yaml", R"(
+experiment: ./small.yaml
+set: {slam.drift_scale: 3}
+axes:
+  slam.profile: [ground_truth, orb_slam2, planar_slam]
+)");
+  Succeed("sweep ./profiles.yaml -o out");
+  ExpectEachRunCanBeRepeated("out");
+  Write("scenarios.yaml", R"(
+experiment: ./small.yaml
+set: {slam.loops.max_distance_m: 2, slam.loops.max_angle_deg: 90, slam.loops.min_gap_s: 0.1}
+axes:
+  slam.loops.scenario: [none, "true", late]
+)");
+  Succeed("sweep ./scenarios.yaml -o loops");
+  ExpectEachRunCanBeRepeated("loops");
+}
+
+// A key that has the preset's value makes another sweep where the preset is on an axis.
+TEST_F(SweepRepeat, GivenKeysAreOfTheSweep) {
+  Write("profiles.yaml",
+        "experiment: ./small.yaml\naxes: {slam.profile: [orb_slam2, planar_slam]}\n");
+  Succeed("sweep ./profiles.yaml --set slam.drift_scale=48.4 -o out");
+  const Outcome other = Program("sweep ./profiles.yaml -o out");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_EQ(other.err,
+            "depthgrid: out: holds a sweep with other keys given: 'slam.drift_scale: 48.4' there, '' "
+            "here; choose another folder, or remove this one\n");
+  Succeed("sweep ./profiles.yaml --set slam.drift_scale=48.40 -o out");
+}
+
+TEST_F(SweepRepeat, TheScaleOfARangeIsOfTheSweep) {
+  const auto write = [&](const std::string& scale) {
+    Write("random.yaml",
+          "experiment: ./small.yaml\nmode: random\nsamples: 2\n"
+          "axes: {slam.drift_scale: {from: 0.1, to: 10" +
+              scale + "}}\n");
+  };
+  write("");
+  Succeed("sweep ./random.yaml -o out");
+  write(", scale: log");
+  const Outcome other = Program("sweep ./random.yaml -o out");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("'  slam.drift_scale: 0.1 to 10' there, "
+                                   "'  slam.drift_scale: 0.1 to 10, log' here"));
+}
+
+}  // namespace
+}  // namespace depthgrid
