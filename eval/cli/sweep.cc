@@ -129,8 +129,9 @@ void Merge(const SweepArguments& arguments) {
                                     "' is one argument too many");
   }
   const std::string& output = arguments.common.output;
-  if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
   const SweepFolder folder(output, arguments.common.force);
+  const SweepLock lock(output);
+  if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
   MergeSweeps(arguments.merge, output);
   Summarise(ReadSweep(output));
 }

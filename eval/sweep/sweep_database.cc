@@ -28,6 +28,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kBusyTimeoutMs = 60'000;
 // Rows and columns of the tables below; another number is another layout.
 constexpr const char* kSchema = "1";
+// Endings: of a database that is not whole yet, and of SQLite's own file beside it.
+constexpr const char* kPartial = ".partial";
+constexpr const char* kJournal = "-journal";
 
 constexpr const char* kTables = R"(
 CREATE TABLE environment (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -217,14 +220,20 @@ SweepDatabase::~SweepDatabase() = default;
 
 bool SweepDatabase::Exists(const std::string& folder) { return fs::exists(DatabasePath(folder)); }
 
+bool SweepDatabase::IsUnfinished(const std::string& file_name) {
+  const std::string partial = std::string(kSweepDatabaseName) + kPartial;
+  return file_name == partial || file_name == partial + kJournal;
+}
+
 SweepDatabase SweepDatabase::Create(const std::string& folder,
                                     const std::map<std::string, std::string>& environment,
                                     const std::vector<std::string>& parameter_keys,
                                     const std::vector<PlannedRun>& plan,
                                     const std::vector<RunOutcome>& outcomes) {
   // Under another name until it is whole: a kill in between leaves no half plan.
-  const std::string partial = DatabasePath(folder) + ".partial";
+  const std::string partial = DatabasePath(folder) + kPartial;
   fs::remove(partial);
+  fs::remove(partial + kJournal);
   Writing(folder, [&] {
     Impl impl(folder, partial, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     SQLite::Transaction transaction(*impl.database);

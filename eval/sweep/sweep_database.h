@@ -32,6 +32,8 @@ struct RunOutcome {
 class SweepDatabase {
  public:
   static bool Exists(const std::string& folder);
+  // Whether a file of this name is what a Create() leaves that is killed.
+  static bool IsUnfinished(const std::string& file_name);
   // All of the plan and of what is known already, or nothing, is in the file afterwards.
   static SweepDatabase Create(const std::string& folder,
                               const std::map<std::string, std::string>& environment,

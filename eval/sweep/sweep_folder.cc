@@ -92,11 +92,13 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
   }
 }
 
+// One in which a sweep was killed before its plan was whole is as good as empty.
 bool IsEmptyFolder(const std::string& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename() != fs::path(kLockName).filename()) return false;
-  }
-  return true;
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& entry) {
+                       const std::string name = entry.path().filename().string();
+                       return "/" + name == kLockName || SweepDatabase::IsUnfinished(name);
+                     });
 }
 
 std::vector<RunOutcome> OutcomesOf(const SweepResults& results) {

@@ -95,5 +95,32 @@ TEST_F(SweepRepeat, TheScaleOfARangeIsOfTheSweep) {
                                    "'  slam.drift_scale: 0.1 to 10, log' here"));
 }
 
+TEST_F(SweepRepeat, KilledWhileItsPlanIsWrittenItGoesOn) {
+  std::filesystem::create_directory(Path("out"));
+  for (const char* left : {".lock", "results.sqlite.partial", "results.sqlite.partial-journal"}) {
+    Write(std::string("out/") + left, "");
+  }
+  Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  Succeed("sweep ./gains.yaml -o out");
+  EXPECT_EQ(ReadSweep(Path("out")).rows(), 2U);
+  for (const std::string& file : FilesIn("out")) EXPECT_THAT(file, Not(HasSubstr("partial")));
+}
+
+TEST_F(SweepRepeat, PartsAreJoinedByOneProgramAtATime) {
+  Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  Succeed("sweep ./gains.yaml --shard 1/1 -o part");
+  std::filesystem::create_directory(Path("joined"));
+  Write("joined/.lock", "");
+  const int lock = ::open(Path("joined/.lock").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
+  const Outcome second = Program("sweep --merge part -o joined");
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_EQ(second.err, "depthgrid: joined: another program is working on this sweep\n");
+  ::close(lock);
+  Succeed("sweep --merge part -o joined");
+  EXPECT_EQ(Program("sweep --merge part -o joined").err,
+            "depthgrid: joined: holds a sweep already\n");
+}
+
 }  // namespace
 }  // namespace depthgrid
