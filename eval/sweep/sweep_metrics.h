@@ -10,7 +10,7 @@
 namespace depthgrid {
 
 // The figures of metrics.json under their paths there, less what only breaks a figure down: full
-// statistics of an error, other tolerances, confusion and counts. A run gives all of them.
+// statistics of an error, other tolerances, confusion, counts of cells and poses. A run gives all.
 NamedValues SweepMetrics(const RunScores& scores);
 
 // Their names.
