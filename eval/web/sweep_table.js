@@ -2,13 +2,14 @@
 "use strict";
 const table = { what: "points", sort: 0, down: false, filters: [], most: 100 };
 
-// What each table shows: {title, unit, numeric, at(row)}.
+// What each table shows: {title, unit, numeric, at(row), text(row) where that is not at(row) in short}.
 function columnsOf(what) {
   const runs = SWEEP.runs;
   const pointOf = what === "points" ? (row) => row : (row) => runs.point[row];
   const axes = AXES.map((axis, i) => ({
     title: axis.key, numeric: axis.numeric,
     at: (row) => { const k = POINTS[pointOf(row)].values[i]; return axis.numeric ? axis.numbers[k] : axis.texts[k]; },
+    text: (row) => axis.labels[POINTS[pointOf(row)].values[i]],
   }));
   if (what === "points") {
     const shown = METRICS.filter((m) => m.main || m === metric);
@@ -19,9 +20,9 @@ function columnsOf(what) {
           { title: "median", unit: m.unit, numeric: true, at: (row) => m.median[row] }] : [])])];
   }
   const shown = METRICS.filter((m) => runs.metrics?.[m.name]);
-  return [{ title: "run", numeric: true, at: (row) => runs.run[row] },
+  return [{ title: "run", numeric: true, at: (row) => runs.run[row], text: (row) => String(runs.run[row]) },
     { title: "page", link: true, at: (row) => (runs.failures[row] ? "failed" : runs.folder[row] ? "open" : "command") }, ...axes,
-    ...(SWEEP.seed_keys.length ? [{ title: SWEEP.seed_keys.join(" "), numeric: SWEEP.seed_keys.length === 1, at: (row) => (SWEEP.seed_keys.length === 1 ? Number(runs.seeds[row]) : runs.seeds[row]) }] : []),
+    ...(SWEEP.seed_keys.length ? [{ title: SWEEP.seed_keys.join(" "), numeric: SWEEP.seed_keys.length === 1, at: (row) => (SWEEP.seed_keys.length === 1 ? Number(runs.seeds[row]) : runs.seeds[row]), text: (row) => runs.seeds[row] }] : []),
     ...shown.map((m) => ({
       title: m.label, unit: m.unit, numeric: true,
       at: (row) => (runs.metrics[m.name][row] === null ? null : runs.metrics[m.name][row] * m.factor),
@@ -79,7 +80,8 @@ function drawRows(columns, body) {
   const rows = rowsShown(columns);
   body.replaceChildren(...rows.slice(0, table.most).map((row) => make("tr", {}, ...columns.map((column) => {
     const value = column.at(row);
-    return make("td", {}, column.link ? linkCell(row, value) : column.numeric ? compact(value) : String(value ?? "–"));
+    const text = () => column.text?.(row) ?? (column.numeric ? compact(value) : String(value ?? "–"));
+    return make("td", {}, column.link ? linkCell(row, value) : text());
   }))));
   const more = rows.length > table.most;
   const note = byId("table-note");
