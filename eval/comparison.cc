@@ -6,11 +6,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
 #include "eval/statistics/sample_size.h"
+#include "eval/statistics/seed_units.h"
+#include "eval/sweep/sweep_axes.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -33,20 +34,9 @@ constexpr std::array<const char*, 13> kHeadlines = {"trajectory.est.mean_euclide
 
 using Key = std::vector<std::string>;
 
-// 0.5 and 0.50 are the same value.
-std::string Canonical(const SweepParameter& parameter, std::size_t row) {
-  const double number = parameter.numbers[row];
-  return std::isnan(number) ? parameter.texts[row] : fmt::format("{}", number);
-}
-
-std::string Canonical(const std::string& text) {
-  try {
-    std::size_t used = 0;
-    const double number = std::stod(text, &used);
-    if (used == text.size()) return fmt::format("{}", number);
-  } catch (const std::exception&) {  // a word
-  }
-  return text;
+// 0.5 and 0.50 are the same value; seeds that no double holds stay apart.
+std::string ValueAt(const SweepParameter& parameter, std::size_t row) {
+  return ShortestYaml(parameter.texts[row]);
 }
 
 bool HasAxis(const SweepResults& table, const std::string& key) {
@@ -81,7 +71,7 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
   for (const auto& [key, value] : where) {
     const SweepParameter& parameter = table.Parameter(key);
     std::erase_if(rows,
-                  [&](std::size_t row) { return Canonical(parameter, row) != Canonical(value); });
+                  [&](std::size_t row) { return ValueAt(parameter, row) != ShortestYaml(value); });
     if (rows.empty()) {
       throw InputError(table.folder, fmt::format("no run has {} = {}", key, value));
     }
@@ -92,7 +82,7 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
 // The first axis beside the shared ones in which two rows differ, or "".
 std::string WhatDiffers(const SweepResults& table, std::size_t row, std::size_t other) {
   for (const SweepParameter& parameter : table.parameters) {
-    if (Canonical(parameter, row) != Canonical(parameter, other)) return parameter.key;
+    if (ValueAt(parameter, row) != ValueAt(parameter, other)) return parameter.key;
   }
   return "";
 }
@@ -103,7 +93,7 @@ std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
   std::map<Key, std::size_t> by_key;
   for (const std::size_t row : rows) {
     Key key;
-    for (const std::string& axis : shared) key.push_back(Canonical(table.Parameter(axis), row));
+    for (const std::string& axis : shared) key.push_back(ValueAt(table.Parameter(axis), row));
     const auto [found, is_new] = by_key.emplace(key, row);
     if (is_new) continue;
     const std::string differs = WhatDiffers(table, row, found->second);
@@ -120,25 +110,15 @@ std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
 struct Pairs {
   std::vector<std::size_t> a;
   std::vector<std::size_t> b;
-  std::vector<std::string> unit;  // pairs of one are averaged: they do not vary on their own
+  SeedUnits units{{}};
 };
 
-// A seed's runs share its noise and its SLAM's errors whatever else they differ in, so the seeds
-// are what varies (`seed`, `slam_seed` and their like). Of one seed alone, or without such an axis,
-// each pair is a unit.
-std::vector<std::string> UnitsOf(const std::vector<Key>& keys,
-                                 const std::vector<std::string>& paired_by) {
-  std::vector<std::string> units;
-  for (const Key& key : keys) {
-    std::string unit;
-    for (std::size_t axis = 0; axis < key.size(); ++axis) {
-      if (paired_by[axis].ends_with("seed")) unit += key[axis] + " ";
-    }
-    units.push_back(unit);
+std::vector<std::size_t> SeedAxes(const std::vector<std::string>& paired_by) {
+  std::vector<std::size_t> axes;
+  for (std::size_t axis = 0; axis < paired_by.size(); ++axis) {
+    if (IsSeedKey(paired_by[axis])) axes.push_back(axis);
   }
-  if (std::set<std::string>(units.begin(), units.end()).size() > 1) return units;
-  for (std::size_t i = 0; i < units.size(); ++i) units[i] = std::to_string(i);
-  return units;
+  return axes;
 }
 
 Pairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
@@ -147,20 +127,24 @@ Pairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions
   const auto rows_a = RowsByKey(a, RowsThatMeet(a, options.where_a), comparison.paired_by);
   const auto rows_b = RowsByKey(b, RowsThatMeet(b, options.where_b), comparison.paired_by);
   Pairs pairs;
-  std::vector<Key> keys;
+  const std::vector<std::size_t> seed_axes = SeedAxes(comparison.paired_by);
+  std::vector<std::vector<std::string>> seeds;
   for (const auto& [key, row] : rows_a) {
     const auto other = rows_b.find(key);
     if (other == rows_b.end()) continue;
     pairs.a.push_back(row);
     pairs.b.push_back(other->second);
-    keys.push_back(key);
+    seeds.emplace_back();
+    for (const std::size_t axis : seed_axes) seeds.back().push_back(key[axis]);
   }
-  pairs.unit = UnitsOf(keys, comparison.paired_by);
+  pairs.units = SeedUnits(seeds);
+  for (const std::size_t axis : pairs.units.crossed()) {
+    comparison.crossed_seeds.push_back(comparison.paired_by[seed_axes[axis]]);
+  }
   comparison.runs_a = static_cast<int>(rows_a.size());
   comparison.runs_b = static_cast<int>(rows_b.size());
   comparison.pairs = static_cast<int>(pairs.a.size());
-  comparison.units =
-      static_cast<int>(std::set<std::string>(pairs.unit.begin(), pairs.unit.end()).size());
+  comparison.units = static_cast<int>(pairs.units.count());
   if (pairs.a.empty()) {
     throw InputError(b.folder, fmt::format("shares no run with {} (by {})", a.folder,
                                            fmt::join(comparison.paired_by, ", ")));
@@ -187,36 +171,43 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   return names;
 }
 
-// Of the pairs in which both are defined; empty when there is none.
-std::optional<MetricComparison> CompareMetric(const SweepResults& a, const SweepResults& b,
-                                              const std::string& name, const Pairs& pairs,
-                                              const CompareOptions& options) {
-  struct Sum {
-    double a = 0.0;
-    double b = 0.0;
-    int count = 0;
-  };
-  std::map<std::string, Sum> by_unit;
+// One figure a unit, of the pairs in which both sides are defined; distances from the target of a
+// score that has one.
+struct UnitFigures {
+  std::vector<double> a;
+  std::vector<double> b;
+};
+
+UnitFigures FiguresOf(const SweepResults& a, const SweepResults& b, const std::string& name,
+                      const Pairs& pairs) {
+  const auto target = TargetOf(name);
+  const auto figure = [&](double value) { return target ? std::abs(value - *target) : value; };
+  std::vector<double> of_a(pairs.a.size(), NAN), of_b(pairs.a.size(), NAN);
   for (std::size_t i = 0; i < pairs.a.size(); ++i) {
     const double value_a = a.Metric(name)[pairs.a[i]];
     const double value_b = b.Metric(name)[pairs.b[i]];
     if (!std::isfinite(value_a) || !std::isfinite(value_b)) continue;
-    Sum& sum = by_unit[pairs.unit[i]];
-    sum.a += value_a;
-    sum.b += value_b;
-    ++sum.count;
+    of_a[i] = figure(value_a);
+    of_b[i] = figure(value_b);
   }
-  std::vector<double> of_a, of_b;
-  for (const auto& [unit, sum] : by_unit) {
-    of_a.push_back(sum.a / sum.count);
-    of_b.push_back(sum.b / sum.count);
-  }
-  if (of_a.empty()) return std::nullopt;
+  UnitFigures units{pairs.units.Figures(of_a), pairs.units.Figures(of_b)};
+  std::erase_if(units.a, [](double v) { return std::isnan(v); });
+  std::erase_if(units.b, [](double v) { return std::isnan(v); });
+  return units;
+}
+
+// Empty when there is no pair.
+std::optional<MetricComparison> CompareMetric(const SweepResults& a, const SweepResults& b,
+                                              const std::string& name, const Pairs& pairs,
+                                              const CompareOptions& options) {
+  const UnitFigures units = FiguresOf(a, b, name, pairs);
+  if (units.a.empty()) return std::nullopt;
   MetricComparison result;
   result.metric = name;
   result.better = BetterOf(name);
+  result.target = TargetOf(name);
   result.paired =
-      ComparePaired(of_a, of_b, result.better, Resamples(of_a.size(), options.bootstrap));
+      ComparePaired(units.a, units.b, result.better, Resamples(units.a.size(), options.bootstrap));
   return result;
 }
 
@@ -225,6 +216,7 @@ Verdict VerdictOf(const MetricComparison& c, double least_p_holm, double level) 
   if (least_p_holm >= level) return Verdict::kTooFew;
   if (c.p_holm >= level) return Verdict::kNotToldApart;
   const bool b_is_higher = c.paired.wilcoxon.rank_biserial > 0.0;
+  if (c.better == Better::kNeither) return b_is_higher ? Verdict::kBHigher : Verdict::kAHigher;
   return b_is_higher == (c.better == Better::kHigher) ? Verdict::kBBetter : Verdict::kABetter;
 }
 
@@ -244,9 +236,21 @@ std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, do
   TestPlan plan;
   plan.level = level / static_cast<double>(rows);
   auto needed = SeedsNeededByRanks(paired.mean_difference, paired.std_difference, plan);
-  const bool is_shown = c.verdict == Verdict::kABetter || c.verdict == Verdict::kBBetter;
+  const bool is_shown = c.verdict != Verdict::kNotToldApart && c.verdict != Verdict::kTooFew;
   if (needed && !is_shown) needed = std::max(*needed, paired.pairs + 1);
   return needed;
+}
+
+// Of all scores there are, which ones make no row: they would only cost the others Holm's
+// correction (one that is equal in every pair has a p-value of 1 whatever the level; Tarone 1990).
+bool IsLeftOut(const MetricComparison& compared, Comparison& comparison) {
+  if (compared.better == Better::kNeither) {
+    comparison.without_direction.push_back(compared.metric);
+    return true;
+  }
+  const bool all_equal = compared.paired.wilcoxon.pairs == 0;
+  if (all_equal) comparison.all_equal.push_back(compared.metric);
+  return all_equal;
 }
 
 }  // namespace
@@ -254,13 +258,14 @@ std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, do
 Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options) {
   Comparison comparison;
   const Pairs pairs = PairsOf(a, b, options, comparison);
+  const bool of_all = options.metrics == std::vector<std::string>{"all"};
   std::vector<double> p_values, least_p_values;
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
-    if (auto compared = CompareMetric(a, b, name, pairs, options)) {
-      p_values.push_back(compared->paired.wilcoxon.p_value);
-      least_p_values.push_back(LeastWilcoxonP(compared->paired.pairs));
-      comparison.metrics.push_back(std::move(*compared));
-    }
+    auto compared = CompareMetric(a, b, name, pairs, options);
+    if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
+    p_values.push_back(compared->paired.wilcoxon.p_value);
+    least_p_values.push_back(LeastWilcoxonP(compared->paired.pairs));
+    comparison.metrics.push_back(std::move(*compared));
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
   const std::vector<double> least = HolmAdjusted(least_p_values);

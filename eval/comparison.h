@@ -27,12 +27,15 @@ enum class Verdict {
   kABetter,
   kBBetter,
   kNotToldApart,
-  kTooFew,  // whatever the values, so few pairs cannot decide in a table of so many rows
+  kTooFew,   // whatever the values, so few pairs cannot decide in a table of so many rows
+  kAHigher,  // of a score of which neither more nor less is better
+  kBHigher,
 };
 
 struct MetricComparison {
   std::string metric;
   Better better = Better::kLower;
+  std::optional<double> target;  // of a score that has one; all figures are of the distance from it
   PairedComparison paired;
   double p_holm = 1.0;
   Verdict verdict = Verdict::kNotToldApart;
@@ -44,11 +47,15 @@ struct MetricComparison {
 struct Comparison {
   std::vector<std::string> paired_by;  // the axes whose values make a pair
   int pairs = 0;
-  int units = 0;   // what the tests count: pairs of one seed are averaged, and count as one
-  int runs_a = 0;  // that meet the conditions and did not fail
+  int units = 0;  // what the tests count: pairs of one seed are averaged, and count as one
+  std::vector<std::string> crossed_seeds;  // of which the units are as many as one has (SeedUnits)
+  int runs_a = 0;                          // that meet the conditions and did not fail
   int runs_b = 0;
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
-  int most_rows = 0;                      // of these, that so many pairs can tell apart at once
+  // Of `--metric all`: no tests, as nobody would call either side better.
+  std::vector<std::string> without_direction;
+  std::vector<std::string> all_equal;  // both sides have one value in each pair
+  int most_rows = 0;                   // of these, that so many pairs can tell apart at once
 };
 
 // Throws InputError for a metric or axis that is not there, runs that make no pair, and runs that

@@ -13,6 +13,10 @@ const char* NameOf(Verdict verdict) {
       return "a";
     case Verdict::kBBetter:
       return "b";
+    case Verdict::kAHigher:
+      return "a_higher";
+    case Verdict::kBHigher:
+      return "b_higher";
     case Verdict::kTooFew:
       return "too_few_pairs";
     case Verdict::kNotToldApart:
@@ -21,11 +25,24 @@ const char* NameOf(Verdict verdict) {
   return "not_told_apart";
 }
 
+const char* NameOf(Better better) {
+  switch (better) {
+    case Better::kLower:
+      return "lower";
+    case Better::kHigher:
+      return "higher";
+    case Better::kNeither:
+      break;
+  }
+  return "neither";
+}
+
 Json ToJson(const MetricComparison& c) {
   const PairedComparison& p = c.paired;
   const Json interval =
       p.mean_interval ? Json{p.mean_interval->low, p.mean_interval->high} : Json();
-  return {{"better", c.better == Better::kHigher ? "higher" : "lower"},
+  return {{"better", NameOf(c.better)},
+          {"distance_from", c.target ? Json(*c.target) : Json()},
           {"pairs", p.pairs},
           {"mean_a", p.mean_a},
           {"mean_b", p.mean_b},
@@ -52,8 +69,11 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                {"paired_by", comparison.paired_by},
                {"pairs", comparison.pairs},
                {"units", comparison.units},
+               {"crossed_seeds", comparison.crossed_seeds},
                {"runs_a", comparison.runs_a},
                {"runs_b", comparison.runs_b},
+               {"without_direction", comparison.without_direction},
+               {"all_equal", comparison.all_equal},
                {"metrics", Json::object()}};
   for (const MetricComparison& compared : comparison.metrics) {
     json["metrics"][compared.metric] = ToJson(compared);

@@ -1,5 +1,7 @@
 #include "eval/metric_columns.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -35,6 +37,10 @@ void Collect(const nlohmann::ordered_json& json, const std::string& path, Column
 }
 
 }  // namespace
+
+std::string DistanceName(const std::string& metric, double target) {
+  return target == 0.0 ? fmt::format("|{}|", metric) : fmt::format("|{} - {}|", metric, target);
+}
 
 Columns MetricColumns(const std::string& metrics_json, const std::string& place) {
   const auto json = nlohmann::ordered_json::parse(metrics_json, nullptr, false);

@@ -8,9 +8,13 @@
 namespace depthgrid {
 
 // The figures of a metrics.json under their paths there, NaN for null, less what only breaks a
-// figure down: full statistics of an error, other tolerances, confusion, reliability and counts.
+// figure down: full statistics of an error, other tolerances, confusion, reliability, counts of
+// cells and poses.
 // `place` names the text in errors.
 std::vector<std::pair<std::string, double>> MetricColumns(const std::string& metrics_json,
                                                           const std::string& place);
+
+// "|NAME - 1|": how far a score is from the value it should have.
+std::string DistanceName(const std::string& metric, double target);
 
 }  // namespace depthgrid

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 namespace depthgrid {
 namespace {
@@ -80,20 +81,38 @@ void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>
     settings.push_back({grid.axes[axis].numbers[point.values[axis]], {}});
     for (const std::string& seed : seeds) settings.back().by_seed.push_back(by_point[i].at(seed));
   }
-  line.best = FindBestSetting(settings, better, Resamples(seeds.size(), bootstrap));
   const std::vector<double> best_of_seed = BestOfEachSeed(settings, better);
   for (const SettingRuns& setting : settings) {
     line.mean_regret_of_seed.push_back(Mean(Regret(setting.by_seed, best_of_seed, better)));
   }
+  const SeedUnits units = UnitsOf(seeds);
+  line.seeds = units.count();
+  if (!units.crossed().empty()) {
+    for (SettingRuns& setting : settings) setting.by_seed = units.Figures(setting.by_seed);
+  }
+  line.best = FindBestSetting(settings, better, Resamples(line.seeds, bootstrap));
 }
 
 }  // namespace
+
+SeedUnits UnitsOf(const std::vector<std::string>& seeds) {
+  std::vector<std::vector<std::string>> values;
+  for (const std::string& texts : seeds) {
+    values.emplace_back();
+    std::istringstream fields(texts);
+    for (std::string field; fields >> field;) values.back().push_back(field);
+  }
+  return SeedUnits(values);
+}
 
 SweepGrid GridOf(const SweepResults& results) {
   SweepGrid grid;
   std::vector<const SweepParameter*> varied;
   for (const SweepParameter& parameter : results.parameters) {
-    if (parameter.IsSeed()) continue;
+    if (parameter.IsSeed()) {
+      ++grid.seed_axes;
+      continue;
+    }
     varied.push_back(&parameter);
     grid.axes.push_back(AxisOf(parameter));
   }

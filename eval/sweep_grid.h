@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eval/statistics/best_setting.h"
+#include "eval/statistics/seed_units.h"
 #include "eval/sweep/sweep_results.h"
 
 namespace depthgrid {
@@ -21,17 +22,22 @@ struct GridPoint {
 
 struct SweepGrid {
   std::vector<GridAxis> axes;
-  std::vector<GridPoint> points;          // in the sweep's order
+  std::vector<GridPoint> points;  // in the sweep's order
+  std::size_t seed_axes = 0;
   std::vector<std::string> seeds_of_row;  // the texts of all seed axes together
 };
 
 SweepGrid GridOf(const SweepResults& results);
+
+// What varies on its own among runs with these texts of all seed axes.
+SeedUnits UnitsOf(const std::vector<std::string>& seeds);
 
 // One line of the grid along a numeric axis, all other axes held.
 struct GridLine {
   std::vector<std::size_t> points;  // by rising value of the axis
   // Over the seeds that all points of the line have; empty if there are none.
   std::optional<BestSetting> best;
+  std::size_t seeds = 0;  // on which that rests: of crossed ones as many as one of them has
   std::vector<double> mean_regret_of_seed;  // by point: what is lost to the best point of each seed
 };
 

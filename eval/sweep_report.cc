@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <numeric>
 
+#include "eval/metric_columns.h"
 #include "eval/metrics/statistics.h"
 #include "eval/report_json_impl.h"
 #include "eval/shell_word.h"
@@ -45,7 +47,8 @@ int MainRank(const std::string& metric) {
 
 Json Short(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.{}g}", value, kSignificantDigits));
+  // Not stod, which throws for a p-value below 1e-308.
+  return std::strtod(fmt::format("{:.{}g}", value, kSignificantDigits).c_str(), nullptr);
 }
 
 // The intervals' ends wander by about 1 % of the width at 10,000 resamples. What a page has dozens
@@ -90,15 +93,40 @@ Json PointsJson(const SweepGrid& grid) {
   return json;
 }
 
-Json LinesJson(const SweepGrid& grid, std::size_t axis, const SweepColumn& metric,
+// A score as the page shows it.
+struct ShownMetric {
+  std::string name;
+  std::string score;  // that it is of: another name where it is a distance
+  Better better = Better::kLower;
+  std::vector<double> values;
+};
+
+// One that should have a value is there as it is, of which neither more nor less is better, and as
+// its distance from that value, which is better when lower.
+std::vector<ShownMetric> ShownMetrics(const SweepResults& results) {
+  std::vector<ShownMetric> shown;
+  for (const auto& [name, values] : results.metrics) {
+    const bool any =
+        std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    if (!any) continue;
+    const auto target = TargetOf(name);
+    shown.push_back({name, name, target ? Better::kNeither : BetterOf(name), values});
+    if (!target) continue;
+    shown.push_back({DistanceName(name, *target), name, Better::kLower, values});
+    for (double& value : shown.back().values) value = std::abs(value - *target);
+  }
+  return shown;
+}
+
+Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metric,
                const BootstrapOptions& bootstrap) {
   Json json = Json::array();
-  for (const GridLine& line :
-       LinesAlong(grid, axis, metric.values, BetterOf(metric.name), bootstrap)) {
+  for (const GridLine& line : LinesAlong(grid, axis, metric.values, metric.better, bootstrap)) {
     if (!line.best) continue;
     const BestSetting& best = *line.best;
     Json one = {{"points", line.points},
                 {"best", best.index},
+                {"seeds", line.seeds},
                 {"low", best.setting_interval.low},
                 {"high", best.setting_interval.high}};
     for (std::size_t i = 0; i < line.points.size(); ++i) {
@@ -113,19 +141,26 @@ Json LinesJson(const SweepGrid& grid, std::size_t axis, const SweepColumn& metri
 }
 
 // What one grid point gives, over its seeds.
-void AddPoint(const GridPoint& point, const std::vector<double>& values,
+void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<double>& values,
               std::map<std::size_t, Resamples>& resamples, const BootstrapOptions& bootstrap,
               Json& json) {
   std::vector<double> sample;
+  std::vector<std::string> seeds;
   for (const std::size_t row : point.rows) {
-    if (std::isfinite(values[row])) sample.push_back(values[row]);
+    if (!std::isfinite(values[row])) continue;
+    sample.push_back(values[row]);
+    seeds.push_back(grid.seeds_of_row[row]);
   }
   Json mean, median, low, high;
   if (!sample.empty()) {
-    const auto table = resamples.try_emplace(sample.size(), sample.size(), bootstrap).first;
     mean = Short(std::accumulate(sample.begin(), sample.end(), 0.0) /
                  static_cast<double>(sample.size()));
     median = Short(Percentile(sample, 0.5));
+    if (grid.seed_axes > 1) {
+      const SeedUnits units = UnitsOf(seeds);
+      if (!units.crossed().empty()) sample = units.Figures(sample);
+    }
+    const auto table = resamples.try_emplace(sample.size(), sample.size(), bootstrap).first;
     if (const auto interval = MeanInterval(sample, table->second)) {
       low = Short(interval->low);
       high = Short(interval->high);
@@ -137,23 +172,33 @@ void AddPoint(const GridPoint& point, const std::vector<double>& values,
   json["high"].push_back(high);
 }
 
+const char* NameOf(Better better) {
+  switch (better) {
+    case Better::kLower:
+      return "lower";
+    case Better::kHigher:
+      return "higher";
+    case Better::kNeither:
+      break;
+  }
+  return "neither";
+}
+
 Json MetricsJson(const SweepResults& results, const SweepGrid& grid) {
   std::map<std::size_t, Resamples> main_resamples;  // by number of seeds
   std::map<std::size_t, Resamples> other_resamples;
   Json json = Json::array();
-  for (const SweepColumn& metric : results.metrics) {
-    const bool any = std::any_of(metric.values.begin(), metric.values.end(),
-                                 [](double v) { return std::isfinite(v); });
-    if (!any) continue;
+  for (const ShownMetric& metric : ShownMetrics(results)) {
     const bool is_main = MainRank(metric.name) > 0;
     const BootstrapOptions bootstrap = BootstrapFor(results, is_main);
     auto& resamples = is_main ? main_resamples : other_resamples;
     Json one = {{"name", metric.name},
+                {"score", metric.score},
                 {"resamples", bootstrap.resamples},
-                {"better", BetterOf(metric.name) == Better::kHigher ? "higher" : "lower"},
+                {"better", NameOf(metric.better)},
                 {"main", MainRank(metric.name)}};
     for (const GridPoint& point : grid.points) {
-      AddPoint(point, metric.values, resamples, bootstrap, one);
+      AddPoint(grid, point, metric.values, resamples, bootstrap, one);
     }
     if (is_main) {
       for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) {
@@ -205,6 +250,10 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   json["seed_keys"] = Json::array();
   for (const SweepParameter& parameter : results.parameters) {
     if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
+  }
+  if (grid.seed_axes > 1) {
+    const SeedUnits units = UnitsOf(grid.seeds_of_row);
+    if (!units.crossed().empty()) json["crossed_seeds"] = units.count();
   }
   json["axes"] = AxesJson(results, grid);
   json["points"] = PointsJson(grid);

@@ -3,6 +3,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/comparison.h"
+#include "eval/metric_columns.h"
 #include "eval/run_collection.h"
 #include "mapper/core/error.h"
 
@@ -24,12 +25,24 @@ std::vector<Condition> ConditionsOf(const std::vector<std::string>& both,
   return conditions;
 }
 
-const char* TextOf(Verdict verdict) {
-  switch (verdict) {
+// The test goes by ranks: a few large differences the other way can turn the mean.
+std::string BetterByRanks(const char* side, bool mean_agrees) {
+  return fmt::format("{} better{}", side, mean_agrees ? "" : " by ranks, not by the mean");
+}
+
+std::string TextOf(const MetricComparison& c) {
+  const bool mean_is_higher = c.paired.mean_difference > 0.0;
+  const bool ranks_are_higher = c.paired.wilcoxon.rank_biserial > 0.0;
+  const bool mean_agrees = mean_is_higher == ranks_are_higher;
+  switch (c.verdict) {
     case Verdict::kABetter:
-      return "A better";
+      return BetterByRanks("A", mean_agrees);
     case Verdict::kBBetter:
-      return "B better";
+      return BetterByRanks("B", mean_agrees);
+    case Verdict::kAHigher:
+      return "A higher";
+    case Verdict::kBHigher:
+      return "B higher";
     case Verdict::kTooFew:
       return "too few pairs";
     case Verdict::kNotToldApart:
@@ -38,23 +51,47 @@ const char* TextOf(Verdict verdict) {
   return "not told apart";
 }
 
+const char* TextOf(Better better) {
+  switch (better) {
+    case Better::kLower:
+      return "lower";
+    case Better::kHigher:
+      return "higher";
+    case Better::kNeither:
+      break;
+  }
+  return "-";
+}
+
 std::vector<std::string> RowOf(const MetricComparison& c) {
   const PairedComparison& p = c.paired;
   const std::string interval =
       p.mean_interval
           ? fmt::format("[{}, {}]", Short(p.mean_interval->low), Short(p.mean_interval->high))
           : "-";
-  return {c.metric,
-          c.better == Better::kHigher ? "higher" : "lower",
+  // Of a score that should have a value its distance from it is compared.
+  const std::string what = c.target ? DistanceName(c.metric, *c.target) : c.metric;
+  return {what,
+          TextOf(c.better),
           Short(p.mean_a),
           Short(p.mean_b),
           fmt::format("{:+.4g}", p.mean_difference),
           interval,
-          fmt::format("{}:{}", p.a_wins, p.b_wins),
+          c.better == Better::kNeither ? "-" : fmt::format("{}:{}", p.a_wins, p.b_wins),
           fmt::format("{:.3g}", p.wilcoxon.p_value),
           fmt::format("{:.3g}", c.p_holm),
           c.seeds_needed ? std::to_string(*c.seeds_needed) : "-",
-          TextOf(c.verdict)};
+          TextOf(c)};
+}
+
+void PrintLeftOut(const Comparison& comparison) {
+  const auto print = [](const std::vector<std::string>& names, const char* why) {
+    if (names.empty()) return;
+    fmt::print("\n{} left out, {}: {}\n", Counted(names.size(), "score"), why,
+               fmt::join(names, ", "));
+  };
+  print(comparison.all_equal, "the same on both sides in every pair");
+  print(comparison.without_direction, "of which neither more nor less is better");
 }
 
 void PrintTable(const Comparison& comparison, const CompareArguments& arguments) {
@@ -63,14 +100,18 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
   if (!comparison.paired_by.empty()) {
     fmt::print(", paired by {}", fmt::join(comparison.paired_by, ", "));
   }
-  if (comparison.units < comparison.pairs) {
+  if (!comparison.crossed_seeds.empty()) {
+    fmt::print("; {} are crossed: as sure as {}", fmt::join(comparison.crossed_seeds, " and "),
+               Counted(comparison.units, "seed"));
+  } else if (comparison.units < comparison.pairs) {
     fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
   }
   std::vector<std::vector<std::string>> rows = {{"metric", "better", "A", "B", "B - A",
                                                  "95 % interval", "wins A:B", "p", "p Holm",
                                                  "seeds needed", "verdict"}};
   for (const MetricComparison& compared : comparison.metrics) rows.push_back(RowOf(compared));
-  fmt::print("\n\n{}", Table(rows));
+  fmt::print("\n\n{}", comparison.metrics.empty() ? "" : Table(rows));
+  PrintLeftOut(comparison);
   const int most = comparison.most_rows;
   if (most > 0 && most < static_cast<int>(comparison.metrics.size())) {
     fmt::print(
@@ -90,7 +131,8 @@ void CompareRuns(const CompareArguments& arguments) {
   const SweepResults a = ReadRuns(arguments.a);
   const SweepResults b = ReadRuns(arguments.b);
   const Comparison comparison = Compare(a, b, options);
-  if (comparison.metrics.empty()) {
+  if (comparison.metrics.empty() && comparison.all_equal.empty() &&
+      comparison.without_direction.empty()) {
     throw InputError(arguments.b, "shares no score that is defined with " + arguments.a);
   }
   if (arguments.json) {

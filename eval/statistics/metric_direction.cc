@@ -2,18 +2,52 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
 
 namespace depthgrid {
+namespace {
+
+bool ContainsAny(std::string_view text, std::span<const std::string_view> words) {
+  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+    return text.find(word) != std::string_view::npos;
+  });
+}
+
+bool IsDescription(std::string_view metric, std::string_view last) {
+  constexpr std::array<std::string_view, 2> kGroups = {"wall_thickness.", "truthless"};
+  constexpr std::array<std::string_view, 6> kCounts = {"cells",      "pairs",   "planned",
+                                                       "collisions", "samples", "reference_path_m"};
+  return ContainsAny(metric, kGroups) || last.ends_with("_cells") || last.ends_with("_poses") ||
+         std::find(kCounts.begin(), kCounts.end(), last) != kCounts.end();
+}
+
+}  // namespace
+
+std::optional<double> TargetOf(std::string_view metric) {
+  // A planned way shorter than the shortest true one leads through walls.
+  constexpr std::array<std::pair<std::string_view, double>, 8> kTargets = {
+      {{"nis.mean", 1.0},
+       {"nees.mean", 1.0},
+       {".within_95", 0.95},
+       {".sim3_scale", 1.0},
+       {".registered.x_m", 0.0},
+       {".registered.y_m", 0.0},
+       {".registered.yaw_rad", 0.0},
+       {".length_ratio", 1.0}}};
+  for (const auto& [ending, target] : kTargets) {
+    if (metric.ends_with(ending)) return target;
+  }
+  return std::nullopt;
+}
 
 Better BetterOf(std::string_view metric) {
-  constexpr std::array<std::string_view, 10> kHigher = {"precision", "recall",   "f1",   "iou",
-                                                        "mcc",       "coverage", "ssim", "success",
-                                                        "accuracy",  "within"};
+  constexpr std::array<std::string_view, 9> kHigher = {
+      "precision", "recall", "f1", "iou", "mcc", "coverage", "ssim", "success", "accuracy"};
   const std::string_view last = metric.substr(metric.rfind('.') + 1);
-  const bool higher = std::any_of(kHigher.begin(), kHigher.end(), [&](std::string_view name) {
-    return last.find(name) != std::string_view::npos;
-  });
-  return higher ? Better::kHigher : Better::kLower;
+  if (TargetOf(metric)) return Better::kLower;
+  if (IsDescription(metric, last)) return Better::kNeither;
+  return ContainsAny(last, kHigher) ? Better::kHigher : Better::kLower;
 }
 
 }  // namespace depthgrid

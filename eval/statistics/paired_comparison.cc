@@ -13,6 +13,7 @@ PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<d
   PairedComparison result;
   for (std::size_t i = 0; i < a.size(); ++i) {
     differences.push_back(b[i] - a[i]);
+    if (better == Better::kNeither) continue;
     const double b_is_worse = better == Better::kLower ? differences[i] : -differences[i];
     result.a_wins += b_is_worse > 0.0 ? 1 : 0;
     result.b_wins += b_is_worse < 0.0 ? 1 : 0;

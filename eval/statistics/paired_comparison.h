@@ -6,7 +6,7 @@
 
 namespace depthgrid {
 
-enum class Better { kLower, kHigher };
+enum class Better { kLower, kHigher, kNeither };
 
 struct PairedComparison {
   int pairs = 0;
@@ -16,7 +16,7 @@ struct PairedComparison {
   double median_difference = 0.0;                   // b - a
   double std_difference = 0.0;                      // of the sample; 0 for one pair
   std::optional<ConfidenceInterval> mean_interval;  // of the mean difference; empty for one pair
-  int a_wins = 0;                                   // pairs in which a is better
+  int a_wins = 0;  // pairs in which a is better; none where neither is
   int b_wins = 0;
   WilcoxonResult wilcoxon;  // of b - a
 };

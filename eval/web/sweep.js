@@ -6,14 +6,14 @@ function subtitle() {
   const seeds = Math.max(...POINTS.map((p) => p.runs));
   // Axes that are not crossed with each other: the number of points says more.
   const crossed = AXES.reduce((product, axis) => product * axis.texts.length, 1) === POINTS.length;
-  const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [`${seeds} seeds`] : [])].join(" x ");
+  const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [SWEEP.seed_keys.length > 1 ? `${seeds} of ${SWEEP.seed_keys.join(", ")}` : `${seeds} seeds`] : [])].join(" x ");
   const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} runs` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
   byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
 }
 
 function headline() {
   const card = (value, text) => make("div", { class: "card" }, make("b", {}, value), make("span", {}, text));
-  const best = metric.mean.reduce((found, value, i) => (isNumber(value) && (found < 0 || isBetter(value, metric.mean[found])) ? i : found), -1);
+  const best = metric.better === "neither" ? -1 : metric.mean.reduce((found, value, i) => (isNumber(value) && (found < 0 || isBetter(value, metric.mean[found])) ? i : found), -1);
   const rough = (value, unit = true) => (unit ? withUnit : compact)(Number(value.toPrecision(3)));
   const cards = [];
   if (best >= 0) {
@@ -31,7 +31,7 @@ function headline() {
     if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), "regret: its mean loss to the best value of each seed"));
   }
   byId("headline").replaceChildren(...cards);
-  byId("direction").textContent = `${metric.better} is better`;
+  byId("direction").textContent = aimText();
 }
 
 function initFailures() {

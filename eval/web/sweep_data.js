@@ -1,20 +1,24 @@
 // What the parts of a sweep's page share: its data, the chosen metric, and choosing grid points.
 "use strict";
 const SWEEP = JSON.parse(byId("data").textContent);
+// Counts and seeds in full.
+const exact = (value) => (Number.isInteger(value) ? String(value) : compact(value));
 // `texts` are as they were set, `labels` as they are shown.
-const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(compact) : axis.texts }));
+const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : axis.texts }));
 const POINTS = SWEEP.points;
 
 // Metrics as they are shown.
 const METRICS = SWEEP.metrics.map((metric) => {
-  const suited = suitedUnit(metric.name, metric.mean);
+  const suited = suitedUnit(metric.score, metric.mean);
+  const label = metric.name.replace(metric.score, () => suited.label);  // a distance keeps its bars
   const scale = (values) => values.map((v) => (v === null ? null : v * suited.factor));
-  return { ...metric, ...suited, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
-}).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.name.localeCompare(b.name));
+  return { ...metric, ...suited, label, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
+}).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.score.localeCompare(b.score) || a.name.length - b.name.length);
 let metric = METRICS[0];
 const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m.unit ? ` ${m.unit}` : ""}` : "–");
 const metricLabel = (m = metric) => (m.unit ? `${m.label} (${m.unit})` : m.label);
-const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : a < b);
+const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : m.better === "lower" && a < b);
+const aimText = (m = metric) => (m.better === "neither" ? "neither more nor less is better" : `${m.better} is better`);
 
 // The axis a reader comes for: the numeric one of the most values, the gain before others of as many.
 function mainAxis() {

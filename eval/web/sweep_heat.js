@@ -54,6 +54,7 @@ function bestOfColumns(cells) {
   const lines = AXES[heat.y].numeric ? linesAlong(heat.y) : [];
   const numberRow = (value) => AXES[heat.y].numbers.reduce((best, v, k, all) => (Math.abs(v - value) < Math.abs(all[best] - value) ? k : best), 0);
   return cells.map((column) => {
+    if (metric.better === "neither") return null;
     let row = -1;
     column.forEach((cell, r) => { if (cell && (row < 0 || isBetter(cell.mean, column[row].mean))) row = r; });
     if (row < 0) return null;
@@ -61,6 +62,9 @@ function bestOfColumns(cells) {
     return line ? { row, low: numberRow(line.low), high: numberRow(line.high) } : { row };
   });
 }
+
+// The better the yellower; of what has no better side, the more.
+const heatColour = (share) => (metric.better === "lower" ? 1 - share : share);
 
 function heatPicture(cells, best, width) {
   const [columns, rows] = [cells.length, cells[0].length];
@@ -73,7 +77,7 @@ function heatPicture(cells, best, width) {
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
   // A few bad corners must not make all else one colour: colours follow the rank of the value.
   const rank = (value) => (sorted.length < 2 ? 0.5 : sorted.filter((v) => v < value).length / (sorted.length - 1));
-  const shade = (value) => viridis(metric.better === "higher" ? rank(value) : 1 - rank(value));
+  const shade = (value) => viridis(heatColour(rank(value)));
   const u = (c) => edge.left + c * w;
   const v = (r) => height - edge.bottom - (r + 1) * h;
   const every = (count, size, need) => Math.max(1, Math.ceil(need / size), Math.ceil(count / 40));
@@ -176,7 +180,7 @@ const heatKeyText = (value) => withUnit(Number(value.toPrecision(3)));
 function drawHeatKey(context, left, top, height, texts) {
   for (let i = 0; i < height; ++i) {
     const share = 1 - i / height;
-    context.fillStyle = rgb(viridis(metric.better === "higher" ? share : 1 - share));
+    context.fillStyle = rgb(viridis(heatColour(share)));
     context.fillRect(left, top + i, 14, 1.5);
   }
   context.fillStyle = colour("muted");
@@ -199,7 +203,7 @@ function sayCell(cells, best) {
   const place = `${AXES[heat.x].key} ${HEAT_AXES[heat.x].labels[c]}, ${AXES[heat.y].key} ${HEAT_AXES[heat.y].labels[r]}: `;
   const value = !cell ? "no result" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points` : `${withUnit(cell.mean)}${spreadOf(cell.point)}`;
   const line = best[c] ? ` Best there: ${HEAT_AXES[heat.y].labels[best[c].row]}.` : "";
-  byId("heat-note").textContent = `${place}${value}.${line} Red: the best ${AXES[heat.y].key} of each column${best.some((b) => b && isNumber(b.low) && b.low !== b.high) ? ", the bar its 95 % interval" : ""}. Colours by rank, yellow is better.`;
+  byId("heat-note").textContent = `${place}${value}.${line}${best.some(Boolean) ? ` Red: the best ${AXES[heat.y].key} of each column${best.some((b) => b && isNumber(b.low) && b.low !== b.high) ? ", the bar its 95 % interval" : ""}.` : ""} Colours by rank, yellow is ${metric.better === "neither" ? "more" : "better"}.`;
 }
 
 function drawHeat() {

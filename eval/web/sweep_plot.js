@@ -79,8 +79,9 @@ function drawAlong() {
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
   const seeds = Math.max(...POINTS.map((p) => p.runs));
-  byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} seeds` : "one seed"}. ` +
+  byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}. ` +
     (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples). ` : "") +
+    (SWEEP.crossed_seeds ? `${SWEEP.seed_keys.join(" and ")} are crossed: it is as sure as ${SWEEP.crossed_seeds} seeds. ` : "") +
     (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
   drawBest();
 }
@@ -105,7 +106,7 @@ function drawBest() {
   byId("best-section").hidden = !lines.length;
   byId("regret").replaceChildren();
   if (!lines.length) return;
-  byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${metric.better} is better). The interval is that of the best value over resampled seeds; ` +
+  byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
     "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
@@ -118,8 +119,8 @@ function drawBest() {
     return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
       percent(line.share_best[line.best]),
       `${mean} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
-      !canTell(line, p.runs) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
-      compact(Number((line.regret_of_seed[line.best] * metric.factor).toPrecision(3))), String(p.runs)];
+      !canTell(line, line.seeds) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
+      compact(Number((line.regret_of_seed[line.best] * metric.factor).toPrecision(3))), String(line.seeds)];
   });
   const inUnit = metric.unit ? `, ${metric.unit}` : "";
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);

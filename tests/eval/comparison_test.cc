@@ -92,6 +92,74 @@ TEST(Compare, PairsOfOneSeedCountAsOne) {
   EXPECT_EQ(c.metrics[0].verdict, Verdict::kTooFew);
 }
 
+// Two times two seeds are no four: differences that hang on the one or the other are seen twice.
+TEST(Compare, CrossedSeedsCountAsManyAsOneOfThemHas) {
+  SweepResults a, b;
+  for (SweepResults* side : {&a, &b}) {
+    side->folder = "sweep";
+    side->parameters = {{"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
+    side->metrics = {{kError, {}}};
+    for (int slam = 1; slam <= 8; ++slam) {
+      for (int depth = 1; depth <= 9; ++depth) {
+        side->runs.push_back(static_cast<int>(side->rows()));
+        side->points.push_back(0);
+        side->failures.emplace_back();
+        side->parameters[0].texts.push_back(std::to_string(slam));
+        side->parameters[1].texts.push_back(std::to_string(depth));
+        for (SweepParameter& p : side->parameters) p.numbers.push_back(0.0);
+        side->metrics[0].values.push_back(side == &a ? 1.0 : 2.0 + 0.01 * slam * depth);
+      }
+    }
+  }
+  const Comparison c = Compare(a, b, {});
+  EXPECT_EQ(c.pairs, 72);
+  EXPECT_EQ(c.units, 8);
+  EXPECT_THAT(c.crossed_seeds, ElementsAre("slam_seed", "depth_seed"));
+  EXPECT_EQ(c.metrics[0].paired.pairs, 8);
+  EXPECT_NEAR(c.metrics[0].paired.wilcoxon.p_value, 2.0 / 256, 1e-12);
+}
+
+// 2^53 + 1 and 2^53 are one number to a double.
+TEST(Compare, LargeSeedsStayApart) {
+  SweepResults a = Sweep({{"0.5", {1, 2}}});
+  a.parameters[1].texts = {"9007199254740992", "9007199254740993"};
+  a.parameters[1].numbers = {9007199254740992.0, 9007199254740992.0};
+  CompareOptions options;
+  EXPECT_EQ(Compare(a, a, options).pairs, 2);
+  options.where_a = options.where_b = {{"seed", "9007199254740993"}};
+  const Comparison c = Compare(a, a, options);
+  EXPECT_EQ(c.pairs, 1);
+  EXPECT_EQ(c.metrics[0].paired.mean_a, 2.0);
+}
+
+// A scale of 0.5 is as far from 1 as 1.5 is; a count has no better side, and `all` no row of it.
+TEST(Compare, ScoresWithATargetAndWithoutADirection) {
+  SweepResults a = Sweep({{"1", {0.5, 0.6, 0.7, 0.8, 0.4, 0.3}}});
+  SweepResults b = Sweep({{"1", {1.1, 1.2, 0.9, 0.9, 1.1, 1.3}}});
+  for (SweepResults* side : {&a, &b}) {
+    side->metrics[0].name = "trajectory.est.sim3_scale";
+    side->metrics[1].name = "map.navigability.pairs";
+    side->metrics.push_back({"map.chamfer_m", std::vector<double>(6, 0.25)});
+  }
+  CompareOptions options;
+  options.metrics = {"all"};
+  const Comparison c = Compare(a, b, options);
+  ASSERT_EQ(c.metrics.size(), 1U);
+  EXPECT_EQ(c.metrics[0].target, 1.0);
+  EXPECT_NEAR(c.metrics[0].paired.mean_a, 0.45, 1e-12);
+  EXPECT_NEAR(c.metrics[0].paired.mean_b, 0.9 / 6, 1e-12);
+  EXPECT_EQ(c.metrics[0].paired.b_wins, 6);
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kBBetter);  // of one row; p = 2 / 64
+  EXPECT_THAT(c.without_direction, ElementsAre("map.navigability.pairs"));
+  EXPECT_THAT(c.all_equal, ElementsAre("map.chamfer_m"));
+  options.metrics = {"map.navigability.pairs"};
+  const Comparison asked = Compare(a, b, options);
+  EXPECT_EQ(asked.metrics[0].better, Better::kNeither);
+  EXPECT_EQ(asked.metrics[0].paired.a_wins + asked.metrics[0].paired.b_wins, 0);
+  EXPECT_EQ(asked.metrics[0].verdict, Verdict::kAHigher);
+  EXPECT_TRUE(asked.without_direction.empty());
+}
+
 // Rooms of one seed are all that varies.
 TEST(Compare, OfOneSeedEachPairCounts) {
   std::vector<std::pair<std::string, std::vector<double>>> one_a, one_b;
@@ -197,6 +265,24 @@ TEST_F(ProgramCompare, FoldersOfRuns) {
   const Outcome single = Program("compare a/0 b/0");
   EXPECT_EQ(single.exit_code, 0) << single.err;
   EXPECT_THAT(single.out, HasSubstr("too few pairs"));
+}
+
+TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
+  // One large difference outweighs nine small ones in the mean, not in the ranks.
+  WriteRuns("a", {1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+  WriteRuns("b", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, -20});
+  const std::string metric = std::string(" --metric ") + kError;
+  EXPECT_THAT(Program("compare a b" + metric).out, HasSubstr("not told apart\n"));
+  WriteRuns("b", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2});
+  EXPECT_THAT(Program("compare a b" + metric).out, HasSubstr("A better\n"));
+  WriteRuns("c", std::vector<double>(14, 1.0));
+  WriteRuns("d", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2, 2.1, 2.2, 2.3, -20});
+  EXPECT_THAT(Program("compare c d" + metric).out,
+              HasSubstr("A better by ranks, not by the mean\n"));
+  const Outcome same = Program("compare a a --metric all");
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
+                                  "trajectory.est.mean_euclidean_m\n"));
 }
 
 TEST_F(ProgramCompare, Refusals) {

@@ -277,6 +277,14 @@ TEST_F(ReportPage, ItsCommandsRepeatTheRunsOfASweep) {
     const auto metrics = nlohmann::json::parse(ReadFile(Path(folder + "/metrics.json")));
     EXPECT_EQ(metrics["trajectory"]["slam"]["mean_euclidean_m"], errors[row]) << command;
   }
+  EXPECT_EQ(browser_->Evaluate("columnsOf('runs').find((c) => c.title === 'seed').text(0)"),
+            "9007199254740993");
+  // What should be 1 is judged by its distance from it.
+  const auto better = [&](const std::string& metric) {
+    return browser_->Evaluate("METRICS.find((m) => m.name === '" + metric + "').better");
+  };
+  EXPECT_EQ(better("trajectory.slam.sim3_scale"), "neither");
+  EXPECT_EQ(better("|trajectory.slam.sim3_scale - 1|"), "lower");
   EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "eval/statistics/metric_direction.h"
@@ -57,6 +58,33 @@ TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
   EXPECT_EQ(grid.points[1].values, (std::vector<std::size_t>{2, 1}));  // gain 1, calm
   EXPECT_EQ(grid.points[1].rows, (std::vector<std::size_t>{3, 5}));    // 4 failed
   EXPECT_EQ(grid.seeds_of_row[5], "3");
+}
+
+// Two seeds of the one with two of the other are no four.
+TEST(SweepGrid, CrossedSeedsCountAsManyAsOneOfThemHas) {
+  SweepResults table;
+  table.parameters = {
+      {"mapper.fusion.gain", {}, {}}, {"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
+  std::vector<double> errors;
+  for (int run = 0; run < 8; ++run) {
+    table.runs.push_back(run);
+    table.points.push_back(run / 4);
+    table.failures.emplace_back();
+    const std::array<int, 3> values = {run / 4, run / 2 % 2, run % 2};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      table.parameters[i].texts.push_back(std::to_string(values[i]));
+      table.parameters[i].numbers.push_back(values[i]);
+    }
+    errors.push_back(run);
+  }
+  const SweepGrid grid = GridOf(table);
+  EXPECT_EQ(grid.seed_axes, 2U);
+  const auto lines = LinesAlong(grid, 0, errors, Better::kLower, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].seeds, 2U);
+  EXPECT_EQ(lines[0].best->setting, 0.0);
+  EXPECT_NEAR(lines[0].best->regret_mean[1], 4.0, 1e-12);
+  EXPECT_NEAR(lines[0].best->p_as_good[1], 0.5, 1e-12);  // 2 / 2^2
 }
 
 TEST(SweepGrid, FindsTheBestOfEachLineOverSharedSeeds) {

@@ -1,0 +1,60 @@
+// What is wanted of each score that a sweep has.
+#include "eval/statistics/metric_direction.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "eval/sweep/sweep_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::string AimOf(const std::string& metric) {
+  if (const auto target = TargetOf(metric)) {
+    EXPECT_EQ(BetterOf(metric), Better::kLower) << metric;
+    return fmt::format("{}", *target);
+  }
+  const Better better = BetterOf(metric);
+  return better == Better::kLower ? "lower" : better == Better::kHigher ? "higher" : "neither";
+}
+
+TEST(MetricDirection, OfEveryScoreOfASweep) {
+  std::map<std::string, std::vector<std::string>> by_aim;
+  for (const std::string& metric : SweepMetricNames()) {
+    // Three trajectories, and cells of two kinds, are named alike.
+    if (metric.starts_with("trajectory.slam") || metric.starts_with("trajectory.online")) continue;
+    if (metric.starts_with("map.all.")) continue;
+    by_aim[AimOf(metric)].push_back(metric);
+  }
+  EXPECT_THAT(by_aim["0"],
+              ElementsAre("map.registered.x_m", "map.registered.y_m", "map.registered.yaw_rad"));
+  EXPECT_THAT(by_aim["0.95"],
+              ElementsAre("consistency.nis.within_95", "consistency.nees.within_95"));
+  EXPECT_THAT(by_aim["1"], ElementsAre("trajectory.est.sim3_scale", "map.navigability.length_ratio",
+                                       "consistency.nis.mean", "consistency.nees.mean"));
+  EXPECT_THAT(by_aim["neither"],
+              ElementsAre("trajectory.est.reference_path_m", "map.wall_thickness.mean_m",
+                          "map.wall_thickness.p95_m", "map.true_wall_thickness.mean_m",
+                          "map.true_wall_thickness.p95_m", "map.calibration.cells",
+                          "map.truthless.occupied_share", "map.truthless.corners",
+                          "map.truthless.enclosed_areas", "map.truthless_of_truth.occupied_share",
+                          "map.truthless_of_truth.corners", "map.truthless_of_truth.enclosed_areas",
+                          "map.navigability.pairs", "map.navigability.planned",
+                          "map.navigability.collisions"));
+  for (const std::string& metric : by_aim["higher"]) {
+    EXPECT_THAT(metric, testing::ContainsRegex(
+                            "precision$|recall$|f1|iou$|mcc$|coverage$|ssim$|success_rate$"));
+  }
+  for (const std::string& metric : by_aim["lower"]) {
+    EXPECT_THAT(metric, testing::ContainsRegex("_m$|_rad$|_rate$|_error$|brier$|log_loss$|_per_s$"))
+        << metric;
+  }
+  EXPECT_GT(by_aim["higher"].size() + by_aim["lower"].size(), 35U);
+}
+
+}  // namespace
+}  // namespace depthgrid
