@@ -73,9 +73,10 @@ TEST_F(SweepRepeat, GivenKeysAreOfTheSweep) {
   Succeed("sweep ./profiles.yaml --set slam.drift_scale=48.4 -o out");
   const Outcome other = Program("sweep ./profiles.yaml -o out");
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_EQ(other.err,
-            "depthgrid: out: holds a sweep with other keys given: 'slam.drift_scale: 48.4' there, '' "
-            "here; choose another folder, or remove this one\n");
+  EXPECT_EQ(
+      other.err,
+      "depthgrid: out: holds a sweep with other keys given: 'slam.drift_scale: 48.4' there, '' "
+      "here; choose another folder, or remove this one\n");
   Succeed("sweep ./profiles.yaml --set slam.drift_scale=48.40 -o out");
 }
 
@@ -93,6 +94,15 @@ TEST_F(SweepRepeat, TheScaleOfARangeIsOfTheSweep) {
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("'  slam.drift_scale: 0.1 to 10' there, "
                                    "'  slam.drift_scale: 0.1 to 10, log' here"));
+}
+
+// A p-value of thousands of pairs, or a score, can be too small for a double in full.
+TEST_F(SweepRepeat, ThePageTakesTheSmallestNumbers) {
+  std::filesystem::create_directory(Path("out"));
+  SweepDatabase::Create(Path("out"), {{"title", "small"}}, {"mapper.fusion.gain"}, {{0, 0, {"1"}}})
+      .Record({0, "", {{"map.chamfer_m", 1e-310}}, {}});
+  Succeed("report out");
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr("\"mean\":[1e-310]"));
 }
 
 TEST_F(SweepRepeat, KilledWhileItsPlanIsWrittenItGoesOn) {
