@@ -70,8 +70,8 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
   }
   for (const auto& [key, value] : where) {
     const SweepParameter& parameter = table.Parameter(key);
-    std::erase_if(rows,
-                  [&](std::size_t row) { return ValueAt(parameter, row) != ShortestYaml(value); });
+    const std::string wanted = ShortestYaml(value);
+    std::erase_if(rows, [&](std::size_t row) { return ValueAt(parameter, row) != wanted; });
     if (rows.empty()) {
       throw InputError(table.folder, fmt::format("no run has {} = {}", key, value));
     }
