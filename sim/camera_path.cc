@@ -44,31 +44,57 @@ PathPose PoseOf(const Waypoint& waypoint, const TrajectoryOptions& options) {
   return pose;
 }
 
-// The waypoints in the order they are passed, a closed path with padding at both ends; yaw always
-// goes the short way from one to the next.
-std::vector<PathPose> Stations(const TrajectoryOptions& options) {
-  const int count = static_cast<int>(options.waypoints.size());
-  const int padding = options.closed ? kClosedPadding : 0;
-  const int last = options.closed ? static_cast<int>(std::ceil(count * options.laps)) : count - 1;
-  std::vector<PathPose> stations;
-  for (int i = -padding; i <= last + padding; ++i) {
-    const int wrapped = ((i % count) + count) % count;
-    PathPose pose = PoseOf(options.waypoints[static_cast<std::size_t>(wrapped)], options);
-    if (!stations.empty()) {
-      const double before_rad = stations.back().yaw_rad;
-      pose.yaw_rad = before_rad + WrapAngle(pose.yaw_rad - before_rad);
-    }
-    stations.push_back(pose);
-  }
-  return stations;
-}
-
 // Seconds from one station to the next at the bounds, were the way straight.
 double NominalTimeS(const PathPose& a, const PathPose& b, const TrajectoryOptions& options) {
   const double turn_rad = std::hypot(b.yaw_rad - a.yaw_rad, b.pitch_rad - a.pitch_rad);
   return std::max((b.position_m - a.position_m).norm() / options.speed_mps,
                   DegFromRad(turn_rad) / options.turn_rate_dps);
 }
+
+// The waypoints in the order they are passed, each at its nominal second; yaw always goes the short
+// way from one to the next.
+class Stations {
+ public:
+  explicit Stations(const TrajectoryOptions& options) : options_(options) {}
+
+  // Of a closed path any whole number is a waypoint's, negative ones too.
+  void Append(int waypoint) {
+    const int count = static_cast<int>(options_.waypoints.size());
+    const int wrapped = ((waypoint % count) + count) % count;
+    PathPose pose = PoseOf(options_.waypoints[static_cast<std::size_t>(wrapped)], options_);
+    if (poses_.empty()) {
+      u_.push_back(0.0);
+    } else {
+      const double before_rad = poses_.back().yaw_rad;
+      pose.yaw_rad = before_rad + WrapAngle(pose.yaw_rad - before_rad);
+      const double time_s = NominalTimeS(poses_.back(), pose, options_);
+      if (time_s < 1e-6) {
+        throw InputError(options_.place,
+                         "two waypoints in a row are the same, at " + Shown(pose.position_m));
+      }
+      u_.push_back(u_.back() + time_s);
+    }
+    poses_.push_back(pose);
+  }
+  double u() const { return u_.back(); }
+  const std::vector<double>& knots() const { return u_; }
+  // A column each: x y z, of a hand-held path yaw and pitch as well.
+  Eigen::MatrixXd Values() const {
+    const bool planar = options_.kind == TrajectoryKind::kPlanar;
+    Eigen::MatrixXd values(planar ? 3 : 5, static_cast<Eigen::Index>(poses_.size()));
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      values.col(column).head<3>() = poses_[k].position_m;
+      if (!planar) values.col(column).tail<2>() << poses_[k].yaw_rad, poses_[k].pitch_rad;
+    }
+    return values;
+  }
+
+ private:
+  const TrajectoryOptions& options_;
+  std::vector<PathPose> poses_;
+  std::vector<double> u_;
+};
 
 // Above the table everywhere and smooth: the maximum within a window, then a Hann mean of the same
 // width, which never falls below the table as each maximum it averages covers the middle.
@@ -103,30 +129,25 @@ CameraPath::CameraPath(const TrajectoryOptions& options)
 }
 
 void CameraPath::BuildCurve(const TrajectoryOptions& options) {
-  const std::vector<PathPose> stations = Stations(options);
-  const auto count = static_cast<Eigen::Index>(stations.size());
-  std::vector<double> knots = {0.0};
-  Eigen::MatrixXd values(planar_ ? 3 : 5, count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const PathPose& pose = stations[static_cast<std::size_t>(k)];
-    values.col(k).head<3>() = pose.position_m;
-    if (!planar_) values.col(k).tail<2>() << pose.yaw_rad, pose.pitch_rad;
-    if (k == 0) continue;
-    const double time_s = NominalTimeS(stations[static_cast<std::size_t>(k - 1)], pose, options);
-    if (time_s < 1e-6) {
-      throw InputError(options.place,
-                       "two waypoints in a row are the same, at " + Shown(pose.position_m));
-    }
-    knots.push_back(knots.back() + time_s);
-  }
-  const auto padding = static_cast<std::size_t>(options.closed ? kClosedPadding : 0);
-  first_u_ = knots[padding];
-  last_u_ = knots[knots.size() - 1 - padding];
+  const int count = static_cast<int>(options.waypoints.size());
+  const int padding = options.closed ? kClosedPadding : 0;
+  Stations stations(options);
+  int next = -padding;
+  while (next <= 0) stations.Append(next++);
+  first_u_ = stations.u();
+  while (next < count) stations.Append(next++);
+  last_u_ = stations.u();
   if (options.closed) {
-    const double lap_u = knots[padding + options.waypoints.size()] - first_u_;
-    last_u_ = first_u_ + options.laps * lap_u;
+    stations.Append(next++);
+    last_u_ = first_u_ + options.laps * (stations.u() - first_u_);
+    // Waypoints lie unevenly: so many laps may take more stations than their share.
+    constexpr double kRoundingU = 1e-9;
+    while (next <= std::ceil(count * options.laps) || stations.u() < last_u_ - kRoundingU) {
+      stations.Append(next++);
+    }
   }
-  curve_.emplace(std::move(knots), std::move(values));
+  for (int i = 0; i < padding; ++i) stations.Append(next++);
+  curve_.emplace(stations.knots(), stations.Values());
 }
 
 PathPose CameraPath::PoseAt(double u) const {

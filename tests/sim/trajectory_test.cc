@@ -184,6 +184,46 @@ TEST(Trajectory, LapsOverlap) {
   EXPECT_LT(nearest_m, 0.02);
 }
 
+// A closed planar path through places of a circle of 2 m about the origin.
+std::string CirclePath(const std::vector<double>& angles_deg, double laps) {
+  std::string text = "kind: planar\nclosed: true\nlaps: " + std::to_string(laps) + "\nwaypoints:\n";
+  for (const double angle_deg : angles_deg) {
+    const Pose2 at = {2.0 * std::cos(RadFromDeg(angle_deg)), 2.0 * std::sin(RadFromDeg(angle_deg)),
+                      0.0};
+    text += "  - {at: [" + std::to_string(at.x_m) + ", " + std::to_string(at.y_m) + "]}\n";
+  }
+  return text;
+}
+
+TEST(Trajectory, APartOfALapOrSeveralLapsStayOnTheirWay) {
+  std::vector<double> even, uneven;
+  for (int i = 0; i < 20; ++i) even.push_back(18.0 * i);
+  // Most of them within the first 30 degrees.
+  for (int i = 0; i < 30; ++i) uneven.push_back(i);
+  for (int i = 1; i < 12; ++i) uneven.push_back(30.0 * i);
+  int cases = 0;
+  for (const auto& angles_deg : {even, uneven}) {
+    for (const double laps : {0.25, 0.5, 0.9, 1.0, 1.5, 2.0, 2.75}) {
+      const Trajectory trajectory = AtTheBounds(Options(CirclePath(angles_deg, laps)));
+      double turned_rad = 0.0;
+      for (std::size_t i = 0; i < trajectory.size(); ++i) {
+        const auto at = [&](std::size_t k) -> Eigen::Vector2d {
+          return trajectory[k].world_from_camera.translation.head<2>();
+        };
+        ASSERT_NEAR(at(i).norm(), 2.0, 0.01) << laps << " laps, frame " << i;
+        if (i == 0) continue;
+        turned_rad +=
+            WrapAngle(std::atan2(at(i).y(), at(i).x()) - std::atan2(at(i - 1).y(), at(i - 1).x()));
+      }
+      // Chords, which count as the way, are shorter than their arcs by 1.1 % where 30 degrees
+      // apart.
+      EXPECT_NEAR(DegFromRad(turned_rad), 360.0 * laps, 2.0) << laps;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 14);
+}
+
 TEST(Trajectory, RefusesWhatItCannotDo) {
   EXPECT_THAT(TrajectoryRefusal(kHandheld, 100),
               HasSubstr("scene.yaml:2: frames is 100, must be at least "));
