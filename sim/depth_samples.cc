@@ -50,6 +50,9 @@ DepthSamples SampleInPlace(const SampleSource& source, std::size_t first, std::s
 DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, std::size_t count,
                                const NormalBlock& random, float scale) {
   DepthSamples samples = SampleInPlace(source, first, count);
+  // A ray that meets nothing has a cosine of 0, but no angle for the silhouette beside it to be
+  // blurred by: it is blurred as one met squarely.
+  for (float& cosine : samples.cosine) cosine = Select(cosine > 0.0F, cosine, 1.0F);
   const Pixels pixels = PixelsOf(first, source.depth.width_px);
   const auto width = static_cast<std::int32_t>(source.depth.width_px);
   const auto last_u = static_cast<float>(source.depth.width_px - 1);

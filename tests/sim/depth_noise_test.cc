@@ -237,11 +237,20 @@ TEST(DepthNoise, LateralNoiseMovesSilhouettes) {
   // pixel before the first far column.
   constexpr int kWidth = 16, kFrames = 200;
   const auto below = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
-  for (const auto& [model, sigma_px] :
-       {std::pair{DepthNoiseModel::kNguyen, 0.8}, std::pair{DepthNoiseModel::kHanda, 0.5},
-        std::pair{DepthNoiseModel::kAzure, 0.25}}) {
-    SCOPED_TRACE(static_cast<int>(model));
-    const DepthFrame clean = Step(2.0F, 2.6F, kWidth);  // Azure would lose steps above 0.8 m
+  struct Case {
+    DepthNoiseModel model;
+    double sigma_px;
+    float far_m = 2.6F;  // Azure would lose steps above 0.8 m
+  };
+  // Rays that meet nothing have no incidence: the silhouette is blurred as against anything.
+  for (const auto& [model, sigma_px, far_m] :
+       {Case{DepthNoiseModel::kNguyen, 0.8}, Case{DepthNoiseModel::kNguyen, 0.8, kInvalidDepth},
+        Case{DepthNoiseModel::kHanda, 0.5}, Case{DepthNoiseModel::kAzure, 0.25}}) {
+    SCOPED_TRACE(testing::Message() << static_cast<int>(model) << " " << far_m);
+    DepthFrame clean = Step(2.0F, far_m, kWidth);
+    for (std::size_t i = 0; i < clean.depth.z_m.size(); ++i) {
+      if (clean.depth.z_m[i] == kInvalidDepth) clean.incidence_cos[i] = 0.0F;
+    }
     SensorOptions options = Options(model);
     options.width_px = kWidth;
     options.hfov_deg = 2.0;
@@ -251,12 +260,12 @@ TEST(DepthNoise, LateralNoiseMovesSilhouettes) {
       const DepthImage measured = noise.Apply(clean, 1, frame);
       for (int v = 0; v < 480; ++v) {
         for (int u = 0; u < kWidth; ++u) {
-          const bool is_far = measured.At(u, v) > 2.3F;
+          const bool is_far = measured.At(u, v) > 2.3F || measured.At(u, v) == kInvalidDepth;
           crossed[static_cast<std::size_t>(u)] += is_far != (u >= kWidth / 2) ? 1.0 : 0.0;
         }
       }
     }
-    for (int u = 5; u < 11; ++u) {
+    for (int u = 0; u < kWidth; ++u) {
       const double expected = below(-std::abs(u - (kWidth / 2 - 0.5)) / sigma_px);
       const double total = 480.0 * kFrames;
       EXPECT_NEAR(crossed[static_cast<std::size_t>(u)] / total, expected,
