@@ -142,8 +142,8 @@ PinholeCamera SensorCamera(const SensorOptions& options, const std::string& plac
   if (options.hfov_deg > 0) camera.fx_px = camera.fy_px = FocalOf(width_px, options.hfov_deg);
   if (options.fx_px > 0) camera.fx_px = options.fx_px;
   if (options.fy_px > 0) camera.fy_px = options.fy_px;
-  if (options.cx_px >= 0) camera.cx_px = options.cx_px;
-  if (options.cy_px >= 0) camera.cy_px = options.cy_px;
+  if (options.cx_px > -1.0) camera.cx_px = options.cx_px;
+  if (options.cy_px > -1.0) camera.cy_px = options.cy_px;
   Validate(camera, place);
   return camera;
 }

@@ -45,7 +45,7 @@ struct SensorOptions {
   int height_px = 0;
   double fx_px = 0.0;
   double fy_px = 0.0;
-  double cx_px = -1.0;  // -1 keeps the preset: 0 is a possible centre
+  double cx_px = -1.0;  // -1 keeps the preset: 0 is a possible centre, -0.5 the image's edge
   double cy_px = -1.0;
   double hfov_deg = 0.0;
 

@@ -60,6 +60,15 @@ TEST(SensorOptions, ExplicitIntrinsicsWin) {
   EXPECT_EQ(camera.cy_px, 7.5);
 }
 
+TEST(SensorOptions, AnAxisThroughTheImagesEdgeIsOne) {
+  const PinholeCamera camera = SensorCamera(FromYaml("{cx: -0.5, cy: -0.25}"));
+  EXPECT_EQ(camera.cx_px, -0.5);
+  EXPECT_EQ(camera.cy_px, -0.25);
+  const PinholeCamera own = SensorCamera(FromYaml("{camera: tum_fr1, cx: -1, cy: -1}"));
+  EXPECT_EQ(own.cx_px, 318.6);
+  EXPECT_EQ(own.cy_px, 255.3);
+}
+
 TEST(SensorOptions, RangesAreTheModelsUnlessOverridden) {
   EXPECT_EQ(SensorRange(FromYaml("noise: kinect_v2")).max_m, 4.5);
   EXPECT_EQ(SensorRange(FromYaml("{noise: kinect_v2, max_range_m: 3}")).max_m, 3.0);
