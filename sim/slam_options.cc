@@ -26,8 +26,9 @@ void SlamLoopOptions::Visit(OptionsVisitor& v) {
   v.Number("sigma_translation_m", sigma_translation_m, kMetres, "of the measured relative pose");
   v.Number("sigma_rotation_deg", sigma_rotation_deg, kDegrees, "of the measured relative pose");
   v.Flag("follow_false", follow_false, "SLAM's own estimate is bent by its false closures");
-  v.Number("max_distance_m", max_distance_m, {0.0, 10.0}, "a revisit is nearer to the old view");
-  v.Number("max_angle_deg", max_angle_deg, {0.0, 180.0}, "and turned less from it");
+  // Neither is 0: views are compared in these units. The scenario for no loops is `none`.
+  v.Number("max_distance_m", max_distance_m, {0.001, 10.0}, "a revisit is nearer to the old view");
+  v.Number("max_angle_deg", max_angle_deg, {0.01, 180.0}, "and turned less from it");
   v.Number("min_gap_s", min_gap_s, {0.0, 1e6}, "and at least this much later");
   v.Number("repeat_s", repeat_s, {0.1, 1e6}, "a revisit that lasts is offered again after this");
 }

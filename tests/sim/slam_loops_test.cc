@@ -6,6 +6,7 @@
 
 #include "sim/loop_correction.h"
 #include "sim/slam_surrogate.h"
+#include "tests/refusal.h"
 #include "tests/sim/slam_paths.h"
 
 namespace depthgrid {
@@ -58,6 +59,17 @@ double ErrorAt(const Trajectory& truth, const SlamOutput& output, int frame) {
   const auto i = static_cast<std::size_t>(frame);
   return (output.live[i].slam_from_camera->translation - truth[i].world_from_camera.translation)
       .norm();
+}
+
+TEST(SlamLoops, ARevisitOfNoSizeIsRefused) {
+  SlamLoopOptions options;
+  options.max_distance_m = 0.0;
+  EXPECT_EQ(RefusalOf([&] { RequireInRange(options, "slam.loops"); }),
+            "slam.loops.max_distance_m: is 0, must be from 0.001 to 10");
+  options = {};
+  options.max_angle_deg = 0.0;
+  EXPECT_EQ(RefusalOf([&] { RequireInRange(options, "slam.loops"); }),
+            "slam.loops.max_angle_deg: is 0, must be from 0.01 to 180");
 }
 
 TEST(SlamSurrogate, ALoopCorrectsLiveAndFinalAndStartsAnEpoch) {
