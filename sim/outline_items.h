@@ -100,12 +100,27 @@ struct TubeItem {
       throw InputError(
           place, fmt::format("path has {} points, must have at least {}", tube.path.size(), least));
     }
-    for (std::size_t i = 0; i + 1 < tube.path.size(); ++i) {
-      if (tube.path[i] == tube.path[i + 1]) {
-        throw InputError(place, "path has the same point twice in a row");
-      }
-    }
+    RequireWay(tube, place);
     return MakeTube(tube);
+  }
+  // Its points differ from their neighbours, and between two edges there is a direction to go on
+  // in.
+  static void RequireWay(const TubeShape& tube, const std::string& place) {
+    constexpr double kStraightBackCos = -1.0 + 1e-9;
+    const std::size_t count = tube.path.size();
+    const std::size_t edges = tube.closed ? count : count - 1;
+    const auto edge = [&](std::size_t i) -> Eigen::Vector3d {
+      return tube.path[(i + 1) % count] - tube.path[i % count];
+    };
+    for (std::size_t i = 0; i < edges; ++i) {
+      if (edge(i).norm() == 0.0) throw InputError(place, "path has the same point twice in a row");
+    }
+    for (std::size_t i = 0; i + (tube.closed ? 0 : 1) < edges; ++i) {
+      if (edge(i).normalized().dot(edge(i + 1).normalized()) > kStraightBackCos) continue;
+      const Eigen::Vector3d& at = tube.path[(i + 1) % count];
+      throw InputError(
+          place, fmt::format("path turns straight back at [{}, {}, {}]", at.x(), at.y(), at.z()));
+    }
   }
 };
 

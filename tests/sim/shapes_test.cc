@@ -17,6 +17,7 @@
 #include "sim/superellipsoid.h"
 #include "sim/sweep_shapes.h"
 #include "sim/wall.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -134,6 +135,24 @@ TEST(Shapes, TubesFollowTheirPath) {
   EXPECT_TRUE(HasAreaEverywhere(MakeTube(hoop)));
   for (auto& point : hoop.path) point.z() = 0.0;
   ExpectSolid(MakeTube(hoop), 2.0 * kPi * RegularArea(16) * 1e-4, 1e-3);
+}
+
+TriangleMesh Built(const std::string& name, const std::string& text) {
+  Config config = Config::FromText(text, "x");
+  return BuildShape(name, config).mesh;
+}
+
+TEST(Shapes, ATubeThatFoldsBackIsRefused) {
+  const auto refusal = [](const std::string& path) {
+    return RefusalOf([&] { Built("tube", "shape: tube\n" + path); });
+  };
+  EXPECT_EQ(refusal("path: [[0, 0, 0], [0.5, 0, 0], [1, 0, 0], [0.25, 0, 0]]"),
+            "x: path turns straight back at [1, 0, 0]");
+  EXPECT_EQ(refusal("path: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\nclosed: true"),
+            "x: path turns straight back at [2, 0, 0]");
+  EXPECT_EQ(refusal("path: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0]]\nclosed: true"),
+            "x: path has the same point twice in a row");
+  EXPECT_EQ(refusal("path: [[0, 0, 0], [1, 0, 0], [0, 0, 0.001]]"), "no error");
 }
 
 TEST(Shapes, ClothAndLeavesAreThinSolids) {
