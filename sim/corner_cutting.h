@@ -7,9 +7,10 @@
 namespace depthgrid {
 
 // Cuts each corner `rounds` times at a quarter of its edges (Chaikin 1974): tends to a quadratic
-// B-spline. The last point of a closed line joins the first; an open one keeps its ends.
-template <typename Point>
-std::vector<Point> CutCorners(std::vector<Point> line, int rounds, bool closed) {
+// B-spline. The last point of a closed line joins the first; an open one keeps its ends, and either
+// the corners that `is_kept` says.
+template <typename Point, typename IsKept>
+std::vector<Point> CutCorners(std::vector<Point> line, int rounds, bool closed, IsKept is_kept) {
   for (int round = 0; round < rounds; ++round) {
     std::vector<Point> next;
     const std::size_t edges = closed ? line.size() : line.size() - 1;
@@ -17,13 +18,18 @@ std::vector<Point> CutCorners(std::vector<Point> line, int rounds, bool closed) 
     for (std::size_t i = 0; i < edges; ++i) {
       const Point& a = line[i];
       const Point& b = line[(i + 1) % line.size()];
-      if (closed || i > 0) next.emplace_back(0.75 * a + 0.25 * b);
-      if (closed || i + 1 < edges) next.emplace_back(0.25 * a + 0.75 * b);
+      if (closed || i > 0) next.emplace_back(is_kept(a) ? a : Point(0.75 * a + 0.25 * b));
+      if ((closed || i + 1 < edges) && !is_kept(b)) next.emplace_back(0.25 * a + 0.75 * b);
     }
     if (!closed) next.push_back(line.back());
     line = std::move(next);
   }
   return line;
+}
+
+template <typename Point>
+std::vector<Point> CutCorners(std::vector<Point> line, int rounds, bool closed) {
+  return CutCorners(std::move(line), rounds, closed, [](const Point&) { return false; });
 }
 
 }  // namespace depthgrid

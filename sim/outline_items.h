@@ -44,7 +44,9 @@ struct LatheItem {
     if (!IsSimple(corners)) {
       throw InputError(place, "outline must have three corners or more and not cross itself");
     }
-    return Revolve(CutCorners(corners, smooth, true), segments);
+    // A corner on the axis is none of the solid: cut, it would leave a pit there.
+    const auto is_on_axis = [](const Eigen::Vector2d& corner) { return corner.x() == 0.0; };
+    return Revolve(CutCorners(corners, smooth, true, is_on_axis), segments);
   }
 };
 

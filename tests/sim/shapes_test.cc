@@ -142,6 +142,22 @@ TriangleMesh Built(const std::string& name, const std::string& text) {
   return BuildShape(name, config).mesh;
 }
 
+// Rounded where its wall meets top and bottom, as flat as before about the axis.
+TEST(Shapes, ASmoothLatheHasNoPitAtItsAxis) {
+  const TriangleMesh drum =
+      Built("lathe", "shape: lathe\noutline: [[0, 0], [1, 0], [1, 2], [0, 2]]\nsmooth: 3\n");
+  EXPECT_TRUE(IsClosed(drum));
+  int within = 0;
+  for (const Eigen::Vector3f& vertex : drum.vertices) {
+    if (vertex.head<2>().norm() > 0.5F) continue;
+    EXPECT_TRUE(vertex.z() == 0.0F || vertex.z() == 2.0F) << vertex.transpose();
+    ++within;
+  }
+  EXPECT_EQ(within, 2 + 2 * 32);  // the ends of the axis and a ring around each
+  EXPECT_LT(SignedVolume(drum), RegularArea(32) * 2.0);
+  EXPECT_GT(SignedVolume(drum), 0.8 * RegularArea(32) * 2.0);
+}
+
 TEST(Shapes, ATubeThatFoldsBackIsRefused) {
   const auto refusal = [](const std::string& path) {
     return RefusalOf([&] { Built("tube", "shape: tube\n" + path); });
