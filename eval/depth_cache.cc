@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -108,10 +109,16 @@ fs::path DepthCache::EntryOf(const Pose3& world_from_camera, bool with_incidence
   return folder_ / (hash.Hex() + (with_incidence ? "-incidence" : "") + kExtension);
 }
 
-void DepthCache::MakeRoomFor(int frames, bool with_incidence) {
-  const std::uint64_t wanted = static_cast<std::uint64_t>(frames) * BytesOf(with_incidence);
+void DepthCache::MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence) {
+  std::set<fs::path> missing;
+  for (const StampedPose& pose : world_from_camera) {
+    missing.insert(EntryOf(pose.world_from_camera, with_incidence));
+  }
+  // What is about to be loaded neither goes nor asks for room.
   std::vector<Entry> entries = EntriesIn(root_);
-  // Those of this scene and camera last: they are most likely about to be loaded.
+  std::erase_if(entries, [&](const Entry& entry) { return missing.erase(entry.path) > 0; });
+  const std::uint64_t wanted = missing.size() * BytesOf(with_incidence);
+  // Those of this scene and camera last: the next run is likely one of them.
   std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
     const bool a_here = a.path.parent_path() == folder_;
     const bool b_here = b.path.parent_path() == folder_;

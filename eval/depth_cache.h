@@ -10,6 +10,7 @@
 
 #include "mapper/core/camera.h"
 #include "mapper/core/pose3.h"
+#include "mapper/core/trajectory.h"
 #include "sim/depth_camera.h"
 
 namespace depthgrid {
@@ -23,8 +24,8 @@ class DepthCache {
   DepthCache(const std::string& folder, const std::string& scene_hash, const PinholeCamera& camera,
              RayIsa isa, std::uint64_t size_limit_bytes = kDefaultCacheBytes);
 
-  // Removes old entries until `frames` more fit, or nothing is left to remove.
-  void MakeRoomFor(int frames, bool with_incidence);
+  // Removes old entries until all frames of the path fit, or none but theirs is left.
+  void MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence);
 
   // Nothing when the frame is not there, or is damaged. Thread-safe.
   std::optional<DepthFrame> Load(const Pose3& world_from_camera, bool with_incidence) const;

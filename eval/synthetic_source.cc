@@ -13,7 +13,7 @@ SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& op
       trajectory_(world.trajectory) {
   if (cache_folder.empty()) return;
   cache_.emplace(cache_folder, world.scene_hash, world.camera, world.rays.isa());
-  cache_->MakeRoomFor(FrameCount(), noise_.NeedsIncidence());
+  cache_->MakeRoomFor(trajectory_, noise_.NeedsIncidence());
 }
 
 DepthFrame SyntheticSensor::Clean(int frame) const {
