@@ -89,7 +89,7 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
   RunRecord record;
   record.settings = ToYaml(options);
   record.warnings = mapping.warnings;
-  if (world.path_doubt) record.warnings.push_back(*world.path_doubt);
+  record.warnings.insert(record.warnings.end(), world.path_doubts.begin(), world.path_doubts.end());
   record.mapping = &mapping;
   record.slam = &slam;
   record.truth = &truth;

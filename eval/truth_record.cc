@@ -18,12 +18,8 @@ StateMap AsStates(const CellSet& cells) {
 
 }  // namespace
 
-void RequireUsableScans(const World& world, const MapperOptions& options) {
-  DepthToScan(world.camera, options.scan);
-}
-
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads) {
-  RequireUsableScans(world, options);
+  DepthToScan(world.camera, options.scan);  // refuses settings that contradict each other
   const TruthGridOptions band = {options.grid.resolution_m, options.scan.band_low_m,
                                  options.scan.band_high_m};
   ObservableOptions seen;

@@ -17,11 +17,9 @@ struct TruthRecord {
   std::optional<CellSet> observable;
 };
 
-// Throws InputError naming the keys when settings of the scans contradict each other.
-void RequireUsableScans(const World& world, const MapperOptions& options);
-
 // Band, ranges and resolution are the mapper's settings: they say what the map is a map of.
-// `threads` only changes the speed.
+// `threads` only changes the speed. Throws InputError for settings of the scans that contradict
+// each other, naming the keys, and for a path that makes the map absurdly large.
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads);
 
 // truth_map.yaml/.pgm and observable.yaml/.pgm, the latter's free cells being the observable ones.

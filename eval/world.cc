@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <limits>
+#include <optional>
 
 #include "eval/hash.h"
 #include "eval/shipped.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 #include "mapper/io/trajectory_file.h"
+#include "sim/scene_limits.h"
 #include "sim/trajectory.h"
 
 namespace depthgrid {
@@ -70,15 +74,52 @@ void RequireTrajectoryFile(const ExperimentOptions& options) {
   throw InputError(options.trajectory_place, options.trajectory + ": no such file");
 }
 
-Trajectory FromFile(const ExperimentOptions& options) {
+// The line of a trajectory's file that gives this stamp first.
+std::string PlaceOfStamp(const std::string& path, double stamp_s) {
+  const std::string text = ReadFile(path);
+  for (const TextRow& row : SplitRows(text)) {
+    const auto stamp = ParseNumber(row.fields.front());
+    if (stamp && *stamp == stamp_s) return PlaceOfLine(path, row.line);
+  }
+  return path;
+}
+
+// A pose in other units makes the true map, which holds the whole path, larger than memory; frames
+// are named by their stamps.
+void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedBox3d& scene,
+                             const std::string& path) {
+  double before_s = -std::numeric_limits<double>::infinity();
+  for (const auto& [stamp_s, pose] : trajectory) {
+    const Eigen::Vector3d& at = pose.translation;
+    const double away_m = scene.exteriorDistance(at);
+    if (away_m > kMaxSceneExtentM) {
+      throw InputError(
+          PlaceOfStamp(path, stamp_s),
+          fmt::format("the pose at ({:.2f}, {:.2f}, {:.2f}) is {:.0f} m from the scene, must be at "
+                      "most {:.0f} m",
+                      at.x(), at.y(), at.z(), away_m, kMaxSceneExtentM));
+    }
+    if (fmt::format("{:.6f}", stamp_s) == fmt::format("{:.6f}", before_s)) {
+      throw InputError(PlaceOfStamp(path, stamp_s),
+                       fmt::format("stamp {} is that of the pose before it to the microsecond: "
+                                   "frames are named by six decimals",
+                                   stamp_s));
+    }
+    before_s = stamp_s;
+  }
+}
+
+Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d& scene,
+                    std::vector<std::string>& warnings) {
   RequireTrajectoryFile(options);
-  Trajectory trajectory = ReadTrajectory(options.trajectory);
+  Trajectory trajectory = ReadTrajectory(options.trajectory, warnings);
   const auto wanted = static_cast<std::size_t>(options.frames);
   if (wanted > trajectory.size()) {
     throw InputError("frames", fmt::format("is {}, must be at most the {} of {}", wanted,
                                            Counted(trajectory.size(), "pose"), options.trajectory));
   }
   if (wanted > 0) trajectory.resize(wanted);
+  RequireFramesOfTheScene(trajectory, scene, options.trajectory);
   return trajectory;
 }
 
@@ -123,14 +164,19 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
   RayScene rays(scene.mesh, options.sensor.isa, build_threads);
   const PinholeCamera camera = SensorCamera(options.sensor);
-  Trajectory trajectory =
-      IsFile(options.trajectory) ? FromFile(options) : FromScene(scene, rays, options);
-  std::optional<std::string> doubt;
-  if (IsFile(options.trajectory)) doubt = DoubtOfFile(trajectory, scene.mesh, rays, options);
+  std::vector<std::string> doubts;
+  Trajectory trajectory;
+  if (IsFile(options.trajectory)) {
+    trajectory = FromFile(options, BoundsOfMesh(scene.mesh), doubts);
+    const auto doubt = DoubtOfFile(trajectory, scene.mesh, rays, options);
+    if (doubt) doubts.push_back(*doubt);
+  } else {
+    trajectory = FromScene(scene, rays, options);
+  }
   std::string hash = HashOf(scene);
   return {
-      std::move(scene),      std::move(hash), std::move(rays), camera, SensorRange(options.sensor),
-      std::move(trajectory), std::move(doubt)};
+      std::move(scene),      std::move(hash),  std::move(rays), camera, SensorRange(options.sensor),
+      std::move(trajectory), std::move(doubts)};
 }
 
 }  // namespace depthgrid

@@ -1,8 +1,8 @@
 // The true side of an experiment: the room, the camera and where the camera went.
 #pragma once
 
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "eval/experiment_options.h"
 #include "mapper/core/camera.h"
@@ -19,8 +19,9 @@ struct World {
   PinholeCamera camera;
   DepthRange depth_range;
   Trajectory trajectory;
-  // What is amiss with a path that was read from a file, named in it; those of scenes are refused.
-  std::optional<std::string> path_doubt;
+  // What is amiss with a path that was read from a file, which each names; those of scenes are
+  // refused.
+  std::vector<std::string> path_doubts;
 };
 
 // Of the room and the path that an experiment names: another one when any of the files was changed.
@@ -28,7 +29,7 @@ struct World {
 std::string WorldHash(const ExperimentOptions& options);
 
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
-// path that comes too near to geometry.
+// path that comes too near to geometry, and for one of a file that leads out of all reach.
 World LoadWorld(const ExperimentOptions& options, int build_threads);
 
 }  // namespace depthgrid

@@ -9,9 +9,10 @@
 namespace depthgrid {
 namespace {
 
+constexpr double kMaxCells = 2e8;
+
 // Refuses what is surely a mistake of units before memory is asked for it.
 void CheckExtent(const TriangleMesh& mesh, double resolution_m) {
-  constexpr double kMaxCells = 2e8;
   if (mesh.vertices.empty()) return;
   const Eigen::Vector3f size_m = BoundsOf(mesh).sizes();
   const Eigen::Vector3d cells = size_m.cast<double>() / resolution_m;
@@ -83,9 +84,16 @@ StateMap TruthMap(const TriangleMesh& mesh, double floor_z_m, const Trajectory& 
                   const TruthGridOptions& options) {
   const std::vector<Cell> occupied = SurfaceCellList(mesh, floor_z_m, options);
   const std::vector<Cell> path = PathCells(world_from_camera, options.resolution_m);
-  StateMap map =
-      Drawn(Union(BoundsOf(occupied, options.resolution_m), BoundsOf(path, options.resolution_m)),
-            occupied);
+  const GridGeometry geometry =
+      Union(BoundsOf(occupied, options.resolution_m), BoundsOf(path, options.resolution_m));
+  if (static_cast<double>(geometry.size()) > kMaxCells) {
+    throw InputError("truth map",
+                     "the scene and the path are " + std::to_string(geometry.width_cells) + " x " +
+                         std::to_string(geometry.height_cells) + " cells of " +
+                         std::to_string(options.resolution_m) + " m, must be at most " +
+                         std::to_string(static_cast<long>(kMaxCells)) + " cells");
+  }
+  StateMap map = Drawn(geometry, occupied);
   FloodFree(map, path);
   return map;
 }

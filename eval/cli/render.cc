@@ -45,9 +45,10 @@ void Render(const RenderArguments& arguments) {
   const std::string cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
-  if (world.path_doubt) Warn({*world.path_doubt});
+  Warn(world.path_doubts);
   const ExperimentOptions options = Completed(given, world.scene);
-  RequireUsableScans(world, options.mapper);  // they set the true map's band: now, not at the end
+  // Whatever it refuses, now and not at the end.
+  const TruthRecord truth = MakeTruth(world, options.mapper, threads);
   const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   {
@@ -61,7 +62,7 @@ void Render(const RenderArguments& arguments) {
   std::vector<double> stamps_s;
   for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
   writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);
-  WriteTruthMaps(folder.work().string(), MakeTruth(world, options.mapper, threads));
+  WriteTruthMaps(folder.work().string(), truth);
   WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(&world));
   folder.Commit();
   const std::string& output = arguments.common.output;

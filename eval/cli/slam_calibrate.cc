@@ -12,7 +12,7 @@ namespace depthgrid::cli {
 void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   const ExperimentOptions options = ExperimentOrScene(arguments.experiment, arguments.common.set);
   const World world = LoadWorld(options, ThreadsOr(arguments.common.threads));
-  if (world.path_doubt) Warn({*world.path_doubt});
+  Warn(world.path_doubts);
   const SeedRange seeds = {arguments.first_seed, arguments.seeds};
   const DriftCalibration found =
       CalibrateDrift(world.trajectory, options.slam, arguments.target_m, seeds);

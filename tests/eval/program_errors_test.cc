@@ -123,34 +123,6 @@ TEST_F(ProgramErrors, TrajectoriesThatDoNotFit) {
   ExpectRefusal("run ./small.yaml --set frames=0 -o out", {"look_around", "from geometry"});
 }
 
-TEST_F(ProgramErrors, AFilesPathThroughAWallIsWarnedOf) {
-  // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
-  const std::string look = " -0.7071068 0 0 0.7071068\n";
-  Write("inside.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look + "0.2 1.5 3.4 1.1" + look);
-  Write("through.txt",
-        "0 1.5 3.0 1.1" + look + "0.1 1.5 3.7 1.1" + look + "0.2 1.5 4.3 1.1" + look);
-  Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
-  const auto said = [&](const std::string& command, const std::string& file) {
-    const Outcome outcome =
-        Program(command + " ./small.yaml -o out --force --set frames=0 --set trajectory=./" + file);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return outcome.err;
-  };
-  Write("beside.txt", "0 9 3.0 1.1" + look + "0.1 9 3.2 1.1" + look);
-  EXPECT_EQ(said("run", "inside.txt"), "");
-  EXPECT_THAT(said("run", "beside.txt"),
-              HasSubstr("beside.txt: frame 0 at (9.00, 3.00, 1.10) is outside the scene"));
-  for (const char* command : {"run", "render --no-colour"}) {
-    EXPECT_THAT(
-        said(command, "through.txt"),
-        AllOf(HasSubstr("depthgrid: warning: /"),
-              HasSubstr("through.txt: frame 2 at (1.50, 4.30, 1.10) is 0.200 m from geometry"),
-              HasSubstr("the path goes through it\n")));
-    EXPECT_THAT(said(command, "near.txt"),
-                HasSubstr("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m from geometry"));
-  }
-}
-
 TEST_F(ProgramErrors, TrajectoriesThatShareNoStamp) {
   Write("a.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
   Write("b.txt", "11 0 0 0 0 0 0 1\n12 1 0 0 0 0 0 1\n");

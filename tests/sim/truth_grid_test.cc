@@ -1,5 +1,6 @@
 #include "sim/truth_grid.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
+#include "tests/refusal.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
@@ -204,6 +206,17 @@ TEST(TruthMap, HoldsThePathAndRefusesMillimetres) {
   EXPECT_EQ(map.geometry.width_cells, 8);
   EXPECT_EQ(map.geometry.height_cells, 7);
   EXPECT_THROW(TruthMap(Wall(0, 0, 5000, 4900), 0.0, Path({{1, 1}}), kOptions), InputError);
+}
+
+TEST(TruthMap, APathOutOfAllReachIsRefused) {
+  const Trajectory path = {{0.0, CameraOf({1.0, 1.0, 0.0}, 1.0)},
+                           {0.1, CameraOf({1e6, 1e6, 0.0}, 1.0)}};
+  const std::string refusal = RefusalOf([&] {
+    TruthMap(test::Box({0, 0, 0}, {4, 3, 2}), 0.0, path, {});
+  });
+  EXPECT_THAT(refusal,
+              testing::HasSubstr("truth map: the scene and the path are 20000001 x 20000001 "
+                                 "cells of 0.05"));
 }
 
 }  // namespace

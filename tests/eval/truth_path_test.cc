@@ -1,0 +1,67 @@
+// Camera paths that are read from a file: what is refused, what is only said.
+#include <gmock/gmock.h>
+
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class TruthPaths : public ProgramTest {};
+
+TEST_F(TruthPaths, AFilesPathOutOfReachIsRefusedAndDamageSaid) {
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  const std::string good = "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look;
+  Write("far.txt", "# stamp pose\n" + good + "0.2 1e6 3.4 1.1" + look);
+  Write("close.txt", good + "0.1000002 1.5 3.4 1.1" + look);
+  Write("nan.txt", good + "0.2 nan 3.3 1.1" + look + "0.3 1.5 3.4 1.1" + look + "oops\n");
+  for (const char* command : {"run", "render --no-colour", "ablate"}) {
+    const std::string with = std::string(command) + " ./small.yaml -o out --set frames=0 --set ";
+    ExpectRefusal(with + "trajectory=./far.txt",
+                  {"far.txt:4: the pose at (1000000.00, 3.40, 1.10) is ",
+                   " m from the scene, must be at most 2000 m\n"});
+    ExpectRefusal(with + "trajectory=./close.txt",
+                  {"close.txt:3: stamp 0.1000002 is that of the pose before it"});
+  }
+  for (const char* command : {"run", "render --no-colour"}) {
+    const Outcome outcome = Program(std::string(command) + " ./small.yaml -o out --force" +
+                                    " --set frames=0 --set trajectory=./nan.txt");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("nan.txt: 1 pose with NaN"));
+    EXPECT_THAT(outcome.err, HasSubstr("nan.txt: 1 damaged row left out (first: "));
+    EXPECT_THAT(outcome.err, HasSubstr("nan.txt:5: "));
+  }
+}
+
+TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
+  // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  Write("inside.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look + "0.2 1.5 3.4 1.1" + look);
+  Write("through.txt",
+        "0 1.5 3.0 1.1" + look + "0.1 1.5 3.7 1.1" + look + "0.2 1.5 4.3 1.1" + look);
+  Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
+  const auto said = [&](const std::string& command, const std::string& file) {
+    const Outcome outcome =
+        Program(command + " ./small.yaml -o out --force --set frames=0 --set trajectory=./" + file);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  Write("beside.txt", "0 9 3.0 1.1" + look + "0.1 9 3.2 1.1" + look);
+  EXPECT_EQ(said("run", "inside.txt"), "");
+  EXPECT_THAT(said("run", "beside.txt"),
+              HasSubstr("beside.txt: frame 0 at (9.00, 3.00, 1.10) is outside the scene"));
+  for (const char* command : {"run", "render --no-colour"}) {
+    EXPECT_THAT(
+        said(command, "through.txt"),
+        AllOf(HasSubstr("depthgrid: warning: /"),
+              HasSubstr("through.txt: frame 2 at (1.50, 4.30, 1.10) is 0.200 m from geometry"),
+              HasSubstr("the path goes through it\n")));
+    EXPECT_THAT(said(command, "near.txt"),
+                HasSubstr("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m from geometry"));
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
