@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "mapper/core/error.h"
@@ -24,8 +25,8 @@ class Cursor {
     int value = 0;
     const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     if (error != std::errc{} || value < 0 || value > max) {
-      throw InputError(place_,
-                       fmt::format("PGM {} must be a whole number of at most {}", what, max));
+      throw InputError(place_, fmt::format("PGM {} is '{}', must be a whole number of at most {}",
+                                           what, Word(), max));
     }
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
@@ -34,6 +35,12 @@ class Cursor {
   std::string_view rest() const { return rest_; }
 
  private:
+  // What stands there, as much of it as an error may show.
+  std::string_view Word() const {
+    constexpr std::size_t kMostShown = 20;
+    const auto end = std::find_if(rest_.begin(), rest_.end(), IsSpace);
+    return rest_.substr(0, std::min(kMostShown, static_cast<std::size_t>(end - rest_.begin())));
+  }
   void SkipSpaceAndComments() {
     while (!rest_.empty() && (IsSpace(rest_.front()) || rest_.front() == '#')) {
       Skip(rest_.front() == '#' ? std::min(rest_.find('\n'), rest_.size() - 1) + 1 : 1);

@@ -164,11 +164,13 @@ TEST_F(MapFileTest, OneClearLineForEachFault) {
   EXPECT_EQ(ErrorOf("BM rest", kYaml), "m.pgm: is neither a PGM nor a PNG image");
   EXPECT_EQ(ErrorOf("P5 9 9 255\nabc", kYaml), "m.pgm: PGM is truncated: 3 of 81 bytes of pixels");
   EXPECT_EQ(ErrorOf("P2 2 1 255 0 x", kYaml),
-            "m.pgm: PGM pixel must be a whole number of at most 255");
+            "m.pgm: PGM pixel is 'x', must be a whole number of at most 255");
+  EXPECT_EQ(ErrorOf("P2 2 1 255\n0\n256\n", kYaml),
+            "m.pgm: PGM pixel is '256', must be a whole number of at most 255");
   EXPECT_EQ(ErrorOf("P2 0 1 255 0", kYaml),
             "m.pgm: PGM width, height and maximum must be positive");
   EXPECT_EQ(ErrorOf("P2 99999999 1 255 0", kYaml),
-            "m.pgm: PGM width must be a whole number of at most 65535");
+            "m.pgm: PGM width is '99999999', must be a whole number of at most 65535");
   fs::remove(Path("m.pgm"));
   EXPECT_THROW(ReadMap(Path("m.yaml")), InputError);
 }
