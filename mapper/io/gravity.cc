@@ -220,6 +220,7 @@ Patches PatchesOf(const Views& views) {
 struct FloorOfViews {
   double height_m = 0.0;  // up . point
   double camera_height_m = 0.0;
+  bool is_late = false;
 };
 
 // Each image's own lowest surface.
@@ -231,7 +232,7 @@ std::vector<FloorOfViews> OwnFloors(const Views& views, const Eigen::Vector3d& u
     const double own_m = Levels(own, up).LowestM();
     const PlaneFit fit = FitNear(own, up, own_m, kHeightBinM);
     const double floor_m = fit.points > 0 ? up.dot(fit.mean) : own_m;
-    floors.push_back({floor_m, up.dot(view.camera) - floor_m});
+    floors.push_back({floor_m, up.dot(view.camera) - floor_m, false});
   }
   return floors;
 }
@@ -302,9 +303,11 @@ std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
 
 // As the first images have it; the camera's height is that above each image's own lowest surface.
 FloorOfViews FirstFloor(std::vector<FloorOfViews> first, const std::vector<FloorOfViews>& own) {
-  if (first.size() < kFirstViews) first = own;
+  const bool is_late = first.size() < kFirstViews;
+  if (is_late) first = own;
   first.resize(std::min(first.size(), kFirstViews));
-  return {MiddleOf(first, &FloorOfViews::height_m), MiddleOf(own, &FloorOfViews::camera_height_m)};
+  return {MiddleOf(first, &FloorOfViews::height_m), MiddleOf(own, &FloorOfViews::camera_height_m),
+          is_late};
 }
 
 // Whether SLAM's height drifts: the images do not agree on the lowest of all surfaces, or the first
@@ -334,7 +337,7 @@ FloorOfViews FloorUnder(const Views& views, const Views& first_views,
   const double floor_m = up.dot(FitNear(level, up, lowest_m, kHeightBinM).mean);
   std::vector<double> cameras_m;
   for (const SurfaceView& view : views) cameras_m.push_back(up.dot(view.camera) - floor_m);
-  return {floor_m, UpperMedian(cameras_m)};
+  return {floor_m, UpperMedian(cameras_m), false};
 }
 
 Views Upward(Views views, const Eigen::Vector3d& image_up) {
@@ -375,8 +378,8 @@ std::optional<Gravity> GravityFinder::Find() const {
   if (level.size() < needed) return {};
   const FloorOfViews floor = FloorUnder(upward, first_upward, level, direction->up);
   if (floor.camera_height_m <= 0.0) return {};
-  return Gravity{direction->up, direction->wander_rad, direction->drifts, floor.height_m,
-                 floor.camera_height_m};
+  return Gravity{direction->up,  direction->wander_rad, direction->drifts,
+                 floor.height_m, floor.camera_height_m, floor.is_late};
 }
 
 }  // namespace depthgrid

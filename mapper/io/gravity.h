@@ -24,6 +24,8 @@ struct Gravity {
   // agree on one floor, as the first images have it.
   double floor_m = 0.0;
   double camera_height_m = 0.0;  // above the floor, median over the frames
+  // It drifts, and the first images see no floor: floor_m is off by what it drifted before one did.
+  bool floor_is_late = false;
 };
 
 class GravityFinder {

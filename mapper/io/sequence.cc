@@ -223,8 +223,8 @@ std::optional<std::string> DoubtOfUp(const DepthSequence& sequence,
 }
 
 // Which way is up, and what is to be said about it.
-Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& options,
-                       Sequence& result) {
+Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
+                       DepthSequence& sequence, Sequence& result) {
   const auto gravity = FindGravity(sequence, options);
   if (!gravity) {
     result.notes.push_back(
@@ -238,6 +238,12 @@ Eigen::Vector3d FindUp(const DepthSequence& sequence, const RecordingOptions& op
   result.notes.push_back(
       fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
                   gravity->camera_height_m, *result.floor_z_m));
+  if (gravity->floor_is_late) {
+    sequence.recording.warnings.push_back(
+        path +
+        ": SLAM's height drifts, and the first images see no floor: every z may be off by "
+        "what it drifted before one does");
+  }
   return up;
 }
 
@@ -327,7 +333,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   result.pose_doubt = CheckPoses(sequence, options.recording);
   if (options.world_up != WorldUp::kAuto) result.up_doubt = DoubtOfUp(sequence, options);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
-                                 ? FindUp(sequence, options.recording, result)
+                                 ? FindUp(path, options.recording, sequence, result)
                                  : AxisOf(options.world_up);
   SlamOutput level = Rotated(std::move(sequence.slam), LevelFromWorld(up));
   result.source = OpenRecording(std::move(sequence.recording), level, options.recording,

@@ -65,6 +65,7 @@ TEST(Gravity, FindsUpInAnyTurnedWorld) {
     ASSERT_TRUE(gravity) << i;
     EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3) << i;
     EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02) << i;
+    EXPECT_FALSE(gravity->floor_is_late) << i;  // nothing drifts
     EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)), 0.02) << i;
     ++cases;
   }
@@ -82,6 +83,7 @@ TEST(Gravity, DriftInHeightTiltsNothing) {
   EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.03);
   // Where the first of them have it.
   EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)) - 0.8 / 11.0, 0.03);
+  EXPECT_TRUE(gravity->floor_is_late);
 }
 
 // Up is where SLAM's world has it at its beginning; all views' mean was 3.1 degrees off.
@@ -92,6 +94,7 @@ TEST(Gravity, DriftInHeightOfAFewSecondsLeavesTheFirstFloor) {
         Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), 0.3, 0.01, drift_m, 0.0, 5).Find();
     ASSERT_TRUE(gravity);
     EXPECT_NEAR(gravity->floor_m, 6.0, 0.02) << drift_m;
+    EXPECT_FALSE(gravity->floor_is_late);
     EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.03) << drift_m;
   }
 }
