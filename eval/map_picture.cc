@@ -227,30 +227,43 @@ GridGeometry KnownPart(const StateMap& map, int margin_cells) {
     if (map.states[i] == CellState::kUnknown) continue;
     known = Union(known, OnlyCell(map.geometry.CellAt(i), map.geometry.resolution_m));
   }
-  if (known.size() == 0) return map.geometry;
-  return Widened(known, margin_cells);
+  return known.size() > 0 ? Widened(known, margin_cells) : known;
 }
 
 GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells) {
   constexpr double kFarM = 10.0;
   const int far_cells = CellIndex(kFarM, part.resolution_m);
-  const GridGeometry near = Widened(part, far_cells);
+  const auto cell_of = [&](const StampedPose& pose) {
+    return CellOf(pose.world_from_camera.translation.head<2>(), part.resolution_m);
+  };
+  if (path.empty()) return part;
+  const GridGeometry middle =
+      part.size() > 0 ? part : OnlyCell(cell_of(path.front()), part.resolution_m);
+  const GridGeometry near = Widened(middle, far_cells);
   for (const StampedPose& pose : path) {
-    const Cell at = CellOf(pose.world_from_camera.translation.head<2>(), part.resolution_m);
+    const Cell at = cell_of(pose);
     const GridGeometry around = Widened(OnlyCell(at, part.resolution_m), margin_cells);
     if (near.Contains(at)) part = Union(part, around);
   }
   return part;
 }
 
+GridGeometry OrAllOf(const StateMap& map, const GridGeometry& part) {
+  return part.size() > 0 ? part : map.geometry;
+}
+
 GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths) {
   constexpr double kMarginM = 0.5;
   const auto margin_cells = static_cast<int>(std::lround(kMarginM / map.geometry.resolution_m));
-  const GridGeometry known = KnownPart(map, margin_cells);
+  GridGeometry known = KnownPart(map, margin_cells);
   GridGeometry part = known;
-  // Each by its distance from what is known: no stray path draws another one in.
-  for (const Path& path : paths) part = Union(part, WithPath(known, path.poses, margin_cells));
-  return part;
+  // Each by its distance from what is known, or from the first: no stray path draws another one in.
+  for (const Path& path : paths) {
+    const GridGeometry with_path = WithPath(known, path.poses, margin_cells);
+    if (known.size() == 0) known = with_path;
+    part = Union(part, with_path);
+  }
+  return OrAllOf(map, part);
 }
 
 }  // namespace depthgrid

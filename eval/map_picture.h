@@ -39,12 +39,14 @@ enum class PathDot { kStart, kNow };
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
                       const std::vector<Path>& paths, PathDot dot = PathDot::kStart);
 
-// The part of `geometry` that holds anything but unknown cells, with a margin; all of it if nothing
-// does.
+// The part of the map that holds anything but unknown cells, with a margin; empty if nothing does.
 GridGeometry KnownPart(const StateMap& map, int margin_cells);
 // `part` and the path with that margin: a camera may stand where it never saw the floor. Poses more
-// than a camera's range away from it are left out, so that no stray one makes a huge picture.
+// than a camera's range away from it, or from the path's start if it is empty, are left out, so
+// that no stray one makes a huge picture.
 GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells);
+// All of the map in place of an empty part: a picture has a pixel at least.
+GridGeometry OrAllOf(const StateMap& map, const GridGeometry& part);
 // What a picture of the map with these paths shows: both, and half a metre around.
 GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths);
 

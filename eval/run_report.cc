@@ -31,7 +31,7 @@ constexpr double kSameStampS = 1e-6;  // as files write stamps
 Json MapJson(const RunFiles& run) {
   GridGeometry part = KnownPart(run.map, kMapMarginCells);
   if (run.truth_map) part = Union(part, KnownPart(*run.truth_map, kMapMarginCells));
-  part = WithPath(part, run.est, kMapMarginCells);
+  part = OrAllOf(run.map, WithPath(part, run.est, kMapMarginCells));
   Json json;
   json["resolution"] = part.resolution_m;
   json["origin"] = {part.OriginM().x(), part.OriginM().y()};

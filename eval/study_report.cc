@@ -61,6 +61,8 @@ std::map<std::string, GridGeometry> RoomParts(const std::vector<CaseFiles>& case
     add(c.scene, c.run.map);
     if (c.run.input_map) add(c.scene, *c.run.input_map);
     if (c.run.truth_map) add(c.scene, *c.run.truth_map);
+    GridGeometry& part = parts.at(c.scene);
+    part = OrAllOf(c.run.map, part);
   }
   return parts;
 }

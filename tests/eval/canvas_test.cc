@@ -175,7 +175,7 @@ TEST(MapPicture, KnownPartHasAMargin) {
   const GridGeometry part = KnownPart(map, 2);
   EXPECT_EQ(part.min_cell, (Cell{1, 2}));
   EXPECT_EQ(part.width_cells, 5);
-  EXPECT_EQ(KnownPart(StateMap(map.geometry), 2), map.geometry);
+  EXPECT_EQ(KnownPart(StateMap(map.geometry), 2).size(), 0U);
 }
 
 TEST(MapPicture, TheCameraIsInThePicture) {
@@ -199,6 +199,20 @@ TEST(MapPicture, ShownIsWhatIsKnownAndThePathsHalfAMetreAround) {
   const std::vector<Path> paths = {{"a", {}, {pose_at(2.05, 0.05), pose_at(40.0, 0.0)}},
                                    {"b", {}, {pose_at(0.05, -1.95)}}};
   EXPECT_EQ(ShownPart(map, paths), (GridGeometry{0.1, {-5, -25}, 31, 34}));
+}
+
+// Frames that see nothing leave a map of one unknown cell at the origin, wherever the camera was.
+TEST(MapPicture, OfAMapOfNothingThePathsAreShown) {
+  const StateMap map(GridGeometry{0.1, {0, 0}, 1, 1});
+  const auto pose_at = [](double x_m, double y_m) {
+    return StampedPose{0.0, {Eigen::Quaterniond::Identity(), {x_m, y_m, 1.0}}};
+  };
+  const std::vector<Path> paths = {{"none", {}, {}},
+                                   {"a", {}, {pose_at(20.05, 20.05), pose_at(22.05, 20.05)}},
+                                   {"b", {}, {pose_at(20.05, 21.05), pose_at(900.0, 0.0)}},
+                                   {"astray", {}, {pose_at(1e6, 1e6)}}};
+  EXPECT_EQ(ShownPart(map, paths), (GridGeometry{0.1, {195, 195}, 31, 21}));
+  EXPECT_EQ(ShownPart(map, {paths[0]}), map.geometry);
 }
 
 }  // namespace
