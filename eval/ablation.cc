@@ -18,7 +18,7 @@ class TrueScanSource final : public FrameSource {
         scanner_(world.scene.mesh, world.scene.floor_z_m, world.rays, world.camera,
                  {mapper.scan.beams, mapper.scan.band_low_m, mapper.scan.band_high_m,
                   mapper.scan.min_range_m, mapper.scan.max_range_m, world.depth_range.min_m,
-                  world.depth_range.max_m}),
+                  world.depth_range.max_m, mapper.grid.resolution_m}),
         trajectory_(world.trajectory),
         slam_(std::move(slam)) {}
 

@@ -62,4 +62,15 @@ BandOutline OutlineOf(const TriangleMesh& mesh, const HeightBand& band, const St
   return outline;
 }
 
+std::optional<std::size_t> OccupiedCellAt(const StateMap& truth, const Eigen::Vector2d& hit) {
+  constexpr double kRoundingM = 1e-4;
+  for (const double dx : {kRoundingM, -kRoundingM}) {
+    for (const double dy : {kRoundingM, -kRoundingM}) {
+      const Cell cell = CellOf({hit.x() + dx, hit.y() + dy}, truth.geometry.resolution_m);
+      if (truth.At(cell) == CellState::kOccupied) return truth.geometry.Index(cell);
+    }
+  }
+  return {};
+}
+
 }  // namespace depthgrid

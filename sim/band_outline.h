@@ -1,6 +1,7 @@
 // The obstacle band's surfaces seen from above. Only for sim's own .cc files.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mapper/core/occupancy_map.h"
@@ -21,5 +22,9 @@ struct BandOutline {
 
 // `truth` says which cells heights are wanted of; lines are the same whatever it covers.
 BandOutline OutlineOf(const TriangleMesh& mesh, const HeightBand& band, const StateMap& truth);
+
+// The cell of the surface that a ray met there, by its index. A hit on a cell boundary lands on
+// either side of it by rounding; the occupied one of the two is meant.
+std::optional<std::size_t> OccupiedCellAt(const StateMap& truth, const Eigen::Vector2d& hit);
 
 }  // namespace depthgrid

@@ -107,18 +107,10 @@ class Observer {
   }
 
   void MarkOccupied(const ViewPyramid& view, const Vector2d& hit) {
-    // A hit on a cell boundary lands on either side of it by rounding; the surface is in one.
-    constexpr double kRoundingM = 1e-4;
-    for (const double dx : {kRoundingM, -kRoundingM}) {
-      for (const double dy : {kRoundingM, -kRoundingM}) {
-        const Cell cell = CellOf({hit.x() + dx, hit.y() + dy}, truth_.geometry.resolution_m);
-        if (truth_.At(cell) != CellState::kOccupied) continue;
-        const std::size_t index = truth_.geometry.Index(cell);
-        const Vector3d ground(hit.x(), hit.y(), 0.0);
-        if (view.Part(ground, Vector3d::UnitZ(), height_m_[index])) seen_.members[index] = 1;
-        return;
-      }
-    }
+    const auto cell = OccupiedCellAt(truth_, hit);
+    if (!cell) return;
+    const Vector3d ground(hit.x(), hit.y(), 0.0);
+    if (view.Part(ground, Vector3d::UnitZ(), height_m_[*cell])) seen_.members[*cell] = 1;
   }
 
   const RayScene& fences_;

@@ -2,25 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "mapper/core/level.h"
 #include "sim/band_outline.h"
+#include "sim/truth_grid.h"
 
 namespace depthgrid {
 namespace {
 
-TriangleMesh FencesOf(const TriangleMesh& mesh, const HeightBand& band) {
-  return OutlineOf(mesh, band, StateMap()).fences;
-}
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
+// Past a surface that a ray met, and into the view of one that its edge met: more than rounding.
+constexpr double kBeyondM = 1e-3;
 
 }  // namespace
+
+struct TrueScanner::Surfaces {
+  Surfaces(const TriangleMesh& mesh, double floor_z_m, const TruthGridOptions& grid, RayIsa isa)
+      : cells(SurfaceCells(mesh, floor_z_m, grid)),
+        outline(
+            OutlineOf(mesh, {floor_z_m + grid.band_low_m, floor_z_m + grid.band_high_m}, cells)),
+        fences(outline.fences, isa) {}
+
+  StateMap cells;
+  BandOutline outline;
+  RayScene fences;
+};
 
 TrueScanner::TrueScanner(const TriangleMesh& mesh, double floor_z_m, const RayScene& rays,
                          const PinholeCamera& camera, const TrueScanOptions& options)
     : band_low_z_m_(floor_z_m + options.band_low_m),
       band_high_z_m_(floor_z_m + options.band_high_m),
-      fences_(FencesOf(mesh, {band_low_z_m_, band_high_z_m_}), rays.isa()),
+      surfaces_(std::make_shared<const Surfaces>(
+          mesh, floor_z_m,
+          TruthGridOptions{options.resolution_m, options.band_low_m, options.band_high_m},
+          rays.isa())),
       rays_(rays),
       camera_(camera),
       options_(options) {}
@@ -53,26 +71,83 @@ Scan TrueScanner::ScanOf(const Pose3& world_from_camera, const RayScene& rays, f
   return scan;
 }
 
+bool TrueScanner::IsSeen(const ViewPyramid& view, const Eigen::Vector2d& end) const {
+  const auto cell = OccupiedCellAt(surfaces_->cells, end);
+  return cell && view.Part({end.x(), end.y(), 0.0}, Eigen::Vector3d::UnitZ(),
+                           surfaces_->outline.height_m[*cell]);
+}
+
+double TrueScanner::NextOutline(const Eigen::Vector3d& at, const Eigen::Vector3d& direction,
+                                double from_m) const {
+  const double start_m = from_m + kBeyondM;
+  Eigen::Vector3d origin = at + start_m * direction;
+  origin.z() = kFenceMiddleM;
+  const auto hit = surfaces_->fences.NearestHit({origin.cast<float>(), direction.cast<float>()});
+  return hit ? start_m + hit->distance : kNowhere;
+}
+
+// What lies flat, a box's top, comes into view where an edge of the image meets it.
+double TrueScanner::NearestOnEdges(const ViewPyramid& image, const Eigen::Vector3d& at,
+                                   const Eigen::Vector3d& direction) const {
+  constexpr double kSteepest = 1e3;
+  double nearest_m = kNowhere;
+  const auto slopes = image.Part(at + direction, Eigen::Vector3d::UnitZ(), {-kSteepest, kSteepest});
+  if (!slopes) return nearest_m;
+  for (const double slope : {slopes->low, slopes->high}) {
+    const Eigen::Vector3d along = direction + slope * Eigen::Vector3d::UnitZ();
+    const auto hit = rays_.NearestHit({at.cast<float>(), along.cast<float>()});
+    if (!hit) continue;
+    const double z_m = at.z() + slope * hit->distance;
+    if (z_m < band_low_z_m_ || z_m > band_high_z_m_) continue;
+    nearest_m = std::min(nearest_m, hit->distance + kBeyondM);
+  }
+  return nearest_m;
+}
+
+// `low_line` is where the foot of the band is in view.
+TrueScanner::Sight TrueScanner::Look(const ViewPyramid& image, const Eigen::Vector3d& at,
+                                     const Eigen::Vector3d& direction, double outline_m,
+                                     const std::optional<ValueSpan>& low_line) const {
+  Sight sight{outline_m, options_.max_range_m};
+  const auto is_passed = [&] {
+    return sight.seen_m <= options_.max_range_m &&
+           !IsSeen(image, (at + sight.seen_m * direction).head<2>());
+  };
+  if (!is_passed()) return sight;
+  while (is_passed()) {
+    // Where the foot of the band is in view this hangs above the image: it is there all the same.
+    if (low_line && sight.seen_m >= low_line->low) {
+      sight.free_until_m = std::min(sight.free_until_m, sight.seen_m);
+    }
+    sight.seen_m = NextOutline(at, direction, sight.seen_m);
+  }
+  sight.seen_m = std::min(sight.seen_m, NearestOnEdges(image, at, direction));
+  return sight;
+}
+
 Scan TrueScanner::Obstacles(const Pose3& world_from_camera) const {
   const Eigen::Vector3d& at = world_from_camera.translation;
+  const ViewPyramid image(camera_, world_from_camera, {0.0, kNowhere});
   const auto beam_of = [&](const ViewPyramid& view, const Eigen::Vector3d& direction,
-                           double blocked_m) {
+                           double outline_m) {
+    const Eigen::Vector3d foot(at.x(), at.y(), band_low_z_m_);
+    const ValueSpan range_m = {options_.min_range_m, options_.max_range_m};
+    const Sight sight = Look(image, at, direction, outline_m, view.Part(foot, direction, range_m));
+    const ValueSpan reach_m = {range_m.low, std::min(sight.seen_m, sight.free_until_m)};
     Beam beam;
-    const ValueSpan reach_m = {options_.min_range_m, std::min(blocked_m, options_.max_range_m)};
-    if (reach_m.low > reach_m.high) return beam;
-    const auto clear = view.Part({at.x(), at.y(), band_low_z_m_}, direction, reach_m);
+    if (sight.seen_m < range_m.low) return beam;
+    const auto clear = view.Part(foot, direction, reach_m);
     if (clear) {
       beam.clear_from_m = static_cast<float>(clear->low);
       beam.clear_to_m = static_cast<float>(clear->high);
     }
-    const Eigen::Vector3d foot(at.x() + blocked_m * direction.x(),
-                               at.y() + blocked_m * direction.y(), 0.0);
-    beam.hit = blocked_m <= options_.max_range_m &&
-               view.Part(foot, Eigen::Vector3d::UnitZ(), {band_low_z_m_, band_high_z_m_});
-    if (beam.hit) beam.range_m = static_cast<float>(blocked_m);
+    // Seen, but at a depth that the sensor cannot measure: no hit, and nothing behind it either.
+    beam.hit =
+        sight.seen_m <= range_m.high && IsSeen(view, (at + sight.seen_m * direction).head<2>());
+    if (beam.hit) beam.range_m = static_cast<float>(sight.seen_m);
     return beam;
   };
-  return ScanOf(world_from_camera, fences_, kFenceMiddleM, beam_of);
+  return ScanOf(world_from_camera, surfaces_->fences, kFenceMiddleM, beam_of);
 }
 
 Scan TrueScanner::Slice(const Pose3& world_from_camera) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mapper/core/level.h"
+#include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
 namespace {
@@ -54,6 +55,48 @@ TEST(TrueScanner, SeesTheBandFromAboveAndTheSliceAtItsHeight) {
     }
   }
   EXPECT_GT(on_box, 100);
+}
+
+// The image's lower edge falls, and its upper edge rises, by half the way ahead.
+Beam StraightAhead(const TriangleMesh& obstacle, double camera_z_m, TrueScanOptions options = {}) {
+  TriangleMesh mesh = WallAndBox();
+  mesh.triangles.resize(2);  // the wall alone
+  Append(mesh, obstacle);
+  const TrueScanner scanner(mesh, 0.0, RayScene(mesh), kCamera, options);
+  return scanner.Obstacles(CameraOf({0.0, 0.0, 0.0}, camera_z_m)).beams[320];
+}
+
+TEST(TrueScanner, WhatLiesBelowTheImageIsNotSeen) {
+  // 0.4 m come into view at 1.2 m, the band's foot at 1.8 m.
+  const Beam over = StraightAhead(test::Box({0.5F, -1, 0}, {0.9F, 1, 0.4F}), 1.0);
+  EXPECT_TRUE(over.hit);
+  EXPECT_NEAR(over.range_m, 3.0, 1e-4);
+  EXPECT_NEAR(over.clear_from_m, 1.8, 1e-4);
+  EXPECT_NEAR(over.clear_to_m, 3.0, 1e-4);
+  const Beam onto = StraightAhead(test::Box({0.5F, -1, 0}, {2.2F, 1, 0.4F}), 1.0);
+  EXPECT_TRUE(onto.hit);
+  EXPECT_NEAR(onto.range_m, 1.2, 2e-3);
+  EXPECT_EQ(onto.clear_to_m, 0.0F);
+  const Beam behind = StraightAhead(test::Box({1.3F, -1, 0}, {2.2F, 1, 0.4F}), 1.0);
+  EXPECT_TRUE(behind.hit);
+  EXPECT_NEAR(behind.range_m, 1.3, 1e-4);
+}
+
+TEST(TrueScanner, WhatHangsAboveTheImageIsNotSeenNorFree) {
+  // From 0.3 m the foot of the band is in view from 0.4 m on, at 1 m heights of up to 0.8 m.
+  const Beam under = StraightAhead(test::Box({1.0F, -1, 1.0F}, {1.1F, 1, 1.2F}), 0.3);
+  EXPECT_TRUE(under.hit);
+  EXPECT_NEAR(under.range_m, 3.0, 1e-4);
+  EXPECT_NEAR(under.clear_from_m, 0.4, 1e-4);
+  EXPECT_NEAR(under.clear_to_m, 1.0, 1e-4);
+}
+
+TEST(TrueScanner, WhatIsTooNearToBeMeasuredHidesWhatIsBehind) {
+  TrueScanOptions options;
+  options.min_depth_m = 2.0;
+  const Beam blocked = StraightAhead(test::Box({1.5F, -1, 0}, {1.6F, 1, 1.9F}), 1.0, options);
+  EXPECT_FALSE(blocked.hit);
+  EXPECT_EQ(blocked.clear_to_m, 0.0F);
 }
 
 TEST(TrueScanner, NothingWithinRangeOnlyClears) {
