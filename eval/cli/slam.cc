@@ -27,7 +27,9 @@ Trajectory TrueFrames(const std::string& folder) {
     throw InputError(folder, "is a file, must be a sequence's folder with a groundtruth.txt");
   }
   const std::string truth_path = folder + "/groundtruth.txt";
-  const Trajectory truth = ReadTrajectory(truth_path);
+  std::vector<std::string> warnings;
+  const Trajectory truth = ReadTrajectory(truth_path, warnings);
+  Warn(warnings);
   std::vector<double> stamps_s;
   for (const StampedPose& pose : truth) stamps_s.push_back(pose.stamp_s);
   const RecordingOptions options;

@@ -23,8 +23,11 @@ const std::vector<double>& Lags() {
 
 SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path) {
   SlamRun run;
-  for (const PosePair& pair :
-       Associate(ReadTrajectory(truth_path), ReadTrajectory(estimate_path))) {
+  std::vector<std::string> warnings;
+  const Trajectory truth = ReadTrajectory(truth_path, warnings);
+  const Trajectory estimate = ReadTrajectory(estimate_path, warnings);
+  Warn(warnings);
+  for (const PosePair& pair : Associate(truth, estimate)) {
     run.truth.push_back(pair.reference);
     run.estimate.push_back(pair.estimate);
   }

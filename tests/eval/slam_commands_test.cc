@@ -90,6 +90,18 @@ TEST_F(SlamCommands, SlamRefusesBadInput) {
   ExpectRefusal("slam seq -o out", "groundtruth.txt");
 }
 
+TEST_F(SlamCommands, RowsOfTheTruthThatAreLeftOutAreSaid) {
+  WriteSequence("seq", 60);
+  const std::string truth = ReadFile(Path("seq/groundtruth.txt"));
+  const std::string last = truth.substr(truth.rfind('\n', truth.size() - 2) + 1);
+  Write("seq/groundtruth.txt", truth + last);
+  Succeed("slam seq -o slam");
+  for (const char* command : {"slam seq -o again", "slam-fit seq/groundtruth.txt slam/slam.txt"}) {
+    EXPECT_THAT(Program(command).err,
+                HasSubstr("seq/groundtruth.txt: 1 row with a stamp already given, ignored"));
+  }
+}
+
 TEST_F(SlamCommands, FitFindsWhatSlamDid) {
   WriteSequence("seq");
   Succeed(
