@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/comparison.h"
+#include "eval/statistics/metric_direction.h"
 
 namespace depthgrid {
 namespace {
@@ -23,18 +24,6 @@ const char* NameOf(Verdict verdict) {
       break;
   }
   return "not_told_apart";
-}
-
-const char* NameOf(Better better) {
-  switch (better) {
-    case Better::kLower:
-      return "lower";
-    case Better::kHigher:
-      return "higher";
-    case Better::kNeither:
-      break;
-  }
-  return "neither";
 }
 
 Json ToJson(const MetricComparison& c) {

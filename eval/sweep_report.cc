@@ -172,18 +172,6 @@ void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<d
   json["high"].push_back(high);
 }
 
-const char* NameOf(Better better) {
-  switch (better) {
-    case Better::kLower:
-      return "lower";
-    case Better::kHigher:
-      return "higher";
-    case Better::kNeither:
-      break;
-  }
-  return "neither";
-}
-
 Json MetricsJson(const SweepResults& results, const SweepGrid& grid) {
   std::map<std::size_t, Resamples> main_resamples;  // by number of seeds
   std::map<std::size_t, Resamples> other_resamples;

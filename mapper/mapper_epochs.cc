@@ -13,6 +13,8 @@ constexpr double kSlipSigmaShare = 0.3;
 // SLAM comes back into its own map to a centimetre. Where the map explains little of what is seen
 // then, a match is made against what only looks alike and is surer than it is right.
 constexpr double kWordSigmaShare = 0.1;
+// Unless a pose within kEpochSigma of it explains the scan as well as scans usually are.
+constexpr double kWhollyUsual = 0.9;
 
 Eigen::Matrix3d AddedBy(double sigma_share) { return Squared(sigma_share * kEpochSigma); }
 
@@ -40,13 +42,17 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
   const EpochStart going_on{went_on.map_from_base, went_on.sigma_share};
   EpochStart carried{CarriedOn(), 1.0};
   if (!scan || mapped.empty()) return went_on.near ? going_on : carried;
-  const auto share = [&](const EpochStart& guess) {
-    const MatchResult match = reference->Match(
-        scan, {guess.map_from_base, filter.covariance() + AddedBy(guess.sigma_share)});
+  const auto share = [&](const Pose2& guess, double sigma_share) {
+    const MatchResult match =
+        reference->Match(scan, {guess, filter.covariance() + AddedBy(sigma_share)});
     return match.found ? match.score : 0.0;
   };
-  const double share_going_on = share(going_on), share_carried = share(carried);
-  if (!relocation.IsUsual(share_carried)) carried.sigma_share = kWordSigmaShare;
+  const double share_going_on = share(going_on.map_from_base, 0.0);
+  const double share_carried = share(carried.map_from_base, 0.0);
+  if (!relocation.IsUsual(share_carried) &&
+      share(carried.map_from_base, 1.0) < kWhollyUsual * relocation.usual_share()) {
+    carried.sigma_share = kWordSigmaShare;
+  }
   // After a longer gap the last motion says nothing, and SLAM is believed unless it is plainly
   // wrong.
   const bool goes_on =

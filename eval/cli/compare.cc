@@ -5,6 +5,7 @@
 #include "eval/comparison.h"
 #include "eval/metric_columns.h"
 #include "eval/run_collection.h"
+#include "eval/statistics/metric_direction.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
@@ -51,18 +52,6 @@ std::string TextOf(const MetricComparison& c) {
   return "not told apart";
 }
 
-const char* TextOf(Better better) {
-  switch (better) {
-    case Better::kLower:
-      return "lower";
-    case Better::kHigher:
-      return "higher";
-    case Better::kNeither:
-      break;
-  }
-  return "-";
-}
-
 std::vector<std::string> RowOf(const MetricComparison& c) {
   const PairedComparison& p = c.paired;
   const std::string interval =
@@ -72,7 +61,7 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
   // Of a score that should have a value its distance from it is compared.
   const std::string what = c.target ? DistanceName(c.metric, *c.target) : c.metric;
   return {what,
-          TextOf(c.better),
+          c.better == Better::kNeither ? "-" : NameOf(c.better),
           Short(p.mean_a),
           Short(p.mean_b),
           fmt::format("{:+.4g}", p.mean_difference),

@@ -32,12 +32,17 @@ std::vector<std::string> Commands(const CLI::App& app) {
   return names;
 }
 
-std::vector<std::string> Options(const CLI::App& app) {
+// Without their dashes, which are no likeness.
+std::vector<std::string> LongOptions(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
   }
   return names;
+}
+
+std::string WithoutDashes(const std::string& option) {
+  return option.substr(std::min(option.find_first_not_of('-'), option.size()));
 }
 
 // The keys that --set of a command takes; none where it takes other ones than these two kinds.
@@ -52,7 +57,7 @@ std::vector<std::string> KeysOf(const CLI::App& app) {
 
 // The key that an option would be: its whole path, or the end of no other's.
 std::string KeyMeant(const CLI::App& app, const std::string& option) {
-  const std::string word = option.substr(option.find_first_not_of('-'));
+  const std::string word = WithoutDashes(option);
   const std::vector<std::string> keys = KeysOf(app);
   if (std::find(keys.begin(), keys.end(), word) != keys.end()) return word;
   const auto ends_so = [&](const std::string& key) { return key.ends_with("." + word); };
@@ -74,7 +79,8 @@ std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& wor
                                                             : "VALUE";
       return fmt::format("no option '{}': {} is a key, --set {}={}", name, key, key, value);
     }
-    return fmt::format("no option '{}'{}", name, DidYouMean(name, Options(app)));
+    return fmt::format("no option '{}'{}", name,
+                       DidYouMean(WithoutDashes(name), LongOptions(app), "--"));
   }
   const std::vector<std::string> commands = Commands(app);
   if (commands.empty()) return fmt::format("'{}' is one argument too many", word);

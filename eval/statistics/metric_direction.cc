@@ -50,4 +50,16 @@ Better BetterOf(std::string_view metric) {
   return ContainsAny(last, kHigher) ? Better::kHigher : Better::kLower;
 }
 
+const char* NameOf(Better better) {
+  switch (better) {
+    case Better::kLower:
+      return "lower";
+    case Better::kHigher:
+      return "higher";
+    case Better::kNeither:
+      break;
+  }
+  return "neither";
+}
+
 }  // namespace depthgrid

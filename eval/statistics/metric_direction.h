@@ -13,6 +13,8 @@ namespace depthgrid {
 // Neither is what only describes the run: counts, the length of the path, the truth's own figures
 // and those that must be held beside them (thickness of walls, corners).
 Better BetterOf(std::string_view metric);
+// "lower", "higher" or "neither".
+const char* NameOf(Better better);
 
 // The value that a score should have, such as 1 of a scale or .95 of the share within a 95 % bound.
 std::optional<double> TargetOf(std::string_view metric);

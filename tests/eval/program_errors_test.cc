@@ -167,7 +167,10 @@ TEST_F(ProgramErrors, AKeyTakenForAnOptionIsSaidToBeOne) {
                 {"no option '--frames': frames is a key, --set frames=30 (see depthgrid run"});
   ExpectRefusal("run ./small.yaml -o out --gain=0.3", {"--set mapper.fusion.gain=0.3 "});
   ExpectRefusal("map seq -o out --mapper.fusion.gain", {"--set mapper.fusion.gain=VALUE "});
-  ExpectRefusal("map seq -o out --frames 30", {"no option '--frames', did you mean '--"});
+  ExpectRefusal("map seq -o out --frames 30", {"no option '--frames' (see"});
+  ExpectRefusal("map seq -o out --formats tum",
+                {"no option '--formats', did you mean '--format'?"});
+  ExpectRefusal("sweep ./small.yaml -o out --workers 2", {"no option '--workers' (see"});
   ExpectRefusal("ablate ./small.yaml -o out --use --json",
                 {"no option '--use'"});  // of many groups
   ExpectRefusal("slam seq -o out --frames 30", {"no option '--frames'"});
