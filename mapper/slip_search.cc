@@ -20,6 +20,11 @@ constexpr double kMendedShare = 0.8;
 // Somebody who fills the view was drawn lately and is found where they are now, so what has stood
 // for longer must want that heading as well.
 constexpr int kDrawnLatelyFrames = 30;
+// While the camera turns, less of what it sees has stood for so long from frame to frame. So half
+// is enough for a slip that turned in place, if that is more than at the prediction: who walks by
+// is found some centimetres aside (docs/tried.md, "Slips").
+constexpr double kTurnedShare = 0.5;
+constexpr double kInPlaceM = 0.015;
 // Less, a match finds by itself.
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
@@ -58,10 +63,14 @@ std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
     best = match.score;
     found = match.map_from_base;
   }
-  if (!found || reference.ShareSeenBefore(scan, *found, before) < kMendedShare * lasting_share) {
-    return {};
-  }
-  return found;
+  if (!found) return {};
+  const double there = reference.ShareSeenBefore(scan, *found, before);
+  if (there >= kMendedShare * lasting_share) return found;
+  const Pose2 slip = Between(prediction.map_from_base, *found);
+  const bool wants_turn = slip.translation().norm() < kInPlaceM &&
+                          there >= kTurnedShare * lasting_share &&
+                          there > reference.ShareSeenBefore(scan, prediction.map_from_base, before);
+  return wants_turn ? found : std::nullopt;
 }
 
 void SlipSearch::Placed(const FrameRecord& frame, const std::shared_ptr<const Scan>& scan,

@@ -66,6 +66,7 @@ struct PriorOptions {
   int perfect_frames = 0;  // the first
   int slips = 0;           // evenly spread, to either side in turn
   double slip_deg = 5.0;   // within a frame
+  double slip_m = 0.0;     // and forward
 };
 
 std::vector<Pose2> WithSlips(const std::vector<Pose2>& odometry, const PriorOptions& prior) {
@@ -77,7 +78,7 @@ std::vector<Pose2> WithSlips(const std::vector<Pose2>& odometry, const PriorOpti
     Pose2 motion = Between(odometry[k - 1], odometry[k]);
     if (slips_before(k) > slips_before(k - 1)) {
       const double side = slips_before(k) % 2 == 1 ? 1.0 : -1.0;
-      motion = motion * Pose2{0.0, 0.0, side * RadFromDeg(prior.slip_deg)};
+      motion = motion * Pose2{side * prior.slip_m, 0.0, side * RadFromDeg(prior.slip_deg)};
     }
     slipped.push_back(slipped.back() * motion);
   }
@@ -184,6 +185,7 @@ int Measure(int argc, char** argv) {
                  "the prior errs from this frame on only");
   app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread");
   app.add_option("--slip-deg", prior.slip_deg, "by so much");
+  app.add_option("--slip-m", prior.slip_m, "and forward or back by so much");
   app.add_option("--people", people, "none, crossing or ahead")
       ->transform(CLI::CheckedTransformer(std::map<std::string, People>{
           {"none", People::kNone}, {"crossing", People::kCrossing}, {"ahead", People::kAhead}}));

@@ -60,5 +60,63 @@ TEST_F(SlipSearchTest, NorWhereItIsSwitchedOff) {
   EXPECT_FALSE(off.IsSuspected(FrameAt(1.1), 0.3, relocation_));
 }
 
+// Explains all of a scan at one pose, and says what of it has stood for long.
+class FakeMap : public ReferenceMap {
+ public:
+  struct Lasting {
+    double last = 0.0;       // of the last scan
+    double predicted = 0.0;  // of this one at the prediction, the origin
+    double elsewhere = 0.0;  // and where it is found
+  };
+  FakeMap(const Pose2& found, const Lasting& lasting, std::shared_ptr<const Scan> last)
+      : found_(found), lasting_(lasting), last_(std::move(last)) {}
+
+  MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
+    MatchResult match;
+    match.found = true;
+    match.score = 0.9;
+    match.map_from_base = found_;
+    return match;
+  }
+  double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2& pose, int) override {
+    if (scan == last_) return lasting_.last;
+    return pose == Pose2{} ? lasting_.predicted : lasting_.elsewhere;
+  }
+  std::span<const MapPart> MatchedParts() const override { return {}; }
+  void Insert(const std::shared_ptr<const Scan>&, const Pose2&, const Eigen::Matrix3d&) override {}
+  void InsertTied(const std::shared_ptr<const Scan>&, const Pose2&, int) override {}
+  Adjustment Adjust(const std::vector<MappedFrame>&, const std::vector<PlanarLoop>&, AdjustEffort,
+                    std::span<const int>) override {
+    return {};
+  }
+  void Rebuild(const std::vector<MappedFrame>&) override {}
+
+ private:
+  Pose2 found_;
+  Lasting lasting_;
+  std::shared_ptr<const Scan> last_;
+};
+
+bool IsFound(const Pose2& slip, const FakeMap::Lasting& lasting) {
+  const auto last = std::make_shared<const Scan>();
+  SlipSearch slips(12.0);
+  slips.Placed(FrameAt(1.0), last, 0.9);
+  FakeMap map(slip, lasting, last);
+  return slips.Find(std::make_shared<const Scan>(), {}, {}, 100, map).has_value();
+}
+
+TEST(SlipSearch, WhatHasStoodForLongMustWantTheHeading) {
+  const Pose2 turn{0.002, 0.001, RadFromDeg(5.0)}, aside{0.06, 0.0, RadFromDeg(5.0)};
+  for (const Pose2& slip : {turn, aside}) {
+    EXPECT_TRUE(IsFound(slip, {.last = 0.5, .predicted = 0.45, .elsewhere = 0.4}));
+    EXPECT_FALSE(IsFound(slip, {.last = 0.5, .predicted = 0.1, .elsewhere = 0.2}));
+    EXPECT_FALSE(IsFound(slip, {.last = 0.5, .predicted = 0.3, .elsewhere = 0.3}));
+  }
+  // Less is enough for what turned in place.
+  const FakeMap::Lasting less{.last = 0.5, .predicted = 0.1, .elsewhere = 0.3};
+  EXPECT_TRUE(IsFound(turn, less));
+  EXPECT_FALSE(IsFound(aside, less));
+}
+
 }  // namespace
 }  // namespace depthgrid
