@@ -201,6 +201,7 @@ Json ToJson(const MapScore& score) {
   json["hausdorff95_m"] = ToJson(headline.hausdorff95_m);
   json["coverage"] = ToJson(headline.coverage);
   json["tolerance_cells"] = kDefaultToleranceCells;
+  if (score.compared_cell_m) json["compared_cell_m"] = *score.compared_cell_m;
   if (score.observable) json["observable"] = ToJson(*score.observable);
   json["all"] = ToJson(score.all);
   if (score.quality) AddQuality(*score.quality, json);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/metrics/cell_maps.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics_json.h"
 #include "eval/shell_word.h"
@@ -28,8 +30,6 @@ void RequireNoFolder(const std::string& path, const char* name) {
                                      ShellWord(inside.string())));
 }
 
-OccupancyMap ReadAligned(const std::string& path) { return AlignedMap(ReadMap(path)); }
-
 // A trinary file keeps states only, of which a calibration would say nothing.
 bool HoldsProbabilities(const OccupancyMap& map) {
   return std::any_of(map.occupied_prob.begin(), map.occupied_prob.end(),
@@ -44,15 +44,68 @@ std::string RemedyOf(const std::string& map, double resolution_m) {
                      beside.empty() ? "." : ShellWord(beside.string()), resolution_m);
 }
 
-// The same length to a millionth: files print it in decimal.
-void RequireSameResolution(const GridGeometry& a, const std::string& place_a, GridGeometry& b,
-                           const std::string& place_b, const std::string& remedy = "") {
+// How many cells of the first size make one of the second; nothing unless it is a whole number, to
+// a millionth: files print lengths in decimal.
+std::optional<int> TimesLarger(double fine_m, double coarse_m) {
   constexpr double kRelativeTolerance = 1e-6;
-  if (std::abs(a.resolution_m - b.resolution_m) > kRelativeTolerance * a.resolution_m) {
-    throw InputError(place_b, fmt::format("resolution is {}, must be the {} of {}{}",
-                                          b.resolution_m, a.resolution_m, place_a, remedy));
+  const double times = std::round(coarse_m / fine_m);
+  const bool is_whole = times >= 1.0 && times <= std::numeric_limits<int>::max() &&
+                        std::abs(times * fine_m - coarse_m) <= kRelativeTolerance * coarse_m;
+  return is_whole ? std::optional(static_cast<int>(times)) : std::nullopt;
+}
+
+// The maps that are compared, in cells of one size: the larger of the two.
+struct ComparedMaps {
+  StateMap truth;
+  OccupancyMap estimate;
+  std::string note;  // what was done about the size of cells; empty: nothing
+};
+
+std::string NoteOf(const std::string& fine, int times, double fine_m, const std::string& coarse,
+                   double coarse_m) {
+  return fmt::format(
+      "{}: {} x {} of its cells of {} m count as one of {} m, those of {}: occupied "
+      "if any is, else free if any is",
+      fine, times, times, fine_m, coarse_m, coarse);
+}
+
+ComparedMaps InOneSize(StateMap truth, OccupancyMap estimate, const EvalMapArguments& paths) {
+  const double truth_m = truth.geometry.resolution_m;
+  const double estimate_m = estimate.geometry.resolution_m;
+  ComparedMaps maps;
+  if (const auto times = TimesLarger(estimate_m, truth_m)) {
+    if (*times > 1) {
+      estimate = CertainMap(Coarsened(StatesOf(estimate), *times, truth_m));
+      maps.note = NoteOf(paths.estimate, *times, estimate_m, paths.reference, truth_m);
+    }
+    estimate.geometry.resolution_m = truth_m;
+  } else if (const auto fewer = TimesLarger(truth_m, estimate_m)) {
+    truth = Coarsened(truth, *fewer, estimate_m);
+    maps.note = NoteOf(paths.reference, *fewer, truth_m, paths.estimate, estimate_m);
+  } else {
+    throw InputError(
+        paths.estimate,
+        fmt::format("resolution is {}, must be the {} of {}, a whole multiple or a "
+                    "whole part of it{}",
+                    estimate_m, truth_m, paths.reference, RemedyOf(paths.estimate, truth_m)));
   }
-  b.resolution_m = a.resolution_m;
+  maps.truth = std::move(truth);
+  maps.estimate = std::move(estimate);
+  return maps;
+}
+
+// The cells a map calls free, in cells of this size: those that hold any.
+CellSet ReadObservable(const std::string& path, double cell_m, const std::string& place_of_cells) {
+  StateMap states = ReadStates(path);
+  const auto times = TimesLarger(states.geometry.resolution_m, cell_m);
+  if (!times) {
+    throw InputError(path,
+                     fmt::format("resolution is {}, must be the {} of {} or a whole part of it",
+                                 states.geometry.resolution_m, cell_m, place_of_cells));
+  }
+  std::replace(states.states.begin(), states.states.end(), CellState::kOccupied,
+               CellState::kUnknown);
+  return CellsIn(Coarsened(states, *times, cell_m), CellState::kFree);
 }
 
 void AddRows(const std::string& name, const CellScores& scores, std::vector<Row>& rows) {
@@ -209,10 +262,9 @@ void PrintTable(const MapScore& score) {
 void EvalMap(const EvalMapArguments& arguments) {
   RequireNoFolder(arguments.reference, "truth_map.yaml");
   RequireNoFolder(arguments.estimate, "map.yaml");
-  const StateMap truth = ReadStates(arguments.reference);
-  OccupancyMap estimate = ReadAligned(arguments.estimate);
-  RequireSameResolution(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate,
-                        RemedyOf(arguments.estimate, truth.geometry.resolution_m));
+  StateMap reference = ReadStates(arguments.reference);
+  const auto [truth, estimate, note] =
+      InOneSize(std::move(reference), AlignedMap(ReadMap(arguments.estimate)), arguments);
   const GridGeometry both =
       Around(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;
@@ -220,18 +272,20 @@ void EvalMap(const EvalMapArguments& arguments) {
   if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
   std::optional<CellSet> observable;
   if (!observable_path.empty()) {
-    observable = ReadFreeCells(observable_path);
-    RequireSameResolution(truth.geometry, arguments.reference, observable->geometry,
-                          observable_path);
+    const double cell_m = truth.geometry.resolution_m;
+    observable = ReadObservable(observable_path, cell_m,
+                                note.empty() ? arguments.reference : "the larger cells compared");
     Around(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
   score.quality = ScoreMapQuality(truth, estimate, observable, {});
+  if (!note.empty()) score.compared_cell_m = truth.geometry.resolution_m;
   Warn(DoubtsOf(arguments, score, observable_path));
   if (!HoldsProbabilities(estimate)) score.quality->calibration.reset();
   if (arguments.json) {
     fmt::print("{}", MetricsJson({}, &score));
   } else {
+    if (!note.empty()) fmt::print("{}\n\n", Printable(note));
     PrintTable(score);
   }
 }

@@ -1,5 +1,7 @@
 #include "eval/metrics/cell_maps.h"
 
+#include <algorithm>
+
 namespace depthgrid {
 
 StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry) {
@@ -14,6 +16,24 @@ CellSet OnGeometry(const CellSet& set, const GridGeometry& geometry) {
     moved.members[i] = set.Has(geometry.CellAt(i)) ? 1 : 0;
   }
   return moved;
+}
+
+StateMap Coarsened(const StateMap& map, int times, double resolution_m) {
+  const GridGeometry& fine = map.geometry;
+  const auto coarse_of = [times](const Cell& cell) {
+    const auto index = [times](int i) { return i >= 0 ? i / times : -((times - 1 - i) / times); };
+    return Cell{index(cell.x), index(cell.y)};
+  };
+  const Cell min_cell = coarse_of(fine.min_cell);
+  const Cell max_cell =
+      coarse_of({fine.min_cell.x + fine.width_cells - 1, fine.min_cell.y + fine.height_cells - 1});
+  StateMap coarse(GridGeometry{resolution_m, min_cell, max_cell.x - min_cell.x + 1,
+                               max_cell.y - min_cell.y + 1});
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    CellState& state = coarse.states[coarse.geometry.Index(coarse_of(fine.CellAt(i)))];
+    state = std::max(state, map.states[i]);  // unknown, free, occupied
+  }
+  return coarse;
 }
 
 CellSet CellsIn(const StateMap& map, CellState state) {

@@ -13,6 +13,10 @@ namespace depthgrid {
 StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry);
 CellSet OnGeometry(const CellSet& set, const GridGeometry& geometry);
 
+// The map in cells of `resolution_m`, `times` as large as its own: occupied if any of its cells in
+// them is occupied, else free if any is free.
+StateMap Coarsened(const StateMap& map, int times, double resolution_m);
+
 CellSet CellsIn(const StateMap& map, CellState state);
 CellSet KnownCells(const StateMap& map);
 // Of one geometry.

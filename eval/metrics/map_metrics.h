@@ -61,6 +61,9 @@ struct MapScore {
   std::optional<CellScores> observable;  // empty when nothing was said about what is observable
   CellScores all;
   std::optional<MapQuality> quality;  // ScoreMapQuality's; ScoreMap leaves it out
+  // Of the cells that were compared, where one of the maps has smaller ones; ScoreMap leaves it
+  // out.
+  std::optional<double> compared_cell_m;
 };
 
 // Same resolution required of all three.

@@ -2,6 +2,16 @@
 
 namespace depthgrid {
 
+OccupancyMap CertainMap(const StateMap& map) {
+  OccupancyMap certain(map.geometry);
+  for (std::size_t i = 0; i < map.states.size(); ++i) {
+    if (map.states[i] != CellState::kUnknown) {
+      certain.occupied_prob[i] = map.states[i] == CellState::kOccupied ? 1.0F : 0.0F;
+    }
+  }
+  return certain;
+}
+
 StateMap StatesOf(const OccupancyMap& map, const StateThresholds& thresholds) {
   StateMap states(map.geometry);
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {

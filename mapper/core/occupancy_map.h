@@ -56,6 +56,9 @@ struct StateMap {
   bool operator==(const StateMap&) const = default;
 };
 
+// Of certain cells: probability 1, 0, or NaN where unknown.
+OccupancyMap CertainMap(const StateMap& map);
+
 StateMap StatesOf(const OccupancyMap& map, const StateThresholds& thresholds = {});
 
 }  // namespace depthgrid

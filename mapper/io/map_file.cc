@@ -207,13 +207,7 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
 }
 
 void WriteMap(const std::string& yaml_path, const StateMap& map) {
-  OccupancyMap certain(map.geometry);
-  for (std::size_t i = 0; i < map.states.size(); ++i) {
-    if (map.states[i] != CellState::kUnknown) {
-      certain.occupied_prob[i] = map.states[i] == CellState::kOccupied ? 1.0F : 0.0F;
-    }
-  }
-  WriteMap(yaml_path, certain);
+  WriteMap(yaml_path, CertainMap(map));
 }
 
 }  // namespace depthgrid

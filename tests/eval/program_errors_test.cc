@@ -84,15 +84,17 @@ TEST_F(ProgramErrors, MapsAreNamedByTheirYamlFile) {
 TEST_F(ProgramErrors, AMapOfOtherCellsCanBeDrawnAgain) {
   Succeed("run ./small.yaml -o 'a run'");
   Succeed("regrid 'a run' --resolution 0.02");
-  ExpectRefusal("eval map 'a run/truth_map.yaml' 'a run/map_0.02.yaml'",
-                {"resolution is 0.02, must be the 0.05 of a run/truth_map.yaml; `depthgrid regrid "
-                 "'a run' --resolution 0.05` draws it so"});
+  ExpectRefusal(
+      "eval map 'a run/truth_map.yaml' 'a run/map_0.02.yaml'",
+      {"resolution is 0.02, must be the 0.05 of a run/truth_map.yaml, a whole multiple or "
+       "a whole part of it; `depthgrid regrid 'a run' --resolution 0.05` draws it so"});
   Succeed("regrid 'a run' --resolution 0.05");
   Succeed("eval map 'a run/truth_map.yaml' 'a run/map_0.05.yaml'");
   std::filesystem::copy(Path("a run/map_0.02.yaml"), Path("map_0.02.yaml"));
   std::filesystem::copy(Path("a run/map_0.02.pgm"), Path("map_0.02.pgm"));
-  ExpectRefusal("eval map 'a run/truth_map.yaml' map_0.02.yaml",
-                {"must be the 0.05 of a run/truth_map.yaml\n"});
+  ExpectRefusal(
+      "eval map 'a run/truth_map.yaml' map_0.02.yaml",
+      {"must be the 0.05 of a run/truth_map.yaml, a whole multiple or a whole part of it\n"});
 }
 
 TEST_F(ProgramErrors, QuotedBytesOfADamagedFileStayReadable) {

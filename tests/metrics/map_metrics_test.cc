@@ -7,6 +7,7 @@
 
 #include "eval/metrics/distance_transform.h"
 #include "mapper/core/rng.h"
+#include "tests/metrics/drawn_map.h"
 
 namespace depthgrid {
 namespace {
@@ -182,6 +183,20 @@ TEST(ScoreMap, AnEmptyEstimateHasRecallZeroAndNoPrecision) {
   EXPECT_FALSE(all.occupied[1].f1);
   EXPECT_FALSE(all.chamfer_m || all.truth_to_estimate_m);
   EXPECT_EQ(all.coverage, 0.0);
+}
+
+// Cells of the finer lattice from (-3, -1) on: columns -3 and -2 and -1, 0 and 1 are one each.
+TEST(Coarsened, OccupiedIfAnyIsElseFreeIfAnyIs) {
+  StateMap fine = DrawnMap({"?.??#",    //
+                            "??.?.",    //
+                            "????."});  // y = -1, alone in its row of two
+  fine.geometry.min_cell = {-3, -1};
+  StateMap expected = DrawnMap({"?.#",  //
+                                "??."},
+                               0.1);
+  expected.geometry.min_cell = {-2, -1};
+  EXPECT_EQ(Coarsened(fine, 2, 0.1), expected);
+  EXPECT_EQ(Coarsened(fine, 1, 0.05), fine);
 }
 
 }  // namespace
