@@ -82,7 +82,7 @@ Json DriftAt(const std::vector<Drift>& drifts, double over) {
 }
 
 Json ToJson(const TrajectoryScore& score) {
-  return {
+  Json json = {
       {"mean_euclidean_m", score.xy_unaligned.mean},
       {"ate_rmse_m", score.xy_unaligned.rmse},
       {"ate_rmse_origin_m", score.xy_origin.rmse},
@@ -122,6 +122,8 @@ Json ToJson(const TrajectoryScore& score) {
        {{"over_time", ToJson(score.drift_over_time, "s")},
         {"over_path", ToJson(score.drift_over_path, "m")}}},
   };
+  if (score.by_row) json["paired_by"] = "row";
+  return json;
 }
 
 Json ToJson(const WallDistanceScore& score) {

@@ -9,9 +9,9 @@
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
 #include "eval/output_file.h"
+#include "eval/trajectory_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
-#include "mapper/io/trajectory_file.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -26,9 +26,9 @@ Row StatisticsRow(const std::string& name, const std::optional<Statistics>& s) {
 }
 
 void PrintTable(const TrajectoryScore& score) {
-  fmt::print("{} of {} reference and {} estimated poses matched, {:.3f} m of path\n\n",
+  fmt::print("{} of {} reference and {} estimated poses matched{}, {:.3f} m of path\n\n",
              score.matched_poses, score.reference_poses, score.estimate_poses,
-             score.reference_path_m);
+             score.by_row ? ", row by row (matrices have no stamps)" : "", score.reference_path_m);
   fmt::print("{}",
              Table({{"error", "rmse", "mean", "median", "std", "min", "max"},
                     StatisticsRow("xy, not aligned (m)", score.xy_unaligned),
@@ -67,7 +67,7 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajec
   constexpr double kLeastPathM = 1.0;  // of less, noise tells the scale
   std::vector<std::string> doubts;
   const int fewer = std::min(score.reference_poses, score.estimate_poses);
-  if (score.matched_poses < kFewShare * fewer || score.matched_poses < 2) {
+  if (!score.by_row && (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
     doubts.push_back(
         fmt::format("{}: only {} of its {} poses have a stamp of {}'s {}; the errors are "
                     "of those alone",
@@ -98,16 +98,48 @@ Matched Match(const std::vector<PosePair>& pairs) {
   return matched;
 }
 
-std::string ErrorsCsv(const std::vector<PosePair>& pairs) {
+std::string ErrorsCsv(const std::vector<PosePair>& pairs, bool has_seconds) {
   const std::vector<double> xy_m = TranslationErrorsXy(pairs);
   const std::vector<double> xyz_m = TranslationErrorsXyz(pairs);
   const std::vector<double> rotation_rad = RotationErrors(pairs);
-  std::string csv = "stamp_s,error_xy_m,error_xyz_m,error_rotation_rad\n";
+  std::string csv = fmt::format("{},error_xy_m,error_xyz_m,error_rotation_rad\n",
+                                has_seconds ? "stamp_s" : "row");
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    csv += fmt::format("{:.6f},{},{},{}\n", pairs[i].reference.stamp_s, xy_m[i], xyz_m[i],
-                       rotation_rad[i]);
+    csv += fmt::format("{:.{}f},{},{},{}\n", pairs[i].reference.stamp_s, has_seconds ? 6 : 0,
+                       xy_m[i], xyz_m[i], rotation_rad[i]);
   }
   return csv;
+}
+
+// Paired by stamps as the convention has it, and what is said of all poses.
+struct Paired {
+  std::vector<PosePair> pairs;
+  std::optional<TrajectoryScore> score;
+};
+
+Paired PairByStamps(const Trajectory& reference, const Trajectory& estimate, double limit_s,
+                    const std::string& convention) {
+  if (convention != "tum") {
+    return {Associate(reference, estimate, limit_s), ScoreTrajectory(reference, estimate, limit_s)};
+  }
+  Paired paired;
+  paired.pairs = AssociateAsTum(reference, estimate, limit_s);
+  const Matched matched = Match(paired.pairs);
+  paired.score = ScoreTrajectory(matched.reference, matched.estimate, limit_s);
+  if (paired.score) {
+    paired.score->reference_poses = static_cast<int>(reference.size());
+    paired.score->estimate_poses = static_cast<int>(estimate.size());
+  }
+  return paired;
+}
+
+// Rows that belong together have the same stamp.
+Paired PairByRows(const TrajectoryFiles& files) {
+  Paired paired = PairByStamps(files.reference, files.estimate, 0.0, "evo");
+  if (!paired.score) return paired;
+  paired.score->by_row = true;
+  if (!files.has_seconds) paired.score->drift_over_time.clear();
+  return paired;
 }
 
 double LimitOf(const EvalTrajectoryArguments& arguments) {
@@ -120,31 +152,27 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   RequireInputsKept(arguments.errors, "--errors", {arguments.reference, arguments.estimate});
   if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
-  std::vector<std::string> warnings;
-  const Trajectory reference = ReadTrajectory(arguments.reference, warnings);
-  const Trajectory estimate = ReadTrajectory(arguments.estimate, warnings);
-  Warn(warnings);
+  const TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
+  Warn(files.warnings);
   const double limit_s = LimitOf(arguments);
-  const std::vector<PosePair> pairs = arguments.convention == "tum"
-                                          ? AssociateAsTum(reference, estimate, limit_s)
-                                          : Associate(reference, estimate, limit_s);
-  std::optional<TrajectoryScore> score;
-  if (arguments.convention == "tum") {
-    const Matched matched = Match(pairs);
-    score = ScoreTrajectory(matched.reference, matched.estimate, limit_s);
-    if (score) {
-      score->reference_poses = static_cast<int>(reference.size());
-      score->estimate_poses = static_cast<int>(estimate.size());
-    }
-  } else {
-    score = ScoreTrajectory(reference, estimate, limit_s);
-  }
+  const Paired paired =
+      files.by_row ? PairByRows(files)
+                   : PairByStamps(files.reference, files.estimate, limit_s, arguments.convention);
+  const std::optional<TrajectoryScore>& score = paired.score;
   if (!score) {
-    throw InputError(arguments.estimate, fmt::format("shares no stamp with {} (within {} s)",
-                                                     arguments.reference, limit_s));
+    throw InputError(
+        arguments.estimate,
+        files.by_row
+            ? fmt::format("has no pose in a row in which {} has one", arguments.reference)
+            : fmt::format("shares no stamp with {} (within {} s)", arguments.reference, limit_s));
+  }
+  if (files.by_row && arguments.max_difference_s >= 0.0) {
+    Warn({"--max-difference: has no effect because rows pair in order"});
   }
   Warn(DoubtsOf(*score, arguments));
-  if (!arguments.errors.empty()) WriteFile(arguments.errors, ErrorsCsv(pairs));
+  if (!arguments.errors.empty()) {
+    WriteFile(arguments.errors, ErrorsCsv(paired.pairs, files.has_seconds));
+  }
   if (arguments.json) {
     fmt::print("{}", MetricsJson({{"est", score}}, nullptr));
   } else {

@@ -206,7 +206,7 @@ void AddEval(Program& program) {
       "Example:\n  depthgrid eval trajectory groundtruth.txt trajectory_est.txt\n"
       "  depthgrid eval map OUT/truth_map.yaml OUT/map.yaml --json");
   const auto [trajectory, t] = program.Add<EvalTrajectoryArguments>(
-      *eval, "trajectory", "Errors of a trajectory, TUM files, evo's conventions",
+      *eval, "trajectory", "Errors of a trajectory, TUM or KITTI files, evo's conventions",
       "depthgrid eval trajectory groundtruth.txt trajectory_est.txt", &EvalTrajectory);
   trajectory->add_option("reference", t->reference, "True trajectory")->required();
   trajectory->add_option("estimate", t->estimate, "Estimated trajectory")->required();

@@ -40,6 +40,7 @@ struct TrajectoryScore {
   int reference_poses = 0;
   int estimate_poses = 0;
   int matched_poses = 0;
+  bool by_row = false;            // rows paired in order: a file had no stamps
   double reference_path_m = 0.0;  // over the matched poses
   Statistics xy_unaligned;        // metres; its mean is the paper's Table 1 as we read it
   Statistics xy_origin;           // first bases laid over each other

@@ -18,9 +18,20 @@ constexpr std::size_t kTumColumns = 8;
 constexpr const char* kTumIsOtherwise =
     " (a TUM trajectory has 8 columns, t x y z qx qy qz qw, with decimal points)";
 
-// Rows of 4, 12 or 16 columns, of which the first few may be damaged.
+Trajectory StampedMatrices(const std::string& text, const std::string& place,
+                           const FrameNames& frames, std::vector<std::string>& warnings) {
+  const auto poses = PairInOrder(ParseMatrixRows(text, place, warnings), frames, place, warnings);
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < std::min(poses.size(), frames.stamps_s.size()); ++i) {
+    if (poses[i]) trajectory.push_back({frames.stamps_s[i], *poses[i]});
+  }
+  return trajectory;
+}
+
+}  // namespace
+
 bool HoldsMatrices(const std::string& text) {
-  constexpr std::size_t kLooksAt = 10;
+  constexpr std::size_t kLooksAt = 10;  // the first few may be damaged
   int matrices = 0;
   const std::vector<TextRow> rows = SplitRows(text);
   for (std::size_t i = 0; i < std::min(kLooksAt, rows.size()); ++i) {
@@ -31,8 +42,9 @@ bool HoldsMatrices(const std::string& text) {
   return matrices > 0;
 }
 
-Trajectory StampedMatrices(const std::string& text, const std::string& place,
-                           const FrameNames& frames, std::vector<std::string>& warnings) {
+std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const std::string& place,
+                                                  std::vector<std::string>& warnings) {
+  RequirePlainColumns(SplitRows(text), place);
   RowDamage damage;
   auto poses = [&] {
     try {
@@ -48,19 +60,11 @@ Trajectory StampedMatrices(const std::string& text, const std::string& place,
     warnings.push_back(
         fmt::format("{}: {} with NaN ignored", place, Counted(empty - damage.damaged(), "pose")));
   }
-  poses = PairInOrder(std::move(poses), frames, place, warnings);
-  Trajectory trajectory;
-  for (std::size_t i = 0; i < std::min(poses.size(), frames.stamps_s.size()); ++i) {
-    if (poses[i]) trajectory.push_back({frames.stamps_s[i], *poses[i]});
-  }
-  return trajectory;
+  return poses;
 }
-
-}  // namespace
 
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings) {
-  RequirePlainColumns(SplitRows(text), place);
   Trajectory poses;
   if (HoldsMatrices(text)) {
     poses = StampedMatrices(text, place, frames, warnings);

@@ -1,6 +1,7 @@
 // Poses of a sequence from a file of either kind.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,5 +17,13 @@ Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings);
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings);
+
+// Whether the text is of matrices rather than a TUM trajectory: its first rows have 4, 12 or 16
+// columns.
+bool HoldsMatrices(const std::string& text);
+// The matrices of such a text, those without a pose (NaN, damaged) in their places. What had to be
+// mended goes to `warnings`. Throws InputError.
+std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const std::string& place,
+                                                  std::vector<std::string>& warnings);
 
 }  // namespace depthgrid

@@ -99,5 +99,58 @@ TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
               HasSubstr("13 of 13 reference and 13 estimated poses matched"));
 }
 
+// Row by row, as a run's own trajectory_est_kitti.txt is of its trajectory_est.txt.
+TEST_F(EvalTrajectory, MatricesPairRowByRow) {
+  std::string truth;
+  std::string estimate;
+  for (int i = 0; i <= 12; ++i) {
+    truth += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", i);
+    estimate += fmt::format("1 0 0 {} 0 1 0 {} 0 0 1 0\n", 1.02 * i, i >= 6 ? 0.3 : 0.0);
+  }
+  Write("truth_kitti.txt", truth);
+  Write("estimate_kitti.txt", estimate);
+  using Json = nlohmann::json;
+  const auto scores = [&](const std::string& files) {
+    return Json::parse(Program("eval trajectory " + files + " --json").out)["trajectory"]["est"];
+  };
+  const Json stamped = scores("truth.txt estimate.txt");
+  int cases = 0;
+  for (const char* files : {"truth_kitti.txt estimate.txt", "truth.txt estimate_kitti.txt",
+                            "truth_kitti.txt estimate_kitti.txt"}) {
+    SCOPED_TRACE(files);
+    Json est = scores(files);
+    EXPECT_EQ(est["paired_by"], "row");
+    est.erase("paired_by");
+    if (++cases == 3) {  // a row is no second
+      EXPECT_EQ(est["drift_m_per_s"], nullptr);
+      EXPECT_TRUE(est["drift"]["over_time"].empty());
+      for (const char* key : {"drift_m_per_s", "drift"}) est[key] = stamped[key];
+    }
+    EXPECT_EQ(est, stamped);
+    EXPECT_THAT(Program(std::string("eval trajectory ") + files).out,
+                HasSubstr("13 of 13 reference and 13 estimated poses matched, row by row"));
+  }
+  Succeed("eval trajectory truth_kitti.txt estimate_kitti.txt --errors errors.csv");
+  EXPECT_THAT(ReadFile(Path("errors.csv")), StartsWith("row,error_xy_m,error_xyz_m,error_rotation_"
+                                                       "rad\n0,0,0,0\n1,0.02"));
+}
+
+TEST_F(EvalTrajectory, MatricesThatDoNotPairAreRefused) {
+  const std::string row = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  Write("three.txt", row + row + row);
+  Write("gap.txt", row + "nan nan nan nan nan nan nan nan nan nan nan nan\n" + row);
+  ExpectRefusal("eval trajectory truth.txt three.txt",
+                {"three.txt: holds 3 poses, must hold the 13 of truth.txt: it has no stamps"});
+  ExpectRefusal("eval trajectory three.txt truth.txt",
+                {"truth.txt: holds 13 poses, must hold the 3 of three.txt: that one has no"});
+  Write("mended.txt", "1 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  ExpectRefusal("eval trajectory mended.txt three.txt",
+                {"mended.txt: 1 row is no pose or not later than the row before"});
+  const Outcome gap = Program("eval trajectory three.txt gap.txt --max-difference 0.1");
+  EXPECT_THAT(gap.err, HasSubstr("gap.txt: 1 pose with NaN ignored"));
+  EXPECT_THAT(gap.err, HasSubstr("--max-difference: has no effect because rows pair in order"));
+  EXPECT_THAT(gap.out, HasSubstr("2 of 3 reference and 2 estimated poses matched"));
+}
+
 }  // namespace
 }  // namespace depthgrid
