@@ -118,8 +118,8 @@ void NarrowGaps(Scan& scan, double narrowest_m) {
 class CarmenLogSource : public FrameSource {
  public:
   CarmenLogSource(std::string path, const CarmenLogOptions& options,
-                  const std::vector<LoopClosure>& loops)
-      : path_(std::move(path)), options_(options), line_(kMaxLineBytes) {
+                  const std::vector<LoopClosure>& loops, const PartOptions& part)
+      : path_(std::move(path)), options_(options), part_(part), line_(kMaxLineBytes) {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
@@ -128,12 +128,15 @@ class CarmenLogSource : public FrameSource {
     std::optional<CarmenScan> last;
     CarmenCheck check;
     while (auto scan = NextScan()) {
-      check.Add(*scan, ReachOf(*scan, options_).no_return_m, options_.fov_deg > 0.0, line_number_);
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
+      if (place_ != Place::kInPart) continue;
+      check.Add(*scan, ReachOf(*scan, options_).no_return_m, options_.fov_deg > 0.0, line_number_);
       if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
     }
+    names_.part = FindPart(part_, names_.stamps_s, path_);
+    std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
     const int lines = line_number_;
     for (const auto& [reason, seen] : problems_) {
       warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
@@ -165,8 +168,9 @@ class CarmenLogSource : public FrameSource {
   }
 
   std::optional<Frame> Next() override {
-    const std::optional<CarmenScan> line = NextScan();
-    if (!line) return std::nullopt;
+    std::optional<CarmenScan> line = NextScan();
+    for (; line && place_ == Place::kBeforePart; line = NextScan()) ++next_index_;
+    if (!line || place_ == Place::kBehindPart) return std::nullopt;
     Frame frame;
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
@@ -179,7 +183,7 @@ class CarmenLogSource : public FrameSource {
     return frame;
   }
   std::optional<PinholeCamera> Camera() const override { return std::nullopt; }
-  int FrameCount() const override { return static_cast<int>(names_.stamps_s.size()); }
+  int FrameCount() const override { return static_cast<int>(names_.CountInPart()); }
   std::vector<std::string> Warnings() const override { return warnings_; }
   const FrameNames& Names() const { return names_; }
 
@@ -200,11 +204,25 @@ class CarmenLogSource : public FrameSource {
     odom_from_last_.reset();
     epoch_ = 0;
     front_max_m_ = 0.0;
+    first_stamp_s_.reset();
+    place_ = Place::kBeforePart;
+  }
+
+  // With each scan that is used. What was noted before the part is not of it.
+  void MoveTo(double stamp_s) {
+    if (!first_stamp_s_) first_stamp_s_ = stamp_s;
+    const bool in_part = part_.Has(stamp_s - *first_stamp_s_);
+    if (place_ == Place::kInPart && !in_part) place_ = Place::kBehindPart;
+    if (place_ != Place::kBeforePart || !in_part) return;
+    place_ = Place::kInPart;
+    if (part_.from_s == 0.0) return;
+    problems_.clear();
+    earlier_ = 0;
   }
 
   // Sorting is not for the program: of a clock that was set back it would make one drive of two.
   void WarnOfOrder() {
-    const std::size_t used = names_.stamps_s.size();
+    const std::size_t used = names_.CountInPart();
     if (static_cast<std::size_t>(earlier_) <= used) return;
     warnings_.push_back(fmt::format(
         "{}: {} of {} scans are earlier than one before them, so most of the log is left out: its "
@@ -213,6 +231,7 @@ class CarmenLogSource : public FrameSource {
   }
 
   void Note(const std::string& reason) {
+    if (place_ == Place::kBehindPart) return;
     Problem& problem = problems_[reason];
     if (problem.count++ == 0) problem.first_line = line_number_;
   }
@@ -258,10 +277,12 @@ class CarmenLogSource : public FrameSource {
       if (scan->stamp_s != last_stamp_s_) ++lines_of_scans_;
       // Also what drops the second of two messages written for one scan.
       if (scan->stamp_s <= last_stamp_s_) {
-        earlier_ += scan->stamp_s < last_stamp_s_ ? 1 : 0;
+        const bool counts = place_ != Place::kBehindPart;
+        earlier_ += counts && scan->stamp_s < last_stamp_s_ ? 1 : 0;
         Note("a scan that is not later than the one before it");
         continue;
       }
+      MoveTo(scan->stamp_s);
       if (odom_from_last_ &&
           IsJump(*odom_from_last_, scan->odom_from_laser, scan->stamp_s - last_stamp_s_)) {
         Note("the pose jumps by more than 10 m: no motion is taken there");
@@ -277,6 +298,7 @@ class CarmenLogSource : public FrameSource {
 
   std::string path_;
   CarmenLogOptions options_;
+  PartOptions part_;
   std::vector<LoopClosure> loops_;
   std::ifstream file_;
   std::vector<char> line_;
@@ -286,6 +308,9 @@ class CarmenLogSource : public FrameSource {
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
   double last_stamp_s_ = 0.0;
+  std::optional<double> first_stamp_s_;
+  enum class Place { kBeforePart, kInPart, kBehindPart };
+  Place place_ = Place::kBeforePart;  // of the scan read last
   std::optional<Pose2> odom_from_last_;
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
@@ -327,13 +352,21 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
   return scan;
 }
 
-FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options) {
-  return CarmenLogSource(path, options, {}).Names();
+FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options,
+                        const PartOptions& part) {
+  return CarmenLogSource(path, options, {}, part).Names();
 }
 
 std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path, const CarmenLogOptions& options,
                                            const std::vector<LoopClosure>& loops) {
-  return std::make_unique<CarmenLogSource>(path, options, loops);
+  return OpenCarmenLog(path, options, loops, {}).source;
+}
+
+CarmenLog OpenCarmenLog(const std::string& path, const CarmenLogOptions& options,
+                        const std::vector<LoopClosure>& loops, const PartOptions& part) {
+  auto source = std::make_unique<CarmenLogSource>(path, options, loops, part);
+  FrameNames names = source->Names();
+  return {std::move(source), std::move(names)};
 }
 
 }  // namespace depthgrid

@@ -11,6 +11,7 @@
 #include "mapper/core/options.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/frame_names.h"
+#include "mapper/io/frame_part.h"
 
 namespace depthgrid {
 
@@ -38,8 +39,9 @@ struct CarmenLogOptions {
 };
 
 // The scans' stamps, and their numbers among the lines that are scans: damaged ones count, those
-// with the stamp of the scan before do not.
-FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {});
+// with the stamp of the scan before do not. All of them, and which are the part.
+FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {},
+                        const PartOptions& part = {});
 
 // What a line's readings mean.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
@@ -50,6 +52,15 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 //
 // `loops`, ordered by the frame that reports them, join scans: the second laser's pose in the first
 // one's axes (x forward, y left, z up).
+//
+// Of a part its scans alone are given, numbered as in the whole log, and warned of; loops with an
+// end outside it are left out.
+struct CarmenLog {
+  std::unique_ptr<FrameSource> source;
+  FrameNames names;
+};
+CarmenLog OpenCarmenLog(const std::string& path, const CarmenLogOptions& options,
+                        const std::vector<LoopClosure>& loops, const PartOptions& part);
 std::unique_ptr<FrameSource> OpenCarmenLog(const std::string& path,
                                            const CarmenLogOptions& options = {},
                                            const std::vector<LoopClosure>& loops = {});

@@ -12,17 +12,25 @@ namespace {
 // Spans that differ by more are of other units.
 constexpr double kMostSpanRatio = 100.0;
 
+double PartBeginS(const FrameNames& names) { return names.stamps_s[names.part.begin]; }
+double PartEndS(const FrameNames& names) {
+  return names.stamps_s[names.part.EndAmong(names.stamps_s.size()) - 1];
+}
+
 std::string RemedyOf(const FrameNames& names, double first_pose_s, double last_pose_s) {
   const double first_s = names.stamps_s.front();
   const double last_s = names.stamps_s.back();
   const auto [least_s, most_s] = std::minmax({last_s - first_s, last_pose_s - first_pose_s});
   if (least_s > 0.0 && most_s > kMostSpanRatio * least_s) return "are both in seconds?";
-  const bool overlap = first_pose_s <= last_s && first_s <= last_pose_s;
-  if (!overlap) {
+  const auto overlap = [&](double begin_s, double end_s) {
+    return first_pose_s <= end_s && begin_s <= last_pose_s;
+  };
+  if (!overlap(first_s, last_s)) {
     return fmt::format(
         "--set sequence.recording.time_offset_s={:.3f} lays the first of both together",
         names.time_offset_s + first_pose_s - first_s);
   }
+  if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
   return "--set sequence.recording.interpolate_poses=true goes between poses, those up to "
          "max_interpolation_gap_s apart";
 }
@@ -34,9 +42,20 @@ std::string StampRanges(const FrameNames& names, double first_pose_s, double las
       names.time_offset_s == 0.0 ? "" : fmt::format(" ({:g} s added)", names.time_offset_s);
   const double first_s = names.stamps_s.front();
   const double last_s = names.stamps_s.back();
-  return fmt::format("images from {:.3f} to {:.3f} s{}, poses from {:.3f} to {:.3f} s; {}", first_s,
-                     last_s, added, first_pose_s, last_pose_s,
+  const std::string part = names.IsWhole() ? ""
+                                           : fmt::format(", the part's from {:.3f} to {:.3f} s",
+                                                         PartBeginS(names), PartEndS(names));
+  return fmt::format("images from {:.3f} to {:.3f} s{}{}, poses from {:.3f} to {:.3f} s; {}",
+                     first_s, last_s, added, part, first_pose_s, last_pose_s,
                      RemedyOf(names, first_pose_s, last_pose_s));
+}
+
+std::string PartShown(const FrameNames& names) {
+  const double first_s = names.stamps_s.front();
+  return fmt::format("frames {} to {} of {}, {:.3f} to {:.3f} s of {:.3f}", names.part.begin,
+                     names.part.EndAmong(names.stamps_s.size()) - 1, names.stamps_s.size(),
+                     PartBeginS(names) - first_s, PartEndS(names) - first_s,
+                     names.stamps_s.back() - first_s);
 }
 
 std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
@@ -44,6 +63,11 @@ std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> 
                                               std::vector<std::string>& warnings) {
   const std::size_t count = frames.stamps_s.size();
   if (poses.size() == count || count == 0) return poses;
+  if (poses.size() == frames.CountInPart()) {  // SLAM was given the part alone
+    poses.insert(poses.begin(), frames.part.begin, std::nullopt);
+    poses.resize(count);
+    return poses;
+  }
   const auto last = static_cast<std::size_t>(frames.NumberOf(count - 1));
   const bool by_number = poses.size() == last + 1;
   warnings.push_back(fmt::format("{}: {} for {}, paired {}", place, Counted(poses.size(), "pose"),

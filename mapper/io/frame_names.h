@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/core/pose3.h"
+#include "mapper/io/frame_part.h"
 
 namespace depthgrid {
 
@@ -17,14 +18,18 @@ struct FrameNames {
   std::vector<std::int64_t> numbers = {};
   // What was added to the recording's own stamps to get those of the poses.
   double time_offset_s = 0.0;
+  // Those that are read: poses and events are of the whole recording, messages of these.
+  FramePart part = {};
 
+  std::size_t CountInPart() const { return part.CountAmong(stamps_s.size()); }
+  bool IsWhole() const { return CountInPart() == stamps_s.size(); }
   std::int64_t NumberOf(std::size_t frame) const {
     return numbers.empty() ? static_cast<std::int64_t>(frame) : numbers[frame];
   }
 };
 
-// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', and
-// what may be done about it. `names` has frames.
+// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', the
+// part's own and what may be done about it. `names` has frames.
 std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s);
 
 // Whether so few frames have a pose that it is to be said why.
@@ -32,9 +37,12 @@ inline bool MostLackPoses(std::size_t with_pose, std::size_t frames) {
   return 2 * with_pose < frames;
 }
 
-// Poses without stamps, an entry a frame of `numbers`: one for each frame in order or, where some
-// frames have been left out, one for each number from 0. Another count is a warning, and they pair
-// from the first.
+// "frames 300 to 599 of 900, 10.000 to 19.967 s of 29.967": which they are of the whole recording.
+std::string PartShown(const FrameNames& names);
+
+// Poses without stamps, an entry a frame of `numbers`: one for each frame in order, or for each of
+// the part or, where some frames have been left out, one for each number from 0. Another count is a
+// warning, and they pair from the first.
 std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
                                               const FrameNames& frames, const std::string& place,
                                               std::vector<std::string>& warnings);

@@ -147,9 +147,9 @@ namespace {
 
 // One unit for a whole folder: a near wall's centimetres would pass for metres.
 double RayUnitM(const Recording& recording, const PinholeCamera& camera) {
-  const std::size_t count = std::min(recording.images.size(), kImagesToTry);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string& path = recording.images[i].depth_path;
+  const auto images = ImagesOfPart(recording);
+  for (const RecordedImage& image : images.first(std::min(images.size(), kImagesToTry))) {
+    const std::string& path = image.depth_path;
     if (!path.ends_with(kRayEnding)) break;
     try {
       const double unit_m = RayUnitM(ParseRayLengths(ReadTextFile(path), camera, path));

@@ -33,8 +33,8 @@ DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
 // Of an image's ray lengths, in metres: 1, or 0.01 as of the office's files; 0 if it shows nothing.
 double RayUnitM(const DepthImage& lengths);
 
-// Reads either kind of depth image of the recording, whose camera is known. The first image that
-// shows something tells the unit of all ray lengths.
+// Reads either kind of depth image of the recording, whose camera is known. The part's first image
+// that shows something tells the unit of all ray lengths.
 DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& options);
 
 // The frames with the folder's own poses or with `slam`, which are turned by FlipY when the camera

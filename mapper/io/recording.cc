@@ -58,11 +58,12 @@ class RecordingSource final : public FrameSource {
     if (recording_.images.empty()) throw InputError(recording_.name, "holds no depth image");
     FindPoses(slam, options);
     Probe();
+    next_ = recording_.part.begin;
     if (recording_.camera.camera.HasDistortion()) undistorter_.emplace(recording_.camera.camera);
   }
 
   std::optional<Frame> Next() override {
-    if (next_ == recording_.images.size()) return {};
+    if (next_ == recording_.part.EndAmong(recording_.images.size())) return {};
     const RecordedImage& image = recording_.images[next_];
     Frame frame;
     frame.index = static_cast<int>(next_);
@@ -79,7 +80,7 @@ class RecordingSource final : public FrameSource {
   std::optional<PinholeCamera> Camera() const override {
     return undistorter_ ? undistorter_->camera() : recording_.camera.camera;
   }
-  int FrameCount() const override { return static_cast<int>(recording_.images.size()); }
+  int FrameCount() const override { return static_cast<int>(ImagesOfPart(recording_).size()); }
   std::vector<std::string> Warnings() const override {
     std::vector<std::string> warnings = recording_.warnings;
     unreadable_.AppendTo(warnings, recording_.name, "depth image", "missing or damaged");
@@ -92,11 +93,11 @@ class RecordingSource final : public FrameSource {
   void FindPoses(const SlamOutput& slam, const RecordingOptions& options) {
     const PoseTrack track(slam.live, options);
     std::size_t without = 0;
-    for (const RecordedImage& image : recording_.images) {
-      poses_.push_back(track.At(image.stamp_s));
-      if (!poses_.back().slam_from_camera) ++without;
+    for (std::size_t i = 0; i < recording_.images.size(); ++i) {
+      poses_.push_back(track.At(recording_.images[i].stamp_s));
+      if (recording_.part.Has(i) && !poses_.back().slam_from_camera) ++without;
     }
-    const std::size_t frames = recording_.images.size();
+    const std::size_t frames = ImagesOfPart(recording_).size();
     if (without == frames) throw NoSharedStamps(slam, options);
     if (without > 0) {
       recording_.warnings.push_back(fmt::format(
@@ -105,6 +106,7 @@ class RecordingSource final : public FrameSource {
     }
     int lost_loops = 0;
     loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);
+    std::erase_if(loops_, [&](const LoopClosure& loop) { return !recording_.part.Has(loop); });
     if (lost_loops > 0) {
       recording_.warnings.push_back(fmt::format(
           "{}: {} loop closures join frames that have no image", recording_.name, lost_loops));
@@ -121,7 +123,7 @@ class RecordingSource final : public FrameSource {
                          std::size_t with_pose) const {
     const bool by_frame = std::any_of(slam.live.begin(), slam.live.end(),
                                       [](const SlamPose& pose) { return !pose.slam_from_camera; });
-    if (by_frame || !MostLackPoses(with_pose, recording_.images.size())) return "";
+    if (by_frame || !MostLackPoses(with_pose, ImagesOfPart(recording_).size())) return "";
     return ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
@@ -133,9 +135,10 @@ class RecordingSource final : public FrameSource {
   // damaged image among many is not.
   void Probe() const {
     std::exception_ptr first_error;
-    for (std::size_t i = 0; i < std::min(kProbedImages, recording_.images.size()); ++i) {
+    const auto images = ImagesOfPart(recording_);
+    for (const RecordedImage& image : images.first(std::min(kProbedImages, images.size()))) {
       try {
-        RequireCameraSize(reader_(recording_.images[i].depth_path), recording_.images[i]);
+        RequireCameraSize(reader_(image.depth_path), image);
         return;
       } catch (const SizeError&) {
         throw;
@@ -188,9 +191,19 @@ std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput
   return std::make_unique<RecordingSource>(std::move(recording), slam, options, std::move(reader));
 }
 
+FramePart FindPart(const PartOptions& part, const Recording& recording) {
+  return FindPart(part, NamesOf(recording, 0.0).stamps_s, recording.name);
+}
+
+std::span<const RecordedImage> ImagesOfPart(const Recording& recording) {
+  const std::span<const RecordedImage> images = recording.images;
+  return images.subspan(recording.part.begin, recording.part.CountAmong(images.size()));
+}
+
 FrameNames NamesOf(const Recording& recording, double time_offset_s) {
   FrameNames names;
   names.time_offset_s = time_offset_s;
+  names.part = recording.part;
   for (const RecordedImage& image : recording.images) {
     names.stamps_s.push_back(image.stamp_s + time_offset_s);
     names.numbers.push_back(image.number);
@@ -204,7 +217,7 @@ DepthReader PngDepthReader(const DepthPngFormat& format) {
 
 void CompleteSize(const Recording& recording, CameraDescription& camera) {
   if (camera.has_size) return;
-  for (const RecordedImage& image : recording.images) {
+  for (const RecordedImage& image : ImagesOfPart(recording)) {
     try {
       const DepthImage depth = ReadDepthPng(image.depth_path);
       camera.file.camera.width_px = depth.width_px;

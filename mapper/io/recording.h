@@ -5,12 +5,14 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/frame_names.h"
+#include "mapper/io/frame_part.h"
 #include "mapper/io/png.h"
 #include "mapper/io/recording_options.h"
 
@@ -28,7 +30,11 @@ struct Recording {
   std::vector<RecordedImage> images;
   CameraFile camera;
   std::vector<std::string> warnings;  // found while listing
+  FramePart part = {};                // the images that become frames, and are read
 };
+
+FramePart FindPart(const PartOptions& part, const Recording& recording);
+std::span<const RecordedImage> ImagesOfPart(const Recording& recording);
 
 // `time_offset_s` is added to the stamps.
 FrameNames NamesOf(const Recording& recording, double time_offset_s);
@@ -42,12 +48,13 @@ DepthReader PngDepthReader(const DepthPngFormat& format);
 // How a recording's PNGs keep depth.
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
 
-// A camera file that does not say the image's size takes it from the first readable PNG.
+// A camera file that does not say the image's size takes it from the part's first readable PNG.
 void CompleteSize(const Recording& recording, CameraDescription& camera);
 
-// Frames in the recording's order, without the camera's distortion. Images that are missing,
-// damaged or of the wrong size become frames with a pose only and are counted. Throws InputError
-// when there is no image, when none of the first images can be read, when their size is not the
+// Frames of the recording's part in its order, without the camera's distortion, numbered as in the
+// whole recording. Images that are missing, damaged or of the wrong size become frames with a pose
+// only and are counted; loops with an end outside the part are left out. Throws InputError when
+// there is no image, when none of the first images can be read, when their size is not the
 // camera's, or when no image finds a pose.
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <span>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
@@ -63,6 +64,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
                           const std::optional<SlamOutput>& slam, std::vector<std::string>& notes) {
   DepthSequence sequence;
   sequence.recording = ListTumFolder(path, options.recording);
+  sequence.recording.part = FindPart(options.part, sequence.recording);
   if (slam) {
     sequence.slam = *slam;
   } else {
@@ -91,6 +93,7 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
                           const std::optional<SlamOutput>& slam) {
   DepthSequence sequence;
   sequence.recording = ListIclFolder(path);
+  sequence.recording.part = FindPart(options.part, sequence.recording);
   sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
   const CameraDescription camera =
       options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
@@ -105,6 +108,7 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
 DepthSequence FrameSequence(const std::string& path, const SequenceOptions& options,
                             const std::optional<SlamOutput>& slam) {
   FrameFolder listed = ListFrameFolder(path, options.recording);
+  listed.recording.part = FindPart(options.part, listed.recording);
   const CameraDescription camera =
       FrameFolderCamera(listed, options.camera, listed.recording.warnings);
   DepthSequence sequence;
@@ -116,38 +120,73 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
   return sequence;
 }
 
+// How many of the poses that jump are the part's.
+std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequence,
+                        const RecordingOptions& options) {
+  const Recording& recording = sequence.recording;
+  if (ImagesOfPart(recording).size() == recording.images.size()) return jumps.size();
+  const double begin_s = ImagesOfPart(recording).front().stamp_s + options.time_offset_s;
+  const double end_s = ImagesOfPart(recording).back().stamp_s + options.time_offset_s;
+  return static_cast<std::size_t>(std::count_if(jumps.begin(), jumps.end(), [&](int jump) {
+    const double stamp_s = sequence.slam.live[static_cast<std::size_t>(jump)].stamp_s;
+    return begin_s < stamp_s && stamp_s <= end_s;
+  }));
+}
+
 // A folder's own poses do not say where SLAM corrected itself: it is read off them.
-void FindCorrections(const std::string& path, DepthSequence& sequence,
-                     std::vector<std::string>& notes) {
+void FindCorrections(const std::string& path, const RecordingOptions& options,
+                     DepthSequence& sequence, std::vector<std::string>& notes) {
   SlamOutput& slam = sequence.slam;
   const std::vector<int> jumps = FindJumps(slam.live, {});
   if (const auto doubt = DoubtOf(slam.live, jumps)) {
     sequence.recording.warnings.push_back(path + ": " + *doubt);
     return;  // these are no corrections
   }
-  if (jumps.empty()) return;
-  notes.push_back(fmt::format("the poses jump at {}: no motion is taken there",
-                              Counted(jumps.size(), "frame")));
+  if (const std::size_t count = JumpsOfPart(jumps, sequence, options); count > 0) {
+    notes.push_back(
+        fmt::format("the poses jump at {}: no motion is taken there", Counted(count, "frame")));
+  }
   StartEpochs(jumps, slam.live);
+}
+
+// Where up is looked for: in all of the recording, so that its parts have one world; in the part
+// where SLAM was given little more.
+std::span<const RecordedImage> ImagesForUp(const DepthSequence& sequence,
+                                           const RecordingOptions& options) {
+  const std::span<const RecordedImage> all = sequence.recording.images;
+  const PoseTrack track(sequence.slam.live, options);
+  const auto with_pose = std::count_if(all.begin(), all.end(), [&](const RecordedImage& image) {
+    return track.At(image.stamp_s).slam_from_camera.has_value();
+  });
+  return MostLackPoses(static_cast<std::size_t>(with_pose), all.size())
+             ? ImagesOfPart(sequence.recording)
+             : all;
+}
+
+// Of the recording's images these alone.
+Recording WithImages(Recording recording, std::vector<RecordedImage> images) {
+  recording.images = std::move(images);
+  recording.part = {};
+  return recording;
 }
 
 // From a few images spread over the recording, and some of its first.
 std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
-  Recording chosen = sequence.recording;
-  chosen.images.clear();
-  const auto& images = sequence.recording.images;
+  std::vector<RecordedImage> chosen;
+  const auto images = ImagesForUp(sequence, options);
   const std::size_t every = std::max<std::size_t>(1, images.size() / kGravityViews);
   const std::size_t every_first = std::max<std::size_t>(1, every / kFirstGravityViews);
   std::set<double> spread_s;
   for (std::size_t i = 0; i < images.size(); ++i) {
     const bool spread = i % every == 0;
     if (!spread && !(i < every && i % every_first == 0)) continue;
-    chosen.images.push_back(images[i]);
+    chosen.push_back(images[i]);
     if (spread) spread_s.insert(images[i].stamp_s);
   }
   GravityFinder finder;
   try {
-    const auto source = OpenRecording(std::move(chosen), sequence.slam, options, sequence.reader);
+    const auto source = OpenRecording(WithImages(sequence.recording, std::move(chosen)),
+                                      sequence.slam, options, sequence.reader);
     const double first_end_s =
         images.empty() ? 0.0 : images[std::min(every, images.size() - 1)].stamp_s;
     while (const auto frame = source->Next()) {
@@ -163,7 +202,7 @@ std::optional<Gravity> FindGravity(const DepthSequence& sequence, const Recordin
 }
 
 // Spread over the recording; the chosen images, two a pair.
-std::vector<RecordedImage> PairsAmong(const std::vector<RecordedImage>& images) {
+std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
   std::vector<RecordedImage> pairs;
   const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
   std::size_t second = 0;
@@ -180,11 +219,11 @@ std::vector<RecordedImage> PairsAmong(const std::vector<RecordedImage>& images) 
 // Whether its poses are what they were read as.
 std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
                                     const RecordingOptions& options) {
-  Recording chosen = sequence.recording;
-  chosen.images = PairsAmong(sequence.recording.images);
+  std::vector<RecordedImage> chosen = PairsAmong(ImagesOfPart(sequence.recording));
   std::vector<ImagePair> pairs;
   try {
-    const auto source = OpenRecording(std::move(chosen), sequence.slam, options, sequence.reader);
+    const auto source = OpenRecording(WithImages(sequence.recording, std::move(chosen)),
+                                      sequence.slam, options, sequence.reader);
     while (const auto first = source->Next()) {
       const auto second = source->Next();
       if (!first->depth || !second->depth) continue;
@@ -247,6 +286,10 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
   return up;
 }
 
+void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
+  if (!names.IsWhole()) notes.push_back("the part of it: " + PartShown(names));
+}
+
 }  // namespace
 
 void SequenceOptions::Visit(OptionsVisitor& v) {
@@ -267,6 +310,7 @@ void SequenceOptions::Visit(OptionsVisitor& v) {
             {WorldUp::kMinusZ, "-z"}},
            "axis of the poses' world that points up; auto finds it from the floor");
   v.Text("camera", camera, "a camera file in place of the folder's own");
+  part.Visit(v);
   v.Group("recording", recording, "depth images and how poses are found for them");
   v.Group("laser", laser, "laser logs");
 }
@@ -305,11 +349,12 @@ std::string NameOf(SequenceFormat format) {
 
 FrameNames SequenceFrames(const std::string& path, const SequenceOptions& options) {
   const SequenceFormat format = FormatOf(path, options);
-  if (format == SequenceFormat::kCarmen) return CarmenFrames(path, options.laser);
-  const Recording recording =
-      format == SequenceFormat::kTum   ? ListTumFolder(path, options.recording)
-      : format == SequenceFormat::kIcl ? ListIclFolder(path)
-                                       : ListFrameFolder(path, options.recording).recording;
+  if (format == SequenceFormat::kCarmen) return CarmenFrames(path, options.laser, options.part);
+  Recording recording = format == SequenceFormat::kTum ? ListTumFolder(path, options.recording)
+                        : format == SequenceFormat::kIcl
+                            ? ListIclFolder(path)
+                            : ListFrameFolder(path, options.recording).recording;
+  recording.part = FindPart(options.part, recording);
   return NamesOf(recording, options.recording.time_offset_s);
 }
 
@@ -320,8 +365,10 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   result.kind = NameOf(format);
   if (format == SequenceFormat::kCarmen) {
     if (slam && !slam->live.empty()) throw InputError(path, "a laser log brings its own poses");
-    result.source =
-        OpenCarmenLog(path, options.laser, slam ? slam->loops : std::vector<LoopClosure>{});
+    CarmenLog log = OpenCarmenLog(path, options.laser,
+                                  slam ? slam->loops : std::vector<LoopClosure>{}, options.part);
+    result.source = std::move(log.source);
+    SayPart(log.names, result.notes);
     return result;
   }
   DepthSequence sequence = format == SequenceFormat::kTum
@@ -329,7 +376,8 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                            : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
                                                             : FrameSequence(path, options, slam);
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
-  if (!slam) FindCorrections(path, sequence, result.notes);
+  SayPart(NamesOf(sequence.recording, 0.0), result.notes);
+  if (!slam) FindCorrections(path, options.recording, sequence, result.notes);
   result.pose_doubt = CheckPoses(sequence, options.recording);
   if (options.world_up != WorldUp::kAuto) result.up_doubt = DoubtOfUp(sequence, options);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto

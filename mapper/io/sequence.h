@@ -10,6 +10,7 @@
 #include "mapper/core/frame.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/frame_names.h"
+#include "mapper/io/frame_part.h"
 #include "mapper/io/pose_check.h"
 #include "mapper/io/recording_options.h"
 #include "mapper/io/world_up.h"
@@ -24,6 +25,10 @@ struct SequenceOptions {
   // and, where none is seen, takes z (-y for ICL-NUIM).
   WorldUp world_up = WorldUp::kAuto;
   std::string camera;  // a camera file in place of the folder's own
+  // Which of its frames are given, numbered as in the whole recording. All that is not of single
+  // frames (poses' order, up) is found from the whole, so that parts of one recording share a world
+  // and fit its other files.
+  PartOptions part;
   RecordingOptions recording;
   CarmenLogOptions laser;
 
@@ -51,7 +56,8 @@ SequenceFormat DetectFormat(const std::string& path);
 SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options);
 std::string NameOf(SequenceFormat format);
 
-// How poses and events name the frames, for a laser log its scans.
+// How poses and events name the frames of the whole recording, for a laser log its scans, and which
+// of them are the part.
 FrameNames SequenceFrames(const std::string& path, const SequenceOptions& options = {});
 
 // `slam` replaces the folder's own poses; a TUM folder has none but groundtruth.txt, which is taken

@@ -46,9 +46,10 @@ std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
 // Poses that hardly ever have the stamp of a frame are of another clock, unit or recording.
 void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
                const std::string& path, std::vector<std::string>& warnings) {
-  if (!MostLackPoses(with_pose, frames.stamps_s.size())) return;
-  warnings.push_back(fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose,
-                                 frames.stamps_s.size(), RangesOf(frames, poses)));
+  const std::size_t count = frames.CountInPart();
+  if (!MostLackPoses(with_pose, count)) return;
+  warnings.push_back(fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose, count,
+                                 RangesOf(frames, poses)));
 }
 
 // Poses by the input frames they belong to: of several of one frame the nearest. Those of no frame
@@ -111,7 +112,8 @@ std::vector<SlamPose> LivePoses(const std::vector<FramedPose>& poses,
 }
 
 // Our own loops.csv says when SLAM corrected itself; else it is read off the poses.
-void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& input) {
+void FindCorrections(const SlamFilePaths& paths, bool epochs_known, const FramePart& part,
+                     SlamInput& input) {
   if (epochs_known) return;
   SlamOutput& slam = input.slam;
   const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
@@ -120,9 +122,12 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
     input.warnings.push_back(paths.live + ": " + *doubt);
     return;  // these are no corrections
   }
-  if (!jumps.empty()) {
+  const auto count = std::count_if(jumps.begin(), jumps.end(), [&](int frame) {
+    return part.Has(static_cast<std::size_t>(frame));
+  });
+  if (count > 0) {
     input.notes.push_back(fmt::format("SLAM corrected itself at {} (jumps of its live poses)",
-                                      Counted(jumps.size(), "frame")));
+                                      Counted(count, "frame")));
   }
   StartEpochs(jumps, slam.live);
   if (!paths.loops.empty() || paths.final.empty()) return;
@@ -131,6 +136,14 @@ void FindCorrections(const SlamFilePaths& paths, bool epochs_known, SlamInput& i
     input.notes.push_back(
         fmt::format("{} read off the revised poses", Counted(slam.loops.size(), "loop closure")));
   }
+}
+
+std::size_t PosedOf(const FramePart& part, const std::vector<SlamPose>& live) {
+  std::size_t posed = 0;
+  for (std::size_t i = part.begin; i < part.EndAmong(live.size()); ++i) {
+    posed += live[i].slam_from_camera ? 1 : 0;
+  }
+  return posed;
 }
 
 // Each frame's pose from the two nearest, which may be of no frame, by the epochs of the frames.
@@ -161,6 +174,15 @@ SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double 
   input.notes.push_back(
       fmt::format("{} from {}", Counted(loops.size(), "loop closure"), events.kind));
   return events;
+}
+
+// The others join what is not mapped.
+void KeepLoopsOf(const FramePart& part, SlamInput& input) {
+  const auto left_out =
+      std::erase_if(input.slam.loops, [&](const LoopClosure& loop) { return !part.Has(loop); });
+  if (left_out == 0) return;
+  input.notes.push_back(
+      fmt::format("{} with an end outside the part, left out", Counted(left_out, "loop closure")));
 }
 
 }  // namespace
@@ -198,6 +220,7 @@ void WriteSlamFiles(const std::string& folder, const SlamOutput& output) {
 SlamInput ReadLoops(const std::string& path, const FrameNames& frames, double max_difference_s) {
   SlamInput input;
   TakeEvents(path, frames, max_difference_s, input);
+  KeepLoopsOf(frames.part, input);
   return input;
 }
 
@@ -218,15 +241,16 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
     slam.final = ReadPoseFile(paths.final, frames, input.warnings);
     const auto revised =
         PosesByFrame(slam.final, frames, max_difference_s, paths.final, input.warnings);
-    WarnOfFew(revised.size(), frames, slam.final, paths.final, input.warnings);
+    const auto of_part = std::count_if(revised.begin(), revised.end(), [&](const FramedPose& pose) {
+      return frames.part.Has(pose.frame);
+    });
+    WarnOfFew(static_cast<std::size_t>(of_part), frames, slam.final, paths.final, input.warnings);
   }
   const bool epochs_known = events.kind == kOwnEvents;
-  FindCorrections(paths, epochs_known, input);
+  FindCorrections(paths, epochs_known, frames.part, input);
+  KeepLoopsOf(frames.part, input);
   if (reading.interpolate) Interpolate(live, reading, slam.live);
-  const auto with_pose =
-      std::count_if(slam.live.begin(), slam.live.end(),
-                    [](const SlamPose& pose) { return pose.slam_from_camera.has_value(); });
-  WarnOfFew(static_cast<std::size_t>(with_pose), frames, live, paths.live, input.warnings);
+  WarnOfFew(PosedOf(frames.part, slam.live), frames, live, paths.live, input.warnings);
   return input;
 }
 

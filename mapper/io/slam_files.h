@@ -32,7 +32,7 @@ struct SlamFilePaths {
 
 struct SlamInput {
   SlamOutput slam;
-  std::vector<std::string> notes;     // what was found, a line each
+  std::vector<std::string> notes;     // what was found, in the part where it is of frames
   std::vector<std::string> warnings;  // what was wrong and survived, a line each
 };
 
@@ -48,6 +48,7 @@ struct SlamReading {
 // The output of a SLAM system as files: its poses (TUM, or a matrix a frame in order), its revised
 // poses and its events, given all input frames; lost frames are in no file. Poses of no frame are
 // counted. Throws InputError for a file that is damaged or has nothing to do with the frames.
+// Of loops only those within the part of the frames are given; the others are counted in a note.
 SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
                         const SlamReading& reading = {});
 

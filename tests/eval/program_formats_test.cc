@@ -47,9 +47,10 @@ class ProgramFormats : public ProgramTest {
     for (int row = 0; row < 3; ++row) text += Row(r, pose.translation, row) + between;
     return text + "0 0 0 1";
   }
-  // The distance of the estimates to the truth, both as they are.
-  double ErrorM() const {
-    const Trajectory truth = Truth();
+  // The distance of the estimates to the truth of these frames, both as they are.
+  double ErrorM(int begin = 0, int end = 12) const {
+    const Trajectory all = Truth();
+    const Trajectory truth(all.begin() + begin, all.begin() + end);
     const Trajectory estimate = ReadTrajectory(Path("out/trajectory_est.txt"));
     EXPECT_EQ(estimate.size(), truth.size());
     double worst_m = 0.0;
@@ -355,6 +356,27 @@ TEST_F(ProgramFormats, AFinishedMapIsLocalisedInAndExtended) {
   }
   EXPECT_EQ(Program("map seq --map seq -o out2").exit_code, 2);
   EXPECT_EQ(Program("map seq --localise -o out2").exit_code, 2);
+}
+
+// A part of the frames, with all that belongs to the whole recording.
+TEST_F(ProgramFormats, APartOfAFolder) {
+  const Trajectory truth = Truth();
+  const std::string part = fmt::format(" --set sequence.from_s={} --set sequence.to_s={}",
+                                       truth[4].stamp_s, truth[9].stamp_s);
+  const std::string files = "seq --poses seq/groundtruth.txt --final-poses seq/groundtruth.txt";
+  EXPECT_THAT(Mapped(files + part), AllOf(HasSubstr("seq: TUM RGB-D folder, 5 frames\n"),
+                                          HasSubstr("the part of it: frames 4 to 8 of 12, "),
+                                          HasSubstr("mapped 5 of 5 frames\n")));
+  EXPECT_EQ(ReadFile(Path("out/warnings.txt")), "");
+  EXPECT_TRUE(fs::exists(Path("out/frames/000004_depth.png")));
+  EXPECT_LT(ErrorM(4, 9), 0.05);
+  fs::rename(Path("out/trajectory_est_kitti.txt"), Path("kitti.txt"));
+  Mapped("seq --poses kitti.txt" + part + kTrustPoses);
+  EXPECT_LT(ErrorM(4, 9), 0.05);
+  Mapped("seq");
+  fs::rename(Path("out"), Path("first"));
+  EXPECT_THAT(Mapped(files + " --map first --localise" + part), HasSubstr("placed 5 of 5 frames"));
+  EXPECT_LT(ErrorM(4, 9), 0.05);
 }
 
 }  // namespace

@@ -126,6 +126,48 @@ TEST_F(ProgramLogs, ALaserLogWithLoops) {
   EXPECT_THAT(outcome.err, HasSubstr("loops.txt: 1 event of frames that the recording does not"));
 }
 
+// Of 41 scans a second apart.
+TEST_F(ProgramLogs, APartOfALog) {
+  const std::string log = ThereAndBack(1.0);
+  Write("robot.log", log);
+  Write("loops.txt", "0 40 0 0 0 0 0 0 1\n12 28 0 0 0 0 0 0 1\n");
+  const std::string part =
+      "map robot.log --loops loops.txt --set sequence.from_s=10 --set sequence.to_s=30";
+  const Outcome outcome = Program(part + " -o out");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(
+      outcome.out,
+      AllOf(HasSubstr("robot.log: CARMEN laser log, 20 frames\n"),
+            HasSubstr("the part of it: frames 10 to 29 of 41, 10.000 to 29.000 s of 40.000\n"),
+            HasSubstr("1 loop closure with an end outside the part, left out\n"),
+            HasSubstr("mapped 20 of 20 frames; 1 of 1 loop closure taken\n")));
+  EXPECT_THAT(ReadFile(Path("out/frames.csv")), HasSubstr("\n10,10.000000,"));
+  Succeed("map out/run.yaml -o again");
+  ExpectSameBytes("out", "again");
+  // The same scans as a log of their own.
+  const auto line = [&](int number) {
+    std::size_t at = 0;
+    for (int i = 0; i < number; ++i) at = log.find('\n', at) + 1;
+    return at;
+  };
+  Write("cut.log", log.substr(line(10), line(30) - line(10)));
+  Succeed("map cut.log -o cut");
+  Succeed("map robot.log -o part" + part.substr(part.find(" --set")));
+  for (const char* file : {"map.pgm", "trajectory_est.txt"}) {
+    EXPECT_TRUE(SameFile(std::string("cut/") + file, std::string("part/") + file)) << file;
+  }
+}
+
+TEST_F(ProgramLogs, APartThatIsNotThereIsRefused) {
+  Write("robot.log", ThereAndBack(1.0));
+  ExpectRefusal("map robot.log -o out --set sequence.from_s=20 --set sequence.to_s=10",
+                {"--set sequence.from_s=20: sequence.from_s is 20, must be below to_s, 10"});
+  ExpectRefusal("map robot.log -o out --set sequence.from_s=41",
+                {"sequence.from_s: is 41, must be at most 40.000: robot.log is 40.000 s long"});
+  ExpectRefusal("map robot.log -o out --set sequence.to_s=50",
+                {"sequence.to_s: is 50, must be at most 41.000: robot.log is 40.000 s long"});
+}
+
 // Odometry a quarter too long: laid over the map, its first metres say where the robot was in the
 // middle of them, the first views where it began.
 TEST_F(ProgramLogs, WhereARunBeginsIsFoundWithPosesThatDrift) {
