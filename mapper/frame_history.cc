@@ -64,6 +64,11 @@ const FrameRecord* FrameHistory::PosedBefore(const FrameRecord& record) const {
   return nullptr;
 }
 
+bool FrameHistory::WasLost() const {
+  const FrameRecord* last = PosedBefore(newest());
+  return last != nullptr && (last + 1 != &newest() || last->epoch != newest().epoch);
+}
+
 const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {
   const int position = static_cast<int>(PlaceOf(record.index)->second);
   const int count = static_cast<int>(records_.size());

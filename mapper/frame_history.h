@@ -38,6 +38,9 @@ class FrameHistory {
   const FrameRecord* Find(int frame_index) const;
   // The last frame before one that has a pose; null if there is none.
   const FrameRecord* PosedBefore(const FrameRecord& record) const;
+  // Whether SLAM comes back with the newest frame: to poses of another epoch, or after frames
+  // without any. A recording that paused lost nothing.
+  bool WasLost() const;
   // The mapped frame closest in order to a frame, itself if it is mapped, of the same epoch and at
   // most `reach` input frames away; null if there is none.
   const FrameRecord* NearestMapped(const FrameRecord& record, int reach) const;

@@ -169,8 +169,8 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
 // The first scan after a loss says whether the guess was near enough.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
-  if (const FrameRecord* last = history.PosedBefore(history.newest())) {
-    relocation.Lost(report.stamp_s - last->stamp_s);
+  if (history.WasLost()) {
+    relocation.Lost(report.stamp_s - history.PosedBefore(history.newest())->stamp_s);
   }
   if (report.beams == 0) return;  // nothing seen, nothing told
   const double share = report.match.found ? report.match.score : 0.0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapper/core/error.h"
+#include "mapper/core/median.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
 #include "mapper/surfel/pose_covariance.h"
@@ -19,6 +20,8 @@ const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
 // kept").
 constexpr double kTieOverconfidence = 4.0;
 constexpr double kTieHuberSigmas = 2.0;
+// A recording that paused for longer errs by no more.
+constexpr double kMostSteps = 1000.0;
 
 // From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
 GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
@@ -31,18 +34,38 @@ GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& m
           kTieHuberSigmas};
 }
 
+// Between two frames that follow one another, in the median; 0 where nothing tells.
+double UsualStepS(const std::vector<MappedFrame>& frames) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double step_s = frames[i].stamp_s - frames[i - 1].stamp_s;
+    if (frames[i].slam_motion && step_s > 0.0) steps_s.push_back(step_s);
+  }
+  return steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
+}
+
+// How many usual steps it took from the frame before: more than one where the recording paused.
+int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s) {
+  const bool follows = frame.frame == before.frame + 1;
+  const double step_s = frame.stamp_s - before.stamp_s;
+  if (!follows || usual_s <= 0.0 || step_s <= usual_s) return 1;
+  return static_cast<int>(std::min(std::round(step_s / usual_s), kMostSteps));
+}
+
 // SLAM's motion from each group to the next, from those of the frames between.
 std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
   const std::vector<SurfelGroup>& groups = of.groups();
   std::vector<GroupMotion> motions(groups.size());
+  const double usual_s = UsualStepS(frames);
   for (std::size_t g = 1; g < groups.size(); ++g) {
     GroupMotion& motion = motions[g];
     motion.known = true;
-    motion.frames = groups[g].first_frame - groups[g - 1].first_frame;
     motion.of_prior_map = frames[static_cast<std::size_t>(groups[g].first_frame)].of_prior_map();
     for (int i = groups[g - 1].first_frame + 1; i <= groups[g].first_frame; ++i) {
       const std::optional<Pose2>& step = frames[static_cast<std::size_t>(i)].slam_motion;
       motion.known = motion.known && step;
+      motion.frames += StepsTo(frames[static_cast<std::size_t>(i)],
+                               frames[static_cast<std::size_t>(i) - 1], usual_s);
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
     const auto first = static_cast<std::size_t>(groups[g].first_frame);

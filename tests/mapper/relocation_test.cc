@@ -119,7 +119,7 @@ TEST(Relocation, SlamsCorrectionsMoveWhatWasSeenSinceTheLoss) {
 
 // SLAM is lost for three seconds and comes back without a word of a new epoch.
 TEST(Relocation, MotionOverADoubtedLossIsNotBelieved) {
-  constexpr int kBack = 101, kFrames = 110;
+  constexpr int kLost = 100, kBack = 101, kFrames = 110;
   for (const bool is_right : {true, false}) {
     IncrementalMapper mapper({}, std::nullopt);
     for (int i = 0; i < kFrames; ++i) {
@@ -128,10 +128,10 @@ TEST(Relocation, MotionOverADoubtedLossIsNotBelieved) {
       frame.index = i;
       frame.stamp_s = i / 30.0 + (i < kBack ? 0.0 : 3.0);
       const Pose2 off = i < kBack || is_right ? Pose2{} : Pose2{1.0, -0.6, 0.5};
-      frame.slam_from_camera = CameraOf(off * truth, 1.0);
       const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
       frame.scan = std::make_shared<const Scan>(
           ScanOf(FurnishedRoom(), truth, laser, 7, static_cast<std::uint32_t>(i)));
+      if (i != kLost) frame.slam_from_camera = CameraOf(off * truth, 1.0);
       mapper.AddFrame(frame);
     }
     const std::vector<MappedFrame> mapped = mapper.Finish().mapped;
@@ -231,6 +231,45 @@ TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
     EXPECT_LT(worst_online_m, 0.1);
     EXPECT_LT(worst_m, 0.1);
   }
+}
+
+// The recording pauses for two seconds each time ten frames have come; no pose is missing.
+double WorstErrorAfterPauses(double field_of_view_deg, const Pose2& error_of_each_pause) {
+  constexpr int kTaken = 10, kLeftOut = 60, kParts = 5;
+  IncrementalMapper mapper({}, std::nullopt);
+  Pose2 off;
+  std::vector<int> frames;
+  for (int part = 0; part < kParts; ++part) {
+    for (int k = 0; k < kTaken; ++k) {
+      const int i = part * (kTaken + kLeftOut) + k;
+      Frame frame;
+      frame.index = static_cast<int>(frames.size());
+      frame.stamp_s = i / 30.0;
+      frame.slam_from_camera = CameraOf(off * RoundTheRoom(i), 1.0);
+      const PlanarLaser laser{
+          .beams = 320, .field_of_view_rad = RadFromDeg(field_of_view_deg), .sigma_of_range = 0.01};
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, 9, static_cast<std::uint32_t>(i)));
+      mapper.AddFrame(frame);
+      frames.push_back(i);
+    }
+    const Pose2 last = RoundTheRoom(frames.back());
+    off = off * last * error_of_each_pause * Inverse(last);
+  }
+  const MapperResult result = mapper.Finish();
+  double worst_m = 0.0;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const Pose2 pose = BaseOf(*result.map_from_camera[k]);
+    worst_m = std::max(worst_m, Between(RoundTheRoom(frames[k]), pose).translation().norm());
+  }
+  return worst_m;
+}
+
+TEST(Pause, OfARecordingIsNoLoss) { EXPECT_LT(WorstErrorAfterPauses(67.0, {}), 0.0005); }
+
+// What SLAM drifts by in two seconds is not taken for the error of one frame.
+TEST(Pause, SlamErrsOverItAsOverTheFramesThatDidNotCome) {
+  EXPECT_LT(WorstErrorAfterPauses(120.0, {0.02, 0.01, 0.005}), 0.01);
 }
 
 TEST(Relocation, AnUnknownRoomBeforeTheLossDoesNotMakeAnyGuessRight) {
