@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
@@ -9,6 +10,14 @@
 
 namespace depthgrid {
 namespace {
+
+// How far the images of a pair are apart: much of what they show is the same, and the camera has
+// turned by more than SLAM errs.
+constexpr std::size_t kCheckedPairs = 24;
+constexpr double kPairApartS = 0.5;
+// Images that are farther apart than so many times that have a pause of the recording between them,
+// and may show different things.
+constexpr double kMostApart = 2.0;
 
 constexpr int kPointsAcross = 40;  // of an image, looked at
 // Fewer points of one image that the other shows say nothing.
@@ -261,7 +270,32 @@ class BestReading {
   PoseDoubt best_;
 };
 
+// From one image to the next; pauses are few.
+double UsualStepS(std::span<const RecordedImage> images) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    steps_s.push_back(images[i].stamp_s - images[i - 1].stamp_s);
+  }
+  return steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
+}
+
 }  // namespace
+
+std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
+  std::vector<RecordedImage> pairs;
+  const double most_apart_s = kMostApart * std::max(kPairApartS, UsualStepS(images));
+  const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
+  std::size_t second = 0;
+  for (std::size_t first = 0; first < images.size(); first += every) {
+    const double first_s = images[first].stamp_s;
+    while (second < images.size() && images[second].stamp_s < first_s + kPairApartS) ++second;
+    if (second == images.size()) break;
+    if (images[second].stamp_s - first_s > most_apart_s) continue;
+    pairs.push_back(images[first]);
+    pairs.push_back(images[second]);
+  }
+  return pairs;
+}
 
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera,
                 const Pose3& second_from_first) {

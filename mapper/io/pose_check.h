@@ -6,11 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/slam_output.h"
+#include "mapper/io/recording.h"
 #include "mapper/io/recording_options.h"
 
 namespace depthgrid {
@@ -49,6 +51,10 @@ struct PoseDoubt {
   double misfit = 0.0;
   double better_misfit = 0.0;
 };
+
+// The images to check poses by, two a pair, spread over the recording: each with the first one half
+// a second later. None across a pause.
+std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images);
 
 // How far the surfaces of one image lie from where the other one has them, as a share of their
 // depth: the median over what both show, 1 where that is next to nothing.

@@ -31,10 +31,6 @@ constexpr int kFirstGravityViews = 8;
 // Where SLAM's tilt drifts, what one place's floor says of up is off by 1.5 degrees; and a world as
 // little tilted is levelled from image to image (FloorTracker).
 constexpr double kDriftingAxisRad = RadFromDeg(3.0);
-// Pairs of images that poses are checked by, and how far apart: much of what they show is the same,
-// and the camera has turned by more than SLAM errs.
-constexpr std::size_t kCheckedPairs = 24;
-constexpr double kPairApartS = 0.5;
 // A given axis farther than this from what the floor says is another one: axes are 90 degrees
 // apart, and a world that is as oblique to all of them has none.
 const double kSureOfAxis = std::cos(RadFromDeg(45.0));
@@ -199,21 +195,6 @@ std::optional<Gravity> FindGravity(const DepthSequence& sequence, const Recordin
     return {};  // what is wrong with the recording is said when the whole of it is opened
   }
   return finder.Find();
-}
-
-// Spread over the recording; the chosen images, two a pair.
-std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
-  std::vector<RecordedImage> pairs;
-  const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
-  std::size_t second = 0;
-  for (std::size_t first = 0; first < images.size(); first += every) {
-    const double apart_s = images[first].stamp_s + kPairApartS;
-    while (second < images.size() && images[second].stamp_s < apart_s) ++second;
-    if (second == images.size()) break;
-    pairs.push_back(images[first]);
-    pairs.push_back(images[second]);
-  }
-  return pairs;
 }
 
 // Whether its poses are what they were read as.

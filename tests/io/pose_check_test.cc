@@ -59,6 +59,41 @@ Pose3 WFirst(const Pose3& pose) {
   return {Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
 }
 
+// The images of these pairs, as first and second stamp.
+std::vector<std::pair<double, double>> StampsOfPairs(const std::vector<RecordedImage>& images) {
+  std::vector<std::pair<double, double>> stamps_s;
+  for (std::size_t i = 0; i + 1 < images.size(); i += 2) {
+    stamps_s.emplace_back(images[i].stamp_s, images[i + 1].stamp_s);
+  }
+  return stamps_s;
+}
+
+// 24 images, a pause of 5 s, 24 images: every second one has a partner four images later, but for
+// the last four of either half.
+TEST(PoseCheck, NoPairLiesAcrossAPause) {
+  constexpr double kStepS = 0.125;
+  std::vector<RecordedImage> images;
+  std::vector<std::pair<double, double>> expected;
+  for (const double begin_s : {0.0, 24 * kStepS + 5.0}) {
+    for (int i = 0; i < 24; ++i) images.push_back({begin_s + i * kStepS, "", "", 0});
+    for (int i = 0; i < 20; i += 2) {
+      expected.emplace_back(begin_s + i * kStepS, begin_s + i * kStepS + 0.5);
+    }
+  }
+  EXPECT_EQ(StampsOfPairs(PairsAmong(images)), expected);
+}
+
+TEST(PoseCheck, ImagesThatAreAlwaysFarApartArePairedWithTheNext) {
+  std::vector<RecordedImage> images;
+  for (const double stamp_s : {0.0, 3.0, 6.0, 9.0, 21.0, 24.0}) {
+    images.push_back({stamp_s, "", "", 0});
+  }
+  EXPECT_EQ(
+      StampsOfPairs(PairsAmong(images)),
+      (std::vector<std::pair<double, double>>{{0.0, 3.0}, {3.0, 6.0}, {6.0, 9.0}, {21.0, 24.0}}));
+  EXPECT_TRUE(PairsAmong({}).empty());
+}
+
 TEST(PoseCheck, MisfitIsTheShareOfDepthThatSurfacesAreApart) {
   AnalyticRoom room;
   const Pose3 first = TiltedCamera({-1.0, 0.0, 0.0}, 1.2, 0.0, 0.0);
