@@ -46,10 +46,10 @@ bool IsHalfCircle(std::size_t readings) {
 
 }  // namespace
 
-void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, bool knows_fov, int line_number) {
+void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, int line_number) {
   AddReadings(scan, no_return_m, line_number);
   AddHeading(scan, line_number);
-  if (!scan.states_angles && !knows_fov) AddCount(scan, line_number);
+  if (!scan.states_angles && !knows_fov_) AddCount(scan, line_number);
 }
 
 void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int line_number) {
@@ -62,7 +62,9 @@ void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int li
     }
     if (range_m > longest_m_) longest_m_ = range_m;
     // Negated for NaN.
-    if (!(range_m < no_return_m) || !(range_m > largest_m_ - kSameRangeM)) continue;
+    if (!(range_m >= min_range_m_ && range_m < no_return_m) ||
+        !(range_m > largest_m_ - kSameRangeM))
+      continue;
     if (range_m > largest_m_ + kSameRangeM) {
       largest_count_ = 0;
       largest_line_ = line_number;
@@ -93,10 +95,10 @@ void CarmenCheck::AddCount(const CarmenScan& scan, int line_number) {
 
 std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
   std::vector<std::string> warnings;
-  if (largest_count_ >= kFewestSuspicious &&
+  // Rounded down, so that the setting takes all of them.
+  const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
+  if (setting_m > min_range_m_ && largest_count_ >= kFewestSuspicious &&
       static_cast<double>(largest_count_) >= kSuspiciousShare * static_cast<double>(readings_)) {
-    // Rounded down, so that the setting takes all of them.
-    const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
     warnings.push_back(fmt::format(
         "{}:{}: {} of {} readings are {:g} m, the largest: if that is how the laser writes \"no "
         "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.3f} takes them for "

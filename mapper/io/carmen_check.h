@@ -15,15 +15,21 @@ namespace depthgrid {
 // Of each doubt at most one warning a log. The scans are given in order of time.
 class CarmenCheck {
  public:
-  // Readings from `no_return_m` on are known to be no hit. `knows_fov`: a setting says how wide
-  // lines without angles are.
-  void Add(const CarmenScan& scan, double no_return_m, bool knows_fov, int line_number);
+  // Readings nearer than `min_range_m` are no data. `knows_fov`: a setting says how wide lines
+  // without angles are.
+  CarmenCheck(double min_range_m, bool knows_fov)
+      : min_range_m_(min_range_m), knows_fov_(knows_fov) {}
+  // Readings from `no_return_m` on are known to be no hit.
+  void Add(const CarmenScan& scan, double no_return_m, int line_number);
   std::vector<std::string> Warnings(const std::string& path) const;
 
  private:
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
   void AddCount(const CarmenScan& scan, int line_number);
+
+  double min_range_m_;
+  bool knows_fov_;
 
   std::int64_t readings_ = 0;
   std::int64_t largest_count_ = 0;  // readings as large as the largest hit

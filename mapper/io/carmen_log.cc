@@ -126,12 +126,12 @@ class CarmenLogSource : public FrameSource {
     Rewind();
     std::vector<double> speeds_mps;
     std::optional<CarmenScan> last;
-    CarmenCheck check;
+    CarmenCheck check(options_.min_range_m, options_.fov_deg > 0.0);
     while (auto scan = NextScan()) {
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
       if (place_ != Place::kInPart) continue;
-      check.Add(*scan, ReachOf(*scan, options_).no_return_m, options_.fov_deg > 0.0, line_number_);
+      check.Add(*scan, ReachOf(*scan, options_).no_return_m, line_number_);
       if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
     }

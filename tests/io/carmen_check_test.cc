@@ -76,6 +76,15 @@ TEST(CarmenCheck, ALargestReadingThatComesOftenIsSaid) {
               testing::Not(HasSubstr("the largest")));
 }
 
+// No data, or so near that no setting could take them for no return.
+TEST(CarmenCheck, ReadingsThatDrawNoWallAreNotTakenForNoReturns) {
+  for (const char* reading : {" 0", " -1", " 0.05", " 0.1"}) {
+    std::string log = "FLASER 180";
+    for (int i = 0; i < 180; ++i) log += reading;
+    EXPECT_EQ(WarningsOf(log + " 0 0 0 0 0 0 1 h 1\n"), "") << reading;
+  }
+}
+
 // Turning at `rate` a scan, ten scans a second.
 std::string LogOfTurn(double rate, double wrap_at) {
   std::ostringstream log;
