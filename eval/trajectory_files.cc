@@ -29,8 +29,8 @@ Rows RowsOfMatrices(const std::string& text, const std::string& path,
 Rows RowsOfTum(const std::string& text, const std::string& path, const std::string& other,
                std::vector<std::string>& warnings) {
   const TrajectoryFile file = ParseTrajectory(text, path);
-  const int mended =
-      file.damage.damaged() + file.invalid_poses + file.unsorted_stamps + file.duplicate_stamps;
+  const int mended = file.damage.damaged() + file.damage.left_out().count + file.unsorted_stamps +
+                     file.duplicate_stamps;
   if (mended > 0) {
     throw InputError(
         path, fmt::format("{} no pose or not later than the row before; must all be, as {} has no "

@@ -38,6 +38,14 @@ void RowDamage::RequireAllGood() const {
   if (damaged_.count > 0) throw InputError("", damaged_.first);
 }
 
+InputError RowDamage::NothingIn(const std::string& place, std::string_view thing) const {
+  const int rows = left_out_.count + damaged_.count;
+  if (rows == 0) return {place, fmt::format("holds no {}", thing)};
+  return {place, fmt::format("holds no {} that can be used, {} left out; first: {}", thing,
+                             rows == 1 ? "the only one is" : fmt::format("all {} are", rows),
+                             left_out_.first)};
+}
+
 void RowDamage::AppendTo(std::vector<std::string>& warnings, const std::string& place) const {
   damaged_.AppendTo(warnings, place, "damaged row", "left out");
   if (may_be_cut_) warnings.push_back(MayBeCut(place));

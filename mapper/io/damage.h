@@ -49,10 +49,16 @@ class RowDamage {
   // Throws the first damage, if there is any.
   void RequireAllGood() const;
   int damaged() const { return damaged_.count; }
+  // A row that is sound, but nothing that can be used; `what` says where and why.
+  void LeaveOut(const std::string& what) { left_out_.Add(what); }
+  const Tally& left_out() const { return left_out_; }
+  // The error of a text of which no row is left: each is left out, or there is none.
+  InputError NothingIn(const std::string& place, std::string_view thing) const;
   void AppendTo(std::vector<std::string>& warnings, const std::string& place) const;
 
  private:
   Tally damaged_;
+  Tally left_out_;
   int good_ = 0;
   bool last_is_good_ = false;
   bool may_be_cut_ = false;

@@ -20,10 +20,14 @@ namespace {
 // Printed digits leave errors of 1e-4; more is another kind of matrix.
 constexpr double kMaxRotationError = 0.02;
 
-// `numbers`: 12 or 16, row by row.
-std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& place) {
-  for (const double number : numbers) {
-    if (!std::isfinite(number)) return {};
+// `numbers`: 12 or 16, row by row. Nothing when they say that there is no pose; why goes to
+// `damage`.
+std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& place,
+                            RowDamage& damage) {
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (!std::all_of(numbers.begin(), numbers.end(), is_finite)) {
+    damage.LeaveOut(place + ": the matrix must be finite");
+    return {};
   }
   Eigen::Matrix3d rotation;
   Eigen::Vector3d translation;
@@ -33,7 +37,14 @@ std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& 
     }
     translation[row] = numbers[static_cast<std::size_t>(4 * row + 3)];
   }
-  if (rotation.isZero() || !IsWithinReach(translation)) return {};
+  if (!IsWithinReach(translation)) {
+    damage.LeaveOut(PositionBeyondReach(translation, place));
+    return {};
+  }
+  if (rotation.isZero()) {
+    damage.LeaveOut(place + ": the matrix's upper left 3x3 is zero, must be a rotation");
+    return {};
+  }
   const bool last_row_ok = numbers.size() == 12 || (numbers[12] == 0.0 && numbers[13] == 0.0 &&
                                                     numbers[14] == 0.0 && numbers[15] == 1.0);
   if (!last_row_ok) throw InputError(place, "the matrix's last row must be 0 0 0 1");
@@ -109,11 +120,17 @@ std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
       }
       const std::string last_place = PlaceOfLine(place, rows[end - 1].line);
       if (end - begin < layout.lines) throw InputError(last_place, "the last matrix is incomplete");
-      poses.back() = PoseOf(matrix, last_place);
+      poses.back() = PoseOf(matrix, last_place, damage);
     });
   }
   damage.RequireMostGood(text);
   return poses;
+}
+
+void RequireSomePose(const std::vector<std::optional<Pose3>>& poses, const RowDamage& damage,
+                     const std::string& place) {
+  const auto is_pose = [](const std::optional<Pose3>& pose) { return pose.has_value(); };
+  if (std::none_of(poses.begin(), poses.end(), is_pose)) throw damage.NothingIn(place, "pose");
 }
 
 std::optional<Pose3> ReadMatrixPose(const std::string& path) {
@@ -124,6 +141,7 @@ std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
                                                   std::vector<std::string>& warnings) {
   RowDamage damage;
   auto poses = ParseMatrixPoses(ReadTextFile(path), path, damage);
+  RequireSomePose(poses, damage, path);
   damage.AppendTo(warnings, path);
   return poses;
 }

@@ -17,12 +17,16 @@ std::optional<Pose3> ReadMatrixPose(const std::string& path);
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
 
 // A file with many: one of 16 or 12 numbers a line, or three or four lines of four numbers each
-// (ICL-NUIM's .gt.sim). Damaged ones keep their place without a pose and are counted in `damage`.
-// Throws InputError when they are not fewer than the others.
+// (ICL-NUIM's .gt.sim). Damaged ones keep their place without a pose and are counted in `damage`,
+// which leaves out those of NaN, a zero rotation or beyond 10,000 km. Throws InputError when the
+// damaged are not fewer than the others; reading a file, also when no pose is left.
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
                                                   std::vector<std::string>& warnings);
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
                                                    const std::string& place, RowDamage& damage);
+// Throws InputError, with what was left out, when there is none among what was parsed.
+void RequireSomePose(const std::vector<std::optional<Pose3>>& poses, const RowDamage& damage,
+                     const std::string& place);
 
 // KITTI's form: the upper three rows of each pose's matrix on one line, no stamps.
 std::string MatrixPosesText(const Trajectory& trajectory);

@@ -96,6 +96,11 @@ void RequireSeconds(double stamp_s, const std::string& place) {
                                       stamp_s));
 }
 
+std::string PositionBeyondReach(const Eigen::Vector3d& position_m, const std::string& place) {
+  return fmt::format("{}: the position is ({:g}, {:g}, {:g}), must be finite and within 10,000 km",
+                     place, position_m.x(), position_m.y(), position_m.z());
+}
+
 std::string PlaceOfLine(const std::string& path, int line) {
   return fmt::format("{}:{}", path, line);
 }

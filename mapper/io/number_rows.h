@@ -1,6 +1,7 @@
 // Text files of number columns (trajectories, matrices): one home for splitting and number syntax.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,9 @@ std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::
 constexpr double kLatestStampS = 1e11;
 // Throws InputError unless it is a finite number of seconds.
 void RequireSeconds(double stamp_s, const std::string& place);
+
+// What is wrong with a pose's position that is not finite or beyond reach (IsWithinReach).
+std::string PositionBeyondReach(const Eigen::Vector3d& position_m, const std::string& place);
 
 // How far the norm of a unit quaternion may be off. Files print four to nine digits, so norms are
 // off by up to 1e-4; a larger error is a column mistaken for another.

@@ -1,10 +1,7 @@
 #include "mapper/io/pose_file.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/matrix_poses.h"
@@ -54,28 +51,21 @@ std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const
       throw InputError("", std::string(error.what()) + kTumIsOtherwise);
     }
   }();
-  const auto empty = std::count(poses.begin(), poses.end(), std::nullopt);
+  RequireSomePose(poses, damage, place);
   damage.AppendTo(warnings, place);
-  if (empty > damage.damaged()) {
-    warnings.push_back(
-        fmt::format("{}: {} with NaN ignored", place, Counted(empty - damage.damaged(), "pose")));
-  }
+  WarnOfCount(warnings, place, damage.left_out().count, "pose",
+              "with NaN, a zero rotation or beyond 10,000 km ignored");
   return poses;
 }
 
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings) {
-  Trajectory poses;
   if (HoldsMatrices(text)) {
-    poses = StampedMatrices(text, place, frames, warnings);
-  } else {
-    TrajectoryFile file = ParseTrajectory(text, place);
-    const auto mended = file.Warnings(place);
-    warnings.insert(warnings.end(), mended.begin(), mended.end());
-    poses = std::move(file.poses);
+    Trajectory poses = StampedMatrices(text, place, frames, warnings);
+    if (poses.empty()) throw InputError(place, "holds no pose of these frames");
+    return poses;
   }
-  if (poses.empty()) throw InputError(place, "holds no pose");
-  return poses;
+  return PosesOf(ParseTrajectory(text, place), place, warnings);
 }
 
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,

@@ -16,10 +16,19 @@
 namespace depthgrid {
 namespace {
 
-std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place) {
+// Nothing for a row that says that there is no pose; why goes to `damage`.
+std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place,
+                            RowDamage& damage) {
   Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};
   const double norm = pose.rotation.norm();
-  if (!IsWithinReach(pose.translation) || !std::isfinite(norm) || norm == 0.0) return {};
+  if (!IsWithinReach(pose.translation)) {
+    damage.LeaveOut(PositionBeyondReach(pose.translation, place));
+    return {};
+  }
+  if (!std::isfinite(norm) || norm == 0.0) {
+    damage.LeaveOut(fmt::format("{}: quaternion qx qy qz qw has norm {}, must be 1", place, norm));
+    return {};
+  }
   if (std::abs(norm - 1.0) > kMaxNormError) {
     throw InputError(place, fmt::format("quaternion qx qy qz qw has norm {:.6g}, must be 1", norm));
   }
@@ -32,17 +41,14 @@ void AddRow(const TextRow& row, const std::string& place, TrajectoryFile& file) 
   const std::vector<double> numbers = NumbersIn(row, kColumns, place);
   const std::string row_place = PlaceOfLine(place, row.line);
   RequireSeconds(numbers[0], row_place);
-  const std::optional<Pose3> pose = PoseOf(numbers, row_place);
-  if (!pose) {
-    ++file.invalid_poses;
-    return;
-  }
+  const std::optional<Pose3> pose = PoseOf(numbers, row_place, file.damage);
+  if (!pose) return;
   if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
   file.poses.push_back({numbers[0], *pose});
 }
 
-Trajectory PosesOf(TrajectoryFile file, const std::string& path) {
-  if (file.poses.empty()) throw InputError(path, "holds no pose");
+Trajectory SomePosesOf(TrajectoryFile file, const std::string& path) {
+  if (file.poses.empty()) throw file.damage.NothingIn(path, "pose");
   return std::move(file.poses);
 }
 
@@ -54,7 +60,7 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
   const auto warn = [&](int count, const char* thing, const char* what) {
     WarnOfCount(warnings, name, count, thing, what);
   };
-  warn(invalid_poses, "pose", "with NaN, a zero quaternion or beyond 10,000 km ignored");
+  warn(damage.left_out().count, "pose", "with NaN, a zero quaternion or beyond 10,000 km ignored");
   warn(unsorted_stamps, "row", "earlier than the row before, sorted");
   warn(duplicate_stamps, "row", "with a stamp already given, ignored");
   return warnings;
@@ -82,14 +88,18 @@ TrajectoryFile ReadTrajectoryFile(const std::string& path) {
 Trajectory ReadTrajectory(const std::string& path) {
   TrajectoryFile file = ReadTrajectoryFile(path);
   file.damage.RequireAllGood();
-  return PosesOf(std::move(file), path);
+  return SomePosesOf(std::move(file), path);
 }
 
 Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings) {
-  TrajectoryFile file = ReadTrajectoryFile(path);
-  const auto mended = file.Warnings(path);
+  return PosesOf(ReadTrajectoryFile(path), path, warnings);
+}
+
+Trajectory PosesOf(TrajectoryFile file, const std::string& place,
+                   std::vector<std::string>& warnings) {
+  const auto mended = file.Warnings(place);
   warnings.insert(warnings.end(), mended.begin(), mended.end());
-  return PosesOf(std::move(file), path);
+  return SomePosesOf(std::move(file), place);
 }
 
 std::string TrajectoryText(const Trajectory& trajectory) {

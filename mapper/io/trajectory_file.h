@@ -13,10 +13,10 @@ namespace depthgrid {
 // mended is counted.
 struct TrajectoryFile {
   Trajectory poses;
-  int invalid_poses = 0;     // NaN, zero quaternion, too far: dropped
   int unsorted_stamps = 0;   // rows earlier than their predecessor: sorted
   int duplicate_stamps = 0;  // all but the first row of one stamp: dropped
-  RowDamage damage;          // rows that are no pose: dropped
+  // Rows that are no pose, and left out those of NaN, a zero quaternion or too far away: dropped.
+  RowDamage damage;
 
   std::vector<std::string> Warnings(const std::string& name) const;
 };
@@ -30,6 +30,9 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
 Trajectory ReadTrajectory(const std::string& path);
 // Damaged rows are survived; what was mended is added to `warnings`.
 Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings);
+// Those of a file that was read.
+Trajectory PosesOf(TrajectoryFile file, const std::string& place,
+                   std::vector<std::string>& warnings);
 
 // Stamps with six decimals, pose values in the shortest form that reads back as the same double.
 std::string TrajectoryText(const Trajectory& trajectory);

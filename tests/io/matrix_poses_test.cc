@@ -65,6 +65,21 @@ TEST(MatrixPoses, DamagedOnesKeepTheirPlace) {
   EXPECT_EQ(cut.damaged(), 1);
 }
 
+TEST(MatrixPoses, OfWhichNoneIsLeftSayWhy) {
+  const auto refusal = [](const std::string& text) {
+    RowDamage damage;
+    const auto poses = ParseMatrixPoses(text, "p", damage);
+    return RefusalOf([&] { RequireSomePose(poses, damage, "p"); });
+  };
+  const std::string good = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  const std::string none = "nan 0 0 0 0 1 0 0 0 0 1 0\n";
+  EXPECT_EQ(refusal(none + good), "no error");
+  EXPECT_EQ(refusal(none + none),
+            "p: holds no pose that can be used, all 2 are left out; first: "
+            "p:1: the matrix must be finite");
+  EXPECT_EQ(refusal(""), "p: holds no pose");
+}
+
 TEST(MatrixPoses, OneClearLineForEachFault) {
   EXPECT_EQ(MatrixPosesRefusal("1 2 3\n"),
             "p:1: has 3 columns, must be a row of a matrix (4) or a whole matrix (12 or 16)");

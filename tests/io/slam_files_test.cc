@@ -185,6 +185,28 @@ TEST_F(SlamFiles, MatricesTakeTheFramesStampsInOrder) {
   EXPECT_THAT(read.warnings[1], HasSubstr("3 poses for 4 frames"));
 }
 
+TEST_F(SlamFiles, PosesOfWhichNoneCanBeUsedSayWhy) {
+  const std::string path = folder_ + "/poses.txt";
+  const auto error = [&](const std::string& text) {
+    WriteFile(path, text);
+    return RefusalOf([&] { ReadSlamFiles({path, "", ""}, {{1.0, 2.0}}); });
+  };
+  const std::string all_are =
+      path + ": holds no pose that can be used, all 2 are left out; first: ";
+  const std::string only_is =
+      path + ": holds no pose that can be used, the only one is left out; first: ";
+  EXPECT_EQ(error("# none\n"), path + ": holds no pose");
+  EXPECT_EQ(
+      error("1 1e12 0 0 0 0 0 1\n"),
+      only_is + path + ":1: the position is (1e+12, 0, 0), must be finite and within 10,000 km");
+  EXPECT_EQ(
+      error("1 0 0 -2e7 0 1 0 0 0 0 1 0\nnan 0 0 0 0 1 0 0 0 0 1 0\n"),
+      all_are + path + ":1: the position is (-2e+07, 0, 0), must be finite and within 10,000 km");
+  EXPECT_EQ(error("nan 0 0 0 0 1 0 0 0 0 1 0\n"), only_is + path + ":1: the matrix must be finite");
+  EXPECT_EQ(error("0 0 0 0 0 0 0 0 0 0 0 0\n"),
+            only_is + path + ":1: the matrix's upper left 3x3 is zero, must be a rotation");
+}
+
 // Poses of other stamps than the frames', none of them across a correction.
 TEST_F(SlamFiles, FramesTakeWhatLiesBetweenThePoses) {
   WriteFile(folder_ + "/dense.txt",

@@ -59,6 +59,20 @@ TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
                           "t: 1 row with a stamp already given, ignored"));
 }
 
+TEST(TrajectoryFile, OneWithoutAnyUsableRowSaysWhy) {
+  const auto refusal = [](const std::string& text) {
+    std::vector<std::string> warnings;
+    return RefusalOf([&] { PosesOf(ParseTrajectory(text, "t.txt"), "t.txt", warnings); });
+  };
+  EXPECT_EQ(refusal("# stamp\n"), "t.txt: holds no pose");
+  EXPECT_EQ(refusal("# stamp\n1 1e12 2.5 0 0 0 0 1\n2 0 inf 0 0 0 0 1\n"),
+            "t.txt: holds no pose that can be used, all 2 are left out; first: t.txt:2: the "
+            "position is (1e+12, 2.5, 0), must be finite and within 10,000 km");
+  EXPECT_EQ(refusal("1 0 0 0 0 0 0 0\n"),
+            "t.txt: holds no pose that can be used, the only one is left out; first: t.txt:1: "
+            "quaternion qx qy qz qw has norm 0, must be 1");
+}
+
 TEST(TrajectoryFile, StampsMustBeSeconds) {
   const std::string row = " 0 0 0 0 0 0 1\n";
   EXPECT_EQ(ParseTrajectory("1700000000.5" + row, "x").poses.size(), 1U);
