@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "eval/cli/command_output.h"
@@ -151,6 +152,12 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
         "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
         "off: nothing that was seen ends there",
         arguments.map, DegFromRad(start.unsure->direction_rad), start.unsure->reach_m));
+// Three digits, which is how well it is known: 0.664, 1000.
+std::string ShownScale(double scale) {
+  const double unit = std::pow(10.0, std::floor(std::log10(scale)) - 2.0);
+  return fmt::format("{:g}", std::round(scale / unit) * unit);
+}
+
   }
 }
 
@@ -179,7 +186,7 @@ std::string RemedyOf(const PoseDoubt& doubt) {
       return fmt::format(
           "with images {:.3g} times as deep: their scale (depth_scale of the camera file, or --set "
           "sequence.recording.depth_scale) or SLAM's is wrong",
-          1.0 / doubt.scale);
+          ShownScale(1.0 / doubt.scale));
     case PoseReading::kPitched:
       return fmt::format(
           "with a camera that looks {} the poses' z axis; they must be the camera's own "
