@@ -160,12 +160,13 @@ class SceneReader {
 
  private:
   // Here and not by the reader, which only sees the keys that are left and cannot name the nearest.
-  void RequireKnownKeys(const Config& config) const {
+  static void RequireKnownKeys(const Config& config) {
     const std::vector<std::string> known = {"name",   "include", "floor_z_m", "materials",
                                             "groups", "shapes",  "lighting",  "trajectories"};
-    for (const auto& key : config.Keys()) {
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      throw InputError(path_, fmt::format("unknown key '{}'{}", key, DidYouMean(key, known)));
+    for (const ConfigEntry& entry : config.Entries()) {
+      if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+      throw InputError(entry.place,
+                       fmt::format("unknown key '{}'{}", entry.key, DidYouMean(entry.key, known)));
     }
   }
 

@@ -107,7 +107,8 @@ Config Config::Take(const std::string& key) {
   taken->place = tree_->place;
   const YAML::Node node = Find(tree_->root, key);
   if (node.IsDefined()) {
-    if (!node.IsMap()) throw InputError(tree_->At(node), "'" + key + "' must be a map of keys");
+    if (!node.IsMap())
+      throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a map of keys");
     taken->root = node;
     taken->overrides = tree_->OverridesBelow(key);
     tree_->root.remove(key);
@@ -122,11 +123,11 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
   const YAML::Node node = Find(tree_->root, key);
   if (!node.IsDefined()) return maps;
   if (!node.IsSequence()) {
-    throw InputError(tree_->At(node), "'" + key + "' must be a list");
+    throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a list");
   }
   for (const auto& item : node) {
     if (!YAML::Node(item).IsMap()) {
-      throw InputError(tree_->At(item), "each item of '" + key + "' must be a map");
+      throw InputError(tree_->At(item.Mark()), "each item of '" + key + "' must be a map");
     }
     auto taken = std::make_unique<Tree>();
     taken->place = tree_->place;
@@ -138,11 +139,11 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
   return maps;
 }
 
-std::string Config::Place() const { return tree_->At(tree_->root); }
+std::string Config::Place() const { return tree_->At(tree_->root.Mark()); }
 
 std::string Config::PlaceOfKey(const std::string& key_path) const {
   const YAML::Node node = Find(tree_->root, key_path);
-  return tree_->PlaceOfKey(key_path, node.IsDefined() ? node : tree_->root);
+  return tree_->PlaceOfKey(key_path, (node.IsDefined() ? node : tree_->root).Mark());
 }
 
 std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key_path) {

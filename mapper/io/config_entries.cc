@@ -9,7 +9,7 @@ std::vector<ConfigEntry> Config::Entries() const {
   for (const auto& item : tree_->root) {
     ConfigEntry entry;
     entry.key = item.first.Scalar();
-    entry.place = PlaceOf(tree_->place, item.first.Mark());
+    entry.place = PlaceOf(tree_->place, MarkOfKey(item.first, item.second));
     entry.text = FlowText(item.second);
     if (item.second.IsMap()) {
       auto map = std::make_unique<Tree>();

@@ -178,7 +178,7 @@ class YamlReader final : public OptionsVisitor {
       for (const auto& known : level.known) used = used || known == key;
       if (used) continue;
       const std::string prefix = level.path.empty() ? "" : level.path + ".";
-      throw InputError(tree_.PlaceOfKey(prefix + key, entry.first),
+      throw InputError(tree_.PlaceOfKey(prefix + key, MarkOfKey(entry.first, entry.second)),
                        fmt::format("unknown key '{}{}'{}", prefix, key,
                                    Hint(prefix, key, entry.second, level.known)));
     }
@@ -234,7 +234,7 @@ void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML
   constexpr std::size_t kMostLetters = 200;  // enough to know the place by
   std::string text = FlowText(node);
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
-  throw InputError(tree.PlaceOfKey(key_path, node),
+  throw InputError(tree.PlaceOfKey(key_path, node.Mark()),
                    fmt::format("{} is '{}', must be {}", key_path, text, rule));
 }
 
@@ -243,7 +243,7 @@ std::string TextIn(const Config::Tree& tree, const std::string& key_path, const 
   return node.Scalar();
 }
 
-std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::Node& node) const {
+std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::Mark& mark) const {
   const auto holds = [](const std::string& group, const std::string& key) {
     return group == key || key.starts_with(group + ".");
   };
@@ -251,11 +251,11 @@ std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::No
   for (auto set = overrides.rbegin(); set != overrides.rend(); ++set) {
     if (holds(set->key_path, key_path) || holds(key_path, set->key_path)) return set->place;
   }
-  return At(node);
+  return At(mark);
 }
 
-std::string Config::Tree::At(const YAML::Node& node) const {
-  return PlaceOf(place, node.Mark()) + (subject.empty() ? "" : ": " + subject);
+std::string Config::Tree::At(const YAML::Mark& mark) const {
+  return PlaceOf(place, mark) + (subject.empty() ? "" : ": " + subject);
 }
 
 std::vector<ConfigOverride> Config::Tree::OverridesBelow(const std::string& key) const {

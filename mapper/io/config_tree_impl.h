@@ -25,11 +25,11 @@ struct Config::Tree {
   std::string subject;  // what errors name behind file and line; may be empty
   std::vector<ConfigOverride> overrides;
 
-  // Where a node stands, for errors: "file:line", and the subject.
-  std::string At(const YAML::Node& node) const;
+  // The place of a node's mark, for errors: "file:line", and the subject.
+  std::string At(const YAML::Mark& mark) const;
   // Where a value came from, for errors: the assignment that set it, or one that set the group of
   // keys it is in, else file and line.
-  std::string PlaceOfKey(const std::string& key_path, const YAML::Node& node) const;
+  std::string PlaceOfKey(const std::string& key_path, const YAML::Mark& mark) const;
   // The overrides inside the subtree of a key, their paths counted from there.
   std::vector<ConfigOverride> OverridesBelow(const std::string& key) const;
 };

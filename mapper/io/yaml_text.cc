@@ -84,6 +84,13 @@ std::string PlaceOf(const std::string& place, const YAML::Mark& mark) {
   return mark.pos <= 0 ? place : fmt::format("{}:{}", place, mark.line + 1);
 }
 
+YAML::Mark MarkOfKey(const YAML::Node& key, const YAML::Node& value) {
+  YAML::Mark mark = key.Mark();
+  const bool is_first_of_text = mark.pos == 0 && value.Mark().pos > 0;
+  if (is_first_of_text) mark.pos = 1;
+  return mark;
+}
+
 YAML::Node ParseYaml(const std::string& text, const std::string& place) {
   try {
     std::istringstream stream(text);

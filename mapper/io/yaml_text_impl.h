@@ -19,4 +19,8 @@ YAML::Node ParseYaml(const std::string& text, const std::string& place);
 // "place:line", or the place alone where the line is not known.
 std::string PlaceOf(const std::string& place, const YAML::Mark& mark);
 
+// Where a key of a map stands. That of the first one of a text looks to PlaceOf as if its line were
+// not known; its value, which is behind it, tells that it is.
+YAML::Mark MarkOfKey(const YAML::Node& key, const YAML::Node& value);
+
 }  // namespace depthgrid

@@ -171,6 +171,8 @@ TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ConfigRefusal("- 1"), "run.yaml: must be a map of keys");
   EXPECT_EQ(ConfigRefusal("seed: 1\nframs: 3"),
             "run.yaml:2: unknown key 'frams', did you mean 'frames'?");
+  EXPECT_EQ(ConfigRefusal("frams:\n  - 3"),
+            "run.yaml:1: unknown key 'frams', did you mean 'frames'?");
   EXPECT_EQ(ConfigRefusal("fusion: {gian: 3}"),
             "run.yaml:1: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
   EXPECT_EQ(ConfigRefusal("frames: 0"), "run.yaml:1: frames is '0', must be from 1 to 1000000");

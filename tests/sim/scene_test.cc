@@ -174,7 +174,7 @@ TEST_F(SceneFiles, ErrorsAreOneLineWithPlaceAndRule) {
   EXPECT_EQ(ErrorOf("shapes: 3\n"), "~/s.yaml:1: 'shapes' must be a list");
   EXPECT_EQ(ErrorOf("shapes: [3]\n"), "~/s.yaml:1: each item of 'shapes' must be a map");
   EXPECT_EQ(ErrorOf("shape:\n  - {shape: box}\n"),
-            "~/s.yaml: unknown key 'shape', did you mean 'shapes'?");
+            "~/s.yaml:1: unknown key 'shape', did you mean 'shapes'?");
   EXPECT_THAT(ErrorOf("shapes:\n  - {size: [1, 1, 1]}\n"),
               HasSubstr("~/s.yaml:2: 'shape' is missing, must be one of box, cylinder"));
   EXPECT_THAT(ErrorOf("shapes:\n  - {shape: bx}\n"), HasSubstr("did you mean 'box'?"));
@@ -217,7 +217,9 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
             "~/s.yaml:1: group 'a' uses itself");
   EXPECT_EQ(ErrorOf("include: parts.yaml\nshapes: []\n"), "~/parts.yaml: no such file");
   Write("parts.yaml", "shapes: []\n");
-  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml: unknown key 'shapes'");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:1: unknown key 'shapes'");
+  Write("parts.yaml", materials + "shapes:\n  - {shape: box}\n");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:2: unknown key 'shapes'");
   Write("parts.yaml", materials);
   EXPECT_EQ(ErrorOf("include: parts.yaml\n" + materials),
             "~/s.yaml:2: material 'oak' is given twice");
