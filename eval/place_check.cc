@@ -1,10 +1,14 @@
 #include "eval/place_check.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "mapper/core/counted.h"
 
 namespace depthgrid {
 namespace {
@@ -40,6 +44,7 @@ std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_los
 
 std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
   LostFrames count;
+  count.localised = localised;
   std::vector<std::pair<int, bool>> index_and_lost;
   for (const FrameReport& report : run.reports) {
     if (!report.map_from_camera || report.beams == 0) continue;
@@ -53,6 +58,24 @@ std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
   if (count.lost == 0 || count.lost * kOneOf < count.frames) return {};
   count.left_at = LeftAt(index_and_lost);
   return count;
+}
+
+std::string TextOf(const LostFrames& lost) {
+  if (!lost.localised) {
+    return "lost: of what the first frame sees, which was placed by this map alone, hardly "
+           "anything "
+           "lies on it; the sequence is of another place or begins elsewhere in it";
+  }
+  const std::string why =
+      lost.left_at ? fmt::format(
+                         "from frame {} on it leaves the map, where poses are SLAM's motion "
+                         "alone (without --localise they extend it), or it is of another place",
+                         *lost.left_at)
+                   : "the sequence is of another place, begins elsewhere in it or leaves it";
+  return fmt::format(
+      "lost: in {} of the {} that were placed and see something hardly anything that is seen lies "
+      "on the map; {}",
+      lost.lost, Counted(lost.frames, "frame"), why);
 }
 
 bool SeesAlong(const MappingRun& run, const UnsureAlong& line) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "eval/mapping_run.h"
 #include "mapper/match/find_place.h"
@@ -9,7 +10,8 @@
 namespace depthgrid {
 
 struct LostFrames {
-  int lost = 0;  // of so many frames hardly anything that they show lies on the map
+  bool localised = false;  // else the first frame alone was looked at
+  int lost = 0;            // of so many frames hardly anything that they show lies on the map
   int frames = 0;
   // Where the sequence left the map (FrameReport::index): 30 frames and more before it were on the
   // map, but for a tenth, and from it on 30 in a row are not. Empty where that cannot be told.
@@ -19,6 +21,9 @@ struct LostFrames {
 // Of the frames that were matched against the finished map alone: all where nothing was inserted
 // (`localised`), else the first. Empty unless a tenth of them are lost.
 std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised);
+
+// In words, for a warning about the map.
+std::string TextOf(const LostFrames& lost);
 
 // Whether any frame's match told its place along this line.
 bool SeesAlong(const MappingRun& run, const UnsureAlong& line);

@@ -138,32 +138,24 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
                 const MappingRun& run, std::vector<std::string>& warnings) {
   if (fusion.TrustsSlamAlone()) return;
   if (const auto lost = FramesLost(run, arguments.localise)) {
-    const std::string why =
-        lost->left_at ? fmt::format(
-                            "from frame {} on it leaves the map, where poses are SLAM's motion "
-                            "alone (without --localise they extend it), or it is of another place",
-                            *lost->left_at)
-                      : "the sequence is of another place, begins elsewhere in it or leaves it";
-    warnings.push_back(
-        fmt::format("{}: lost: in {} of {} hardly anything that is seen lies on the map; {}",
-                    arguments.map, lost->lost, Counted(lost->frames, "frame"), why));
+    warnings.push_back(arguments.map + ": " + TextOf(*lost));
   } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
     warnings.push_back(fmt::format(
         "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
         "off: nothing that was seen ends there",
         arguments.map, DegFromRad(start.unsure->direction_rad), start.unsure->reach_m));
-// Three digits, which is how well it is known: 0.664, 1000.
-std::string ShownScale(double scale) {
-  const double unit = std::pow(10.0, std::floor(std::log10(scale)) - 2.0);
-  return fmt::format("{:g}", std::round(scale / unit) * unit);
-}
-
   }
 }
 
 std::string PitchOf(const PoseDoubt& doubt) {
   return fmt::format("about {:.0f} degrees {}", std::abs(DegFromRad(doubt.down_rad)),
                      doubt.down_rad > 0.0 ? "below" : "above");
+}
+
+// Three digits, which is how well it is known: 0.664, 1000.
+std::string ShownScale(double scale) {
+  const double unit = std::pow(10.0, std::floor(std::log10(scale)) - 2.0);
+  return fmt::format("{:g}", std::round(scale / unit) * unit);
 }
 
 // A slow camera moves a centimetre in it.
@@ -184,7 +176,7 @@ std::string RemedyOf(const PoseDoubt& doubt) {
              "down, z forward";
     case PoseReading::kScaled:
       return fmt::format(
-          "with images {:.3g} times as deep: their scale (depth_scale of the camera file, or --set "
+          "with images {} times as deep: their scale (depth_scale of the camera file, or --set "
           "sequence.recording.depth_scale) or SLAM's is wrong",
           ShownScale(1.0 / doubt.scale));
     case PoseReading::kPitched:

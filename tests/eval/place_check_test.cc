@@ -1,5 +1,6 @@
 #include "eval/place_check.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "mapper/core/level.h"
@@ -33,6 +34,16 @@ TEST(FramesLost, AreThoseOfWhichTheMapExplainsNextToNothing) {
   EXPECT_EQ(lost->lost, 2);
   EXPECT_EQ(lost->frames, 20);
   EXPECT_FALSE(FramesLost(run, false));  // the first fits; the others may lie on new walls
+}
+
+TEST(FramesLost, SayWhichFramesTheyWereCountedAmong) {
+  const MappingRun run = RunOf(20, 0.05);
+  EXPECT_THAT(TextOf(*FramesLost(run, true)),
+              testing::StartsWith("lost: in 20 of the 20 frames that were placed and see something "
+                                  "hardly anything that is seen lies on the map; "));
+  EXPECT_EQ(TextOf(*FramesLost(run, false)),
+            "lost: of what the first frame sees, which was placed by this map alone, hardly "
+            "anything lies on it; the sequence is of another place or begins elsewhere in it");
 }
 
 // From frame 60 on; a few lost ones before that were an accident.
