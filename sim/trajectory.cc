@@ -107,14 +107,22 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place) {
+  std::string first;
+  int stretches = 0;
+  bool was_near = false;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
     const double distance = distance_m(position_m);
-    if (distance >= clearance_m) continue;
-    throw InputError(place,
-                     fmt::format("{} is {:.3f} m from geometry, must be at least {:.3f} m",
-                                 Shown(static_cast<int>(i), position_m), distance, clearance_m));
+    const bool is_near = distance < clearance_m;
+    if (is_near && !was_near && stretches++ == 0) {
+      first = fmt::format("{} is {:.3f} m from geometry, must be at least {:.3f} m",
+                          Shown(static_cast<int>(i), position_m), distance, clearance_m);
+    }
+    was_near = is_near;
   }
+  if (stretches == 0) return;
+  if (stretches > 1) first += fmt::format("; the first of {} places that are too near", stretches);
+  throw InputError(place, first);
 }
 
 namespace {

@@ -55,7 +55,7 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
                           std::uint64_t seed);
 
 // Throws InputError naming `place`, the first frame nearer to geometry than clearance_m, its
-// position and its distance.
+// position and its distance, and how many stretches of the path are too near.
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);

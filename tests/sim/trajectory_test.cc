@@ -253,17 +253,18 @@ Trajectory Line(std::initializer_list<double> xs) {
   return trajectory;
 }
 
-TEST(CheckClearance, NamesThePlace) {
+TEST(CheckClearance, NamesTheFirstPlaceAndCountsThem) {
   const auto to_wall = [](const Eigen::Vector3d& p) { return 3.25 - p.x(); };
-  CheckClearance(Line({0.0, 2.0, 3.0}), to_wall, 0.25, "path");
-  try {
-    CheckClearance(Line({0.0, 2.0, 3.0, 3.125}), to_wall, 0.25, "path");
-    FAIL() << "accepted a path too near to the wall";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "path: frame 3 at (3.12, 1.00, 1.20) is 0.125 m from geometry, must be at least "
-                 "0.250 m");
-  }
+  const auto error = [&](std::initializer_list<double> xs) {
+    return RefusalOf([&] { CheckClearance(Line(xs), to_wall, 0.25, "path"); });
+  };
+  EXPECT_EQ(error({0.0, 2.0, 3.0}), "no error");
+  const std::string first =
+      "path: frame 3 at (3.12, 1.00, 1.20) is 0.125 m from geometry, must be at least 0.250 m";
+  EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125}), first);
+  EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125, 3.2, 2.0}), first);  // one place
+  EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125, 3.2, 2.0, 3.1, 1.0, 3.1}),
+            first + "; the first of 3 places that are too near");
 }
 
 TEST(DoubtOfPath, IsOfTheFirstFrameAtOrBehindASurface) {
