@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <utility>
@@ -26,10 +27,37 @@ fs::path Resolved(const std::string& path) {
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
-void RequireUsable(const fs::path& target, const std::string& shown, bool force) {
+// Whether nothing in it can be renamed to a place beside it: a mount point, such as a folder that a
+// container shares with its host, or the top of a file system's own division.
+bool IsOnItsOwn(const fs::path& folder) {
+  struct statx inside {};
+  struct statx around {};
+  const auto about = [](const fs::path& path, struct statx& known) {
+    return ::statx(AT_FDCWD, path.c_str(), 0, STATX_BASIC_STATS, &known) == 0;
+  };
+  if (!about(folder, inside) || !about(folder.parent_path(), around)) return false;
+  // A folder of the same disk may be mounted as well.
+  if ((inside.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) return true;
+  return inside.stx_dev_major != around.stx_dev_major ||
+         inside.stx_dev_minor != around.stx_dev_minor;
+}
+
+fs::path WorkOf(const fs::path& target) {
+  const std::string name = fmt::format(".{}.partial", target.filename().string());
+  return IsOnItsOwn(target) ? target / name : target.parent_path() / name;
+}
+
+// Apart from what a killed program left to work in.
+bool IsEmpty(const fs::path& target, const fs::path& work) {
+  return std::all_of(fs::directory_iterator(target), fs::directory_iterator(),
+                     [&](const fs::directory_entry& entry) { return entry.path() == work; });
+}
+
+void RequireUsable(const fs::path& target, const fs::path& work, const std::string& shown,
+                   bool force) {
   if (!fs::exists(target)) return;
   if (!fs::is_directory(target)) throw InputError(shown, "is a file, the output must be a folder");
-  if (!force && !fs::is_empty(target)) {
+  if (!force && !IsEmpty(target, work)) {
     throw InputError(shown, "is not empty; choose another folder, or --force to write into it");
   }
 }
@@ -115,13 +143,12 @@ void RequireReachable(const std::string& path) {
 }
 
 OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
-    : target_(Resolved(path)), superseded_(std::move(superseded)) {
+    : target_(Resolved(path)), work_(WorkOf(target_)), superseded_(std::move(superseded)) {
   RequireNotCurrent(path);
-  RequireUsable(target_, path, force);
+  RequireUsable(target_, work_, path, force);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);
   const EndDelay whole;
-  work_ = parent / fmt::format(".{}.partial", target_.filename().string());
   try {
     fs::create_directories(parent);
     Take(path);
@@ -130,7 +157,7 @@ OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superse
     throw InputError(path, "cannot be created: " + error.code().message());
   }
   try {
-    RequireUsable(target_, path, force);  // another program may have written it meanwhile
+    RequireUsable(target_, work_, path, force);  // another program may have written it meanwhile
   } catch (...) {
     fs::remove_all(work_);
     ::close(lock_);
@@ -182,11 +209,13 @@ void OutputFolder::RemoveSuperseded() const {
   if (!superseded_) return;
   std::vector<fs::path> superseded;
   const auto options = fs::directory_options::skip_permission_denied;
-  for (const auto& entry : fs::recursive_directory_iterator(target_, options)) {
-    const fs::path relative = entry.path().lexically_relative(target_);
-    const bool is_file = entry.is_regular_file() && !entry.is_symlink();
+  for (auto entry = fs::recursive_directory_iterator(target_, options);
+       entry != fs::recursive_directory_iterator(); ++entry) {
+    if (entry->path() == work_) entry.disable_recursion_pending();
+    const fs::path relative = entry->path().lexically_relative(target_);
+    const bool is_file = entry->is_regular_file() && !entry->is_symlink();
     if (is_file && superseded_(relative) && !fs::exists(work_ / relative)) {
-      superseded.push_back(entry.path());
+      superseded.push_back(entry->path());
     }
   }
   for (const fs::path& file : superseded) {
@@ -198,10 +227,12 @@ void OutputFolder::RemoveSuperseded() const {
 }
 
 void OutputFolder::PutInPlace() const {
-  std::error_code error;
-  fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
-  if (!error) return;
-  if (!fs::is_directory(target_)) throw fs::filesystem_error("rename", target_, error);
+  if (work_.parent_path() != target_) {
+    std::error_code error;
+    fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
+    if (!error) return;
+    if (!fs::is_directory(target_)) throw fs::filesystem_error("rename", target_, error);
+  }
   RequireSameKinds(work_, target_);
   RemoveSuperseded();
   MoveInto(work_, target_);

@@ -1,5 +1,6 @@
 // The folder a command writes. Everything goes to a sibling first and takes its place when the
-// command is done, so that an error leaves nothing behind, and nobody reads half a result.
+// command is done, so that an error leaves nothing behind, and nobody reads half a result. Of a
+// mount point, whose siblings are on another file system, to a folder inside it.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "eval/output_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -179,6 +180,62 @@ TEST_F(OutputFolderTest, TakesOverWhatAKilledProgramLeft) {
   }
   EXPECT_EQ(Everything(), (Names{"out", "out/b.txt"}));
 }
+
+// A folder shared with a container is a mount point: nothing beside it can be renamed into it,
+// whether it is of another file system or a folder of the same one.
+class OutputMountTest : public OutputFolderTest, public ::testing::WithParamInterface<bool> {
+ protected:
+  void SetUp() override {
+    OutputFolderTest::SetUp();
+    fs::create_directory(Path("out"));
+    const bool is_bound = GetParam();
+    if (is_bound) fs::create_directory(Path("real"));
+    const int failed = is_bound
+                           ? ::mount(Path("real").c_str(), Path("out").c_str(), "", MS_BIND, "")
+                           : ::mount("tmpfs", Path("out").c_str(), "tmpfs", 0, "size=1m");
+    if (failed != 0) GTEST_SKIP() << "only root may mount";
+  }
+  void TearDown() override {
+    ::umount2(Path("out").c_str(), MNT_DETACH);
+    OutputFolderTest::TearDown();
+  }
+  Names InFolder() const {
+    Names names = Everything();
+    std::erase_if(names, [](const std::string& name) { return !name.starts_with("out/"); });
+    return names;
+  }
+};
+
+TEST_P(OutputMountTest, IsWrittenInside) {
+  {
+    OutputFolder folder(Path("out"), false);
+    fs::create_directory(folder.work() / "frames");
+    WriteFile(folder.File("frames/0.png"), "1");
+    EXPECT_THROW(OutputFolder(Path("out"), false), InputError);  // one writer at a time
+    folder.Commit();
+  }
+  EXPECT_EQ(InFolder(), (Names{"out/frames", "out/frames/0.png"}));
+  EXPECT_THROW(OutputFolder(Path("out"), false), InputError);
+  {
+    OutputFolder folder(Path("out"), true,
+                        [](const fs::path& file) { return file.filename() != "mine.txt"; });
+    WriteFile(Path("out/mine.txt"), "precious");
+    WriteFile(folder.File("run.yaml"), "2");
+    folder.Commit();
+  }
+  EXPECT_EQ(InFolder(), (Names{"out/mine.txt", "out/run.yaml"}));
+}
+
+TEST_P(OutputMountTest, IsLeftAsItWas) {
+  { OutputFolder(Path("out"), false); }
+  EXPECT_EQ(InFolder(), Names{});
+  fs::create_directories(Path("out/.out.partial/half"));  // of a program that was killed
+  { OutputFolder(Path("out"), false); }
+  EXPECT_EQ(InFolder(), Names{});
+}
+
+INSTANTIATE_TEST_SUITE_P(FileSystems, OutputMountTest, ::testing::Bool(),
+                         [](const auto& of) { return of.param ? "Same" : "Other"; });
 
 }  // namespace
 }  // namespace depthgrid
