@@ -102,7 +102,10 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
 std::string Provenance(const World* world) {
   std::string yaml = "provenance:\n";
   yaml += fmt::format("  version: {}\n", DEPTHGRID_VERSION);
-  if (world != nullptr) yaml += fmt::format("  scene_hash: {}\n", world->scene_hash);
+  if (world != nullptr) {
+    yaml += fmt::format("  scene_hash: {}\n  trajectory_hash: {}\n", world->hashes.scene,
+                        world->hashes.trajectory);
+  }
   yaml += fmt::format("  instruction_set: {}\n", DEPTHGRID_ARCH);
   if (world != nullptr) {
     yaml += fmt::format("  ray_instruction_set: {}\n",

@@ -12,7 +12,7 @@ SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& op
       seed_(options.DepthSeed()),
       trajectory_(world.trajectory) {
   if (cache_folder.empty()) return;
-  cache_.emplace(cache_folder, world.scene_hash, world.camera, world.rays.isa());
+  cache_.emplace(cache_folder, world.hashes.scene, world.camera, world.rays.isa());
   cache_->MakeRoomFor(trajectory_, noise_.NeedsIncidence());
 }
 

@@ -143,20 +143,34 @@ std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Trian
 
 bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
 
+void AddPath(const Scene& scene, const ExperimentOptions& options, ContentHash& hash) {
+  if (IsFile(options.trajectory)) {
+    RequireTrajectoryFile(options);
+    hash.Text(ReadFile(options.trajectory));
+    return;
+  }
+  const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
+  hash.Text(ToYaml(path));
+  for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
+}
+
+WorldHashes HashesOf(const Scene& scene, const ExperimentOptions& options) {
+  ContentHash path;
+  AddPath(scene, options, path);
+  return {HashOf(scene), path.Hex()};
+}
+
 }  // namespace
+
+WorldHashes HashesOf(const ExperimentOptions& options) {
+  return HashesOf(LoadScene(ResolveName(options.scene, ShippedKind::kScene)), options);
+}
 
 std::string WorldHash(const ExperimentOptions& options) {
   const Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
   ContentHash hash;
   hash.Text(HashOf(scene));
-  if (IsFile(options.trajectory)) {
-    RequireTrajectoryFile(options);
-    hash.Text(ReadFile(options.trajectory));
-  } else {
-    const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
-    hash.Text(ToYaml(path));
-    for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
-  }
+  AddPath(scene, options, hash);
   return hash.Hex();
 }
 
@@ -173,10 +187,10 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   } else {
     trajectory = FromScene(scene, rays, options);
   }
-  std::string hash = HashOf(scene);
-  return {
-      std::move(scene),      std::move(hash),  std::move(rays), camera, SensorRange(options.sensor),
-      std::move(trajectory), std::move(doubts)};
+  WorldHashes hashes = HashesOf(scene, options);
+  return {std::move(scene), std::move(hashes),           std::move(rays),
+          camera,           SensorRange(options.sensor), std::move(trajectory),
+          std::move(doubts)};
 }
 
 }  // namespace depthgrid

@@ -12,9 +12,15 @@
 
 namespace depthgrid {
 
+// Others when any of the files was changed.
+struct WorldHashes {
+  std::string scene;       // of triangles, floor and ceiling: what the depth camera can see
+  std::string trajectory;  // of the path as the scene or its file gives it, whatever is cut off it
+};
+
 struct World {
   Scene scene;
-  std::string scene_hash;  // of triangles, floor and ceiling: what the depth camera can see
+  WorldHashes hashes;
   RayScene rays;
   PinholeCamera camera;
   DepthRange depth_range;
@@ -24,9 +30,9 @@ struct World {
   std::vector<std::string> path_doubts;
 };
 
-// Of the room and the path that an experiment names: another one when any of the files was changed.
-// Throws InputError when they cannot be read.
-std::string WorldHash(const ExperimentOptions& options);
+// Of the room and the path that an experiment names. Throw InputError when they cannot be read.
+WorldHashes HashesOf(const ExperimentOptions& options);
+std::string WorldHash(const ExperimentOptions& options);  // both as one
 
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
 // path that comes too near to geometry, and for one of a file that leads out of all reach.

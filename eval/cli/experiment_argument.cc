@@ -8,6 +8,7 @@
 
 #include "eval/idle_settings.h"
 #include "eval/shipped.h"
+#include "eval/world.h"
 #include "mapper/core/error.h"
 #include "sim/mesh_file.h"
 
@@ -59,11 +60,37 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
                      fmt::join(kept, ", "), profile);
 }
 
+// A run.yaml, made again where the scene or the path is no longer what it was.
+std::vector<std::string> DoubtsOfRecord(const std::string& name,
+                                        const std::vector<std::string>& set) {
+  const std::string path = ResolveName(name, ShippedKind::kExperiment);
+  const Config record = ExperimentFile(path).Take("provenance");
+  Config given;
+  for (const std::string& assignment : set) given.Set(assignment);
+  // Where another room is asked for it may be another one.
+  if (given.Has("scene") || !record.Has("scene_hash")) return {};
+  const ExperimentOptions options = ExperimentNamed(name, set);
+  const WorldHashes now = HashesOf(options);
+  std::vector<std::string> doubts;
+  const auto compare = [&](const std::string& key, const std::string& hash,
+                           const std::string& what) {
+    const std::string recorded = record.Text(key, hash);
+    if (recorded == hash) return;
+    doubts.push_back(fmt::format("{}: {} is {}, but that of {} is {} now: this run is another one",
+                                 path, key, recorded, what, hash));
+  };
+  compare("scene_hash", now.scene, options.scene);
+  if (given.Has("trajectory")) return doubts;
+  compare("trajectory_hash", now.trajectory,
+          IsFileName(options.trajectory) ? options.trajectory : "the path in " + options.scene);
+  return doubts;
+}
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set) {
-  std::vector<std::string> doubts;
+  std::vector<std::string> doubts = DoubtsOfRecord(name, set);
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
   const IdleSettingList idle = IdleSettings(ExperimentNamed(name, set));
   const auto add = [&](const std::vector<std::string>& more) {

@@ -15,8 +15,9 @@ namespace depthgrid::cli {
 Config ExperimentFile(const std::string& path);
 
 // What is likely not meant, a line each: what an experiment sets beside slam.profile, such as the
-// drift calibrated for it, when `set` chooses another profile; and what of `set` and of a file of
-// the user's has no effect, such as a gain where it is learnt.
+// drift calibrated for it, when `set` chooses another profile; what of `set` and of a file of the
+// user's has no effect, such as a gain where it is learnt; and that a scene or path has changed
+// since a run.yaml was written.
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 

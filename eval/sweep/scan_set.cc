@@ -21,7 +21,7 @@ ContentHash DepthHash(const ScanSet& set) {
   hash.Text(DEPTHGRID_VERSION);
   hash.Text(DEPTHGRID_ARCH);
   hash.Value(kScanFormat);
-  hash.Text(set.world->scene_hash);
+  hash.Text(set.world->hashes.scene);
   hash.Text(ToYaml(set.options.sensor));
   hash.Value(set.options.DepthSeed());
   hash.Value(set.world->trajectory.size());

@@ -71,6 +71,38 @@ TEST_F(ProgramOutput, AFolderThatMayNotBeEnteredIsNamedAsGiven) {
   }
 }
 
+// A run.yaml names files, which may have changed since.
+TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
+  Succeed("run ./small.yaml -o out");
+  const auto hash = [&](const std::string& folder, const std::string& key) {
+    const std::string text = ReadFile(Path(folder + "/run.yaml"));
+    const std::size_t start = text.find("  " + key + ": ") + key.size() + 4;
+    return text.substr(start, text.find('\n', start) - start);
+  };
+  const auto warning = [&](const std::string& key, const std::string& of) {
+    return "depthgrid: warning: out/run.yaml: " + key + " is " + hash("out", key) +
+           ", but that of " + of + Path("room.yaml") + " is " + hash("again", key) +
+           " now: this run is another one\n";
+  };
+  const std::string room = ReadFile(Path("room.yaml"));
+  const auto again = [&](const std::string& from, const std::string& to) {
+    std::string changed = room;
+    Write("room.yaml", changed.replace(changed.find(from), from.size(), to));
+    return Program("run out/run.yaml -o again --force").err;
+  };
+  const std::string of_path = again("[1.9, 2.0, 1.1]", "[1.9, 2.0, 1.2]");
+  EXPECT_EQ(of_path, warning("trajectory_hash", "the path in "));
+  EXPECT_EQ(hash("again", "scene_hash"), hash("out", "scene_hash"));
+  EXPECT_EQ(ReadFile(Path("again/warnings.txt")).find("out/run.yaml: trajectory_hash is "), 0U);
+  const std::string of_scene = again("[0.5, 0.5, 1.5]", "[0.5, 0.5, 1.4]");
+  EXPECT_EQ(of_scene, warning("scene_hash", ""));
+  EXPECT_EQ(hash("again", "trajectory_hash"), hash("out", "trajectory_hash"));
+  EXPECT_EQ(Program("run again/run.yaml -o third").err, "");  // it has the new hashes
+  EXPECT_EQ(Program("run out/run.yaml -o other --set scene=./room.yaml").err, "");
+  Write("room.yaml", room);
+  EXPECT_EQ(Program("run out/run.yaml -o fourth --set frames=11").err, "");
+}
+
 TEST_F(ProgramOutput, AnExperimentsFilesAreFoundFromAnywhere) {
   const std::filesystem::path elsewhere = Path("else where");
   std::filesystem::create_directories(elsewhere / "rooms");
