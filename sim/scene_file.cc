@@ -187,6 +187,12 @@ class SceneReader {
     for (const auto& name : materials.Keys()) {
       for (const auto& known : scene_.materials) {
         if (known.name != name) continue;
+        if (name == scene_.materials.front().name) {
+          throw InputError(materials.Place(),
+                           fmt::format("material name '{}' is reserved for shapes without a "
+                                       "material; choose another name",
+                                       name));
+        }
         throw InputError(materials.Place(), fmt::format("material '{}' is given twice", name));
       }
       MaterialOptions options;
