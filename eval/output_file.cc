@@ -12,13 +12,11 @@ namespace depthgrid {
 
 namespace fs = std::filesystem;
 
-void RequireNewFile(const std::string& path, bool force) {
+void RequireNewFile(const std::string& path, bool force, const std::string& remedy) {
   if (fs::is_directory(path)) throw InputError(path, "is a folder, must be a file");
   const fs::path folder = fs::absolute(path).parent_path();
   if (!fs::is_directory(folder)) throw InputError(path, "its folder does not exist");
-  if (!force && fs::exists(path)) {
-    throw InputError(path, "is there already; choose another name, or --force to replace it");
-  }
+  if (!force && fs::exists(path)) throw InputError(path, "is there already; " + remedy);
   if (::access(folder.c_str(), W_OK) != 0) {
     throw InputError(path, "cannot be written: " + std::generic_category().message(errno));
   }

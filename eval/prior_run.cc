@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "eval/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/scan_file.h"
 
@@ -15,9 +16,7 @@ namespace fs = std::filesystem;
 PriorMap ReadPriorRun(const std::string& folder) {
   const fs::path drawn_path = fs::path(folder) / "scans.bin";
   const fs::path matched_path = fs::path(folder) / "matched.bin";
-  if (!fs::exists(fs::path(folder) / "run.yaml")) {
-    throw InputError(folder, "is no run's folder: it has no run.yaml");
-  }
+  RequireRunFolder(folder);
   const std::vector<StoredScan> drawn = ReadScans(drawn_path.string());
   const std::vector<StoredScan> matched =
       fs::exists(matched_path) ? ReadScans(matched_path.string()) : drawn;

@@ -23,10 +23,18 @@ std::size_t PriorScansOf(const RunFiles& run) {
 
 }  // namespace
 
+void RequireRunFolder(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) throw InputError(folder, "no such folder");
+  if (!fs::exists(fs::path(folder) / "run.yaml", error)) {
+    throw InputError(folder, "is no run's folder: it has no run.yaml");
+  }
+}
+
 RunFiles ReadRunFolder(const std::string& folder) {
   const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
   const auto exists = [&](const char* name) { return fs::exists(path(name)); };
-  if (!exists("run.yaml")) throw InputError(folder, "is no run's folder: it has no run.yaml");
+  RequireRunFolder(folder);
   RunFiles run;
   run.folder = folder;
   run.settings = ReadFile(path("run.yaml"));

@@ -35,6 +35,9 @@ struct RunFiles {
   bool only_placed = false;
 };
 
+// Throws InputError when there is no such folder, or it is no run's.
+void RequireRunFolder(const std::string& folder);
+
 // Throws InputError when the folder is no run's, or a file of it is damaged.
 RunFiles ReadRunFolder(const std::string& folder);
 

@@ -4,6 +4,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/output_file.h"
+#include "eval/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/config.h"
@@ -48,15 +49,15 @@ std::string ImageOfMap(const fs::path& yaml) {
 void Regrid(const RegridArguments& arguments) {
   const Config resolution = ResolutionOf(arguments);
   const fs::path folder = arguments.folder;
-  if (!fs::exists(folder / "run.yaml")) {
-    throw InputError(arguments.folder, "is no run's folder: it has no run.yaml");
-  }
+  RequireRunFolder(arguments.folder);
   RequireWritable(arguments.folder);
   GridOptions options = GridOptionsOf((folder / "run.yaml").string());
   resolution.Read(options);
   const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
-  RequireNewFile(map.string(), arguments.force);
-  RequireNewFile(MapImageOf(map.string(), arguments.map_mode), arguments.force);
+  // Its name is that of its resolution.
+  constexpr const char* kRemedy = "move it away, or --force to replace it";
+  RequireNewFile(map.string(), arguments.force, kRemedy);
+  RequireNewFile(MapImageOf(map.string(), arguments.map_mode), arguments.force, kRemedy);
   const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
   if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
   MapDrawing drawing(options);

@@ -103,6 +103,20 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   EXPECT_EQ(Program("run out/run.yaml -o fourth --set frames=11").err, "");
 }
 
+TEST_F(ProgramOutput, WhatCanBeDoneIsSaid) {
+  ExpectRefusal("regrid nope --resolution 0.02", {"depthgrid: nope: no such folder\n"});
+  ExpectRefusal("report nope", {"nope: "});
+  Succeed("run ./small.yaml -o made");
+  Succeed("regrid made --resolution 0.02");
+  ExpectRefusal("regrid made --resolution 0.02",
+                {"depthgrid: made/map_0.02.yaml: is there already; move it away, or --force to "
+                 "replace it\n"});
+  Succeed("regrid made --resolution 0.02 --force");
+  Succeed("render ./small.yaml --no-colour --set frames=2 -o seq");
+  ExpectRefusal("map seq --poses seq/groundtruth.txt --map nope -o out",
+                {"depthgrid: nope: no such folder\n"});
+}
+
 TEST_F(ProgramOutput, AnExperimentsFilesAreFoundFromAnywhere) {
   const std::filesystem::path elsewhere = Path("else where");
   std::filesystem::create_directories(elsewhere / "rooms");
