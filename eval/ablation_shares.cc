@@ -28,6 +28,13 @@ double ValueOf(const AblationRun& run, const std::string& metric) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+// Errors are metres or shares, of numbers around one: what is smaller is what rounding leaves of
+// them, and would be taken for a difference that all seeds have.
+double WithoutResidue(double value) {
+  constexpr double kResidue = 1e-12;
+  return std::abs(value) < kResidue ? 0.0 : value;
+}
+
 // A variant's errors by seed: of scores that are better when higher, one less the score.
 std::vector<double> ErrorsOf(const std::vector<AblationRun>& runs, const std::string& variant,
                              const std::string& metric) {
@@ -36,9 +43,24 @@ std::vector<double> ErrorsOf(const std::vector<AblationRun>& runs, const std::st
   for (const AblationRun& run : runs) {
     if (run.variant != variant) continue;
     const double value = ValueOf(run, metric);
-    errors.push_back(complement ? 1.0 - value : value);
+    errors.push_back(WithoutResidue(complement ? 1.0 - value : value));
   }
   return errors;
+}
+
+// What the errors fall by from `before` to `after`.
+PairedComparison GainOf(const std::vector<double>& before, std::vector<double> after,
+                        const Resamples& resamples) {
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (WithoutResidue(after[i] - before[i]) == 0.0) after[i] = before[i];
+  }
+  PairedComparison gain = ComparePaired(before, after, Better::kLower, resamples);
+  gain.mean_difference = WithoutResidue(gain.mean_difference);
+  if (gain.mean_interval) {
+    gain.mean_interval->low = WithoutResidue(gain.mean_interval->low);
+    gain.mean_interval->high = WithoutResidue(gain.mean_interval->high);
+  }
+  return gain;
 }
 
 bool AllFinite(const std::vector<AblationRun>& runs, const std::string& metric) {
@@ -60,8 +82,7 @@ ErrorShares SharesOfScore(const std::vector<AblationRun>& runs, const std::strin
     StageShare stage;
     stage.variant = variant.name;
     stage.error = Summarise(errors).mean;
-    stage.gain =
-        ComparePaired(ErrorsOf(runs, variant.against, metric), errors, Better::kLower, resamples);
+    stage.gain = GainOf(ErrorsOf(runs, variant.against, metric), errors, resamples);
     if (shares.error > 0.0) stage.share = (0.0 - stage.gain.mean_difference) / shares.error;
     p_values.push_back(stage.gain.wilcoxon.p_value);
     shares.stages.push_back(std::move(stage));
@@ -128,7 +149,7 @@ std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t see
       cell["share"] = stage.share ? nlohmann::ordered_json(*stage.share) : nullptr;
       cell["owned_interval95"] = nullptr;
       if (const auto& interval = stage.gain.mean_interval) {
-        cell["owned_interval95"] = {-interval->high, -interval->low};
+        cell["owned_interval95"] = {0.0 - interval->high, 0.0 - interval->low};
       }
       cell["p_value"] = stage.gain.wilcoxon.p_value;
       cell["p_holm"] = stage.p_holm;

@@ -46,6 +46,35 @@ TEST(Ablation, SharesAreDifferencesFromWhatEachIsComparedWith) {
   }
 }
 
+// What rounding leaves: of true poses put in 2e-16 m, of 0.1 + 0.2 a last digit that 0.3 has not,
+// and of differences that cancel.
+TEST(SharesOf, WhatRoundingLeavesIsNothing) {
+  const std::map<std::string, std::array<double, 6>> errors = {
+      {"poses", {2e-16, 2e-16, 2e-16, 2e-16, 2e-16, 2e-16}},
+      {"depth", {0.3, 0.3, 0.3, 0.3, 0.3, 0.3}},
+      {"matcher", {0.4, 0.2, 0.35, 0.25, 0.31, 0.29}}};
+  std::vector<AblationRun> runs;
+  for (const AblationVariant& variant : AblationVariants()) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+      const auto found = errors.find(variant.name);
+      const double error = found == errors.end() ? 0.1 + 0.2 : found->second[seed];
+      runs.push_back({variant.name, seed, {{"map.chamfer_m", error}}});
+    }
+  }
+  ASSERT_NE(0.1 + 0.2, 0.3);
+  const std::vector<ErrorShares> shares = SharesOf(runs);
+  ASSERT_EQ(shares.size(), 1U);
+  std::map<std::string, StageShare> stages;
+  for (const StageShare& stage : shares[0].stages) stages[stage.variant] = stage;
+  EXPECT_EQ(stages.at("poses").error, 0.0);
+  EXPECT_EQ(stages.at("matcher").gain.mean_difference, 0.0);
+  EXPECT_EQ(stages.at("depth").gain.mean_difference, 0.0);
+  EXPECT_EQ(stages.at("depth").share, 0.0);
+  EXPECT_EQ(stages.at("depth").gain.wilcoxon.p_value, 1.0);  // six seeds alike are 0.03
+  EXPECT_EQ(AblationJson(shares, 6).find("e-1"), std::string::npos);
+  EXPECT_EQ(AblationJson(shares, 6).find("-0.0\n"), std::string::npos);
+}
+
 TEST(SharesOf, OfNoErrorAreNone) {
   std::vector<AblationRun> runs;
   for (const AblationVariant& variant : AblationVariants()) {
