@@ -59,8 +59,7 @@ void AddRender(Program& program) {
       "Render a scene to a TUM RGB-D folder, with the true map and what of it can be seen",
       "depthgrid render living_room -o /tmp/living_room", &Render);
   app->add_option("scene", arguments->scene, "Shipped scene or experiment, or a file")->required();
-  app->add_flag("--no-colour", arguments->no_colour,
-                "Depth images only: five to eight times as fast");
+  app->add_flag("--no-colour", arguments->no_colour, "Depth images only: several times as fast");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common);
   AddThreads(*app, arguments->common);
