@@ -35,7 +35,8 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
   return run;
 }
 
-// What the fitted surrogate makes of the same true paths, over several seeds.
+// What the fitted surrogate, of the settings that are printed, makes of the same true paths, over
+// several seeds.
 std::vector<SlamRun> Imitated(const std::vector<SlamRun>& runs, const SlamOptions& options) {
   std::vector<SlamRun> imitated;
   for (const SlamRun& run : runs) {
@@ -85,16 +86,19 @@ void FitSlam(const SlamFitArguments& arguments) {
   }
   std::vector<SlamRun> runs;
   for (std::size_t i = 0; i < files.size(); i += 2) runs.push_back(ReadRun(files[i], files[i + 1]));
-  const SlamFit fit = FitSlamErrors(runs);
-  SlamOptions with_loops = fit.options;
-  with_loops.loops = WithScenario(with_loops.loops, LoopScenario::kTrue);
+  SlamFit fit = FitSlamErrors(runs);
+  SlamLoopOptions& loops = fit.options.loops;
+  if (fit.corrections > 0) loops = WithScenario(loops, LoopScenario::kTrue);
   PrintComments(fmt::format(
       "{:.1f} s of tracking: {}, lost {}, {} (left out of the fit)\n"
-      "turning about the pivot explains {:.0f} % of the sideways error from frame to frame\n",
+      "turning about the pivot explains {:.0f} % of the sideways error from frame to frame\n"
+      "surrogate: the settings below, {} seeds; loops are not fitted: {}\n",
       fit.tracked_s, Counted(fit.jumps, "jump"), Counted(fit.lost_bursts, "time"),
-      Counted(fit.corrections, "correction"), 100.0 * fit.pivot_explains));
+      Counted(fit.corrections, "correction"), 100.0 * fit.pivot_explains, kCheckSeeds,
+      fit.corrections > 0 ? "every revisit is closed, as there are corrections"
+                          : "none is closed, as there is no correction"));
   PrintComments(
-      LagTable(ErrorOverLag(runs, Lags()), ErrorOverLag(Imitated(runs, with_loops), Lags())));
+      LagTable(ErrorOverLag(runs, Lags()), ErrorOverLag(Imitated(runs, fit.options), Lags())));
   fmt::print("{}", ToYaml(SlamSettings{fit.options}));
 }
 

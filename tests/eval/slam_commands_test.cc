@@ -125,6 +125,39 @@ TEST_F(SlamCommands, FitFindsWhatSlamDid) {
             0);
 }
 
+// Nothing errs, no loop is closed: neither does what imitates it.
+TEST_F(SlamCommands, FitOfATruthWithItselfErrsNowhere) {
+  WriteSequence("seq");
+  const Outcome fit = Program("slam-fit seq/groundtruth.txt seq/groundtruth.txt");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.out, HasSubstr("scenario: none\n"));
+  std::istringstream lines(fit.out);
+  int lags = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream row(line);
+    std::string mark, unit;
+    double lag_s, run_mm, surrogate_mm, run_deg, surrogate_deg;
+    row >> mark >> lag_s >> unit >> run_mm >> surrogate_mm >> run_deg >> surrogate_deg;
+    if (!row || mark != "#" || unit != "s") continue;
+    EXPECT_EQ(surrogate_mm, 0.0) << line;
+    EXPECT_EQ(surrogate_deg, 0.0) << line;
+    ++lags;
+  }
+  EXPECT_GE(lags, 4);
+  EXPECT_THAT(fit.out, HasSubstr("none is closed, as there is no correction\n"));
+}
+
+// Coming back over the old way closes a loop, which shows in the poses.
+TEST_F(SlamCommands, FitOfCorrectedPosesClosesLoops) {
+  WriteSequence("seq");
+  Succeed("slam seq --profile orb_slam2 --seed 4 -o out");
+  const Outcome fit = Program("slam-fit seq/groundtruth.txt out/slam.txt");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(fit.out.find(" 0 corrections"), std::string::npos) << fit.out;
+  EXPECT_THAT(fit.out, HasSubstr("every revisit is closed, as there are corrections\n"));
+  EXPECT_THAT(fit.out, HasSubstr("scenario: true\n"));
+}
+
 TEST_F(SlamCommands, FitRefusesBadInput) {
   WriteSequence("seq", 30);
   ExpectRefusal("slam-fit seq/groundtruth.txt", "--help");
