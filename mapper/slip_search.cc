@@ -67,9 +67,9 @@ std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
   const double there = reference.ShareSeenBefore(scan, *found, before);
   if (there >= kMendedShare * lasting_share) return found;
   const Pose2 slip = Between(prediction.map_from_base, *found);
-  const bool wants_turn = slip.translation().norm() < kInPlaceM &&
-                          there >= kTurnedShare * lasting_share &&
-                          there > reference.ShareSeenBefore(scan, prediction.map_from_base, before);
+  const double here = reference.ShareSeenBefore(scan, prediction.map_from_base, before);
+  const bool in_place = slip.translation().norm() < kInPlaceM;
+  const bool wants_turn = in_place && there > here && there >= kTurnedShare * lasting_share;
   return wants_turn ? found : std::nullopt;
 }
 
