@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <string>
 
 namespace depthgrid {
@@ -12,8 +13,9 @@ namespace depthgrid {
 // The start of a path; what is made there is the test's to remove.
 inline std::string ScratchPath() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  return testing::TempDir() + "depthgrid_" + test->test_suite_name() + "_" + test->name() + "_" +
-         std::to_string(::getpid());
+  std::string name = std::string("depthgrid_") + test->test_suite_name() + "_" + test->name();
+  std::replace(name.begin(), name.end(), '/', '_');  // of tests with parameters
+  return testing::TempDir() + name + "_" + std::to_string(::getpid());
 }
 
 }  // namespace depthgrid
