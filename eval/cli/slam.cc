@@ -52,7 +52,8 @@ void SayNext(const SlamArguments& arguments, const SlamOutput& slam) {
                                    [](const SlamPose& pose) { return pose.slam_from_camera; });
   fmt::print("SLAM gives {} of {} a pose and closes {}: {}/slam.txt\n", posed,
              Counted(slam.live.size(), "frame"), Counted(slam.loops.size(), "loop"), output);
-  fmt::print("go on with: depthgrid map {} --poses {} --loops {} -o OUT\n",
+  // Its world has z up, as `run` takes it; found from images it would be that of drifting poses.
+  fmt::print("go on with: depthgrid map {} --poses {} --loops {} --up z -o OUT\n",
              ShellWord(arguments.sequence), ShellWord(output + "/slam.txt"),
              ShellWord(output + "/loops.csv"));
 }

@@ -156,7 +156,7 @@ TEST_F(ProgramRun, RenderAndSlamSayTheNextCommand) {
   const std::string map = next(without_line_end(slam) + " --set slam.loops.scenario=none",
                                "SLAM gives 12 of 12 frames a pose and closes 0 loops: "
                                "POSES/slam.txt");
-  EXPECT_EQ(map, "map 'a room' --poses POSES/slam.txt --loops POSES/loops.csv -o OUT\n");
+  EXPECT_EQ(map, "map 'a room' --poses POSES/slam.txt --loops POSES/loops.csv --up z -o OUT\n");
   EXPECT_THAT(Program(without_line_end(map)).out, testing::HasSubstr("mapped 12 of 12 frames"));
 }
 
