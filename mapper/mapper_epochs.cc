@@ -13,7 +13,8 @@ constexpr double kSlipSigmaShare = 0.3;
 // SLAM comes back into its own map to a centimetre. Where the map explains little of what is seen
 // then, a match is made against what only looks alike and is surer than it is right.
 constexpr double kWordSigmaShare = 0.1;
-// Unless a pose within kEpochSigma of it explains the scan as well as scans usually are.
+// Unless a pose within kEpochSigma of it explains the scan as well as scans usually are
+// (docs/tried.md, "Lost and found").
 constexpr double kWhollyUsual = 0.9;
 
 Eigen::Matrix3d AddedBy(double sigma_share) { return Squared(sigma_share * kEpochSigma); }

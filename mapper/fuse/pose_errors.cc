@@ -65,11 +65,11 @@ std::vector<int> PoseErrors::Mapped() const {
   return mapped;
 }
 
-Eigen::Matrix3d PoseErrors::FromBase(const Pose2& map_from_base) const {
+Eigen::Matrix3d PoseErrors::OriginFromBase(const Pose2& map_from_base) const {
   return AdjointOf(Between(origin_, map_from_base));
 }
 
-Eigen::Matrix3d PoseErrors::ToBase(const Pose2& map_from_base) const {
+Eigen::Matrix3d PoseErrors::BaseFromOrigin(const Pose2& map_from_base) const {
   return AdjointOf(Between(map_from_base, origin_));
 }
 
@@ -78,12 +78,12 @@ void PoseErrors::Adjusted(const Eigen::MatrixXd& covariance,
   if (covariance.size() == 0) return;
   Require(covariance.rows() == 3 * static_cast<Eigen::Index>(knots_.size()),
           "an adjustment tells the errors of the remembered frames");
-  const Eigen::Matrix3d from_map = AdjointOf(Inverse(origin_));
+  const Eigen::Matrix3d origin_from_map = AdjointOf(Inverse(origin_));
   const auto told = [&](std::size_t row, std::size_t column) -> Eigen::Matrix3d {
-    return from_map *
+    return origin_from_map *
            covariance.block<3, 3>(3 * static_cast<Eigen::Index>(row),
                                   3 * static_cast<Eigen::Index>(column)) *
-           from_map.transpose();
+           origin_from_map.transpose();
   };
   const std::size_t last = knots_.size() - 1;
   const Eigen::Matrix3d map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
@@ -126,17 +126,18 @@ void PoseErrors::Add(const FilterStep& step, int index, int mapped,
 
 // SLAM's motion: the bias, which is kept in base axes, adds to the pose.
 void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts) {
-  const Eigen::Matrix3d map_from_step = FromBase(step.predicted);
+  const Eigen::Matrix3d origin_from_step = OriginFromBase(step.predicted);
   const double noise_kept = 1.0 - 1.0 / (1.0 + kNoiseAge * AgeOf(parts, knots_.back().mapped + 1));
   Matrix9 f = Matrix9::Identity();
-  f.block<3, 3>(kPose, kBias) = map_from_step;
+  f.block<3, 3>(kPose, kBias) = origin_from_step;
   f.block<3, 3>(kBias, kBias) = step.bias_kept.asDiagonal();
   f.block<3, 3>(kMapNoise, kMapNoise) *= noise_kept;
   Matrix9 state = f * newest_.topLeftCorner<9, 9>() * f.transpose();
-  state.block<3, 3>(kPose, kPose) += Turned(Squared(step.walk), map_from_step);
+  state.block<3, 3>(kPose, kPose) += Turned(Squared(step.walk), origin_from_step);
   state.block<3, 3>(kBias, kBias) += Squared(step.bias_renewed);
   auto knots_with_bias = knots_with_newest_.middleCols<3>(kBias);
-  knots_with_newest_.middleCols<3>(kPose).noalias() += knots_with_bias * map_from_step.transpose();
+  knots_with_newest_.middleCols<3>(kPose).noalias() +=
+      knots_with_bias * origin_from_step.transpose();
   knots_with_bias = (knots_with_bias * step.bias_kept.asDiagonal()).eval();
   knots_with_newest_.middleCols<3>(kMapNoise) *= noise_kept;
   newest_.topLeftCorner<9, 9>() = state;
@@ -154,7 +155,7 @@ void PoseErrors::BeginEpoch(const Pose2& map_from_base, const Eigen::Matrix3d& a
                             const std::optional<Eigen::Vector3d>& bias) {
   Break();
   if (knots_.empty()) return;
-  newest_.block<3, 3>(kPose, kPose) += Turned(added, FromBase(map_from_base));
+  newest_.block<3, 3>(kPose, kPose) += Turned(added, OriginFromBase(map_from_base));
   if (bias) RenewBias(*bias);
 }
 
@@ -183,11 +184,11 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
     if (std::find(shared_.begin(), shared_.end(), slot) == shared_.end()) shared_.push_back(slot);
     share_[static_cast<std::size_t>(slot)] += part.information;
   }
-  const Eigen::Matrix3d mean = FromBase(map_from_base) * SeenInverse(all);
-  const Eigen::Matrix3d step_from_map = ToBase(map_from_base);
+  const Eigen::Matrix3d mean = OriginFromBase(map_from_base) * SeenInverse(all);
+  const Eigen::Matrix3d step_from_origin = BaseFromOrigin(map_from_base);
   for (const int slot : shared_) {
     Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
-    share = (mean * share * step_from_map).eval();
+    share = (mean * share * step_from_origin).eval();
   }
 }
 
@@ -200,7 +201,7 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
   if (parts.empty()) return match;
   Weigh(parts, step.predicted);
   const double noise_share = ShareOfMapNoise(parts);
-  const Eigen::Matrix3d noise = Turned(SeenInverse(information), FromBase(step.predicted));
+  const Eigen::Matrix3d noise = Turned(SeenInverse(information), OriginFromBase(step.predicted));
   auto map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
   map_noise += PositivePart(noise_share * noise - map_noise);
   for (const int slot : shared_) {
@@ -224,19 +225,19 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
 // With i = pose + jitter - match the error of the innovation: state -= G i, camera = pose + jitter
 // - K i.
 void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
-  const Eigen::Matrix3d map_from_step = FromBase(step.predicted);
-  const Eigen::Matrix3d step_from_map = ToBase(step.predicted);
-  const Eigen::Matrix3d k = map_from_step * step.gain * step_from_map;
+  const Eigen::Matrix3d origin_from_step = OriginFromBase(step.predicted);
+  const Eigen::Matrix3d step_from_origin = BaseFromOrigin(step.predicted);
+  const Eigen::Matrix3d k = origin_from_step * step.gain * step_from_origin;
   Matrix93 g = Matrix93::Zero();
-  g.middleRows<3>(kPose) = map_from_step * step.state_gain.topRows<3>() * step_from_map;
-  g.middleRows<3>(kBias) = step.state_gain.bottomRows<3>() * step_from_map;
+  g.middleRows<3>(kPose) = origin_from_step * step.state_gain.topRows<3>() * step_from_origin;
+  g.middleRows<3>(kBias) = step.state_gain.bottomRows<3>() * step_from_origin;
   const Matrix9 state = newest_.topLeftCorner<9, 9>();
   const Eigen::Matrix3d camera =
-      state.block<3, 3>(kPose, kPose) + Turned(Squared(step.jitter), map_from_step);
+      state.block<3, 3>(kPose, kPose) + Turned(Squared(step.jitter), origin_from_step);
   const Eigen::Matrix3d pose_with_match = match.with_state.middleRows<3>(kPose);
   const Eigen::Matrix3d camera_with_i = camera - pose_with_match;
   const Eigen::Matrix3d i = camera_with_i - pose_with_match.transpose() + match.covariance;
-  innovation_ = Turned(i, step_from_map);
+  innovation_ = Turned(i, step_from_origin);
   const Matrix93 state_with_i = state.middleCols<3>(kPose) - match.with_state;
 
   const Matrix9 taken = g * state_with_i.transpose();
@@ -295,7 +296,7 @@ Eigen::Matrix3d PoseErrors::MotionCovariance(const Pose2& map_from_base) const {
   const Eigen::Matrix3d cross = knots_with_newest_.block<3, 3>(slot, kCamera);
   const Eigen::Matrix3d both = newest_.block<3, 3>(kCamera, kCamera) +
                                covariance_.block<3, 3>(slot, slot) - cross - cross.transpose();
-  const Eigen::Matrix3d motion = Turned(both, ToBase(map_from_base));
+  const Eigen::Matrix3d motion = Turned(both, BaseFromOrigin(map_from_base));
   return 0.5 * (motion + motion.transpose());
 }
 

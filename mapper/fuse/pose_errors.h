@@ -74,8 +74,8 @@ class PoseErrors {
 
   // Errors are kept in axes of the origin, which lie as the map's. Far away a heading's error would
   // be so large an error of place that nothing were left of the digits.
-  Eigen::Matrix3d FromBase(const Pose2& map_from_base) const;
-  Eigen::Matrix3d ToBase(const Pose2& map_from_base) const;
+  Eigen::Matrix3d OriginFromBase(const Pose2& map_from_base) const;
+  Eigen::Matrix3d BaseFromOrigin(const Pose2& map_from_base) const;
   void Predict(const FilterStep& step, std::span<const MapPart> parts);
   void Weigh(std::span<const MapPart> parts, const Pose2& map_from_base);
   MatchError See(const FilterStep& step, const Eigen::Matrix3d& information,
