@@ -17,14 +17,15 @@
 namespace depthgrid {
 namespace {
 
-// What is compared when nothing is asked for: one or two figures of each kind.
+// What is compared when nothing is asked for: one or two figures of each kind, those first that
+// should be tested where there are pairs for a few only.
 constexpr std::array<const char*, 13> kHeadlines = {"trajectory.est.mean_euclidean_m",
-                                                    "trajectory.est.ate_rmse_se2_m",
-                                                    "trajectory.online.mean_euclidean_m",
                                                     "map.observable.occupied.f1",
-                                                    "map.observable.free.f1",
+                                                    "trajectory.est.ate_rmse_se2_m",
                                                     "map.chamfer_m",
+                                                    "trajectory.online.mean_euclidean_m",
                                                     "map.coverage",
+                                                    "map.observable.free.f1",
                                                     "map.registered.chamfer_m",
                                                     "map.double_wall_rate",
                                                     "map.ssim",
@@ -228,6 +229,45 @@ int MostRowsToldApart(const std::vector<MetricComparison>& rows, double level) {
   return most;
 }
 
+int PairsToTellApart(int rows, double level) {
+  int pairs = 1;
+  while (rows * LeastWilcoxonP(pairs) >= level) ++pairs;
+  return pairs;
+}
+
+// Which rows are tested: those asked for all are. Of the headlines, where so few pairs cannot tell
+// all of them apart, the first that they can: a choice made without a look at the signs of the
+// differences keeps the chance of a false alarm, and a verdict on one row says more than none on
+// thirteen. Rows that are equal in every pair cannot decide and would take the place of others.
+std::vector<std::size_t> RowsToTest(const Comparison& comparison, bool are_headlines) {
+  const std::vector<MetricComparison>& rows = comparison.metrics;
+  const auto most = static_cast<std::size_t>(comparison.most_rows);
+  const bool choose = are_headlines && most > 0 && most < rows.size();
+  std::vector<std::size_t> tested;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool can_decide = rows[i].paired.wilcoxon.pairs > 0 && tested.size() < most;
+    if (!choose || can_decide) tested.push_back(i);
+  }
+  return tested;
+}
+
+void Judge(const std::vector<std::size_t>& tested, double level, Comparison& comparison) {
+  std::vector<double> p_values, least_p_values;
+  for (const std::size_t i : tested) {
+    const PairedComparison& paired = comparison.metrics[i].paired;
+    p_values.push_back(paired.wilcoxon.p_value);
+    least_p_values.push_back(LeastWilcoxonP(paired.pairs));
+  }
+  const std::vector<double> adjusted = HolmAdjusted(p_values);
+  const std::vector<double> least = HolmAdjusted(least_p_values);
+  for (MetricComparison& row : comparison.metrics) row.verdict = Verdict::kNotTested;
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    MetricComparison& row = comparison.metrics[tested[k]];
+    row.p_holm = adjusted[k];
+    row.verdict = VerdictOf(row, least[k], level);
+  }
+}
+
 // Of a table of that many rows: each is judged as the first of them is, whose p-value Holm takes
 // times all of them. What so many pairs did not show takes more.
 std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, double level) {
@@ -236,7 +276,8 @@ std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, do
   TestPlan plan;
   plan.level = level / static_cast<double>(rows);
   auto needed = SeedsNeededByRanks(paired.mean_difference, paired.std_difference, plan);
-  const bool is_shown = c.verdict != Verdict::kNotToldApart && c.verdict != Verdict::kTooFew;
+  const bool is_shown = c.verdict != Verdict::kNotToldApart && c.verdict != Verdict::kTooFew &&
+                        c.verdict != Verdict::kNotTested;
   if (needed && !is_shown) needed = std::max(*needed, paired.pairs + 1);
   return needed;
 }
@@ -259,23 +300,19 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   Comparison comparison;
   const Pairs pairs = PairsOf(a, b, options, comparison);
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
-  std::vector<double> p_values, least_p_values;
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
     auto compared = CompareMetric(a, b, name, pairs, options);
     if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
-    p_values.push_back(compared->paired.wilcoxon.p_value);
-    least_p_values.push_back(LeastWilcoxonP(compared->paired.pairs));
     comparison.metrics.push_back(std::move(*compared));
   }
-  const std::vector<double> adjusted = HolmAdjusted(p_values);
-  const std::vector<double> least = HolmAdjusted(least_p_values);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) {
-    MetricComparison& compared = comparison.metrics[i];
-    compared.p_holm = adjusted[i];
-    compared.verdict = VerdictOf(compared, least[i], options.level);
-    compared.seeds_needed = SeedsNeededIn(adjusted.size(), compared, options.level);
-  }
+  const std::size_t rows = comparison.metrics.size();
   comparison.most_rows = MostRowsToldApart(comparison.metrics, options.level);
+  comparison.pairs_for_one = PairsToTellApart(1, options.level);
+  comparison.pairs_for_all = PairsToTellApart(static_cast<int>(rows), options.level);
+  Judge(RowsToTest(comparison, options.metrics.empty()), options.level, comparison);
+  for (MetricComparison& row : comparison.metrics) {
+    row.seeds_needed = SeedsNeededIn(rows, row, options.level);
+  }
   return comparison;
 }
 

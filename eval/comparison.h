@@ -27,8 +27,9 @@ enum class Verdict {
   kABetter,
   kBBetter,
   kNotToldApart,
-  kTooFew,   // whatever the values, so few pairs cannot decide in a table of so many rows
-  kAHigher,  // of a score of which neither more nor less is better
+  kTooFew,     // whatever the values, so few pairs cannot decide in a table of so many rows
+  kNotTested,  // one of the headlines that so few pairs leave out
+  kAHigher,    // of a score of which neither more nor less is better
   kBHigher,
 };
 
@@ -37,7 +38,7 @@ struct MetricComparison {
   Better better = Better::kLower;
   std::optional<double> target;  // of a score that has one; all figures are of the distance from it
   PairedComparison paired;
-  double p_holm = 1.0;
+  double p_holm = 1.0;  // over the rows that are tested
   Verdict verdict = Verdict::kNotToldApart;
   // Seeds at which a difference as large as this one would be seen with 80 % power in a table of as
   // many rows, more than there are unless it is seen now; empty where it is zero.
@@ -56,6 +57,8 @@ struct Comparison {
   std::vector<std::string> without_direction;
   std::vector<std::string> all_equal;  // both sides have one value in each pair
   int most_rows = 0;                   // of these, that so many pairs can tell apart at once
+  int pairs_for_one = 0;               // that can tell apart one row, and all of them
+  int pairs_for_all = 0;
 };
 
 // Throws InputError for a metric or axis that is not there, runs that make no pair, and runs that

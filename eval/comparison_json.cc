@@ -20,6 +20,8 @@ const char* NameOf(Verdict verdict) {
       return "b_higher";
     case Verdict::kTooFew:
       return "too_few_pairs";
+    case Verdict::kNotTested:
+      return "not_tested";
     case Verdict::kNotToldApart:
       break;
   }
@@ -42,7 +44,7 @@ Json ToJson(const MetricComparison& c) {
           {"a_wins", p.a_wins},
           {"b_wins", p.b_wins},
           {"p_value", p.wilcoxon.p_value},
-          {"p_holm", c.p_holm},
+          {"p_holm", c.verdict == Verdict::kNotTested ? Json() : Json(c.p_holm)},
           {"exact", p.wilcoxon.exact},
           {"rank_biserial", p.wilcoxon.rank_biserial},
           {"seeds_needed", c.seeds_needed ? Json(*c.seeds_needed) : Json()},
@@ -61,6 +63,8 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                {"crossed_seeds", comparison.crossed_seeds},
                {"runs_a", comparison.runs_a},
                {"runs_b", comparison.runs_b},
+               {"pairs_for_one_row", comparison.pairs_for_one},
+               {"pairs_for_all_rows", comparison.pairs_for_all},
                {"without_direction", comparison.without_direction},
                {"all_equal", comparison.all_equal},
                {"metrics", Json::object()}};

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/comparison.h"
@@ -46,6 +48,8 @@ std::string TextOf(const MetricComparison& c) {
       return "B higher";
     case Verdict::kTooFew:
       return "too few pairs";
+    case Verdict::kNotTested:
+      return "not tested";
     case Verdict::kNotToldApart:
       break;
   }
@@ -68,7 +72,7 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
           interval,
           c.better == Better::kNeither ? "-" : fmt::format("{}:{}", p.a_wins, p.b_wins),
           fmt::format("{:.3g}", p.wilcoxon.p_value),
-          fmt::format("{:.3g}", c.p_holm),
+          c.verdict == Verdict::kNotTested ? "-" : fmt::format("{:.3g}", c.p_holm),
           c.seeds_needed ? std::to_string(*c.seeds_needed) : "-",
           TextOf(c)};
 }
@@ -81,6 +85,29 @@ void PrintLeftOut(const Comparison& comparison) {
   };
   print(comparison.all_equal, "the same on both sides in every pair");
   print(comparison.without_direction, "of which neither more nor less is better");
+}
+
+// How many pairs a verdict takes, where there are too few for every row.
+void PrintTooFew(const Comparison& comparison) {
+  const int most = comparison.most_rows;
+  const int rows = static_cast<int>(comparison.metrics.size());
+  if (most >= rows) return;
+  const char* unit = comparison.units < comparison.pairs ? "seed" : "pair";
+  const std::string all = rows == 1 ? ""
+                                    : fmt::format(", all {} rows take {}", rows,
+                                                  Counted(comparison.pairs_for_all, unit));
+  if (most == 0) {
+    fmt::print("\nToo few {}s for any verdict: one row takes {}{}.\n", unit,
+               Counted(comparison.pairs_for_one, unit), all);
+    return;
+  }
+  const bool some_tested =
+      std::any_of(comparison.metrics.begin(), comparison.metrics.end(),
+                  [](const MetricComparison& c) { return c.verdict == Verdict::kNotTested; });
+  fmt::print(
+      "\n{} can tell apart {} at once{}{}. Choose with --metric what is asked, before looking.\n",
+      Counted(comparison.units, unit), Counted(most, "row"), all,
+      some_tested ? "; the others are not tested" : "");
 }
 
 void PrintTable(const Comparison& comparison, const CompareArguments& arguments) {
@@ -101,13 +128,7 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
   for (const MetricComparison& compared : comparison.metrics) rows.push_back(RowOf(compared));
   fmt::print("\n\n{}", comparison.metrics.empty() ? "" : Table(rows));
   PrintLeftOut(comparison);
-  const int most = comparison.most_rows;
-  if (most > 0 && most < static_cast<int>(comparison.metrics.size())) {
-    fmt::print(
-        "\nToo few pairs for Holm's correction over {}, enough for {}: choose with --metric "
-        "what is asked, before looking.\n",
-        Counted(static_cast<int>(comparison.metrics.size()), "row"), most);
-  }
+  PrintTooFew(comparison);
 }
 
 }  // namespace

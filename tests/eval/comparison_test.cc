@@ -216,6 +216,27 @@ TEST(Compare, FewPairsCannotDecideManyRows) {
   EXPECT_EQ(four.most_rows, 3);
 }
 
+// Six pairs, all of one sign, give p = 2 / 2^6 = 0.031: one row. Of the headlines it is the first
+// that differs at all; what is asked for is tested whole.
+TEST(Compare, OfTheHeadlinesAsManyAreTestedAsThePairsCanTellApart) {
+  SweepResults a = Sweep({{"1", {1, 2, 3, 4, 5, 6}}});
+  SweepResults b = Sweep({{"1", {2, 3, 4, 5, 6, 7}}});
+  const Comparison c = Compare(a, b, {});
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kABetter);
+  EXPECT_NEAR(c.metrics[0].p_holm, 1.0 / 32, 1e-12);
+  EXPECT_EQ(c.metrics[1].verdict, Verdict::kNotTested);
+  EXPECT_EQ(c.most_rows, 1);
+  EXPECT_EQ(c.pairs_for_one, 6);
+  EXPECT_EQ(c.pairs_for_all, 7);  // 2 * 2 / 2^7 = 0.031
+  CompareOptions both;
+  both.metrics = {kError, "map.ssim"};
+  EXPECT_EQ(Compare(a, b, both).metrics[0].verdict, Verdict::kTooFew);
+  a.metrics[0].values = b.metrics[0].values;
+  const Comparison second = Compare(a, b, {});
+  EXPECT_EQ(second.metrics[0].verdict, Verdict::kNotTested);
+  EXPECT_EQ(second.metrics[1].verdict, Verdict::kABetter);
+}
+
 // By their sizes six such differences are enough, by the ranks of these the p-value is 4 / 2^6.
 TEST(Compare, WhatIsNotToldApartNeedsMoreThanThereIs) {
   const std::vector<double> zero(6, 0.0);
@@ -265,6 +286,7 @@ TEST_F(ProgramCompare, FoldersOfRuns) {
   const Outcome single = Program("compare a/0 b/0");
   EXPECT_EQ(single.exit_code, 0) << single.err;
   EXPECT_THAT(single.out, HasSubstr("too few pairs"));
+  EXPECT_THAT(single.out, HasSubstr("Too few pairs for any verdict: one row takes 6 pairs.\n"));
 }
 
 TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
@@ -283,6 +305,28 @@ TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
                                   "trajectory.est.mean_euclidean_m\n"));
+}
+
+TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {
+  const std::string scores =
+      R"({{"trajectory": {{"est": {{"mean_euclidean_m": {0}}}}}, "map": {{"ssim": {0}}}}})";
+  for (int seed = 1; seed <= 6; ++seed) {
+    for (const auto& [side, value] : {std::pair("a", 1.0), std::pair("b", 2.0 + 0.1 * seed)}) {
+      const std::string run = fmt::format("{}/{}", side, seed);
+      std::filesystem::create_directories(Path(run));
+      Write(run + "/run.yaml", fmt::format("scene: room\nseed: {}\n", seed));
+      Write(run + "/metrics.json", fmt::format(fmt::runtime(scores), value));
+    }
+  }
+  const Outcome outcome = Program("compare a b");
+  EXPECT_THAT(outcome.out, HasSubstr("A better"));
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("\n6 pairs can tell apart 1 row at once, all 2 rows take 7 pairs; the others "
+                "are not tested. Choose with --metric what is asked, before looking.\n"));
+  const auto json = nlohmann::json::parse(Program("compare a b --json").out);
+  EXPECT_EQ(json["metrics"]["map.ssim"]["verdict"], "not_tested");
+  EXPECT_TRUE(json["metrics"]["map.ssim"]["p_holm"].is_null());
 }
 
 TEST_F(ProgramCompare, Refusals) {
