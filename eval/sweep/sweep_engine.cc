@@ -2,12 +2,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <mutex>
 
 #include "eval/metrics/statistics.h"
 #include "eval/parallel.h"
 #include "eval/statistics/resamples.h"
+#include "eval/statistics/seed_units.h"
 #include "eval/sweep/scan_maker.h"
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
@@ -186,8 +188,24 @@ std::vector<const PlannedRun*> Unfinished(const SweepPlan& plan, const SweepData
   return runs;
 }
 
-// Whether the mean over these seeds is sure enough. A failed run says nothing and counts as none.
-bool IsSure(const StopOptions& stop, std::vector<double> values) {
+// What the seeds of each point count as, in the order of its runs.
+SeedUnits UnitsOf(const SweepPlan& plan, std::size_t runs_of_point) {
+  std::vector<std::vector<std::string>> seeds(runs_of_point);
+  for (std::size_t k = 0; k < plan.parameter_keys.size(); ++k) {
+    if (!IsSeedKey(plan.parameter_keys[k])) continue;
+    for (std::size_t i = 0; i < runs_of_point; ++i) seeds[i].push_back(plan.runs[i].values[k]);
+  }
+  return SeedUnits(seeds);
+}
+
+// Whether the mean over a point's first runs is sure enough. A failed run says nothing and counts
+// as none; runs of crossed seeds count as many as there are of the seed that varied least so far.
+bool IsSure(const StopOptions& stop, const SeedUnits& units, std::size_t runs_of_point,
+            std::vector<double> values) {
+  if (units.count() < runs_of_point) {
+    values.resize(runs_of_point, std::numeric_limits<double>::quiet_NaN());
+    values = units.Figures(values);
+  }
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (static_cast<int>(values.size()) < stop.min_seeds) return false;
   const auto interval = MeanInterval(values, Resamples(values.size()));
@@ -200,6 +218,7 @@ bool IsSure(const StopOptions& stop, std::vector<double> values) {
 void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine,
                   const std::vector<int>& groups) {
   const auto seeds = static_cast<int>(plan.runs.size()) / plan.point_count;
+  const SeedUnits units = UnitsOf(plan, static_cast<std::size_t>(seeds));
   const std::vector<int> planned = database.PlannedRuns();
   std::map<int, std::vector<int>> seeds_of_point;  // the runs of each, in order
   for (const int run : planned) seeds_of_point[run / seeds].push_back(run);
@@ -214,7 +233,8 @@ void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine
       const auto count = static_cast<std::size_t>(seed) + 1;
       if (all.size() <= count) continue;
       const std::vector<int> so_far(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
-      if (!IsSure(plan.stop, database.MetricOf(plan.stop.metric, so_far))) continue;
+      const std::vector<double> values = database.MetricOf(plan.stop.metric, so_far);
+      if (!IsSure(plan.stop, units, static_cast<std::size_t>(seeds), values)) continue;
       dropped.insert(dropped.end(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
       all.resize(count);
     }
