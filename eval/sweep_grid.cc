@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace depthgrid {
 namespace {
@@ -69,9 +70,13 @@ double Mean(const std::vector<double>& values) {
 void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>& metric,
               Better better, const BootstrapOptions& bootstrap, GridLine& line) {
   std::vector<SeedValues> by_point;
-  for (const std::size_t point : line.points) {
-    by_point.push_back(ValuesBySeed(grid, grid.points[point], metric));
+  for (const std::size_t point : std::exchange(line.points, {})) {
+    SeedValues values = ValuesBySeed(grid, grid.points[point], metric);
+    // One whose runs all fail would leave no seed that all points share, and so no best value.
+    (values.empty() ? line.left_out : line.points).push_back(point);
+    if (!values.empty()) by_point.push_back(std::move(values));
   }
+  if (line.points.size() < 2) return;
   const std::vector<std::string> seeds =
       SharedSeeds(grid, grid.points[line.points.front()], by_point);
   if (seeds.empty()) return;
@@ -87,7 +92,7 @@ void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>
   }
   const SeedUnits units = UnitsOf(seeds);
   line.seeds = units.count();
-  if (!units.crossed().empty()) {
+  if (units.count() < seeds.size()) {
     for (SettingRuns& setting : settings) setting.by_seed = units.Figures(setting.by_seed);
   }
   line.best = FindBestSetting(settings, better, Resamples(line.seeds, bootstrap));

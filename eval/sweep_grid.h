@@ -34,14 +34,15 @@ SeedUnits UnitsOf(const std::vector<std::string>& seeds);
 
 // One line of the grid along a numeric axis, all other axes held.
 struct GridLine {
-  std::vector<std::size_t> points;  // by rising value of the axis
-  // Over the seeds that all points of the line have; empty if there are none.
+  std::vector<std::size_t> points;    // by rising value of the axis
+  std::vector<std::size_t> left_out;  // those of the line without a value: all their runs failed
+  // Over the seeds that all `points` have; empty if there are none, or fewer than two points.
   std::optional<BestSetting> best;
   std::size_t seeds = 0;  // on which that rests: of crossed ones as many as one of them has
   std::vector<double> mean_regret_of_seed;  // by point: what is lost to the best point of each seed
 };
 
-// Lines of at least two points. A line's points differ in nothing but the axis.
+// Lines of at least two points, those left out among them. They differ in nothing but the axis.
 std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
                                  const std::vector<double>& metric, Better better,
                                  const BootstrapOptions& bootstrap);

@@ -122,13 +122,16 @@ Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metri
                const BootstrapOptions& bootstrap) {
   Json json = Json::array();
   for (const GridLine& line : LinesAlong(grid, axis, metric.values, metric.better, bootstrap)) {
-    if (!line.best) continue;
+    Json one = {{"points", line.points}, {"left_out", line.left_out}};
+    if (!line.best) {
+      json.push_back(one);
+      continue;
+    }
     const BestSetting& best = *line.best;
-    Json one = {{"points", line.points},
-                {"best", best.index},
-                {"seeds", line.seeds},
-                {"low", best.setting_interval.low},
-                {"high", best.setting_interval.high}};
+    one["best"] = best.index;
+    one["seeds"] = line.seeds;
+    one["low"] = best.setting_interval.low;
+    one["high"] = best.setting_interval.high;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       one["share_best"].push_back(Rounded(best.share_best[i], 3));
       one["p"].push_back(Short(best.p_as_good[i]));
@@ -158,7 +161,7 @@ void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<d
     median = Short(Percentile(sample, 0.5));
     if (grid.seed_axes > 1) {
       const SeedUnits units = UnitsOf(seeds);
-      if (!units.crossed().empty()) sample = units.Figures(sample);
+      if (units.count() < sample.size()) sample = units.Figures(sample);
     }
     const auto table = resamples.try_emplace(sample.size(), sample.size(), bootstrap).first;
     if (const auto interval = MeanInterval(sample, table->second)) {

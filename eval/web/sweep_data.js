@@ -81,7 +81,8 @@ function holders(prefix, held, free, redraw) {
 }
 const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[i] === held[i]);
 
-// A line of the grid along an axis, as the statistics see it: computed ones have an interval.
-function linesAlong(axis) {
+// The lines of the grid along an axis, as the statistics see them: those that have a best value, or all.
+function allLinesAlong(axis) {
   return metric.lines?.[AXES[axis].key] ?? [];
 }
+const linesAlong = (axis) => allLinesAlong(axis).filter((line) => line.best !== undefined);

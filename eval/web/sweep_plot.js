@@ -95,15 +95,36 @@ function keepFocus(row, controls) {
 
 // ---- best value ----
 function heldText(line) {
-  const values = POINTS[line.points[0]].values;
+  const values = POINTS[[...line.points, ...line.left_out][0]].values;
   const parts = AXES.map((axis, i) => (i === along.axis || axis.texts.length < 2 ? "" : `${shortKey(axis.key)} ${axis.labels[values[i]]}`));
   return parts.filter(Boolean).join(", ") || "all";
+}
+
+// Why values have no part in it, or there is none: runs that fail leave no figure to compare.
+function missingText(axis) {
+  const all = allLinesAlong(along.axis);
+  const why = SWEEP.failed ? " (see Failed runs)" : "";
+  const labels = (points) => points.map((i) => axis.labels[POINTS[i].values[along.axis]]).join(", ");
+  const where = (line) => (heldText(line) === "all" ? "" : ` (${heldText(line)})`);
+  const few = all.filter((line) => line.points.length < 2);
+  const apart = all.filter((line) => line.best === undefined && line.points.length > 1);
+  const cut = all.filter((line) => line.best !== undefined && line.left_out.length);
+  const list = (lines, text) => someOf(lines.map((line) => `${text(line)}${where(line)}`));
+  return [
+    cut.length ? `Left out, as no run there gave a figure${why}: ${list(cut, (line) => labels(line.left_out))}.` : "",
+    few.length ? `No best value where fewer than two values have a figure${why}: ${list(few, (line) => (line.points.length ? `only ${labels(line.points)}` : "none"))}.` : "",
+    apart.length ? `No best value where no seed gave a figure at every value: ${list(apart, (line) => labels(line.points))}.` : "",
+  ].filter(Boolean).join(" ");
 }
 
 function drawBest() {
   const axis = AXES[along.axis];
   const lines = linesAlong(along.axis);
-  byId("best-section").hidden = !lines.length;
+  const missing = missingText(axis);
+  byId("best-section").hidden = !lines.length && !missing;
+  byId("best-missing").textContent = missing;
+  byId("best-note").textContent = "";
+  byId("best").replaceChildren();
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
@@ -126,15 +147,18 @@ function drawBest() {
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
   table.id = "best";
   byId("best").replaceWith(table);
-  const longest = lines.reduce((a, b) => (b.points.length > a.points.length ? b : a));
-  if (longest.points.length < 3) return;
-  const x = longest.points.map((i) => axis.numbers[POINTS[i].values[along.axis]]);
-  const shown = lines.filter((line) => line.points.length === longest.points.length);
+  const longest = Math.max(...lines.map((line) => line.points.length + line.left_out.length));
+  if (longest < 3) return;
+  const shown = lines.filter((line) => line.points.length + line.left_out.length === longest);
+  const place = (i) => POINTS[i].values[along.axis];
+  const places = [...new Set(shown.flatMap((line) => line.points.map(place)))].sort((a, b) => a - b);
+  const x = places.map((value) => axis.numbers[value]);
+  const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
     title: `Regret along ${axis.key}: mean loss to the best value of each seed`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
-    series: some.map((line, k) => ({ label: heldText(line), values: line.regret_of_seed.map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true,
+    series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0
   });
 }

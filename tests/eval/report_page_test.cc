@@ -319,6 +319,18 @@ TEST_F(ReportPage, OfASweepWhoseFirstValueFails) {
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#failures tbody tr').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#failures tbody').textContent"),
             "6max_range_m 0.30, 2, 4, 6, 8, 10too near");
+  // There is no best gain at the range that fails, and none of the two ranges: the page says so.
+  const std::string missing = "document.getElementById('best-missing').textContent";
+  const std::string too_few =
+      "No best value where fewer than two values have a figure (see Failed runs): ";
+  EXPECT_EQ(
+      browser_->Evaluate(missing),
+      too_few + "none (drift_scale 1, max_range_m 0.3), none (drift_scale 2, max_range_m 0.3).");
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#best tbody tr').length"), 2);
+  browser_->Evaluate("along.axis = 2; drawAlong()");
+  EXPECT_THAT(browser_->Evaluate(missing),
+              ::testing::StartsWith(too_few + "only 6 (gain 0, drift_scale 1), only 6"));
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('best-section').hidden"), false);
 }
 
 }  // namespace

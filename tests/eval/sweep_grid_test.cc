@@ -107,6 +107,51 @@ TEST(SweepGrid, FindsTheBestOfEachLineOverSharedSeeds) {
   EXPECT_NEAR(calm.mean_regret_of_seed[2], 1.0, 1e-12);
 }
 
+// Gain 1 always fails on the line of the wild profile, all gains but one on the other.
+TEST(SweepGrid, AValueWithoutAFigureIsLeftOutOfItsLine) {
+  SweepResults table = Table();
+  const auto fail = [&](std::size_t point) {
+    for (std::size_t row = 3 * point; row < 3 * point + 3; ++row) {
+      table.failures[row] = "a wall";
+      table.metrics[0].values[row] = kNone;
+    }
+  };
+  for (const std::size_t point : {0U, 1U, 5U}) fail(point);
+  const auto lines = LinesAlong(GridOf(table), 0, table.metrics[0].values, Better::kLower, {});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].points, (std::vector<std::size_t>{2, 4}));  // gain 0, 0.5
+  EXPECT_EQ(lines[0].left_out, std::vector<std::size_t>{0});
+  ASSERT_TRUE(lines[0].best);
+  EXPECT_EQ(lines[0].best->setting, 0.5);
+  EXPECT_EQ(lines[0].seeds, 3U);
+  EXPECT_EQ(lines[1].points, std::vector<std::size_t>{3});
+  EXPECT_EQ(lines[1].left_out, (std::vector<std::size_t>{5, 1}));
+  EXPECT_FALSE(lines[1].best);
+}
+
+// One axis of seeds that come in families: slam_seed 0 with depth seeds 0 and 1, 1 with 2 and 3.
+TEST(SweepGrid, SeedsWithinAnotherSeedCountAsThatOne) {
+  SweepResults table;
+  table.parameters = {
+      {"mapper.fusion.gain", {}, {}}, {"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
+  std::vector<double> errors;
+  for (int run = 0; run < 8; ++run) {
+    table.runs.push_back(run);
+    table.points.push_back(run / 4);
+    table.failures.emplace_back();
+    const std::array<int, 3> values = {run / 4, run % 4 / 2, run % 4};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      table.parameters[i].texts.push_back(std::to_string(values[i]));
+      table.parameters[i].numbers.push_back(values[i]);
+    }
+    errors.push_back(run);
+  }
+  const auto lines = LinesAlong(GridOf(table), 0, errors, Better::kLower, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].seeds, 2U);
+  EXPECT_EQ(lines[0].best->setting, 0.0);
+}
+
 TEST(SweepGrid, HasNoLineThroughPointsThatDifferOtherwise) {
   SweepResults table = Table();
   // As in a zip: each gain with a profile of its own.
