@@ -99,7 +99,7 @@ void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedB
                       "most {:.0f} m",
                       at.x(), at.y(), at.z(), away_m, kMaxSceneExtentM));
     }
-    if (fmt::format("{:.6f}", stamp_s) == fmt::format("{:.6f}", before_s)) {
+    if (IsSameStamp(stamp_s, before_s)) {
       throw InputError(PlaceOfStamp(path, stamp_s),
                        fmt::format("stamp {} is that of the pose before it to the microsecond: "
                                    "frames are named by six decimals",

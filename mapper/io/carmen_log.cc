@@ -274,11 +274,12 @@ class CarmenLogSource : public FrameSource {
       if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
         scan->max_range_m = front_max_m_;
       }
-      if (scan->stamp_s != last_stamp_s_) ++lines_of_scans_;
+      const bool is_same = IsSameStamp(scan->stamp_s, last_stamp_s_);
+      if (!is_same) ++lines_of_scans_;
       // Also what drops the second of two messages written for one scan.
-      if (scan->stamp_s <= last_stamp_s_) {
+      if (is_same || scan->stamp_s < last_stamp_s_) {
         const bool counts = place_ != Place::kBehindPart;
-        earlier_ += counts && scan->stamp_s < last_stamp_s_ ? 1 : 0;
+        earlier_ += counts && !is_same ? 1 : 0;
         Note("a scan that is not later than the one before it");
         continue;
       }

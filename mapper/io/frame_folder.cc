@@ -82,7 +82,8 @@ std::string CameraPathOf(const fs::path& folder) {
 
 // Poses of the images in their order: a file each, or a line each in one file.
 std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& images,
-                                          const fs::path& folder, Recording& recording) {
+                                          const fs::path& folder, FrameFolder& listed) {
+  Recording& recording = listed.recording;
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
     return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording, 0.0),
                        list->string(), recording.warnings);
@@ -94,9 +95,10 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
     const auto path = PoseFileOf(image, folder);
     if (!path) continue;
     try {
-      poses.back() = ReadMatrixPose(path->string());
+      poses.back() = ReadMatrixPose(path->string(), listed.without_pose);
     } catch (const InputError& error) {
       damaged.Add(error.what());
+      listed.without_pose.Add(error.what());
     }
   }
   damaged.AppendTo(recording.warnings, recording.name, "pose file", "damaged");
@@ -135,7 +137,7 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
     const double stamp_s = static_cast<double>(image.number) / options.frame_rate_hz;
     recording.images.push_back({stamp_s, image.path.string(), "", image.number});
   }
-  const auto poses = PosesOf(images, images_folder, recording);
+  const auto poses = PosesOf(images, images_folder, listed);
   for (std::size_t i = 0; i < images.size(); ++i) {
     const double stamp_s = recording.images[i].stamp_s;
     listed.poses.live.push_back({stamp_s, poses[i], 0});
@@ -143,6 +145,16 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
   }
   listed.camera_path = CameraPathOf(images_folder);
   return listed;
+}
+
+SlamOutput OwnPoses(const FrameFolder& folder) {
+  const Tally& without = folder.without_pose;
+  if (folder.poses.final.empty() && without.count > 0) {
+    throw InputError(folder.recording.name,
+                     fmt::format("none of {} holds a pose that can be used; first: {}",
+                                 Counted(without.count, "pose file"), without.first));
+  }
+  return folder.poses;
 }
 
 CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path,
@@ -177,7 +189,7 @@ std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
   FrameFolder listed = ListFrameFolder(folder, options);
   const CameraDescription camera =
       FrameFolderCamera(listed, camera_path, listed.recording.warnings);
-  SlamOutput poses = slam ? *slam : std::move(listed.poses);
+  SlamOutput poses = slam ? *slam : OwnPoses(listed);
   if (camera.y_up) poses = FlipY(std::move(poses));
   return OpenFrameImages(std::move(listed.recording), poses, camera.file, options);
 }

@@ -8,6 +8,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/recording.h"
 #include "mapper/io/recording_options.h"
 
@@ -16,6 +17,7 @@ namespace depthgrid {
 struct FrameFolder {
   Recording recording;      // without a camera
   SlamOutput poses;         // the folder's own
+  Tally without_pose;       // of files of one pose each, those that are damaged or hold none
   std::string camera_path;  // empty when the folder has none
 };
 
@@ -24,6 +26,10 @@ bool IsFrameFolder(const std::string& folder);
 
 // Throws InputError when there are no depth images or no poses.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
+
+// The folder's own poses. Throws InputError, with the first file and what is wrong there, when
+// files of one pose each hold none.
+SlamOutput OwnPoses(const FrameFolder& folder);
 
 // The folder's camera, or that of `camera_path` when not empty, with what its file leaves open
 // (image size, depth scale) filled in. Throws InputError when there is none.

@@ -91,16 +91,21 @@ Layout LayoutOf(const std::vector<TextRow>& rows, const std::string& place) {
   return {ends_matrix(3) || ends_matrix(7) || rows.size() == 4 ? 4U : 3U, 4};
 }
 
-}  // namespace
-
-std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place) {
-  RowDamage damage;
+std::optional<Pose3> ParseOne(const std::string& text, const std::string& place,
+                              RowDamage& damage) {
   const auto poses = ParseMatrixPoses(text, place, damage);
   damage.RequireAllGood();
   if (poses.size() != 1) {
     throw InputError(place, fmt::format("holds {} poses, must hold one 4x4 matrix", poses.size()));
   }
   return poses.front();
+}
+
+}  // namespace
+
+std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place) {
+  RowDamage damage;
+  return ParseOne(text, place, damage);
 }
 
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
@@ -133,8 +138,11 @@ void RequireSomePose(const std::vector<std::optional<Pose3>>& poses, const RowDa
   if (std::none_of(poses.begin(), poses.end(), is_pose)) throw damage.NothingIn(place, "pose");
 }
 
-std::optional<Pose3> ReadMatrixPose(const std::string& path) {
-  return ParseMatrixPose(ReadTextFile(path), path);
+std::optional<Pose3> ReadMatrixPose(const std::string& path, Tally& left_out) {
+  RowDamage damage;
+  const auto pose = ParseOne(ReadTextFile(path), path, damage);
+  if (!pose) left_out.Add(damage.left_out().first);
+  return pose;
 }
 
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,

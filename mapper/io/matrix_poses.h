@@ -11,9 +11,9 @@
 namespace depthgrid {
 
 // A file with one 4x4 (or 3x4) matrix in four (three) lines, as 7-Scenes and ScanNet give each
-// frame. Nothing when it holds NaN or infinity: the frame has no pose. Throws InputError when it
-// is no rigid motion.
-std::optional<Pose3> ReadMatrixPose(const std::string& path);
+// frame. Nothing when it holds NaN or infinity: the frame has no pose, and `left_out` says why.
+// Throws InputError when it is no rigid motion.
+std::optional<Pose3> ReadMatrixPose(const std::string& path, Tally& left_out);
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
 
 // A file with many: one of 16 or 12 numbers a line, or three or four lines of four numbers each

@@ -96,6 +96,11 @@ void RequireSeconds(double stamp_s, const std::string& place) {
                                       stamp_s));
 }
 
+bool IsSameStamp(double a_s, double b_s) {
+  constexpr double kApartS = 2e-6;  // so that few are printed
+  return std::abs(a_s - b_s) < kApartS && fmt::format("{:.6f}", a_s) == fmt::format("{:.6f}", b_s);
+}
+
 std::string PositionBeyondReach(const Eigen::Vector3d& position_m, const std::string& place) {
   return fmt::format("{}: the position is ({:g}, {:g}, {:g}), must be finite and within 10,000 km",
                      place, position_m.x(), position_m.y(), position_m.z());

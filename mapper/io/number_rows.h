@@ -55,6 +55,9 @@ constexpr double kLatestStampS = 1e11;
 // Throws InputError unless it is a finite number of seconds.
 void RequireSeconds(double stamp_s, const std::string& place);
 
+// Whether both are one stamp where they are written: with six decimals.
+bool IsSameStamp(double a_s, double b_s);
+
 // What is wrong with a pose's position that is not finite or beyond reach (IsWithinReach).
 std::string PositionBeyondReach(const Eigen::Vector3d& position_m, const std::string& place);
 

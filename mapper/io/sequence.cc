@@ -108,9 +108,9 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
   const CameraDescription camera =
       FrameFolderCamera(listed, options.camera, listed.recording.warnings);
   DepthSequence sequence;
+  sequence.slam = slam ? *slam : OwnPoses(listed);
   sequence.recording = std::move(listed.recording);
   sequence.recording.camera = camera.file;
-  sequence.slam = slam ? *slam : std::move(listed.poses);
   sequence.y_up = camera.y_up;
   sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
   return sequence;

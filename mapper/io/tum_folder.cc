@@ -112,7 +112,7 @@ int SortAndNumber(std::vector<StampedFile>& files) {
     file.number = number;
     if (file.path.empty()) {
       ++number;
-    } else if (!kept.empty() && kept.back().stamp_s == file.stamp_s) {
+    } else if (!kept.empty() && IsSameStamp(kept.back().stamp_s, file.stamp_s)) {
       ++repeated;
     } else {
       kept.push_back(std::move(file));

@@ -150,6 +150,12 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
   Write("camera-intrinsics.txt", "500 0\n");
   EXPECT_THAT(OpenError(), HasSubstr("~/camera-intrinsics.txt: the camera matrix must have"));
   Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  Write("frame-000000.pose.txt", "-inf 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  Write("frame-000001.pose.txt", "1 2 3\n");
+  Write("frame-000004.pose.txt", "nan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_EQ(OpenError(),
+            "~: none of 3 pose files holds a pose that can be used; first: "
+            "~/frame-000000.pose.txt:4: the matrix must be finite");
   for (const int number : {0, 1, 4}) {
     std::filesystem::remove(Path(fmt::format("frame-{:06}.pose.txt", number)));
   }

@@ -173,6 +173,17 @@ TEST_F(TumFolderTest, NamesMayHaveSpaces) {
   EXPECT_TRUE(list.warnings.empty());
 }
 
+// What comes out names a frame by its stamp with six decimals: two of one would be read as one.
+TEST_F(TumFolderTest, StampsAreOneToTheMicrosecond) {
+  const StampedFileList list = ParseFileList(
+      "1 depth/a.png\n1.0000003 depth/b.png\n1.0000014 depth/c.png\n1.000002 depth/d.png\n",
+      "depth.txt");
+  ASSERT_EQ(list.files.size(), 3U);
+  EXPECT_EQ(list.files[1].path, "depth/c.png");
+  EXPECT_EQ(list.files[2].path, "depth/d.png");
+  EXPECT_THAT(list.warnings, ElementsAre("depth.txt: 1 row with a stamp already given, ignored"));
+}
+
 // Damaged rows and images beside a nearer one keep their numbers, doubled rows have none.
 TEST_F(TumFolderTest, FramesKeepTheirNumbers) {
   const StampedFileList list = ParseFileList(
