@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "eval/idle_settings.h"
+#include "eval/record_check.h"
 #include "eval/shipped.h"
-#include "eval/world.h"
 #include "mapper/core/error.h"
 #include "sim/mesh_file.h"
 
@@ -60,33 +60,28 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
                      fmt::join(kept, ", "), profile);
 }
 
-// A run.yaml, made again where the scene or the path is no longer what it was.
-std::vector<std::string> DoubtsOfRecord(const std::string& name,
-                                        const std::vector<std::string>& set) {
-  const std::string path = ResolveName(name, ShippedKind::kExperiment);
-  const Config record = ExperimentFile(path).Take("provenance");
-  Config given;
-  for (const std::string& assignment : set) given.Set(assignment);
-  // Where another room is asked for it may be another one.
-  if (given.Has("scene") || !record.Has("scene_hash")) return {};
-  const ExperimentOptions options = ExperimentNamed(name, set);
-  const WorldHashes now = HashesOf(options);
-  std::vector<std::string> doubts;
-  const auto compare = [&](const std::string& key, const std::string& hash,
-                           const std::string& what) {
-    const std::string recorded = record.Text(key, hash);
-    if (recorded == hash) return;
-    doubts.push_back(fmt::format("{}: {} is {}, but that of {} is {} now: this run is another one",
-                                 path, key, recorded, what, hash));
-  };
-  compare("scene_hash", now.scene, options.scene);
-  if (given.Has("trajectory")) return doubts;
-  compare("trajectory_hash", now.trajectory,
-          IsFileName(options.trajectory) ? options.trajectory : "the path in " + options.scene);
-  return doubts;
+// Of a name that may be that of a scene or a mesh: whether it is that of an experiment.
+bool IsExperiment(const std::string& name) {
+  const auto shipped =
+      IsFileName(name) ? std::vector<std::string>{} : ShippedNames(ShippedKind::kExperiment);
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) return true;
+  const std::string path = ResolveName(name, ShippedKind::kScene);
+  const bool is_yaml = path.ends_with(".yaml") || path.ends_with(".yml");
+  return is_yaml && Config::FromFile(path).Has("scene");
 }
 
 }  // namespace
+
+std::vector<std::string> DoubtsOfRecord(const std::string& name,
+                                        const std::vector<std::string>& set) {
+  if (!IsExperiment(name)) return {};
+  const std::string path = ResolveName(name, ShippedKind::kExperiment);
+  Config given;
+  for (const std::string& assignment : set) given.Set(assignment);
+  return depthgrid::DoubtsOfRecord(path, ExperimentFile(path).Take("provenance"),
+                                   ExperimentNamed(name, set),
+                                   {given.Has("scene"), given.Has("trajectory")});
+}
 
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set) {
@@ -121,15 +116,7 @@ ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std
 }
 
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set) {
-  const auto shipped =
-      IsFileName(name) ? std::vector<std::string>{} : ShippedNames(ShippedKind::kExperiment);
-  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) {
-    return ExperimentNamed(name, set);
-  }
-  const std::string path = ResolveName(name, ShippedKind::kScene);
-  if (path.ends_with(".yaml") && Config::FromFile(path).Has("scene")) {
-    return ExperimentNamed(path, set);
-  }
+  if (IsExperiment(name)) return ExperimentNamed(name, set);
   Config config;
   config.Set("scene", name);
   return Read(std::move(config), set, "");

@@ -21,6 +21,10 @@ Config ExperimentFile(const std::string& path);
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 
+// Of these the last alone; nothing of a scene or a mesh.
+std::vector<std::string> DoubtsOfRecord(const std::string& name,
+                                        const std::vector<std::string>& set);
+
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
 
 // The experiment of that name, or else everything at its default in the scene of that name (or

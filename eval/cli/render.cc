@@ -43,6 +43,7 @@ void Render(const RenderArguments& arguments) {
       OpenOutput(arguments.common, ResultKind::kRender, InputsOf(arguments.scene, {given}));
   const int threads = ThreadsOr(arguments.common.threads);
   const std::string cache_folder = CacheFolder(arguments.common);
+  Warn(DoubtsOfRecord(arguments.scene, arguments.common.set));
   KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
   Warn(world.path_doubts);

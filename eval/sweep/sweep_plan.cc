@@ -7,6 +7,7 @@
 #include <iterator>
 #include <unordered_map>
 
+#include "eval/record_check.h"
 #include "eval/shipped.h"
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_metrics.h"
@@ -235,6 +236,12 @@ void RequireKeys(const Config& config, const std::string& path) {
   }
 }
 
+// Whether the sweep itself says which room or path, on an axis or for all runs.
+bool IsChosen(const std::string& key, const Config& changes, const SweepPlan& plan) {
+  const auto& keys = plan.parameter_keys;
+  return changes.Has(key) || std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
 // Whether runs that differ in this key alone see the same scans.
 bool IsOfMapperOnly(const std::string& key) {
   return key.starts_with("mapper.") && !key.starts_with("mapper.scan");
@@ -254,7 +261,6 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
   for (std::size_t i = 0; i < parameter_keys.size(); ++i) {
     config.Set(parameter_keys[i], run.values[i], parameter_keys[i] + "=" + run.values[i]);
   }
-  config.Take("provenance");
   return ReadExperiment({&config}, base_folder);
 }
 
@@ -273,7 +279,8 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   const std::string experiment = ResolveNameAt(place, file.experiment, ShippedKind::kExperiment,
                                                fs::path(path).parent_path().string());
   plan.base_folder = fs::path(experiment).parent_path().string();
-  const Config own = Config::FromFile(experiment);
+  Config own = Config::FromFile(experiment);
+  const Config record = own.Take("provenance");  // of a run.yaml
   // So that its own errors name its own file; a copy would not know its lines.
   ReadExperiment(Config::FromFile(experiment), plan.base_folder);
   Config changes;
@@ -295,6 +302,10 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
        {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
     if (doubt) plan.warnings.push_back(*doubt);
   }
+  const auto changed =
+      DoubtsOfRecord(experiment, record, ReadExperiment(plan.base, plan.base_folder),
+                     {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)});
+  plan.warnings.insert(plan.warnings.end(), changed.begin(), changed.end());
   const auto idle =
       DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment));
   plan.warnings.insert(plan.warnings.end(), idle.begin(), idle.end());

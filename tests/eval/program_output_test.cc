@@ -97,6 +97,13 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   const std::string of_scene = again("[0.5, 0.5, 1.5]", "[0.5, 0.5, 1.4]");
   EXPECT_EQ(of_scene, warning("scene_hash", ""));
   EXPECT_EQ(hash("again", "trajectory_hash"), hash("out", "trajectory_hash"));
+  EXPECT_THAT(Program("render out/run.yaml --no-colour -o seq").err, HasSubstr(of_scene));
+  Write("sweep.yaml", "experiment: out/run.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  EXPECT_THAT(Program("sweep ./sweep.yaml --dry-run -o sweep").err,
+              HasSubstr(of_scene.substr(of_scene.find("out/run.yaml"))));
+  Write("rooms.yaml", "experiment: out/run.yaml\naxes: {scene: [" + Path("room.yaml") + "]}\n");
+  EXPECT_EQ(Program("sweep ./rooms.yaml --dry-run -o sweep").err, "");
+  EXPECT_EQ(Program("render ./room.yaml --no-colour -o scene --set frames=2").err, "");
   EXPECT_EQ(Program("run again/run.yaml -o third").err, "");  // it has the new hashes
   EXPECT_EQ(Program("run out/run.yaml -o other --set scene=./room.yaml").err, "");
   Write("room.yaml", room);
