@@ -3,6 +3,7 @@
 #include "eval/metric_columns.h"
 #include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
+#include "eval/view_check.h"
 #include "mapper/core/level.h"
 #include "sim/slam_surrogate.h"
 #include "sim/true_scan.h"
@@ -79,7 +80,7 @@ struct Stage {
   const RunContext& context;
 };
 
-RunScores RunOne(const Stage& stage, const ExperimentOptions& given, const TrueStages& truth) {
+MappingRun RunOne(const Stage& stage, const ExperimentOptions& given, const TrueStages& truth) {
   const ExperimentOptions options = WithTruth(given, truth);
   const Trajectory& path = stage.world.trajectory;
   const SlamOutput slam = DisturbTrajectory(path, options.slam, options.SlamSeed());
@@ -97,9 +98,8 @@ RunScores RunOne(const Stage& stage, const ExperimentOptions& given, const TrueS
     sensor.emplace(stage.world, options, stage.context.cache_folder);
     source = std::make_unique<SyntheticSource>(*sensor, slam, stage.context.threads);
   }
-  const MappingRun run =
-      MapFrames(*source, options.mapper, slam.final, stage.context.progress, OracleOf(path), match);
-  return Score(run, stage.truth, options.metrics);
+  return MapFrames(*source, options.mapper, slam.final, stage.context.progress, OracleOf(path),
+                   match);
 }
 
 std::vector<std::pair<std::string, double>> ColumnsOf(const RunScores& scores) {
@@ -132,7 +132,7 @@ const std::vector<AblationVariant>& AblationVariants() {
   return kVariants;
 }
 
-std::vector<AblationRun> RunAblation(const AblationPlan& plan, const RunContext& context) {
+AblationResult RunAblation(const AblationPlan& plan, const RunContext& context) {
   const World world = LoadWorld(plan.experiment, context.threads);
   ExperimentOptions options = Completed(plan.experiment, world.scene);
   const TruthRecord truth = MakeTruth(world, options.mapper, context.threads);
@@ -141,16 +141,21 @@ std::vector<AblationRun> RunAblation(const AblationPlan& plan, const RunContext&
   const RunContext counting =
       Counting(context, static_cast<int>(variants.size() * plan.seeds.size()),
                static_cast<int>(world.trajectory.size()), finished);
-  std::vector<AblationRun> runs;
+  AblationResult result;
+  result.warnings = world.path_doubts;
   for (const std::uint64_t seed : plan.seeds) {
     options.seed = seed;
     for (const AblationVariant& variant : variants) {
-      const RunScores scores = RunOne({world, truth, counting}, options, variant.truth);
-      runs.push_back({variant.name, seed, ColumnsOf(scores)});
+      const MappingRun run = RunOne({world, truth, counting}, options, variant.truth);
+      // Of the experiment as it is, which is the first of all runs.
+      const auto doubt = finished == 0 ? DoubtOfView(run, options) : std::nullopt;
+      if (doubt) result.warnings.push_back(*doubt);
+      const RunScores scores = Score(run, truth, options.metrics);
+      result.runs.push_back({variant.name, seed, ColumnsOf(scores)});
       ++finished;
     }
   }
-  return runs;
+  return result;
 }
 
 }  // namespace depthgrid

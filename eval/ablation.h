@@ -41,8 +41,13 @@ struct AblationPlan {
   std::vector<std::uint64_t> seeds;
 };
 
+struct AblationResult {
+  std::vector<AblationRun> runs;
+  std::vector<std::string> warnings;  // what is amiss with the path and with what is seen from it
+};
+
 // Every variant with every seed, by seed; `progress` counts frames.
-std::vector<AblationRun> RunAblation(const AblationPlan& plan, const RunContext& context);
+AblationResult RunAblation(const AblationPlan& plan, const RunContext& context);
 
 // What a stage owns of one score's error.
 struct StageShare {

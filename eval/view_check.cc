@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "eval/shipped.h"
 #include "mapper/core/angle.h"
 
 namespace depthgrid {
@@ -72,6 +73,15 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
       "of the camera's height (mapper.scan.slice_half_height_m) in {} rows or more "
       "(mapper.scan.min_returns); {}",
       scan.slice_half_height_m, scan.min_returns, ImagesOf(run));
+}
+
+std::optional<std::string> DoubtOfView(const MappingRun& run, const ExperimentOptions& options) {
+  auto doubt = DoubtOfView(run, options.mapper);
+  // A shipped path's poses are right.
+  if (doubt && IsFileName(options.trajectory)) {
+    *doubt += "; the path's poses must be those of the camera's axes, x right, y down, z forward";
+  }
+  return doubt;
 }
 
 }  // namespace depthgrid

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "eval/experiment_options.h"
 #include "eval/mapping_run.h"
 #include "mapper/mapper_options.h"
 
@@ -15,5 +16,8 @@ bool SawNothing(const MappingRun& run);
 // What to say when the map is empty, or when nothing could be matched since no scan has a hit at
 // the camera's height: the band, the ranges, the images. Nothing of laser logs.
 std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options);
+
+// The same of an experiment, whose path may be at fault where it is a file's.
+std::optional<std::string> DoubtOfView(const MappingRun& run, const ExperimentOptions& options);
 
 }  // namespace depthgrid

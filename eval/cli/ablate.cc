@@ -56,7 +56,7 @@ void Ablate(const AblateArguments& arguments) {
   context.cache_folder = CacheFolder(arguments.common);
   ProgressBar bar("ablating");
   context.progress = bar.AsProgress();
-  const std::vector<AblationRun> runs = RunAblation(plan, context);
+  const auto [runs, warnings] = RunAblation(plan, context);
   const std::vector<AblationRun> counted = WithoutRepeatedSeeds(runs);
   const std::size_t seeds = counted.size() / AblationVariants().size();
   const std::vector<ErrorShares> shares = SharesOf(counted);
@@ -65,6 +65,7 @@ void Ablate(const AblateArguments& arguments) {
   WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
   WriteFile(folder.File("ablation.json"), json);
   WriteAblationReport(folder.work().string(), {folder.work().string()});
+  Warn(warnings);
   folder.Commit();
   bar.Clear();
   if (seeds < plan.seeds.size()) {

@@ -27,9 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPathsAxes =
-    "; the path's poses must be those of the camera's axes, x right, y down, z forward";
-
 // A run in which SLAM is lost has scores of what is left.
 void PrintLost(const MappingRun& run) {
   const auto lost = std::count_if(run.reports.begin(), run.reports.end(),
@@ -110,10 +107,7 @@ void RunOne(const RunArguments& arguments) {
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
-  if (const auto doubt = DoubtOfView(run.mapping, run.options.mapper)) {
-    // A shipped path's poses are right.
-    record.warnings.push_back(*doubt + (IsFileName(options.trajectory) ? kPathsAxes : ""));
-  }
+  if (const auto doubt = DoubtOfView(run.mapping, run.options)) record.warnings.push_back(*doubt);
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -25,8 +25,9 @@ TEST_F(TruthPaths, AFilesPathOutOfReachIsRefusedAndDamageSaid) {
     ExpectRefusal(with + "trajectory=./close.txt",
                   {"close.txt:3: stamp 0.1000002 is that of the pose before it"});
   }
-  for (const char* command : {"run", "render --no-colour"}) {
-    const Outcome outcome = Program(std::string(command) + " ./small.yaml -o out --force" +
+  for (const char* command : {"run", "render --no-colour", "ablate --seeds 1"}) {
+    const std::string out = " -o out_" + std::string(command, 3);
+    const Outcome outcome = Program(std::string(command) + " ./small.yaml --force" + out +
                                     " --set frames=0 --set trajectory=./nan.txt");
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("nan.txt: 1 pose with NaN"));
@@ -44,7 +45,8 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
   Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
   const auto said = [&](const std::string& command, const std::string& file) {
     const Outcome outcome =
-        Program(command + " ./small.yaml -o out --force --set frames=0 --set trajectory=./" + file);
+        Program(command + " ./small.yaml --force -o out_" + command.substr(0, 3) +
+                " --set frames=0 --set trajectory=./" + file);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.err;
   };
@@ -52,7 +54,7 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
   EXPECT_EQ(said("run", "inside.txt"), "");
   EXPECT_THAT(said("run", "beside.txt"),
               HasSubstr("beside.txt: frame 0 at (9.00, 3.00, 1.10) is outside the scene"));
-  for (const char* command : {"run", "render --no-colour"}) {
+  for (const char* command : {"run", "render --no-colour", "ablate --seeds 1"}) {
     EXPECT_THAT(
         said(command, "through.txt"),
         AllOf(HasSubstr("depthgrid: warning: /"),
