@@ -1,15 +1,31 @@
 #include "eval/prior_run.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "eval/run_files.h"
 #include "mapper/core/error.h"
+#include "mapper/io/config.h"
 #include "mapper/io/scan_file.h"
 
 namespace depthgrid {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The floor's height is that of a room.
+bool ShapesMap(const std::string& key, bool images) {
+  if (key == "mapper.method" || key.starts_with("mapper.grid.")) return true;
+  return images && key.starts_with("mapper.scan.") && key != "mapper.scan.floor_z_m";
+}
+
+// A run.yaml's part.
+struct MapperSettings {
+  MapperOptions mapper;
+
+  void Visit(OptionsVisitor& v) { v.Group("mapper", mapper, "the mapper"); }
+};
 
 }  // namespace
 
@@ -35,6 +51,26 @@ PriorMap ReadPriorRun(const std::string& folder) {
     prior.frames.push_back(std::move(frame));
   }
   return prior;
+}
+
+std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,
+                                        bool images) {
+  const std::string path = (fs::path(folder) / "run.yaml").string();
+  const Config prior = Config::FromFile(path);
+  const MapperSettings settings{options};
+  const Config now = Config::FromText(ToYaml(settings), "settings");
+  std::vector<std::string> there, here;
+  for (const std::string& key : KeyPathsOf(settings)) {
+    if (!ShapesMap(key, images) || !prior.Has(key)) continue;
+    const std::string made_with = SettingOf(prior, key);
+    const std::string value = SettingOf(now, key);
+    if (made_with == value) continue;
+    there.push_back(key + "=" + made_with);
+    here.push_back(value);
+  }
+  if (there.empty()) return {};
+  return fmt::format("{}: the map was made with {}, and here it is {}: give the same --set", path,
+                     fmt::join(there, ", "), fmt::join(here, ", "));
 }
 
 }  // namespace depthgrid

@@ -1,6 +1,7 @@
 // A run's folder as the map that another run goes on from.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "mapper/incremental_mapper.h"
@@ -12,5 +13,10 @@ constexpr int kAllScansInOneSubmap = 1'000'000;
 
 // The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError.
 PriorMap ReadPriorRun(const std::string& folder);
+
+// Where that run's map was made with other settings than it goes on with: the mapper's method, its
+// grid, and with `images` the scans; others may differ.
+std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,
+                                        bool images);
 
 }  // namespace depthgrid

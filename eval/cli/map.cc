@@ -352,6 +352,10 @@ void Map(const MapArguments& given) {
   CheckDirections(arguments, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
   if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
+  if (prior) {
+    const auto doubt = DoubtOfPrior(arguments.map, request.settings.mapper, run.camera.has_value());
+    if (doubt) warnings.push_back(*doubt);
+  }
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   settings.sequence.camera = FromEverywhere(settings.sequence.camera);

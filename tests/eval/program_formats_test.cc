@@ -349,11 +349,23 @@ TEST_F(ProgramFormats, AFinishedMapIsLocalisedInAndExtended) {
       EXPECT_TRUE(SameFile(std::string("out/") + file, std::string("first/") + file)) << file;
     }
     EXPECT_LT(ErrorM(), 0.1) << method;
+    EXPECT_EQ(ReadFile(Path("out/warnings.txt")).find("made with") != std::string::npos,
+              std::string(method) == "paper");
     EXPECT_THAT(Mapped("seq --poses moved.txt --map first" + settings),
                 HasSubstr("mapped 12 of 12 frames"));
     EXPECT_LT(ErrorM(), 0.1) << method;
     EXPECT_GT(ReadFile(Path("out/scans.bin")).size(), ReadFile(Path("first/scans.bin")).size());
   }
+  EXPECT_THAT(
+      ReadFile(Path("out/warnings.txt")),
+      HasSubstr("first/run.yaml: the map was made with mapper.method=surfel, and here it is "
+                "paper: give the same --set\n"));
+  Mapped(
+      "seq --poses moved.txt --map first --set mapper.fusion.gain=0.3 --set "
+      "mapper.grid.resolution_m=0.1 --set mapper.scan.band_low_m=0.2");
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")),
+              HasSubstr("the map was made with mapper.scan.band_low_m=0.1, "
+                        "mapper.grid.resolution_m=0.05, and here it is 0.2, 0.1: give the same"));
   EXPECT_EQ(Program("map seq --map seq -o out2").exit_code, 2);
   EXPECT_EQ(Program("map seq --localise -o out2").exit_code, 2);
 }
