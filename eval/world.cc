@@ -115,8 +115,9 @@ Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d&
   Trajectory trajectory = ReadTrajectory(options.trajectory, warnings);
   const auto wanted = static_cast<std::size_t>(options.frames);
   if (wanted > trajectory.size()) {
-    throw InputError("frames", fmt::format("is {}, must be at most the {} of {}", wanted,
-                                           Counted(trajectory.size(), "pose"), options.trajectory));
+    throw SettingError("frames",
+                       fmt::format("is {}, must be at most the {} of {}", wanted,
+                                   Counted(trajectory.size(), "pose"), options.trajectory));
   }
   if (wanted > 0) trajectory.resize(wanted);
   RequireFramesOfTheScene(trajectory, scene, options.trajectory);

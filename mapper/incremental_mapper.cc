@@ -28,7 +28,8 @@ IncrementalMapper::IncrementalMapper(const MapperOptions& options,
   if (camera) Validate(*camera, "camera");
   state_ = std::make_unique<State>(options, camera, std::move(clocks), std::move(oracle));
   if (options.fusion.mode == FusionMode::kOracle && !state_->oracle) {
-    throw InputError("mapper.fusion.mode", "oracle needs an experiment that knows the truth");
+    throw SettingError("mapper.fusion.mode",
+                       "is oracle, must be another one: only an experiment knows the truth");
   }
 }
 IncrementalMapper::~IncrementalMapper() = default;

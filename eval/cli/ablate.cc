@@ -41,9 +41,7 @@ void PrintLegend(std::size_t seeds) {
   }
 }
 
-}  // namespace
-
-void Ablate(const AblateArguments& arguments) {
+void AblateNamed(const AblateArguments& arguments) {
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
   Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
@@ -65,9 +63,9 @@ void Ablate(const AblateArguments& arguments) {
   WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
   WriteFile(folder.File("ablation.json"), json);
   WriteAblationReport(folder.work().string(), {folder.work().string()});
-  Warn(warnings);
   folder.Commit();
   bar.Clear();
+  Warn(warnings);
   if (seeds < plan.seeds.size()) {
     Warn(
         {fmt::format("{} of {} give what another gave and do not count: nothing here "
@@ -81,6 +79,13 @@ void Ablate(const AblateArguments& arguments) {
   PrintLegend(seeds);
   for (const ErrorShares& score : shares) PrintShares(score);
   SayReport(arguments.common.output);
+}
+
+}  // namespace
+
+void Ablate(const AblateArguments& arguments) {
+  NamingPlaces(PlacesOf(arguments.experiment, arguments.common.set),
+               [&] { AblateNamed(arguments); });
 }
 
 }  // namespace depthgrid::cli

@@ -122,6 +122,15 @@ ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<s
   return Read(std::move(config), set, "");
 }
 
+KeyPlaces PlacesOf(const std::string& name, const std::vector<std::string>& set) {
+  return [name, set](const std::string& key) {
+    Config config;
+    if (IsExperiment(name)) config = ExperimentFile(ResolveName(name, ShippedKind::kExperiment));
+    for (const std::string& assignment : set) config.Set(assignment);
+    return PlaceOfKey({&config}, key);
+  };
+}
+
 std::vector<std::string> InputsOf(const std::string& name,
                                   const std::vector<ExperimentOptions>& experiments) {
   std::vector<std::string> names = {name};

@@ -27,6 +27,9 @@ std::vector<std::string> DoubtsOfRecord(const std::string& name,
 
 ExperimentOptions ExperimentNamed(const std::string& name, const std::vector<std::string>& set);
 
+// Where a key of that experiment, or of a scene by itself, was set; empty where it was not.
+KeyPlaces PlacesOf(const std::string& name, const std::vector<std::string>& set);
+
 // The experiment of that name, or else everything at its default in the scene of that name (or
 // scene or mesh file).
 ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<std::string>& set);

@@ -71,9 +71,13 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
                                    slam ? std::optional(slam->slam) : std::nullopt);
   // Poses alone are not known to be final ones.
   if (slam && arguments.final_poses.empty()) sequence.final_poses.clear();
+  if (settings.mapper.fusion.mode == FusionMode::kOracle) {
+    throw SettingError("mapper.fusion.mode",
+                       "is oracle, must be another one: of a recording no truth is known");
+  }
   if (settings.mapper.fusion.slam_noise.source == SlamNoiseSource::kProfile) {
-    throw InputError("mapper.fusion.slam_noise.source",
-                     "profile needs a run; of a recording no profile is known");
+    throw SettingError("mapper.fusion.slam_noise.source",
+                       "is profile, must be another one: of a recording no profile is known");
   }
   if (!config.Has("mapper.scan.floor_z_m") && sequence.floor_z_m) {
     settings.mapper.scan.floor_z_m = *sequence.floor_z_m;
@@ -323,11 +327,8 @@ void SayResult(const MappingRun& run, bool localised) {
   fmt::print("\n");
 }
 
-}  // namespace
-
-void Map(const MapArguments& given) {
+void MapRequested(const MapArguments& given, MapRequest request) {
   const auto start = std::chrono::steady_clock::now();
-  MapRequest request = ReadMapRequest(given);
   const MapArguments& arguments = request.arguments;
   MapSettings& settings = request.settings;
   const std::vector<std::string> inputs = InputsOf(given, request);
@@ -351,11 +352,11 @@ void Map(const MapArguments& given) {
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckDirections(arguments, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
-  if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   if (prior) {
     const auto doubt = DoubtOfPrior(arguments.map, request.settings.mapper, run.camera.has_value());
     if (doubt) warnings.push_back(*doubt);
   }
+  if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   settings.sequence.camera = FromEverywhere(settings.sequence.camera);
@@ -375,6 +376,14 @@ void Map(const MapArguments& given) {
   SayReport(arguments.common.output);
   std::fflush(stdout);
   Warn(warnings);
+}
+
+}  // namespace
+
+void Map(const MapArguments& given) {
+  const MapRequest request = ReadMapRequest(given);
+  NamingPlaces([&](const std::string& key) { return PlaceOfKey({&request.config}, key); },
+               [&] { MapRequested(given, request); });
 }
 
 std::string MapKeys() { return ListKeys(MapSettings{}); }

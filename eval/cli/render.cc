@@ -35,17 +35,15 @@ void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFold
   writer.WriteFrame(pose.stamp_s, depth, &rgb);
 }
 
-}  // namespace
-
-void Render(const RenderArguments& arguments) {
+void RenderNamed(const RenderArguments& arguments) {
   const ExperimentOptions given = ExperimentOrScene(arguments.scene, arguments.common.set);
   OutputFolder folder =
       OpenOutput(arguments.common, ResultKind::kRender, InputsOf(arguments.scene, {given}));
   const int threads = ThreadsOr(arguments.common.threads);
   const std::string cache_folder = CacheFolder(arguments.common);
-  Warn(DoubtsOfRecord(arguments.scene, arguments.common.set));
   KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
+  Warn(DoubtsOfRecord(arguments.scene, arguments.common.set));
   Warn(world.path_doubts);
   const ExperimentOptions options = Completed(given, world.scene);
   // Whatever it refuses, now and not at the end.
@@ -70,6 +68,12 @@ void Render(const RenderArguments& arguments) {
   fmt::print("rendered {} in {}; the true map is {}/truth_map.yaml\n",
              Counted(sensor.FrameCount(), "frame"), output, output);
   fmt::print("go on with: depthgrid slam {} -o POSES\n", ShellWord(output));
+}
+
+}  // namespace
+
+void Render(const RenderArguments& arguments) {
+  NamingPlaces(PlacesOf(arguments.scene, arguments.common.set), [&] { RenderNamed(arguments); });
 }
 
 }  // namespace depthgrid::cli

@@ -158,7 +158,7 @@ void Run(const RunArguments& arguments) {
   if (IsStudy(ExperimentFile(path))) {
     RunCases(arguments, path);
   } else {
-    RunOne(arguments);
+    NamingPlaces(PlacesOf(arguments.experiment, arguments.common.set), [&] { RunOne(arguments); });
   }
 }
 

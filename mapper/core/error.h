@@ -17,6 +17,20 @@ class InputError : public std::runtime_error {
       : std::runtime_error(place.empty() ? message : place + ": " + message) {}
 };
 
+// A setting that does not fit what it is used on: the key is the place, until who knows where it
+// was set names that (NamingPlaces).
+class SettingError : public InputError {
+ public:
+  SettingError(const std::string& key, const std::string& message)
+      : InputError(key, message), key_(key), message_(message) {}
+  const std::string& key() const { return key_; }
+  const std::string& message() const { return message_; }
+
+ private:
+  std::string key_;
+  std::string message_;
+};
+
 // Throws std::logic_error when a precondition of the calling code does not hold.
 inline void Require(bool condition, const char* rule) {
   if (!condition) throw std::logic_error(std::string("broken precondition: ") + rule);

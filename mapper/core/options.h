@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "mapper/core/error.h"
+
 namespace depthgrid {
 
 struct Interval {
@@ -103,6 +105,18 @@ std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& path, KeyPlace
 template <typename Options>
 void RequireInRange(Options options, const std::string& path, KeyPlaces places = {}) {
   options.Visit(*internal::MakeRangeCheck(path, std::move(places)));
+}
+
+// Does `work`, whose SettingErrors come out as an InputError of the place where the key was set.
+template <typename Work>
+void NamingPlaces(const KeyPlaces& places, const Work& work) {
+  try {
+    work();
+  } catch (const SettingError& error) {
+    const std::string place = places(error.key());
+    if (place.empty()) throw;
+    throw InputError(place, error.key() + " " + error.message());
+  }
 }
 
 }  // namespace depthgrid

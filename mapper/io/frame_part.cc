@@ -17,9 +17,9 @@ constexpr double kLongestS = 1e10;
 void RequireWithin(const PartOptions& part, double length_s, const std::string& recording) {
   const auto refuse = [&](const char* key, double value_s, const char* rule, double limit_s,
                           const char* more) {
-    throw InputError(std::string("sequence.") + key,
-                     fmt::format("is {}, must be {} {:.3f}: {} is {:.3f} s long{}", value_s, rule,
-                                 limit_s, recording, length_s, more));
+    throw SettingError(std::string("sequence.") + key,
+                       fmt::format("is {}, must be {} {:.3f}: {} is {:.3f} s long{}", value_s, rule,
+                                   limit_s, recording, length_s, more));
   };
   if (part.from_s > length_s + kStampRoundingS) {
     refuse("from_s", part.from_s, "at most", length_s, "");
@@ -60,8 +60,9 @@ FramePart FindPart(const PartOptions& part, const std::vector<double>& stamps_s,
   const auto begin = std::find_if(stamps_s.begin(), stamps_s.end(), has);
   const auto end = std::find_if_not(begin, stamps_s.end(), has);
   if (begin == end) {
-    throw InputError("sequence.from_s", fmt::format("is {}, but {} has no frame from there to {} s",
-                                                    part.from_s, recording, part.to_s));
+    throw SettingError("sequence.from_s",
+                       fmt::format("is {}, but {} has no frame from there to {} s", part.from_s,
+                                   recording, part.to_s));
   }
   return {static_cast<std::size_t>(begin - stamps_s.begin()),
           static_cast<std::size_t>(end - stamps_s.begin())};

@@ -233,7 +233,7 @@ void CompleteSize(const Recording& recording, CameraDescription& camera) {
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options) {
   DepthPngFormat format;
   if (options.depth_scale_per_m > 0.0 && options.depth_scale_per_m < kLeastDepthScale) {
-    throw InputError(
+    throw SettingError(
         "sequence.recording.depth_scale",
         fmt::format("is {:g}, must be 0 (the camera file's) or from {:g}: it is in units "
                     "a metre, 1000 of millimetres",
@@ -244,8 +244,8 @@ DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& o
   format.invalid_units.clear();
   for (const double units : options.invalid_units) {
     if (units != std::floor(units)) {
-      throw InputError("sequence.recording.invalid_units",
-                       fmt::format("holds {}, must be whole numbers", units));
+      throw SettingError("sequence.recording.invalid_units",
+                         fmt::format("holds {}, must be whole numbers", units));
     }
     format.invalid_units.push_back(static_cast<std::uint16_t>(units));
   }

@@ -35,5 +35,25 @@ TEST_F(MapSettingsTest, WhatHasAnOptionIsNoSettingOfAPlainInput) {
   Succeed("map m/run.yaml --set input=two.log -o again");
 }
 
+TEST_F(MapSettingsTest, ASettingThatDoesNotFitIsNamedWithWhereItWasSet) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  const std::string key = "sequence.recording.";
+  ExpectRefusal(
+      "map seq -o out2 --set " + key + "depth_scale=0.001",
+      {"depthgrid: --set " + key + "depth_scale=0.001: " + key + "depth_scale is 0.001, "});
+  ExpectRefusal(
+      "map seq -o out2 --set " + key + "invalid_units=[0.5]",
+      {"depthgrid: --set " + key + "invalid_units=[0.5]: " + key + "invalid_units holds"});
+  ExpectRefusal("map seq -o out2 --set mapper.fusion.mode=oracle",
+                {"depthgrid: --set mapper.fusion.mode=oracle: mapper.fusion.mode is oracle, must"});
+  Succeed("map seq -o made");
+  std::string settings = ReadFile(Path("made/run.yaml"));
+  const std::string from = "from_s: 0";
+  settings.replace(settings.find(from), from.size(), "from_s: 99");
+  Write("late.yaml", settings);
+  ExpectRefusal("map late.yaml -o out2",
+                {"depthgrid: late.yaml:", ": sequence.from_s is 99, must"});
+}
+
 }  // namespace
 }  // namespace depthgrid

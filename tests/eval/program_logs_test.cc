@@ -163,9 +163,11 @@ TEST_F(ProgramLogs, APartThatIsNotThereIsRefused) {
   ExpectRefusal("map robot.log -o out --set sequence.from_s=20 --set sequence.to_s=10",
                 {"--set sequence.from_s=20: sequence.from_s is 20, must be below to_s, 10"});
   ExpectRefusal("map robot.log -o out --set sequence.from_s=41",
-                {"sequence.from_s: is 41, must be at most 40.000: robot.log is 40.000 s long"});
+                {"depthgrid: --set sequence.from_s=41: sequence.from_s is 41, must be at most "
+                 "40.000: robot.log is 40.000 s long"});
   ExpectRefusal("map robot.log -o out --set sequence.to_s=50",
-                {"sequence.to_s: is 50, must be at most 41.000: robot.log is 40.000 s long"});
+                {"depthgrid: --set sequence.to_s=50: sequence.to_s is 50, must be at most 41.000: "
+                 "robot.log is 40.000 s long"});
 }
 
 // Odometry a quarter too long: laid over the map, its first metres say where the robot was in the

@@ -50,6 +50,13 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.err;
   };
+  for (const char* command : {"run", "render --no-colour", "ablate"}) {
+    const std::string with = std::string(command) + " ./small.yaml -o new --set trajectory=./";
+    ExpectRefusal(with + "near.txt",
+                  {"small.yaml:", ": frames is 12, must be at most the 2 poses of "});
+    ExpectRefusal(with + "near.txt --set frames=3",
+                  {"depthgrid: --set frames=3: frames is 3, must be at most the 2 poses of "});
+  }
   Write("beside.txt", "0 9 3.0 1.1" + look + "0.1 9 3.2 1.1" + look);
   EXPECT_EQ(said("run", "inside.txt"), "");
   EXPECT_THAT(said("run", "beside.txt"),
