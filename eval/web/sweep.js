@@ -28,7 +28,7 @@ function headline() {
     cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
     const seeds = POINTS[line.points[line.best]].runs;
     if (seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
-    if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), "regret: its mean loss to the best value of each seed"));
+    if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss to the best value of each ${EACH}`));
   }
   byId("headline").replaceChildren(...cards);
   byId("direction").textContent = aimText();

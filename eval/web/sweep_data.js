@@ -6,6 +6,8 @@ const exact = (value) => (Number.isInteger(value) ? String(value) : compact(valu
 // `texts` are as they were set, `labels` as they are shown.
 const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : axis.texts }));
 const POINTS = SWEEP.points;
+// What an oracle chooses the best value for: of crossed seeds a run has one of each.
+const EACH = SWEEP.crossed_seeds ? "run" : "seed";
 
 // Metrics as they are shown.
 const METRICS = SWEEP.metrics.map((metric) => {

@@ -128,7 +128,7 @@ function drawBest() {
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
-    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each " + EACH + ".";
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
@@ -156,7 +156,7 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss to the best value of each seed`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss to the best value of each ${EACH}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
     series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0
