@@ -44,9 +44,27 @@ function initTable() {
   byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
 }
 
-function figure(source, label, caption) {
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+// A strip of its own, so that the scale bar hides no wall; metres, from y down.
+const STRIP_M = 0.6;
+function scaleBar(room, y) {
+  return [svg("rect", { class: "bar-back", x: 0, y, width: room.width * room.resolution, height: STRIP_M }),
+    svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: y + 0.3, y2: y + 0.3 }),
+    svg("text", { class: "bar-text", x: 1.35, y: y + 0.4 }, "1 m")];
+}
+function barPicture(room) {
+  return svg("svg", { viewBox: `0 0 ${room.width * room.resolution} ${STRIP_M}`, role: "img", "aria-label": `${room.scene}: scale` }, ...scaleBar(room, 0));
+}
+
+function figure(source, label, caption, ...beneath) {
   const picture = source ? make("img", { src: source, alt: label }) : make("span", {}, "–");
-  return make("figure", {}, picture, make("figcaption", {}, caption));
+  return make("figure", {}, picture, ...beneath, make("figcaption", {}, caption));
 }
 
 function initMaps() {
@@ -55,17 +73,10 @@ function initMaps() {
     const f1 = (map) => `F1 ${fixed(seen(map)?.occupied.f1, 3)}`;
     const row = (first, figures) => make("div", { class: "figure-row" }, first, ...figures);
     byId("maps").append(make("h3", {}, nameOf(room.scene)),
-      row(figure(room.truth, `${room.scene}: true map`, "Truth"),
+      row(figure(room.truth, `${room.scene}: true map`, "Truth, in the scale of all", barPicture(room)),
         cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${nameOf(c.pose_source)}, input: ${f1(c.metrics.input_map)}`))),
       row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${nameOf(c.pose_source)}, output`), `: ${f1(c.metrics.map)}`)))));
   }
-}
-
-function svg(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
 }
 
 // Metres, y up, drawn over the true map.
@@ -77,18 +88,16 @@ function pathPicture(room, c) {
     for (let i = 0; i + 1 < path.length; i += 2) points.push(`${fixed(path[i] - room.origin[0], 3)},${fixed(height - (path[i + 1] - room.origin[1]), 3)}`);
     return svg("polyline", { points: points.join(" "), stroke: PATH_COLOURS[name], class: name });
   };
-  const strip = 0.6;  // below the map, so that the scale bar hides no wall
-  const picture = svg("svg", { viewBox: `0 0 ${width} ${height + strip}`, role: "img", "aria-label": `${c.name}: trajectories` });
+  const picture = svg("svg", { viewBox: `0 0 ${width} ${height + STRIP_M}`, role: "img", "aria-label": `${c.name}: trajectories` });
   if (room.truth) picture.append(svg("image", { href: room.truth, width, height, opacity: 0.55, preserveAspectRatio: "none" }));
   if (room.path) picture.append(line(room.path, "truth"));
   picture.append(line(c.input_path, "input"), line(c.output_path, "output"),
-    svg("rect", { class: "bar-back", x: 0, y: height, width, height: strip }),
-    svg("line", { class: "bar", x1: 0.2, x2: 1.2, y1: height + 0.3, y2: height + 0.3 }),
-    svg("text", { class: "bar-text", x: 1.35, y: height + 0.4 }, "1 m"));
+    ...scaleBar(room, height));
   return picture;
 }
 
 function initPaths() {
+  for (const key of document.querySelectorAll(".paths-legend i")) key.style.background = PATH_COLOURS[key.dataset.path];
   for (const room of STUDY.rooms) {
     byId("paths").append(make("h3", {}, nameOf(room.scene)), make("div", { class: "figure-row four" },
       ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, nameOf(c.pose_source))))));

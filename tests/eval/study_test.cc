@@ -140,6 +140,14 @@ TEST_F(StudyRun, ThePageShowsEveryCase) {
   EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#table tbody tr').length"), 3);
   EXPECT_THAT(browser.Evaluate("document.getElementById('table').innerText").get<std::string>(),
               HasSubstr("0.407"));
+  // The keys have the colours of the lines in the dark theme too;
+  // the room has one scale bar below its true map.
+  EXPECT_EQ(
+      browser.Evaluate("setTheme('dark'); [...document.querySelectorAll('.paths-legend i')].every("
+                       "(key) => getComputedStyle(key).backgroundColor === getComputedStyle("
+                       "document.querySelector(`polyline.${key.dataset.path}`)).stroke)"),
+      true);
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#maps .bar').length"), 1);
   browser.Open(Path("out/report.html"), 400);
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
