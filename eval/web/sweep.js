@@ -18,7 +18,7 @@ function headline() {
   const cards = [];
   if (best >= 0) {
     const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.labels[POINTS[best].values[AXES.indexOf(axis)]]}`);
-    cards.push(card(rough(metric.mean[best]), `best mean, at ${place.join(", ") || "the only point"}`));
+    cards.push(card(rough(metric.mean[best]), place.length ? `best mean, at ${place.join(", ")}` : "mean of the only point"));
     if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
   }
   const line = linesAlong(along.axis).find((l) => l.points.includes(best));
@@ -78,11 +78,17 @@ if (METRICS.length) {
   byId("metric").append(...options);
   byId("metric").value = metric.name;
   byId("metric").addEventListener("change", (event) => chooseMetric(event.target.value));
-  changed.push(headline, drawAlong);
+  changed.push(headline);
   along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && repeats(i) && repeats(along.axis)) : -1;
-  if (AXES.length) drawAlong(); else byId("plot-section").remove();
-  headline();
-  if (AXES.length) initHeat(); else byId("heat-section").remove();
+  if (AXES.length) {
+    changed.push(drawAlong);
+    drawAlong();
+    headline();
+    initHeat();
+  } else {  // seeds alone
+    for (const id of ["plot-section", "best-section", "heat-section"]) byId(id).remove();
+    headline();
+  }
   initTable();
 } else {
   for (const id of ["chooser", "headline", "plot-section", "best-section", "heat-section", "table-section"]) byId(id).remove();

@@ -83,5 +83,5 @@ const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[
 
 // A line of the grid along an axis, as the statistics see it: computed ones have an interval.
 function linesAlong(axis) {
-  return metric.lines?.[AXES[axis].key] ?? [];
+  return metric.lines?.[AXES[axis]?.key] ?? [];
 }

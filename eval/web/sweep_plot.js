@@ -9,7 +9,7 @@ function isLogarithmic({ numeric, numbers }) {
   };
   return unevenness(numbers.map(Math.log)) < unevenness(numbers);
 }
-const along = { axis: mainAxis(), by: -1, held: {}, logX: isLogarithmic(AXES[mainAxis()]), logY: false };
+const along = { axis: mainAxis(), by: -1, held: {}, logX: AXES.length > 0 && isLogarithmic(AXES[mainAxis()]), logY: false };
 const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
 const MOST_LINES = PALETTE.length;
 

@@ -288,6 +288,25 @@ TEST_F(ReportPage, ItsCommandsRepeatTheRunsOfASweep) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 
+// Seeds make no other points: there is one, no axis to draw along, and every run of it.
+TEST_F(ReportPage, OfASweepOverSeedsAlone) {
+  Write("seeds.yaml", "experiment: ./small.yaml\naxes: {seed: {seeds: 3}}\n");
+  Succeed("sweep ./seeds.yaml -o out");
+  browser_->Open(Path("out/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('subtitle').textContent"),
+            "3 runs: 3 seeds");
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#headline .card').length"), 2);
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#plot, #best, #heat').length"), 0);
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table tbody tr').length"), 1);
+  browser_->Evaluate("chooseMetric('map.observable.occupied.f1')");
+  browser_->Evaluate(
+      "(() => { const s = document.getElementById('table-what'); s.value = 'runs'; "
+      "s.dispatchEvent(new Event('change')); })()");
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table tbody tr').length"), 3);
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+}
+
 // What is held at first is a value at which there is something to see.
 TEST_F(ReportPage, OfASweepWhoseFirstValueFails) {
   std::vector<PlannedRun> plan;
