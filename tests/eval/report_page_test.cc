@@ -307,6 +307,20 @@ TEST_F(ReportPage, OfASweepOverSeedsAlone) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 
+TEST_F(ReportPage, LogarithmicAxesAreLabelledWhereTheyAreShort) {
+  std::filesystem::create_directory(Path("sweep"));
+  MakeSweep(Path("sweep"));
+  Succeed("report sweep");
+  browser_->Open(Path("sweep/report.html"));
+  const auto ticks = [&](const std::string& arguments) {
+    return browser_->Evaluate("logTicks(" + arguments + ").join()");
+  };
+  EXPECT_EQ(ticks("[1, 2, 3, 5], 0.97, 5.2"), "1,1.5,2,3,4,5");
+  EXPECT_EQ(ticks("[0.1, 1, 10], 0.09, 11"), "0.1,0.2,0.5,1,2,5,10");
+  EXPECT_EQ(ticks("[0.1, 1000], 0.09, 1100"), "0.1,1,10,100,1000");
+  EXPECT_EQ(ticks("[110, 120, 120, 130], 109, 131"), "110,120,130");
+}
+
 // What is held at first is a value at which there is something to see.
 TEST_F(ReportPage, OfASweepWhoseFirstValueFails) {
   std::vector<PlannedRun> plan;
