@@ -25,7 +25,7 @@ function headline() {
   if (line) {
     const axis = AXES[along.axis];
     const held = heldText(line);
-    cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
+    cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
     const seeds = POINTS[line.points[line.best]].runs;
     if (seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
     if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), "regret: its mean loss to the best value of each seed"));

@@ -100,6 +100,9 @@ function heldText(line) {
   return parts.filter(Boolean).join(", ") || "all";
 }
 
+// Points that were stopped early, or of which a run failed, have other seeds than their neighbours.
+const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs)).size > 1;
+
 function drawBest() {
   const axis = AXES[along.axis];
   const lines = linesAlong(along.axis);
@@ -107,7 +110,8 @@ function drawBest() {
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
-    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed.";
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each seed." +
+    (lines.some(hasUnlikeSeeds) ? " Where points of a line have different seeds (stopped early, or with a failed run) only those that all have are compared, so that the best need not be that of the means above." : "");
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
