@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <set>
 
 #include "eval/sweep/sweep_results.h"
@@ -56,6 +57,14 @@ void ReadSeeds(const Config& map, SweepAxis& axis) {
   }
 }
 
+// The short number that only rounding has parted from `value`: 10 of 9.999999999999998, a value
+// that nobody asks for and no `--where` would find.
+double WithoutRounding(double value) {
+  const double plain = *ParseNumber(fmt::format("{:.12g}", value));
+  constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+  return std::abs(plain - value) <= kRoundings * std::abs(value) ? plain : value;
+}
+
 void ReadRange(const Config& map, SweepAxis& axis) {
   RangeOptions read;
   map.Read(read);
@@ -73,7 +82,7 @@ void ReadRange(const Config& map, SweepAxis& axis) {
   }
   for (int i = 0; i < read.count; ++i) {
     const double share = read.count == 1 ? 0.0 : static_cast<double>(i) / (read.count - 1);
-    axis.values.push_back({fmt::format("{}", range.At(share))});
+    axis.values.push_back({fmt::format("{}", WithoutRounding(range.At(share)))});
   }
 }
 

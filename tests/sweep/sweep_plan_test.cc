@@ -45,6 +45,13 @@ TEST_F(SweepPlanTest, RangesIncludeBothEnds) {
   const SweepPlan log =
       PlanOf("axes: {slam.drift_scale: {from: 0.25, to: 4, count: 3, scale: log}}\n");
   EXPECT_THAT(ValuesOf(log, "slam.drift_scale"), ElementsAre("0.25", "1", "4"));
+  // Not 0.9999999999999999 and 9.999999999999998, as the power gives them.
+  const SweepPlan decades =
+      PlanOf("axes: {slam.drift_scale: {from: 0.1, to: 100, count: 4, scale: log}}\n");
+  EXPECT_THAT(ValuesOf(decades, "slam.drift_scale"), ElementsAre("0.1", "1", "10", "100"));
+  const SweepPlan thirds = PlanOf("axes: {slam.drift_scale: {from: 0, to: 1, count: 4}}\n");
+  EXPECT_THAT(ValuesOf(thirds, "slam.drift_scale"),
+              ElementsAre("0", "0.3333333333333333", "0.6666666666666666", "1"));
 }
 
 TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
