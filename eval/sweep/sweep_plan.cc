@@ -295,9 +295,11 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
        {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
     if (doubt) plan.warnings.push_back(*doubt);
   }
-  const auto idle =
-      DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment));
-  plan.warnings.insert(plan.warnings.end(), idle.begin(), idle.end());
+  for (const auto& doubts :
+       {DoubtsOfAxisKeys(plan, fixed, set),
+        DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment))}) {
+    plan.warnings.insert(plan.warnings.end(), doubts.begin(), doubts.end());
+  }
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);

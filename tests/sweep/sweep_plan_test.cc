@@ -176,6 +176,30 @@ TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
               ElementsAre());
 }
 
+TEST_F(SweepPlanTest, PointsDrawnAgainAreSaid) {
+  EXPECT_THAT(PlanOf("mode: random\nsamples: 5\n"
+                     "axes: {frames: [5], seed: {seeds: 2}}\nset: {sensor.noise: handa}\n")
+                  .warnings,
+              ElementsAre("sweep: 8 of 10 runs repeat another: the same values are drawn again"));
+}
+
+// The axis decides in every run.
+TEST_F(SweepPlanTest, WhatIsSetOfAnAxisIsSaid) {
+  Write("small.yaml", "scene: living_room\n");
+  Write("gains.yaml",
+        "experiment: ./small.yaml\nset: {frames: 9, mapper.fusion.mode: fixed}\n"
+        "axes: {mapper.fusion.mode: [fixed], mapper.fusion.gain: [0, 1]}\n");
+  std::vector<std::string> said;
+  for (const std::string& warning :
+       ReadSweepPlan(Path("gains.yaml"), {"frames=8", "mapper.fusion.gain=0.7"}).warnings) {
+    said.push_back(Short(warning));
+  }
+  EXPECT_THAT(said, ElementsAre("~/gains.yaml:2: mapper.fusion.mode: has no effect because "
+                                "mapper.fusion.mode is an axis of the sweep",
+                                "--set mapper.fusion.gain=0.7: has no effect because "
+                                "mapper.fusion.gain is an axis of the sweep"));
+}
+
 TEST_F(SweepPlanTest, WhatStaysBesideAnotherProfileIsSaid) {
   Write("drifts.yaml",
         "scene: living_room\nslam: {profile: orb_slam2, drift_scale: 20}\n"
