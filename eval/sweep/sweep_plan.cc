@@ -219,6 +219,14 @@ std::string GivenText(const Config& effective, const Config& base, const std::st
   return text;
 }
 
+void RequireSweep(const Config& config, const std::string& path) {
+  if (config.Has("axes") || config.Has("experiment")) return;
+  if (config.Has("cases")) {
+    throw InputError(path, "holds several experiments; only `depthgrid run` takes it");
+  }
+  if (config.Has("scene")) throw InputError(path, "is an experiment; `depthgrid run` takes it");
+}
+
 // A required key that is missing may stand there with a slip in it.
 void RequireKeys(const Config& config, const std::string& path) {
   std::vector<std::string> known = Config::FromText(ToYaml(SweepFileOptions{}), "").Keys();
@@ -260,6 +268,7 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
 
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
   Config config = Config::FromFile(path);
+  RequireSweep(config, path);
   RequireKeys(config, path);
   SweepPlan plan;
   plan.title = fs::path(path).stem().string();

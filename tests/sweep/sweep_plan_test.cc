@@ -200,6 +200,22 @@ TEST_F(SweepPlanTest, WhatIsSetOfAnAxisIsSaid) {
                                 "mapper.fusion.gain is an axis of the sweep"));
 }
 
+TEST_F(SweepPlanTest, WhatIsNoSweepIsSaidToBeWhatItIs) {
+  const auto refusal = [&](const std::string& text) {
+    Write("other.yaml", text);
+    try {
+      ReadSweepPlan(Path("other.yaml"), {});
+    } catch (const InputError& error) {
+      return Short(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(refusal("scene: living_room\nframes: 9\n"),
+            "~/other.yaml: is an experiment; `depthgrid run` takes it");
+  EXPECT_EQ(refusal("frames: 9\ncases: [{name: a, scene: living_room}]\n"),
+            "~/other.yaml: holds several experiments; only `depthgrid run` takes it");
+}
+
 TEST_F(SweepPlanTest, WhatStaysBesideAnotherProfileIsSaid) {
   Write("drifts.yaml",
         "scene: living_room\nslam: {profile: orb_slam2, drift_scale: 20}\n"
