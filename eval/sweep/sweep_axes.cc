@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "eval/experiment_options.h"
 #include "eval/sweep/sweep_results.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -75,7 +76,8 @@ void ReadRange(const Config& map, SweepAxis& axis) {
     throw InputError(axis.place,
                      fmt::format("a log range from {} to {} must lie above 0", read.from, read.to));
   }
-  const AxisRange range{read.from, read.to, read.scale};
+  const AxisRange range{read.from, read.to, read.scale,
+                        IsWholeNumber(ExperimentOptions{}, axis.keys.front())};
   if (read.count == 0) {
     axis.range = range;
     return;
@@ -134,7 +136,9 @@ SweepAxis ReadAxis(const ConfigEntry& entry) {
 double AxisRange::At(double share) const {
   if (share <= 0.0) return from;
   if (share >= 1.0) return to;
-  return scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
+  const double value =
+      scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
+  return whole ? std::round(value) : value;
 }
 
 bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }

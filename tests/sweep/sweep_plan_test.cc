@@ -54,6 +54,18 @@ TEST_F(SweepPlanTest, RangesIncludeBothEnds) {
               ElementsAre("0", "0.3333333333333333", "0.6666666666666666", "1"));
 }
 
+TEST_F(SweepPlanTest, RangesOfWholeNumbersAreWhole) {
+  const SweepPlan log =
+      PlanOf("axes: {mapper.submap.scans: {from: 5, to: 20, count: 4, scale: log}}\n");
+  EXPECT_THAT(ValuesOf(log, "mapper.submap.scans"), ElementsAre("5", "8", "13", "20"));
+  const SweepPlan drawn =
+      PlanOf("mode: random\nsamples: 50\naxes: {mapper.submap.scans: {from: 5, to: 7}}\n");
+  const std::vector<std::string> values = ValuesOf(drawn, "mapper.submap.scans");
+  EXPECT_EQ(std::set<std::string>(values.begin(), values.end()),
+            (std::set<std::string>{"5", "6", "7"}));
+  EXPECT_THROW(PlanOf("axes: {mapper.submap.scans: {from: 0.5, to: 7, count: 3}}\n"), InputError);
+}
+
 TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
   const SweepPlan plan = PlanOf(
       "axes:\n  seed: {seeds: 2, first: 7}\n  mapper.fusion.gain: [0, 1.0]\n"
