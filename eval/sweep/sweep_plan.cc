@@ -279,9 +279,12 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   SweepFileOptions file;
   config.Read(file);
   RequireFewEnough(file, plan.axes, path);
-  const std::string experiment = ResolveNameAt(place, file.experiment, ShippedKind::kExperiment,
-                                               fs::path(path).parent_path().string());
-  plan.base_folder = fs::path(experiment).parent_path().string();
+  const std::string sweep_folder = fs::path(path).parent_path().string();
+  const std::string experiment =
+      ResolveNameAt(place, file.experiment, ShippedKind::kExperiment, sweep_folder);
+  // A shipped one names no files; those of the sweep are its author's.
+  plan.base_folder =
+      IsFileName(file.experiment) ? fs::path(experiment).parent_path().string() : sweep_folder;
   const Config own = Config::FromFile(experiment);
   // So that its own errors name its own file; a copy would not know its lines.
   ReadExperiment(Config::FromFile(experiment), plan.base_folder);

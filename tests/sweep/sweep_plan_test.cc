@@ -66,6 +66,15 @@ TEST_F(SweepPlanTest, RangesOfWholeNumbersAreWhole) {
   EXPECT_THROW(PlanOf("axes: {mapper.submap.scans: {from: 0.5, to: 7, count: 3}}\n"), InputError);
 }
 
+// A shipped experiment names no files: those of the sweep lie beside it.
+TEST_F(SweepPlanTest, FilesBesideAShippedExperimentAreThoseOfTheSweep) {
+  Write("room.ply", "");
+  Write("own.yaml",
+        "experiment: living_room\nset: {scene: ./room.ply}\naxes: {seed: {seeds: 2}}\n");
+  EXPECT_THAT(ReadSweepPlan(Path("own.yaml"), {}).experiment_yaml,
+              testing::HasSubstr("scene: " + Path("room.ply") + "\n"));
+}
+
 TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
   const SweepPlan plan = PlanOf(
       "axes:\n  seed: {seeds: 2, first: 7}\n  mapper.fusion.gain: [0, 1.0]\n"
