@@ -79,7 +79,7 @@ if (METRICS.length) {
   byId("metric").value = metric.name;
   byId("metric").addEventListener("change", (event) => chooseMetric(event.target.value));
   changed.push(headline);
-  along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && repeats(i) && repeats(along.axis)) : -1;
+  along.by = AXES.findIndex((axis, i) => repeats(i) && repeats(along.axis) && isCrossed(i, along.axis));
   if (AXES.length) {
     changed.push(drawAlong);
     drawAlong();

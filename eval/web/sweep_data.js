@@ -56,6 +56,9 @@ function freeAxes(used) {
   });
 }
 
+// Whether each value of the one meets several of the other: not where they change together.
+const isCrossed = (i, k) => freeAxes([i]).includes(k) && freeAxes([k]).includes(i);
+
 // Whether the axis repeats: several points have the same value of it, as in a grid. Where all are
 // drawn at random, or change together, there is nothing to hold and no line to follow.
 const repeats = (i) => AXES[i].texts.length > 1 && POINTS.length >= 1.5 * AXES[i].texts.length;

@@ -18,10 +18,10 @@ const heatAxes = () => AXES.map((axis, i) => i).filter((i) => AXES[i].texts.leng
 
 function initHeat() {
   const axes = heatAxes();
-  const crossed = axes.some((i) => axes.some((k) => i !== k && freeAxes([i]).includes(k) && freeAxes([k]).includes(i)));
+  const crossed = axes.some((i) => axes.some((k) => isCrossed(i, k)));
   if (axes.length < 2 || (!crossed && !axes.some((i) => HEAT_AXES[i].binned))) { byId("heat-section").remove(); return; }
   heat.y = mainAxis();  // its best value is the line; up is more
-  heat.x = axes.find((i) => i !== heat.y);
+  heat.x = axes.find((i) => isCrossed(i, heat.y)) ?? axes.find((i) => i !== heat.y);
   changed.push(drawHeat);
   themeListeners.push(drawHeat);  // also for paper
   window.addEventListener("resize", drawHeat);

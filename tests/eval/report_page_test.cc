@@ -307,6 +307,33 @@ TEST_F(ReportPage, OfASweepOverSeedsAlone) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 
+// What changes together is no two axes to hold against each other.
+TEST_F(ReportPage, OfASweepWithKeysThatChangeTogether) {
+  std::vector<PlannedRun> plan;
+  const std::vector<std::vector<std::string>> systems = {
+      {"orb_slam2", "48.4"}, {"planar_slam", "37.5"}, {"planar_slam_mh", "35.2"}};
+  for (const auto& system : systems) {
+    for (const char* mode : {"fixed", "kalman"}) {
+      const int run = static_cast<int>(plan.size());
+      plan.push_back({run, run, {system[0], system[1], mode}});
+    }
+  }
+  std::filesystem::create_directory(Path("sweep"));
+  SweepDatabase database = SweepDatabase::Create(
+      Path("sweep"), {{"title", "systems"}, {"experiment", "scene: living_room\n"}},
+      {"slam.profile", "slam.drift_scale", "mapper.fusion.mode"}, plan);
+  for (const PlannedRun& run : plan) {
+    database.Record({run.run, "", {{"trajectory.est.mean_euclidean_m", 0.01 * run.run}}, {}});
+  }
+  Succeed("report sweep");
+  browser_->Open(Path("sweep/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("[along.axis, along.by, heat.y, heat.x].map((i) => "
+                               "shortKey(AXES[i].key)).join()"),
+            "drift_scale,mode,drift_scale,mode");
+  EXPECT_EQ(browser_->Evaluate("heatCells([]).flat().filter((cell) => cell).length"), 6);
+}
+
 TEST_F(ReportPage, LogarithmicAxesAreLabelledWhereTheyAreShort) {
   std::filesystem::create_directory(Path("sweep"));
   MakeSweep(Path("sweep"));
