@@ -205,6 +205,10 @@ TEST_F(ReportPage, OfASweep) {
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody tr:last-child td:nth-child(2)')"
                                ".textContent"),
             "1");
+  // Of the seeds of the failed run the other values of its line are left out too.
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('best-note').textContent.includes('only "
+                               "those that all have are compared')"),
+            true);
 
   // Values in centimetres are of no name that ends in metres.
   const std::string heads = browser_->Evaluate(
