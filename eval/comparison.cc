@@ -262,6 +262,7 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   std::vector<double> p_values, least_p_values;
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
     auto compared = CompareMetric(a, b, name, pairs, options);
+    if (!compared) comparison.undefined.push_back(name);
     if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
     p_values.push_back(compared->paired.wilcoxon.p_value);
     least_p_values.push_back(LeastWilcoxonP(compared->paired.pairs));

@@ -52,6 +52,7 @@ struct Comparison {
   int runs_a = 0;                          // that meet the conditions and did not fail
   int runs_b = 0;
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
+  std::vector<std::string> undefined;     // in every pair on one side or the other
   // Of `--metric all`: no tests, as nobody would call either side better.
   std::vector<std::string> without_direction;
   std::vector<std::string> all_equal;  // both sides have one value in each pair

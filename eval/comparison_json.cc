@@ -61,6 +61,7 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                {"crossed_seeds", comparison.crossed_seeds},
                {"runs_a", comparison.runs_a},
                {"runs_b", comparison.runs_b},
+               {"undefined", comparison.undefined},
                {"without_direction", comparison.without_direction},
                {"all_equal", comparison.all_equal},
                {"metrics", Json::object()}};

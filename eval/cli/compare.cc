@@ -79,6 +79,7 @@ void PrintLeftOut(const Comparison& comparison) {
     fmt::print("\n{} left out, {}: {}\n", Counted(names.size(), "score"), why,
                fmt::join(names, ", "));
   };
+  print(comparison.undefined, "defined on both sides in no pair");
   print(comparison.all_equal, "the same on both sides in every pair");
   print(comparison.without_direction, "of which neither more nor less is better");
 }
@@ -94,6 +95,12 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
                Counted(comparison.units, "seed"));
   } else if (comparison.units < comparison.pairs) {
     fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
+  }
+  const int alone_a = comparison.runs_a - comparison.pairs;
+  const int alone_b = comparison.runs_b - comparison.pairs;
+  if (alone_a > 0 || alone_b > 0) {
+    fmt::print("; left out for want of a partner: {} of A, {} of B", Counted(alone_a, "run"),
+               alone_b);
   }
   std::vector<std::vector<std::string>> rows = {{"metric", "better", "A", "B", "B - A",
                                                  "95 % interval", "wins A:B", "p", "p Holm",

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Errors (m) of ten seeds; those of tests/statistics, where SciPy's figures for them stand.
 const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
@@ -179,6 +180,10 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   EXPECT_EQ(c.pairs, 9);
   EXPECT_EQ(c.metrics[0].paired.pairs, 8);
   EXPECT_EQ(c.metrics[1].paired.pairs, 9);
+  // A score that is defined in no pair is named, not only missing.
+  a.metrics[0].values.assign(a.rows(), NAN);
+  EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
+}
 }
 
 TEST(Compare, FewPairsCannotDecide) {
@@ -283,6 +288,9 @@ TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
                                   "trajectory.est.mean_euclidean_m\n"));
+  EXPECT_THAT(same.out, Not(HasSubstr("want of a partner")));
+  EXPECT_THAT(Program("compare a d" + metric).out,
+              HasSubstr("; left out for want of a partner: 0 runs of A, 4 of B\n"));
 }
 
 TEST_F(ProgramCompare, Refusals) {
