@@ -62,6 +62,28 @@ std::vector<std::string> SharedAxes(const SweepResults& a, const SweepResults& b
   return keys;
 }
 
+// The text that a sweep has of a value written as in its file: "[1, 1, 0]" of "[1,1,0]".
+std::string AsOnAxis(const std::string& value) {
+  if (!value.starts_with("[")) return ShortestYaml(value);
+  Config config;
+  config.Set("value", value, "--where");
+  return config.Entries().front().text;
+}
+
+// The first values, each once; how many more there are.
+std::string SomeValues(const SweepParameter& parameter, const std::vector<std::size_t>& rows) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> values;
+  for (const std::size_t row : rows) {
+    const std::string value = ValueAt(parameter, row);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  const std::size_t more = values.size() > kMost ? values.size() - kMost : 0;
+  values.resize(values.size() - more);
+  const std::string list = fmt::format("{}", fmt::join(values, ", "));
+  return more > 0 ? fmt::format("{} and {} more", list, more) : list;
+}
+
 std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
                                       const std::vector<Condition>& where) {
   std::vector<std::size_t> rows;
@@ -70,10 +92,13 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
   }
   for (const auto& [key, value] : where) {
     const SweepParameter& parameter = table.Parameter(key);
-    const std::string wanted = ShortestYaml(value);
+    if (rows.empty()) throw InputError(table.folder, "no run has a result");
+    const std::string wanted = AsOnAxis(value);
+    const std::vector<std::size_t> candidates = rows;
     std::erase_if(rows, [&](std::size_t row) { return ValueAt(parameter, row) != wanted; });
     if (rows.empty()) {
-      throw InputError(table.folder, fmt::format("no run has {} = {}", key, value));
+      throw InputError(table.folder, fmt::format("no run has {} = {}, there are {}", key, value,
+                                                 SomeValues(parameter, candidates)));
     }
   }
   return rows;

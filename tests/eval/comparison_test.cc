@@ -184,6 +184,25 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   a.metrics[0].values.assign(a.rows(), NAN);
   EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
 }
+
+// As the sweep's file has it, not as the table spells it; a slip is told what there is.
+TEST(Compare, ConditionsTakeValuesAsTheyAreWritten) {
+  SweepResults table = Sweep({{"0", kA}, {"1", kB}});
+  for (std::size_t row = kA.size(); row < table.rows(); ++row) {
+    table.parameters[0].texts[row] = "[1, 1, 0]";
+  }
+  CompareOptions options;
+  options.where_a = {{"mapper.fusion.gain", "0.0"}};
+  options.where_b = {{"mapper.fusion.gain", "[1,1,0]"}};
+  EXPECT_EQ(Compare(table, table, options).pairs, 10);
+  options.where_b = {{"mapper.fusion.gain", "0.3"}};
+  try {
+    Compare(table, table, options);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "sweep: no run has mapper.fusion.gain = 0.3, there are 0, [1, 1, 0]");
+  }
 }
 
 TEST(Compare, FewPairsCannotDecide) {
