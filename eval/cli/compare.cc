@@ -96,11 +96,13 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
   } else if (comparison.units < comparison.pairs) {
     fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
   }
-  const int alone_a = comparison.runs_a - comparison.pairs;
-  const int alone_b = comparison.runs_b - comparison.pairs;
-  if (alone_a > 0 || alone_b > 0) {
-    fmt::print("; left out for want of a partner: {} of A, {} of B", Counted(alone_a, "run"),
-               alone_b);
+  if (comparison.repeated_seeds > 0) {
+    fmt::print("; not counted, as it gave in every score what another did: {}",
+               Counted(comparison.repeated_seeds, "seed"));
+  }
+  if (comparison.unpaired_a > 0 || comparison.unpaired_b > 0) {
+    fmt::print("; left out for want of a partner: {} of A, {} of B",
+               Counted(comparison.unpaired_a, "run"), comparison.unpaired_b);
   }
   std::vector<std::vector<std::string>> rows = {{"metric", "better", "A", "B", "B - A",
                                                  "95 % interval", "wins A:B", "p", "p Holm",

@@ -108,7 +108,8 @@ TEST(Compare, CrossedSeedsCountAsManyAsOneOfThemHas) {
         side->parameters[0].texts.push_back(std::to_string(slam));
         side->parameters[1].texts.push_back(std::to_string(depth));
         for (SweepParameter& p : side->parameters) p.numbers.push_back(0.0);
-        side->metrics[0].values.push_back(side == &a ? 1.0 : 2.0 + 0.01 * slam * depth);
+        const double unlike = 1e-6 * slam;  // of 2 x 3 and 3 x 2
+        side->metrics[0].values.push_back(side == &a ? 1.0 : 2.0 + 0.01 * slam * depth + unlike);
       }
     }
   }
@@ -183,6 +184,22 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   // A score that is defined in no pair is named, not only missing.
   a.metrics[0].values.assign(a.rows(), NAN);
   EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
+}
+
+// Six runs of what does not hang on the seed are one measurement: no test tells it from chance.
+TEST(Compare, SeedsThatChangeNothingAreOne) {
+  SweepResults table =
+      Sweep({{"0", std::vector<double>(6, 0.4)}, {"1", std::vector<double>(6, 0.1)}});
+  CompareOptions options;
+  options.where_a = {{"mapper.fusion.gain", "0"}};
+  options.where_b = {{"mapper.fusion.gain", "1"}};
+  const Comparison c = Compare(table, table, options);
+  EXPECT_EQ(c.repeated_seeds, 5);
+  EXPECT_EQ(c.units, 1);
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kTooFew);
+  // One score of one run that differs makes a seed another one.
+  table.metrics[1].values[2] += 1e-9;
+  EXPECT_EQ(Compare(table, table, options).repeated_seeds, 4);
 }
 
 // As the sweep's file has it, not as the table spells it; a slip is told what there is.
