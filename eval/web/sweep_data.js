@@ -3,8 +3,14 @@
 const SWEEP = JSON.parse(byId("data").textContent);
 // Counts and seeds in full.
 const exact = (value) => (Number.isInteger(value) ? String(value) : compact(value));
+// Files without their folder and kind, if that tells them apart.
+function nameLabels({ key, texts }) {
+  if (key !== "scene" && key !== "trajectory") return texts;
+  const names = texts.map((text) => text.split("/").at(-1).replace(/\.\w+$/, ""));
+  return new Set(names).size === texts.length ? names : texts;
+}
 // `texts` are as they were set, `labels` as they are shown.
-const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : axis.texts }));
+const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : nameLabels(axis) }));
 const POINTS = SWEEP.points;
 
 // Metrics as they are shown.
