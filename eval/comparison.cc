@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <set>
 
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
@@ -63,6 +66,28 @@ std::vector<std::string> SharedAxes(const SweepResults& a, const SweepResults& b
   return keys;
 }
 
+// The text that a sweep has of a value written as in its file: "[1, 1, 0]" of "[1,1,0]".
+std::string AsOnAxis(const std::string& value) {
+  if (!value.starts_with("[")) return ShortestYaml(value);
+  Config config;
+  config.Set("value", value, "--where");
+  return config.Entries().front().text;
+}
+
+// The first values, each once; how many more there are.
+std::string SomeValues(const SweepParameter& parameter, const std::vector<std::size_t>& rows) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> values;
+  for (const std::size_t row : rows) {
+    const std::string value = ValueAt(parameter, row);
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  }
+  const std::size_t more = values.size() > kMost ? values.size() - kMost : 0;
+  values.resize(values.size() - more);
+  const std::string list = fmt::format("{}", fmt::join(values, ", "));
+  return more > 0 ? fmt::format("{} and {} more", list, more) : list;
+}
+
 std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
                                       const std::vector<Condition>& where) {
   std::vector<std::size_t> rows;
@@ -71,10 +96,13 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
   }
   for (const auto& [key, value] : where) {
     const SweepParameter& parameter = table.Parameter(key);
-    const std::string wanted = ShortestYaml(value);
+    if (rows.empty()) throw InputError(table.folder, "no run has a result");
+    const std::string wanted = AsOnAxis(value);
+    const std::vector<std::size_t> candidates = rows;
     std::erase_if(rows, [&](std::size_t row) { return ValueAt(parameter, row) != wanted; });
     if (rows.empty()) {
-      throw InputError(table.folder, fmt::format("no run has {} = {}", key, value));
+      throw InputError(table.folder, fmt::format("no run has {} = {}, there are {}", key, value,
+                                                 SomeValues(parameter, candidates)));
     }
   }
   return rows;
@@ -108,11 +136,43 @@ std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
   return by_key;
 }
 
+struct Pair {
+  std::size_t a;
+  std::size_t b;
+  Key seeds;
+  Key rest;  // of what it is paired by
+};
+
 struct Pairs {
   std::vector<std::size_t> a;
   std::vector<std::size_t> b;
   SeedUnits units{{}};
 };
+
+void AddScores(const SweepResults& table, std::size_t row, std::vector<std::uint64_t>& bits) {
+  for (const SweepColumn& column : table.metrics) {
+    bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
+  }
+}
+
+// Seeds that gave what another one gave in every score of every pair, as where nothing is random:
+// one measurement, however often it was made.
+std::set<Key> RepeatedSeeds(const SweepResults& a, const SweepResults& b,
+                            const std::vector<Pair>& pairs) {
+  using Scores = std::map<Key, std::vector<std::uint64_t>>;
+  std::map<Key, Scores> by_seed;
+  for (const Pair& pair : pairs) {
+    std::vector<std::uint64_t>& bits = by_seed[pair.seeds][pair.rest];
+    AddScores(a, pair.a, bits);
+    AddScores(b, pair.b, bits);
+  }
+  std::set<Scores> known;
+  std::set<Key> repeated;
+  for (auto& [seeds, scores] : by_seed) {
+    if (!known.insert(std::move(scores)).second) repeated.insert(seeds);
+  }
+  return repeated;
+}
 
 std::vector<std::size_t> SeedAxes(const std::vector<std::string>& paired_by) {
   std::vector<std::size_t> axes;
@@ -122,28 +182,48 @@ std::vector<std::size_t> SeedAxes(const std::vector<std::string>& paired_by) {
   return axes;
 }
 
+std::vector<Pair> JoinRows(const std::map<Key, std::size_t>& rows_a,
+                           const std::map<Key, std::size_t>& rows_b,
+                           const std::vector<std::size_t>& seed_axes) {
+  std::vector<Pair> pairs;
+  for (const auto& [key, row] : rows_a) {
+    const auto other = rows_b.find(key);
+    if (other == rows_b.end()) continue;
+    Pair pair{row, other->second, {}, {}};
+    for (std::size_t axis = 0; axis < key.size(); ++axis) {
+      const bool is_seed = std::find(seed_axes.begin(), seed_axes.end(), axis) != seed_axes.end();
+      (is_seed ? pair.seeds : pair.rest).push_back(key[axis]);
+    }
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
 Pairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
               Comparison& comparison) {
   comparison.paired_by = SharedAxes(a, b, options);
   const auto rows_a = RowsByKey(a, RowsThatMeet(a, options.where_a), comparison.paired_by);
   const auto rows_b = RowsByKey(b, RowsThatMeet(b, options.where_b), comparison.paired_by);
-  Pairs pairs;
   const std::vector<std::size_t> seed_axes = SeedAxes(comparison.paired_by);
-  std::vector<std::vector<std::string>> seeds;
-  for (const auto& [key, row] : rows_a) {
-    const auto other = rows_b.find(key);
-    if (other == rows_b.end()) continue;
-    pairs.a.push_back(row);
-    pairs.b.push_back(other->second);
-    seeds.emplace_back();
-    for (const std::size_t axis : seed_axes) seeds.back().push_back(key[axis]);
+  std::vector<Pair> found = JoinRows(rows_a, rows_b, seed_axes);
+  comparison.runs_a = static_cast<int>(rows_a.size());
+  comparison.runs_b = static_cast<int>(rows_b.size());
+  comparison.unpaired_a = static_cast<int>(rows_a.size() - found.size());
+  comparison.unpaired_b = static_cast<int>(rows_b.size() - found.size());
+  const std::set<Key> repeated = RepeatedSeeds(a, b, found);
+  comparison.repeated_seeds = static_cast<int>(repeated.size());
+  std::erase_if(found, [&](const Pair& pair) { return repeated.contains(pair.seeds); });
+  Pairs pairs;
+  std::vector<Key> seeds;
+  for (Pair& pair : found) {
+    pairs.a.push_back(pair.a);
+    pairs.b.push_back(pair.b);
+    seeds.push_back(std::move(pair.seeds));
   }
   pairs.units = SeedUnits(seeds);
   for (const std::size_t axis : pairs.units.crossed()) {
     comparison.crossed_seeds.push_back(comparison.paired_by[seed_axes[axis]]);
   }
-  comparison.runs_a = static_cast<int>(rows_a.size());
-  comparison.runs_b = static_cast<int>(rows_b.size());
   comparison.pairs = static_cast<int>(pairs.a.size());
   comparison.units = static_cast<int>(pairs.units.count());
   if (pairs.a.empty()) {
@@ -302,6 +382,7 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
     auto compared = CompareMetric(a, b, name, pairs, options);
+    if (!compared) comparison.undefined.push_back(name);
     if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
     comparison.metrics.push_back(std::move(*compared));
   }

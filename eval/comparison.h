@@ -47,12 +47,16 @@ struct MetricComparison {
 
 struct Comparison {
   std::vector<std::string> paired_by;  // the axes whose values make a pair
-  int pairs = 0;
+  int pairs = 0;                       // that count
   int units = 0;  // what the tests count: pairs of one seed are averaged, and count as one
   std::vector<std::string> crossed_seeds;  // of which the units are as many as one has (SeedUnits)
   int runs_a = 0;                          // that meet the conditions and did not fail
   int runs_b = 0;
+  int unpaired_a = 0;  // of these, left out as the other side has no partner
+  int unpaired_b = 0;
+  int repeated_seeds = 0;  // gave what another one gave in every score: they do not count
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
+  std::vector<std::string> undefined;     // in every pair on one side or the other
   // Of `--metric all`: no tests, as nobody would call either side better.
   std::vector<std::string> without_direction;
   std::vector<std::string> all_equal;  // both sides have one value in each pair

@@ -51,10 +51,23 @@ bool Drifts(const SlamOptions& slam) {
          slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
 }
 
+bool Jumps(const SlamOptions& slam) { return slam.jump_rate_hz > 0.0; }
+
+bool IsEverLost(const SlamOptions& slam) { return slam.lost_rate_hz > 0.0; }
+
 SlamOptions WithoutIdleSettings(SlamOptions slam) {
   const SlamOptions usual = ProfileOptions(SlamProfile::kGroundTruth);
   slam.profile = usual.profile;  // its values are all there
   if (!Drifts(slam)) slam.drift_scale = usual.drift_scale;
+  if (!Jumps(slam)) {
+    slam.jump_translation_m = usual.jump_translation_m;
+    slam.jump_rotation_deg = usual.jump_rotation_deg;
+  }
+  if (!IsEverLost(slam)) {
+    slam.lost_mean_s = usual.lost_mean_s;
+    slam.relocalisation_translation_m = usual.relocalisation_translation_m;
+    slam.relocalisation_rotation_deg = usual.relocalisation_rotation_deg;
+  }
   return slam;
 }
 
@@ -70,6 +83,52 @@ std::string WhyExact(const SlamOptions& slam) {
 std::string WhyClean(const SensorOptions& sensor) {
   const bool noisy = sensor.noise != DepthNoiseModel::kNone || sensor.flying_pixels > 0.0;
   return noisy ? "" : Stands(sensor, "sensor", "noise");
+}
+
+void AddSlam(const SlamOptions& slam, IdleSettingList& idle) {
+  const auto add = [&](std::initializer_list<const char*> keys, const std::string& reason) {
+    for (const char* key : keys) idle.push_back({std::string("slam.") + key, reason});
+  };
+  if (!Drifts(slam)) {
+    const std::string exact = WhyExact(slam);
+    add({"drift_scale"}, exact.empty() ? "SLAM does not drift" : exact);
+  }
+  if (!Jumps(slam)) {
+    add({"jump_translation_m", "jump_rotation_deg"}, Stands(slam, "slam", "jump_rate_hz"));
+  }
+  if (!IsEverLost(slam)) {
+    add({"lost_mean_s", "relocalisation_translation_m", "relocalisation_rotation_deg"},
+        Stands(slam, "slam", "lost_rate_hz"));
+  }
+}
+
+// Without a model only the pixels at edges and in shadow change.
+void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
+  if (sensor.noise != DepthNoiseModel::kNone) return;
+  for (const char* key :
+       {"noise_scale", "noise_correlation_px", "grazing_limit_deg", "grazing_softness_deg"}) {
+    idle.push_back({std::string("sensor.") + key, Stands(sensor, "sensor", "noise")});
+  }
+}
+
+SensorOptions WithoutIdleSettings(SensorOptions sensor) {
+  if (sensor.noise != DepthNoiseModel::kNone) return sensor;
+  const SensorOptions usual;
+  sensor.noise_scale = usual.noise_scale;
+  sensor.noise_correlation_px = usual.noise_correlation_px;
+  sensor.grazing_limit_deg = usual.grazing_limit_deg;
+  sensor.grazing_softness_deg = usual.grazing_softness_deg;
+  return sensor;
+}
+
+// What the profile is taken for, all but the choice itself.
+void AddSlamNoise(const FusionOptions& fusion, IdleSettingList& idle) {
+  if (fusion.slam_noise.source != SlamNoiseSource::kProfile) return;
+  const std::string group = "mapper.fusion.slam_noise";
+  for (const std::string& key : KeyPathsOf(fusion.slam_noise)) {
+    if (key == "source") continue;
+    idle.push_back({group + "." + key, Stands(fusion.slam_noise, group, "source")});
+  }
 }
 
 void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
@@ -117,18 +176,17 @@ IdleSettingList IdleSettings(const MapperOptions& mapper) {
   }
   if (fusion.mode != FusionMode::kAdaptive) add("mapper.fusion.adaptive_rate");
   if (fusion.mode != FusionMode::kLearned) add("mapper.fusion.judge_innovations");
+  AddSlamNoise(fusion, idle);
+  if (mapper.scan.mode != ScanMode::kRowBand) {
+    idle.push_back({"mapper.scan.band_rows", Stands(mapper.scan, "mapper.scan", "mode")});
+  }
   return idle;
 }
 
 IdleSettingList IdleSettings(const ExperimentOptions& options) {
   IdleSettingList idle = IdleSettings(options.mapper);
-  if (!Drifts(options.slam)) {
-    const std::string exact = WhyExact(options.slam);
-    idle.push_back({"slam.drift_scale", exact.empty() ? "SLAM does not drift" : exact});
-  }
-  if (options.sensor.noise == DepthNoiseModel::kNone) {
-    idle.push_back({"sensor.noise_scale", Stands(options.sensor, "sensor", "noise")});
-  }
+  AddSlam(options.slam, idle);
+  AddSensor(options.sensor, idle);
   AddSeeds(options, idle);
   return idle;
 }
@@ -170,9 +228,16 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   options.depth_seed = is_idle("depth_seed") ? 0 : options.DepthSeed();
   options.seed = 0;  // the two are all it is for
   options.slam = WithoutIdleSettings(options.slam);
-  if (is_idle("sensor.noise_scale")) options.sensor.noise_scale = SensorOptions{}.noise_scale;
+  options.sensor = WithoutIdleSettings(options.sensor);
   options.mapper = WithoutOtherMethod(options.mapper);
+  if (is_idle("mapper.scan.band_rows")) {
+    options.mapper.scan.band_rows = MapperOptions{}.scan.band_rows;
+  }
   FusionOptions& fusion = options.mapper.fusion;
+  if (const auto source = fusion.slam_noise.source; source == SlamNoiseSource::kProfile) {
+    fusion.slam_noise = {};
+    fusion.slam_noise.source = source;
+  }
   if (is_idle("mapper.fusion.gain")) fusion.gain = FusionOptions{}.gain;
   if (is_idle("mapper.fusion.adaptive_rate")) {
     fusion.adaptive_rate = FusionOptions{}.adaptive_rate;

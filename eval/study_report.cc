@@ -1,5 +1,7 @@
 #include "eval/study_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -25,16 +27,34 @@ constexpr std::size_t kMostPathPoints = 450;  // two a second of a 900-frame pat
 struct CaseFiles {
   StudyCase head;
   RunFiles run;
-  std::string scene;
+  std::string scene;  // the room: cases of one are shown beside each other
   std::string pose_source;
 };
 
 CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
   CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", ""};
   const Config settings = Config::FromText(files.run.settings, head.name + "/run.yaml");
-  files.scene = fs::path(SettingOf(settings, "scene")).stem().string();
+  files.scene = SettingOf(settings, "scene");
   files.pose_source = SettingOf(settings, "slam.profile");
   return files;
+}
+
+// Short names for the rooms. Maps in other cells cannot be held beside each other: another room.
+void NameRooms(std::vector<CaseFiles>& cases) {
+  const std::vector<CaseFiles> as_set = cases;
+  for (CaseFiles& c : cases) {
+    const std::string file = c.scene;
+    const double cell_m = c.run.map.geometry.resolution_m;
+    const std::string stem = fs::path(file).stem().string();
+    bool is_stem_shared = false;
+    bool has_other_cells = false;
+    for (const CaseFiles& other : as_set) {
+      is_stem_shared |= other.scene != file && fs::path(other.scene).stem() == stem;
+      has_other_cells |= other.scene == file && other.run.map.geometry.resolution_m != cell_m;
+    }
+    c.scene = is_stem_shared ? file : stem;
+    if (has_other_cells) c.scene += fmt::format(", cells of {} m", cell_m);
+  }
 }
 
 // Corners of the path of the camera on the floor, [x, y, x, y, ...] in metres.
@@ -75,7 +95,6 @@ Json RoomJson(const CaseFiles& c, const GridGeometry& part) {
   json["width"] = part.width_cells;
   json["height"] = part.height_cells;
   if (c.run.truth_map) json["truth"] = PngUri(PictureOf(*c.run.truth_map, part));
-  if (c.run.truth) json["path"] = PathJson(*c.run.truth);
   return json;
 }
 
@@ -87,6 +106,7 @@ Json CaseJson(const CaseFiles& c, const GridGeometry& part, const Json& metrics)
   json["metrics"] = metrics;
   json["output_map"] = PngUri(PictureOf(c.run.map, part));
   if (c.run.input_map) json["input_map"] = PngUri(PictureOf(*c.run.input_map, part));
+  if (c.run.truth) json["true_path"] = PathJson(*c.run.truth);
   json["input_path"] = PathJson(c.run.slam);
   json["output_path"] = PathJson(c.run.est);
   return json;
@@ -132,6 +152,7 @@ void WriteStudyReport(const std::string& folder, const ReportPlace& place) {
   const StudyOutline outline = ReadStudyOutline(Config::FromFile(folder + "/study.yaml"));
   std::vector<CaseFiles> cases;
   for (const StudyCase& head : outline.cases) cases.push_back(ReadCase(folder, head));
+  NameRooms(cases);
   try {
     const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
     Json json = StudyJson(outline, OverridesIn(folder), cases, metrics);

@@ -145,6 +145,10 @@ PinholeCamera SensorCamera(const SensorOptions& options, const std::string& plac
   if (options.cx_px > -1.0) camera.cx_px = options.cx_px;
   if (options.cy_px > -1.0) camera.cy_px = options.cy_px;
   Validate(camera, place);
+  if (width_px < 2 || height_px < 2) {  // no scan comes of fewer
+    throw InputError(place, "the image is " + std::to_string(width_px) + " x " +
+                                std::to_string(height_px) + " pixels, must be 2 x 2 or more");
+  }
   return camera;
 }
 

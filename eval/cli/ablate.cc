@@ -8,6 +8,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 
@@ -41,7 +42,17 @@ void PrintLegend(std::size_t seeds) {
   }
 }
 
+// Each run has a seed of its own.
+void RequireNoSeed(const std::vector<std::string>& set) {
+  for (const std::string& assignment : set) {
+    Config config;
+    config.Set(assignment);
+    if (config.Has("seed")) throw InputError(config.PlaceOfKey("seed"), "give --first-seed N");
+  }
+}
+
 void AblateNamed(const AblateArguments& arguments) {
+  RequireNoSeed(arguments.common.set);
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
   Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));

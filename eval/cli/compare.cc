@@ -83,6 +83,7 @@ void PrintLeftOut(const Comparison& comparison) {
     fmt::print("\n{} left out, {}: {}\n", Counted(names.size(), "score"), why,
                fmt::join(names, ", "));
   };
+  print(comparison.undefined, "defined on both sides in no pair");
   print(comparison.all_equal, "the same on both sides in every pair");
   print(comparison.without_direction, "of which neither more nor less is better");
 }
@@ -121,6 +122,14 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
                Counted(comparison.units, "seed"));
   } else if (comparison.units < comparison.pairs) {
     fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
+  }
+  if (comparison.repeated_seeds > 0) {
+    fmt::print("; not counted, as it gave in every score what another did: {}",
+               Counted(comparison.repeated_seeds, "seed"));
+  }
+  if (comparison.unpaired_a > 0 || comparison.unpaired_b > 0) {
+    fmt::print("; left out for want of a partner: {} of A, {} of B",
+               Counted(comparison.unpaired_a, "run"), comparison.unpaired_b);
   }
   std::vector<std::vector<std::string>> rows = {{"metric", "better", "A", "B", "B - A",
                                                  "95 % interval", "wins A:B", "p", "p Holm",

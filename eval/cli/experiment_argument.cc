@@ -11,6 +11,7 @@
 #include "eval/shipped.h"
 #include "mapper/core/error.h"
 #include "sim/mesh_file.h"
+#include "sim/sensor_options.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -70,6 +71,21 @@ bool IsExperiment(const std::string& name) {
   return is_yaml && Config::FromFile(path).Has("scene");
 }
 
+// As where the intrinsics are those of images of another size.
+std::optional<std::string> DoubtOfCamera(const ExperimentOptions& options) {
+  const PinholeCamera camera = SensorCamera(options.sensor);
+  const auto is_inside = [](double centre_px, int size_px) {
+    return centre_px >= -0.5 && centre_px <= size_px - 0.5;
+  };
+  if (is_inside(camera.cx_px, camera.width_px) && is_inside(camera.cy_px, camera.height_px)) {
+    return {};
+  }
+  return fmt::format(
+      "the camera's principal point, sensor.cx {:g} and cy {:g}, lies outside its image of {} x {} "
+      "pixels: are they of another size?",
+      camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
+}
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfRecord(const std::string& name,
@@ -87,7 +103,9 @@ std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set) {
   std::vector<std::string> doubts = DoubtsOfRecord(name, set);
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
-  const IdleSettingList idle = IdleSettings(ExperimentNamed(name, set));
+  const ExperimentOptions options = ExperimentNamed(name, set);
+  if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
+  const IdleSettingList idle = IdleSettings(options);
   const auto add = [&](const std::vector<std::string>& more) {
     doubts.insert(doubts.end(), more.begin(), more.end());
   };

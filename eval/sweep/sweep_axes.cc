@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <set>
 
+#include "eval/experiment_options.h"
 #include "eval/sweep/sweep_results.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -56,6 +58,14 @@ void ReadSeeds(const Config& map, SweepAxis& axis) {
   }
 }
 
+// The short number that only rounding has parted from `value`: 10 of 9.999999999999998, a value
+// that nobody asks for and no `--where` would find.
+double WithoutRounding(double value) {
+  const double plain = *ParseNumber(fmt::format("{:.12g}", value));
+  constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+  return std::abs(plain - value) <= kRoundings * std::abs(value) ? plain : value;
+}
+
 void ReadRange(const Config& map, SweepAxis& axis) {
   RangeOptions read;
   map.Read(read);
@@ -66,14 +76,15 @@ void ReadRange(const Config& map, SweepAxis& axis) {
     throw InputError(axis.place,
                      fmt::format("a log range from {} to {} must lie above 0", read.from, read.to));
   }
-  const AxisRange range{read.from, read.to, read.scale};
+  const AxisRange range{read.from, read.to, read.scale,
+                        IsWholeNumber(ExperimentOptions{}, axis.keys.front())};
   if (read.count == 0) {
     axis.range = range;
     return;
   }
   for (int i = 0; i < read.count; ++i) {
     const double share = read.count == 1 ? 0.0 : static_cast<double>(i) / (read.count - 1);
-    axis.values.push_back({fmt::format("{}", range.At(share))});
+    axis.values.push_back({fmt::format("{}", WithoutRounding(range.At(share)))});
   }
 }
 
@@ -125,7 +136,9 @@ SweepAxis ReadAxis(const ConfigEntry& entry) {
 double AxisRange::At(double share) const {
   if (share <= 0.0) return from;
   if (share >= 1.0) return to;
-  return scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
+  const double value =
+      scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
+  return whole ? std::round(value) : value;
 }
 
 bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }

@@ -20,8 +20,9 @@ struct AxisRange {
   double from = 0.0;
   double to = 0.0;
   RangeScale scale = RangeScale::kLinear;
+  bool whole = false;  // the key takes whole numbers alone
 
-  // At `share` of the way, 0 to 1; the ends are exact.
+  // At `share` of the way, 0 to 1, to the nearest whole number if need be; the ends are exact.
   double At(double share) const;
 };
 

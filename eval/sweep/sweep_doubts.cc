@@ -73,9 +73,36 @@ std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
     }
   }
   if (repeats == 0) return {};
-  return fmt::format("{}: {} of {} {} another: there {} {} no effect", plan.title, repeats,
-                     Counted(count, "run"), repeats == 1 ? "repeats" : "repeat",
-                     fmt::join(idle_keys, ", "), idle_keys.size() == 1 ? "has" : "have");
+  // Random sweeps draw a point twice where all their axes are lists.
+  const std::string why = idle_keys.empty()
+                              ? "the same values are drawn again"
+                              : fmt::format("there {} {} no effect", fmt::join(idle_keys, ", "),
+                                            idle_keys.size() == 1 ? "has" : "have");
+  return fmt::format("{}: {} of {} {} another: {}", plan.title, repeats, Counted(count, "run"),
+                     repeats == 1 ? "repeats" : "repeat", why);
+}
+
+std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,
+                                          const std::vector<std::string>& set) {
+  std::vector<std::string> doubts;
+  const auto check = [&](const Config& one, const std::string& given) {
+    for (const std::string& key : plan.parameter_keys) {
+      if (!one.Has(key)) continue;
+      doubts.push_back(
+          fmt::format("{}: has no effect because {} is an axis of the sweep", given, key));
+    }
+  };
+  for (const ConfigEntry& entry : fixed.Entries()) {
+    Config one;
+    one.Set(entry.key, entry.text, entry.place);
+    check(one, entry.place + ": " + entry.key);
+  }
+  for (const std::string& assignment : set) {
+    Config one;
+    one.Set(assignment);
+    check(one, "--set " + assignment);
+  }
+  return doubts;
 }
 
 std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config& experiment,

@@ -14,6 +14,11 @@ namespace depthgrid {
 // effect there: one line, nothing when all differ. Of very many runs the first ones are looked at.
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
 
+// What the sweep's file (`fixed`) or --set gives of the keys of an axis, whose values take its
+// place in every run: a line each.
+std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,
+                                          const std::vector<std::string>& set);
+
 // Where a sweep's settings come from, the later before the earlier.
 struct SweepLayers {
   const Config& experiment;  // the file

@@ -32,6 +32,11 @@ bool HasFilesOnAxes(const SweepPlan& plan) {
   return std::any_of(keys.begin(), keys.end(), IsFileKey);
 }
 
+// "" is the working folder, as in a file's name without a slash.
+std::string AbsoluteFolder(const std::string& folder) {
+  return (folder.empty() ? fs::current_path() : fs::absolute(folder)).string();
+}
+
 std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
 
 Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
@@ -43,7 +48,7 @@ Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
                              {"instruction_set", DEPTHGRID_ARCH},
                              {"shard", ShardText(shard)},
                              {"rooms", RoomsText(plan)}};
-  if (HasFilesOnAxes(plan)) environment["files_from"] = fs::absolute(plan.base_folder).string();
+  if (HasFilesOnAxes(plan)) environment["files_from"] = AbsoluteFolder(plan.base_folder);
   return environment;
 }
 

@@ -220,6 +220,14 @@ std::string GivenText(const Config& effective, const Config& base, const std::st
   return text;
 }
 
+void RequireSweep(const Config& config, const std::string& path) {
+  if (config.Has("axes") || config.Has("experiment")) return;
+  if (config.Has("cases")) {
+    throw InputError(path, "holds several experiments; only `depthgrid run` takes it");
+  }
+  if (config.Has("scene")) throw InputError(path, "is an experiment; `depthgrid run` takes it");
+}
+
 // A required key that is missing may stand there with a slip in it.
 void RequireKeys(const Config& config, const std::string& path) {
   std::vector<std::string> known = Config::FromText(ToYaml(SweepFileOptions{}), "").Keys();
@@ -266,6 +274,7 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
 
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
   Config config = Config::FromFile(path);
+  RequireSweep(config, path);
   RequireKeys(config, path);
   SweepPlan plan;
   plan.title = fs::path(path).stem().string();
@@ -276,9 +285,12 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   SweepFileOptions file;
   config.Read(file);
   RequireFewEnough(file, plan.axes, path);
-  const std::string experiment = ResolveNameAt(place, file.experiment, ShippedKind::kExperiment,
-                                               fs::path(path).parent_path().string());
-  plan.base_folder = fs::path(experiment).parent_path().string();
+  const std::string sweep_folder = fs::path(path).parent_path().string();
+  const std::string experiment =
+      ResolveNameAt(place, file.experiment, ShippedKind::kExperiment, sweep_folder);
+  // A shipped one names no files; those of the sweep are its author's.
+  plan.base_folder =
+      IsFileName(file.experiment) ? fs::path(experiment).parent_path().string() : sweep_folder;
   Config own = Config::FromFile(experiment);
   const Config record = own.Take("provenance");  // of a run.yaml
   // So that its own errors name its own file; a copy would not know its lines.
@@ -305,10 +317,11 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   const auto changed =
       DoubtsOfRecord(experiment, record, ReadExperiment(plan.base, plan.base_folder),
                      {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)});
-  plan.warnings.insert(plan.warnings.end(), changed.begin(), changed.end());
-  const auto idle =
-      DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment));
-  plan.warnings.insert(plan.warnings.end(), idle.begin(), idle.end());
+  for (const auto& doubts :
+       {changed, DoubtsOfAxisKeys(plan, fixed, set),
+        DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment))}) {
+    plan.warnings.insert(plan.warnings.end(), doubts.begin(), doubts.end());
+  }
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);

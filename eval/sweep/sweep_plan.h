@@ -22,7 +22,7 @@ enum class SweepMode {
 // A grid point needs no more seeds once the metric's mean over its first ones is this sure.
 struct StopOptions {
   std::string metric;
-  double width = 0.0;  // of the mean's bootstrap 95 % interval
+  double width = 0.0;  // of the bootstrap 95 % interval of the mean
   int min_seeds = 5;
 
   bool Enabled() const { return !metric.empty(); }

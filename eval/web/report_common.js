@@ -117,6 +117,7 @@ function paintedCanvas(width, height, label, paint) {
 
 // ---- plots ----
 const allPlots = [];
+const TEXT_WIDTH = 7;  // of a letter of a label, pixels
 
 // As many digits as tell apart what the axis shows, and no fewer than asked for.
 function digitsOn(scale, least) {
@@ -212,6 +213,26 @@ function zoomPlot(u, x, factor) {
   u.setScale("x", { min: Math.max(all_min, at - (at - min) * factor), max: Math.min(all_max, at + (max - at) * factor) });
 }
 
+// With its middle left out where it is longer: names of one kind differ at their ends.
+function shortened(text, most) {
+  if (text.length <= most) return text;
+  const kept = Math.max(2, most - 1);
+  return `${text.slice(0, Math.ceil(kept / 2))}…${text.slice(text.length - Math.floor(kept / 2))}`;
+}
+
+// Where a logarithmic axis is labelled: at whole decades if there are several, else between them
+// too, and in a part of one at the plotted values themselves.
+function logTicks(x, low, high) {
+  const decades = Math.log10(high / low);
+  const steps = decades > 3 ? [1] : decades > 1 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
+  const ticks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
+    for (const step of steps) ticks.push(Number(`${step}e${power}`));
+  }
+  const inside = ticks.filter((v) => v >= low && v <= high);
+  return inside.length > 2 ? inside : [...new Set(x)].filter((v) => v >= low && v <= high);
+}
+
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash,
 // digits, unit, points, weights (of points), notes (behind the values), low, high (ends of intervals)}. Lines stop where a value is null. Plots of
 // one `sync` key share their cursor. `xNames` replaces the numbers of the x axis, one a value of x.
@@ -238,7 +259,8 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
       scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : {}) } },
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
-          ...(xNames ? { splits: () => x, values: () => xNames } : {}) },
+          ...(xNames ? { splits: () => x, values: (u) => xNames.map((name) => shortened(name, Math.floor(u.bbox.width / devicePixelRatio / xNames.length / TEXT_WIDTH))) } : {}),
+          ...(logX ? { splits: (u, k, low, high) => logTicks(x, low, high), values: (u, ticks) => ticks.map(compact), filter: (u, ticks) => ticks } : {}) },
         { ...axis, label: yLabel, labelSize: yLabel ? 18 : 0, labelGap: 2, size: 52 }],
       series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map(seriesOf)],
       hooks: {

@@ -2,16 +2,14 @@
 "use strict";
 const STUDY = JSON.parse(byId("data").textContent);
 const NAMES = { ground_truth: "Ground truth", orb_slam2: "ORB-SLAM2", planar_slam: "Planar-SLAM", planar_slam_mh: "Planar-SLAM, Manhattan" };
-const nameOf = (word) => NAMES[word] ?? word.charAt(0).toUpperCase() + word.slice(1).replaceAll("_", " ");
+// Files stay as they are written.
+const nameOf = (word) => NAMES[word] ?? (word.includes("/") ? word : word.charAt(0).toUpperCase() + word.slice(1).replaceAll("_", " "));
 const casesIn = (room) => STUDY.cases.filter((c) => c.scene === room.scene);
 // The maps are light in both themes, so what is drawn on them keeps its colours.
 const PATH_COLOURS = { truth: "#009e73", input: "#d98c00", output: "#0072b2" };
-// By room and poses, and by its own name where several share them.
-function labelOf(c) {
-  const label = `${nameOf(c.scene)}, ${nameOf(c.pose_source)}`;
-  const alone = STUDY.cases.filter((one) => one.scene === c.scene && one.pose_source === c.pose_source).length === 1;
-  return alone ? label : `${label} (${c.name})`;
-}
+// By where its poses come from, and by its own name where several cases of a room share that.
+const isAlone = (c) => STUDY.cases.filter((one) => one.scene === c.scene && one.pose_source === c.pose_source).length === 1;
+const sourceOf = (c) => (isAlone(c) ? nameOf(c.pose_source) : `${nameOf(c.pose_source)} (${c.name})`);
 const millimetres = (value) => fixed(isNumber(value) ? 1000 * value : value, 1);
 const seen = (map) => map?.observable ?? map?.all;
 
@@ -30,9 +28,9 @@ function tableHead() {
 }
 
 function initTable() {
-  const sources = [...new Set(STUDY.cases.map((c) => c.pose_source))];
-  const rows = sources.map((source) => [nameOf(source), ...STUDY.rooms.flatMap((room) => {
-    const c = casesIn(room).find((one) => one.pose_source === source);
+  const sources = [...new Set(STUDY.cases.map(sourceOf))];
+  const rows = sources.map((source) => [source, ...STUDY.rooms.flatMap((room) => {
+    const c = casesIn(room).find((one) => sourceOf(one) === source);
     if (!c) return Array(5).fill("–");
     const output = errorCells(c.metrics.trajectory.est).map((text) => linkTo(c, text));
     return [fixed(c.metrics.published_mean_m, 3), ...errorCells(c.metrics.trajectory.slam), ...output];
@@ -74,8 +72,8 @@ function initMaps() {
     const row = (first, figures) => make("div", { class: "figure-row" }, first, ...figures);
     byId("maps").append(make("h3", {}, nameOf(room.scene)),
       row(figure(room.truth, `${room.scene}: true map`, "Truth, in the scale of all", barPicture(room)),
-        cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${nameOf(c.pose_source)}, input: ${f1(c.metrics.input_map)}`))),
-      row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${nameOf(c.pose_source)}, output`), `: ${f1(c.metrics.map)}`)))));
+        cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${sourceOf(c)}, input: ${f1(c.metrics.input_map)}`))),
+      row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${sourceOf(c)}, output`), `: ${f1(c.metrics.map)}`)))));
   }
 }
 
@@ -90,7 +88,7 @@ function pathPicture(room, c) {
   };
   const picture = svg("svg", { viewBox: `0 0 ${width} ${height + STRIP_M}`, role: "img", "aria-label": `${c.name}: trajectories` });
   if (room.truth) picture.append(svg("image", { href: room.truth, width, height, opacity: 0.55, preserveAspectRatio: "none" }));
-  if (room.path) picture.append(line(room.path, "truth"));
+  if (c.true_path) picture.append(line(c.true_path, "truth"));
   picture.append(line(c.input_path, "input"), line(c.output_path, "output"),
     ...scaleBar(room, height));
   return picture;
@@ -100,7 +98,7 @@ function initPaths() {
   for (const key of document.querySelectorAll(".paths-legend i")) key.style.background = PATH_COLOURS[key.dataset.path];
   for (const room of STUDY.rooms) {
     byId("paths").append(make("h3", {}, nameOf(room.scene)), make("div", { class: "figure-row four" },
-      ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, nameOf(c.pose_source))))));
+      ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, sourceOf(c))))));
   }
 }
 
@@ -111,7 +109,7 @@ function initMapTable() {
   };
   byId("map-table").append(tableOf(
     ["Case", "Input map: precision", "recall", "F1", "chamfer (mm)", "Output map: precision", "recall", "F1", "chamfer (mm)"],
-    STUDY.cases.map((c) => [linkTo(c, labelOf(c)), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
+    STUDY.cases.map((c) => [linkTo(c, `${nameOf(c.scene)}, ${sourceOf(c)}`), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
 }
 
 // What the command line changed: published figures and notes are of the file as it stands.

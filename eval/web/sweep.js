@@ -18,14 +18,14 @@ function headline() {
   const cards = [];
   if (best >= 0) {
     const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.labels[POINTS[best].values[AXES.indexOf(axis)]]}`);
-    cards.push(card(rough(metric.mean[best]), `best mean, at ${place.join(", ") || "the only point"}`));
+    cards.push(card(rough(metric.mean[best]), place.length ? `best mean, at ${place.join(", ")}` : "mean of the only point"));
     if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
   }
   const line = linesAlong(along.axis).find((l) => l.points.includes(best));
   if (line) {
     const axis = AXES[along.axis];
     const held = heldText(line);
-    cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}`));
+    cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
     const seeds = POINTS[line.points[line.best]].runs;
     if (seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
     if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss to the best value of each ${EACH}`));
@@ -78,11 +78,17 @@ if (METRICS.length) {
   byId("metric").append(...options);
   byId("metric").value = metric.name;
   byId("metric").addEventListener("change", (event) => chooseMetric(event.target.value));
-  changed.push(headline, drawAlong);
-  along.by = AXES.length > 1 ? AXES.findIndex((axis, i) => i !== along.axis && repeats(i) && repeats(along.axis)) : -1;
-  if (AXES.length) drawAlong(); else byId("plot-section").remove();
-  headline();
-  if (AXES.length) initHeat(); else byId("heat-section").remove();
+  changed.push(headline);
+  along.by = AXES.findIndex((axis, i) => repeats(i) && repeats(along.axis) && isCrossed(i, along.axis));
+  if (AXES.length) {
+    changed.push(drawAlong);
+    drawAlong();
+    headline();
+    initHeat();
+  } else {  // seeds alone
+    for (const id of ["plot-section", "best-section", "heat-section"]) byId(id).remove();
+    headline();
+  }
   initTable();
 } else {
   for (const id of ["chooser", "headline", "plot-section", "best-section", "heat-section", "table-section"]) byId(id).remove();

@@ -3,8 +3,14 @@
 const SWEEP = JSON.parse(byId("data").textContent);
 // Counts and seeds in full.
 const exact = (value) => (Number.isInteger(value) ? String(value) : compact(value));
+// Files without their folder and kind, if that tells them apart.
+function nameLabels({ key, texts }) {
+  if (key !== "scene" && key !== "trajectory") return texts;
+  const names = texts.map((text) => text.split("/").at(-1).replace(/\.\w+$/, ""));
+  return new Set(names).size === texts.length ? names : texts;
+}
 // `texts` are as they were set, `labels` as they are shown.
-const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : axis.texts }));
+const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : nameLabels(axis) }));
 const POINTS = SWEEP.points;
 // What an oracle chooses the best value for: of crossed seeds a run has one of each.
 const EACH = SWEEP.crossed_seeds ? "run" : "seed";
@@ -58,6 +64,9 @@ function freeAxes(used) {
   });
 }
 
+// Whether each value of the one meets several of the other: not where they change together.
+const isCrossed = (i, k) => freeAxes([i]).includes(k) && freeAxes([k]).includes(i);
+
 // Whether the axis repeats: several points have the same value of it, as in a grid. Where all are
 // drawn at random, or change together, there is nothing to hold and no line to follow.
 const repeats = (i) => AXES[i].texts.length > 1 && POINTS.length >= 1.5 * AXES[i].texts.length;
@@ -85,6 +94,6 @@ const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[
 
 // The lines of the grid along an axis, as the statistics see them: those that have a best value, or all.
 function allLinesAlong(axis) {
-  return metric.lines?.[AXES[axis].key] ?? [];
+  return metric.lines?.[AXES[axis]?.key] ?? [];
 }
 const linesAlong = (axis) => allLinesAlong(axis).filter((line) => line.best !== undefined);

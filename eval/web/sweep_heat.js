@@ -18,10 +18,10 @@ const heatAxes = () => AXES.map((axis, i) => i).filter((i) => AXES[i].texts.leng
 
 function initHeat() {
   const axes = heatAxes();
-  const crossed = axes.some((i) => axes.some((k) => i !== k && freeAxes([i]).includes(k) && freeAxes([k]).includes(i)));
+  const crossed = axes.some((i) => axes.some((k) => isCrossed(i, k)));
   if (axes.length < 2 || (!crossed && !axes.some((i) => HEAT_AXES[i].binned))) { byId("heat-section").remove(); return; }
   heat.y = mainAxis();  // its best value is the line; up is more
-  heat.x = axes.find((i) => i !== heat.y);
+  heat.x = axes.find((i) => isCrossed(i, heat.y)) ?? axes.find((i) => i !== heat.y);
   changed.push(drawHeat);
   themeListeners.push(drawHeat);  // also for paper
   window.addEventListener("resize", drawHeat);
@@ -72,7 +72,7 @@ function heatPicture(cells, best, width) {
   const means = cells.flat().filter(Boolean).map((c) => c.mean);
   const sorted = [...means].sort((a, b) => a - b);
   const keyTexts = heatKeyValues(sorted).map(heatKeyText);
-  const edge = { left: Math.min(130, 34 + 7 * longest), right: 40 + 7 * Math.max(9, ...keyTexts.map((t) => t.length)), top: 10, bottom: 46 };
+  const edge = { left: Math.min(130, 34 + TEXT_WIDTH * longest), right: 40 + 7 * Math.max(9, ...keyTexts.map((t) => t.length)), top: 10, bottom: 46 };
   const height = Math.max(160, Math.min(460, rows * 34)) + edge.top + edge.bottom;
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
   // A few bad corners must not make all else one colour: colours follow the rank of the value.
@@ -107,10 +107,12 @@ function heatPicture(cells, best, width) {
     context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
     context.fillStyle = colour("muted");
     context.textAlign = "center";
-    HEAT_AXES[heat.x].labels.forEach((text, c) => { if (c % every(columns, w, 7 * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
+    // Of numbers so many are left out that they fit; names are shortened.
+    const name = (text) => (AXES[heat.x].numeric ? text : shortened(text, Math.max(6, Math.floor((w - 8) / TEXT_WIDTH))));
+    HEAT_AXES[heat.x].labels.map(name).forEach((text, c) => { if (c % every(columns, w, TEXT_WIDTH * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
     context.fillText(AXES[heat.x].key, edge.left + (width - edge.left - edge.right) / 2, height - 8);
     context.textAlign = "right";
-    HEAT_AXES[heat.y].labels.forEach((text, r) => { if (r % every(rows, h, 14) === 0) context.fillText(text, edge.left - 5, v(r) + h / 2 + 4); });
+    HEAT_AXES[heat.y].labels.forEach((text, r) => { if (r % every(rows, h, 14) === 0) context.fillText(shortened(text, Math.floor((edge.left - 30) / TEXT_WIDTH) + 1), edge.left - 5, v(r) + h / 2 + 4); });
     context.save();
     context.translate(11, edge.top + (height - edge.top - edge.bottom) / 2);
     context.rotate(-Math.PI / 2);

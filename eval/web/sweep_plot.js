@@ -9,7 +9,7 @@ function isLogarithmic({ numeric, numbers }) {
   };
   return unevenness(numbers.map(Math.log)) < unevenness(numbers);
 }
-const along = { axis: mainAxis(), by: -1, held: {}, logX: isLogarithmic(AXES[mainAxis()]), logY: false };
+const along = { axis: mainAxis(), by: -1, held: {}, logX: AXES.length > 0 && isLogarithmic(AXES[mainAxis()]), logY: false };
 const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
 const MOST_LINES = PALETTE.length;
 
@@ -117,6 +117,9 @@ function missingText(axis) {
   ].filter(Boolean).join(" ");
 }
 
+// Points that were stopped early, or of which a run failed, have other seeds than their neighbours.
+const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs)).size > 1;
+
 function drawBest() {
   const axis = AXES[along.axis];
   const lines = linesAlong(along.axis);
@@ -128,7 +131,8 @@ function drawBest() {
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
-    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each " + EACH + ".";
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each " + EACH + "." +
+    (lines.some(hasUnlikeSeeds) ? " Where points of a line have different seeds (stopped early, or with a failed run) only those that all have are compared, so that the best need not be that of the means above." : "");
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];

@@ -85,7 +85,7 @@ function drawRows(columns, body) {
   }))));
   const more = rows.length > table.most;
   const note = byId("table-note");
-  note.replaceChildren(`${rows.length} rows${more ? `, the first ${table.most} shown. ` : ". "}`);
+  note.replaceChildren(`${rows.length} ${rows.length === 1 ? "row" : "rows"}${more ? `, the first ${table.most} shown. ` : ". "}`);
   if (more) note.append(make("button", { type: "button", class: "no-print", onclick: () => { table.most *= 10; drawRows(columns, body); } }, "Show more"));
   if (table.what === "runs") {
     note.append(make("br"), "Runs without a folder can be made again: start the command in this sweep's folder, then “open” it after ", make("code", {}, "depthgrid report ."), ".",

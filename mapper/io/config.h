@@ -20,6 +20,7 @@ std::unique_ptr<OptionsVisitor> MakeYamlWriter(std::string& out);
 std::unique_ptr<OptionsVisitor> MakeKeyLister(std::string& out);
 std::unique_ptr<OptionsVisitor> MakeKeyPathLister(std::vector<std::string>& out);
 std::unique_ptr<OptionsVisitor> MakeValueFinder(const std::string& key_path, std::string& out);
+std::unique_ptr<OptionsVisitor> MakeWholeFinder(const std::string& key_path, bool& is_whole);
 }  // namespace internal
 
 // The path of every key, "mapper.fusion.gain", in the order the structs declare them.
@@ -36,6 +37,14 @@ std::string ValueOf(Options options, const std::string& key_path) {
   std::string value;
   options.Visit(*internal::MakeValueFinder(key_path, value));
   return value;
+}
+
+// Whether a key takes whole numbers alone; false when there is no such key.
+template <typename Options>
+bool IsWholeNumber(Options options, const std::string& key_path) {
+  bool is_whole = false;
+  options.Visit(*internal::MakeWholeFinder(key_path, is_whole));
+  return is_whole;
 }
 
 class Config {

@@ -82,6 +82,8 @@ class YamlWriter final : public OptionsVisitor {
   int depth_ = 0;
 };
 
+constexpr const char* kWhole = "whole";
+
 // What is said of each key.
 using KeyLine = std::function<void(const std::string& path, const std::string& value,
                                    const std::string& allowed, std::string_view meaning)>;
@@ -98,10 +100,10 @@ class KeyLister final : public OptionsVisitor {
   }
   void Number(std::string_view key, int& value, Interval allowed,
               std::string_view meaning) override {
-    Line(key, fmt::format("{}", value), "whole, " + Shown(allowed), meaning);
+    Line(key, fmt::format("{}", value), fmt::format("{}, {}", kWhole, Shown(allowed)), meaning);
   }
   void Seed(std::string_view key, std::uint64_t& value, std::string_view meaning) override {
-    Line(key, fmt::format("{}", value), "whole, at least 0", meaning);
+    Line(key, fmt::format("{}", value), fmt::format("{}, at least 0", kWhole), meaning);
   }
   void Flag(std::string_view key, bool& value, std::string_view meaning) override {
     Line(key, value ? "true" : "false", "true or false", meaning);
@@ -174,6 +176,14 @@ std::unique_ptr<OptionsVisitor> MakeValueFinder(const std::string& key_path, std
       [&out, key_path](const std::string& path, const std::string& value, const std::string&,
                        std::string_view) {
         if (path == key_path) out = value;
+      },
+      key_path);
+}
+std::unique_ptr<OptionsVisitor> MakeWholeFinder(const std::string& key_path, bool& is_whole) {
+  return std::make_unique<KeyLister>(
+      [&is_whole, key_path](const std::string& path, const std::string&, const std::string& allowed,
+                            std::string_view) {
+        if (path == key_path) is_whole = allowed.starts_with(kWhole);
       },
       key_path);
 }

@@ -184,6 +184,9 @@ TEST_F(ProgramAblate, Refusals) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(Path("out")));
   }
+  // Each run has its own.
+  EXPECT_EQ(Program("ablate ./small.yaml --set seed=4 -o out").err,
+            "depthgrid: --set seed=4: give --first-seed N\n");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Errors (m) of ten seeds; those of tests/statistics, where SciPy's figures for them stand.
 const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
@@ -107,7 +108,8 @@ TEST(Compare, CrossedSeedsCountAsManyAsOneOfThemHas) {
         side->parameters[0].texts.push_back(std::to_string(slam));
         side->parameters[1].texts.push_back(std::to_string(depth));
         for (SweepParameter& p : side->parameters) p.numbers.push_back(0.0);
-        side->metrics[0].values.push_back(side == &a ? 1.0 : 2.0 + 0.01 * slam * depth);
+        const double unlike = 1e-6 * slam;  // of 2 x 3 and 3 x 2
+        side->metrics[0].values.push_back(side == &a ? 1.0 : 2.0 + 0.01 * slam * depth + unlike);
       }
     }
   }
@@ -179,6 +181,45 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   EXPECT_EQ(c.pairs, 9);
   EXPECT_EQ(c.metrics[0].paired.pairs, 8);
   EXPECT_EQ(c.metrics[1].paired.pairs, 9);
+  // A score that is defined in no pair is named, not only missing.
+  a.metrics[0].values.assign(a.rows(), NAN);
+  EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
+}
+
+// Six runs of what does not hang on the seed are one measurement: no test tells it from chance.
+TEST(Compare, SeedsThatChangeNothingAreOne) {
+  SweepResults table =
+      Sweep({{"0", std::vector<double>(6, 0.4)}, {"1", std::vector<double>(6, 0.1)}});
+  CompareOptions options;
+  options.where_a = {{"mapper.fusion.gain", "0"}};
+  options.where_b = {{"mapper.fusion.gain", "1"}};
+  const Comparison c = Compare(table, table, options);
+  EXPECT_EQ(c.repeated_seeds, 5);
+  EXPECT_EQ(c.units, 1);
+  EXPECT_EQ(c.metrics[0].verdict, Verdict::kTooFew);
+  // One score of one run that differs makes a seed another one.
+  table.metrics[1].values[2] += 1e-9;
+  EXPECT_EQ(Compare(table, table, options).repeated_seeds, 4);
+}
+
+// As the sweep's file has it, not as the table spells it; a slip is told what there is.
+TEST(Compare, ConditionsTakeValuesAsTheyAreWritten) {
+  SweepResults table = Sweep({{"0", kA}, {"1", kB}});
+  for (std::size_t row = kA.size(); row < table.rows(); ++row) {
+    table.parameters[0].texts[row] = "[1, 1, 0]";
+  }
+  CompareOptions options;
+  options.where_a = {{"mapper.fusion.gain", "0.0"}};
+  options.where_b = {{"mapper.fusion.gain", "[1,1,0]"}};
+  EXPECT_EQ(Compare(table, table, options).pairs, 10);
+  options.where_b = {{"mapper.fusion.gain", "0.3"}};
+  try {
+    Compare(table, table, options);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "sweep: no run has mapper.fusion.gain = 0.3, there are 0, [1, 1, 0]");
+  }
 }
 
 TEST(Compare, FewPairsCannotDecide) {
@@ -305,6 +346,9 @@ TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
                                   "trajectory.est.mean_euclidean_m\n"));
+  EXPECT_THAT(same.out, Not(HasSubstr("want of a partner")));
+  EXPECT_THAT(Program("compare a d" + metric).out,
+              HasSubstr("; left out for want of a partner: 0 runs of A, 4 of B\n"));
 }
 
 TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {

@@ -140,5 +140,17 @@ TEST_F(ProgramOutput, AnExperimentsFilesAreFoundFromAnywhere) {
   EXPECT_TRUE(SameFile("else where/out/map.pgm", "else where/out2/map.pgm"));
 }
 
+// Intrinsics of 640 x 480 pixels beside a size of 80 x 60.
+TEST_F(ProgramOutput, APrincipalPointBesideTheImageIsWarnedOf) {
+  const auto said = [&](const std::string& set) {
+    return Program("run ./small.yaml -o out --force --set frames=2" + set).err;
+  };
+  EXPECT_THAT(said(" --set sensor.cx=319.5"),
+              testing::StartsWith("depthgrid: warning: the camera's principal point, sensor.cx "
+                                  "319.5 and cy 29.5, lies outside its image of 80 x 60 pixels: "
+                                  "are they of another size?\n"));
+  EXPECT_EQ(said(" --set sensor.cx=79.5"), "");
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -152,5 +152,37 @@ TEST_F(StudyRun, ThePageShowsEveryCase) {
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
 
+// Cases that differ in something else than the poses: none is left out, each has its own path, and
+// maps in other cells are held beside each other only.
+TEST_F(StudyRun, ThePageTellsCasesOfOneRoomApart) {
+  const std::optional<std::string> chromium = FindChromium();
+  if (!chromium) GTEST_SKIP() << "no chromium on this machine";
+  std::filesystem::create_directory(Path("other"));
+  Write("other/room.yaml", kRoom);
+  Write("alike.yaml", R"(
+frames: 6
+scene: ./room.yaml
+sensor: {width: 80, height: 60}
+cases:
+  - {name: half, mapper: {fusion: {mode: fixed, gain: 0.5}}}
+  - {name: one, frames: 9, mapper: {fusion: {mode: fixed, gain: 1}}}
+  - {name: fine, mapper: {grid: {resolution_m: 0.02}}}
+  - {name: elsewhere, scene: ./other/room.yaml}
+)");
+  Succeed("run ./alike.yaml -o out");
+  Browser browser(*chromium, root_.string() + "_browser");
+  browser.Open(Path("out/report.html"));
+  EXPECT_THAT(browser.problems(), IsEmpty());
+  const std::string table = browser.Evaluate(
+      "[...document.querySelectorAll('#table tbody tr')].map((r) => r.cells[0].innerText).join()");
+  EXPECT_EQ(table, "Ground truth (half),Ground truth (one),Ground truth");
+  const std::string rooms = browser.Evaluate("STUDY.rooms.map((room) => room.scene).join()");
+  EXPECT_EQ(rooms, Path("room.yaml") + ", cells of 0.05 m," + Path("room.yaml") +
+                       ", cells of 0.02 m," + Path("other/room.yaml"));
+  EXPECT_EQ(browser.Evaluate("STUDY.cases.map((c) => c.true_path.length / 2).join()"), "6,9,6,6");
+  EXPECT_EQ(browser.Evaluate("document.querySelector('#paths figcaption').textContent"),
+            "Ground truth (half)");
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -51,6 +51,19 @@ TEST(SensorOptions, ANewSizeKeepsTheFieldOfView) {
   EXPECT_NEAR(half.cy_px, (255.3 + 0.5) / 2 - 0.5, 1e-12);
 }
 
+// Before anything is rendered, and by the name that the size was given under.
+TEST(SensorOptions, AnImageIsAtLeastTwoPixelsEachWay) {
+  EXPECT_EQ(SensorCamera(FromYaml("{width: 2, height: 2}")).height_px, 2);
+  for (const char* size : {"height: 1", "width: 1"}) {
+    try {
+      SensorCamera(FromYaml(size), "--set sensor: sensor");
+      ADD_FAILURE() << size;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find("--set sensor: sensor: the image is "), 0U);
+    }
+  }
+}
+
 TEST(SensorOptions, ExplicitIntrinsicsWin) {
   const PinholeCamera camera =
       SensorCamera(FromYaml("{width: 320, hfov_deg: 90, fy: 200, cx: 0, cy: 7.5}"));

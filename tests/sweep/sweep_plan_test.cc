@@ -45,6 +45,34 @@ TEST_F(SweepPlanTest, RangesIncludeBothEnds) {
   const SweepPlan log =
       PlanOf("axes: {slam.drift_scale: {from: 0.25, to: 4, count: 3, scale: log}}\n");
   EXPECT_THAT(ValuesOf(log, "slam.drift_scale"), ElementsAre("0.25", "1", "4"));
+  // Not 0.9999999999999999 and 9.999999999999998, as the power gives them.
+  const SweepPlan decades =
+      PlanOf("axes: {slam.drift_scale: {from: 0.1, to: 100, count: 4, scale: log}}\n");
+  EXPECT_THAT(ValuesOf(decades, "slam.drift_scale"), ElementsAre("0.1", "1", "10", "100"));
+  const SweepPlan thirds = PlanOf("axes: {slam.drift_scale: {from: 0, to: 1, count: 4}}\n");
+  EXPECT_THAT(ValuesOf(thirds, "slam.drift_scale"),
+              ElementsAre("0", "0.3333333333333333", "0.6666666666666666", "1"));
+}
+
+TEST_F(SweepPlanTest, RangesOfWholeNumbersAreWhole) {
+  const SweepPlan log =
+      PlanOf("axes: {mapper.submap.scans: {from: 5, to: 20, count: 4, scale: log}}\n");
+  EXPECT_THAT(ValuesOf(log, "mapper.submap.scans"), ElementsAre("5", "8", "13", "20"));
+  const SweepPlan drawn =
+      PlanOf("mode: random\nsamples: 50\naxes: {mapper.submap.scans: {from: 5, to: 7}}\n");
+  const std::vector<std::string> values = ValuesOf(drawn, "mapper.submap.scans");
+  EXPECT_EQ(std::set<std::string>(values.begin(), values.end()),
+            (std::set<std::string>{"5", "6", "7"}));
+  EXPECT_THROW(PlanOf("axes: {mapper.submap.scans: {from: 0.5, to: 7, count: 3}}\n"), InputError);
+}
+
+// A shipped experiment names no files: those of the sweep lie beside it.
+TEST_F(SweepPlanTest, FilesBesideAShippedExperimentAreThoseOfTheSweep) {
+  Write("room.ply", "");
+  Write("own.yaml",
+        "experiment: living_room\nset: {scene: ./room.ply}\naxes: {seed: {seeds: 2}}\n");
+  EXPECT_THAT(ReadSweepPlan(Path("own.yaml"), {}).experiment_yaml,
+              testing::HasSubstr("scene: " + Path("room.ply") + "\n"));
 }
 
 TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
@@ -167,6 +195,46 @@ TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
   EXPECT_THAT(doubts("axes: {seed: {seeds: 3}, mapper.fusion.mode: [fixed, learned]}\n"
                      "set: {sensor.noise: handa}\n"),
               ElementsAre());
+}
+
+TEST_F(SweepPlanTest, PointsDrawnAgainAreSaid) {
+  EXPECT_THAT(PlanOf("mode: random\nsamples: 5\n"
+                     "axes: {frames: [5], seed: {seeds: 2}}\nset: {sensor.noise: handa}\n")
+                  .warnings,
+              ElementsAre("sweep: 8 of 10 runs repeat another: the same values are drawn again"));
+}
+
+// The axis decides in every run.
+TEST_F(SweepPlanTest, WhatIsSetOfAnAxisIsSaid) {
+  Write("small.yaml", "scene: living_room\n");
+  Write("gains.yaml",
+        "experiment: ./small.yaml\nset: {frames: 9, mapper.fusion.mode: fixed}\n"
+        "axes: {mapper.fusion.mode: [fixed], mapper.fusion.gain: [0, 1]}\n");
+  std::vector<std::string> said;
+  for (const std::string& warning :
+       ReadSweepPlan(Path("gains.yaml"), {"frames=8", "mapper.fusion.gain=0.7"}).warnings) {
+    said.push_back(Short(warning));
+  }
+  EXPECT_THAT(said, ElementsAre("~/gains.yaml:2: mapper.fusion.mode: has no effect because "
+                                "mapper.fusion.mode is an axis of the sweep",
+                                "--set mapper.fusion.gain=0.7: has no effect because "
+                                "mapper.fusion.gain is an axis of the sweep"));
+}
+
+TEST_F(SweepPlanTest, WhatIsNoSweepIsSaidToBeWhatItIs) {
+  const auto refusal = [&](const std::string& text) {
+    Write("other.yaml", text);
+    try {
+      ReadSweepPlan(Path("other.yaml"), {});
+    } catch (const InputError& error) {
+      return Short(error.what());
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(refusal("scene: living_room\nframes: 9\n"),
+            "~/other.yaml: is an experiment; `depthgrid run` takes it");
+  EXPECT_EQ(refusal("frames: 9\ncases: [{name: a, scene: living_room}]\n"),
+            "~/other.yaml: holds several experiments; only `depthgrid run` takes it");
 }
 
 TEST_F(SweepPlanTest, WhatStaysBesideAnotherProfileIsSaid) {

@@ -46,6 +46,14 @@ class SweepRepeat : public ProgramTest {
   }
 };
 
+// The experiment beside the sweep's file, in the working folder.
+TEST_F(SweepRepeat, WithFilesOnAnAxisAndNamesWithoutAFolder) {
+  Write("rooms.yaml", "experiment: small.yaml\naxes: {scene: [room.yaml, ./room2.yaml]}\n");
+  Write("room2.yaml", kRoom);
+  Succeed("sweep rooms.yaml -o out");
+  EXPECT_EQ(ReadSweep(Path("out")).environment.at("files_from") + "/", Path(""));
+}
+
 // What a profile or a scenario presets is not to be held by what the sweep's base had of it.
 TEST_F(SweepRepeat, AlongAPreset) {
   Write("profiles.yaml", R"(
