@@ -84,7 +84,7 @@ std::string CameraPathOf(const fs::path& folder) {
 std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& images,
                                           const fs::path& folder, Recording& recording) {
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
-    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording, 0.0),
+    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording),
                        list->string(), recording.warnings);
   }
   std::vector<std::optional<Pose3>> poses;
