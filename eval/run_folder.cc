@@ -4,6 +4,7 @@
 
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
+#include "eval/placed_path.h"
 #include "eval/run_graph.h"
 #include "eval/run_report.h"
 #include "eval/run_tables.h"
@@ -39,6 +40,14 @@ OccupancyMap MapOf(const MappingRun& run) {
   return OccupancyMap(OnlyCell(none.min_cell, none.resolution_m));
 }
 
+// In the map's frame, wherever SLAM's own lies in a finished map that the run went on in.
+Trajectory ShownSlam(const MappingRun& run) {
+  const auto& mapped = run.result.mapped;
+  const bool in_prior_map = !mapped.empty() && mapped.front().frame < 0;
+  const Trajectory slam = SlamTrajectory(run);
+  return in_prior_map ? PlacedWhereItBegins(slam, FinalTrajectory(run)) : slam;
+}
+
 void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
   const OccupancyMap map = MapOf(*record.mapping);
   std::vector<Path> paths;
@@ -46,7 +55,7 @@ void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
     paths.push_back({"truth", palette::kTruth, record.truth->trajectory, PathStyle::kBeneath});
   }
   const char* input = record.mapping->camera ? "slam" : "odometry";
-  paths.push_back({input, palette::kSlam, SlamTrajectory(*record.mapping)});
+  paths.push_back({input, palette::kSlam, ShownSlam(*record.mapping)});
   paths.push_back({"estimate", palette::kEstimate, FinalTrajectory(*record.mapping)});
   const GridGeometry part = ShownPart(StatesOf(map), paths);
   WriteRgbPng(folder.File("map.png"), AnnotatedMap(PictureOf(map, part), part, paths));

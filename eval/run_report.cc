@@ -8,6 +8,7 @@
 
 #include "eval/changed_settings.h"
 #include "eval/map_picture.h"
+#include "eval/placed_path.h"
 #include "eval/prior_run.h"
 #include "eval/report_json_impl.h"
 #include "eval/run_files.h"
@@ -199,7 +200,9 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["prior_scans"] = run.prior_scans;
   json["only_placed"] = run.only_placed;
   json["map"] = MapJson(run);
-  json["paths"]["slam"] = PathJson(PosesAt(run.slam, stamps_s));
+  const bool in_prior_map = run.prior_scans > 0;
+  json["paths"]["slam"] =
+      PathJson(PosesAt(in_prior_map ? PlacedWhereItBegins(run.slam, run.est) : run.slam, stamps_s));
   json["paths"]["online"] = PathJson(PosesAt(run.online, stamps_s));
   json["paths"]["est"] = PathJson(est);
   std::vector<double> final_errors_m;

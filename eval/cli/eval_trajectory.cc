@@ -65,9 +65,16 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajec
   constexpr double kFewShare = 0.5;    // more are missing than there
   constexpr double kOtherScale = 1.5;  // no SLAM that knows its scale is off by half
   constexpr double kLeastPathM = 1.0;  // of less, noise tells the scale
+  // In level worlds the errors in the plane are part of those in space.
+  constexpr double kTilted = 2.0;
+  constexpr double kLeastErrorM = 0.01;  // of smaller ones, alignment may take any share
   std::vector<std::string> doubts;
   const int fewer = std::min(score.reference_poses, score.estimate_poses);
-  if (!score.by_row && (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
+  if (!score.by_row && score.matched_poses == 1 && fewer == 1) {
+    doubts.push_back(
+        fmt::format("{}: one pose is matched, aligned and relative errors need more", of.estimate));
+  } else if (!score.by_row &&
+             (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
     doubts.push_back(
         fmt::format("{}: only {} of its {} poses have a stamp of {}'s {}; the errors are "
                     "of those alone",
@@ -80,6 +87,13 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajec
         fmt::format("{}: fits {} best {:.4g} times as large: is it in other units, or "
                     "without scale?",
                     of.estimate, of.reference, *score.sim3_scale));
+  }
+  if (score.xy_se2 && score.xyz_se3 && score.reference_path_m > kLeastPathM &&
+      score.xy_se2->rmse > std::max(kLeastErrorM, kTilted * score.xyz_se3->rmse)) {
+    doubts.push_back(fmt::format(
+        "{}: fits {} to {:.3f} m in space (SE(3) aligned) but to {:.3f} m in the plane "
+        "(SE(2)): their worlds are tilted against each other, so errors in xy say little",
+        of.estimate, of.reference, score.xyz_se3->rmse, score.xy_se2->rmse));
   }
   return doubts;
 }

@@ -243,20 +243,22 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
 }
 
 // Of laser logs: what the matches say of the odometry's directions, or these of the scans.
-void CheckDirections(const MapArguments& arguments, const MappingRun& run,
-                     std::vector<std::string>& warnings) {
+void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& laser,
+                     const MappingRun& run, std::vector<std::string>& warnings) {
   if (run.camera) return;
   const auto fault = WayDoubt(run);
   if (!fault) return;
-  const char* what =
+  std::string what =
       "the odometry goes other ways than the scans: are x and y swapped, or headings "
       "counted from another axis than x?";
   if (*fault == WayFault::kTurns) {
     what = "the odometry's headings turn the other way than the scans: is their sign wrong?";
   } else if (*fault == WayFault::kMirroredScans) {
-    what =
+    what = fmt::format(
         "the scans turn the other way than the odometry, so the map is mirrored: is the laser "
-        "mounted upside down? --set sequence.laser.upside_down=true";
+        "{} --set sequence.laser.upside_down={}",
+        laser.upside_down ? "not mounted upside down?" : "mounted upside down?",
+        !laser.upside_down);
   }
   warnings.push_back(arguments.input + ": " + what);
 }
@@ -350,7 +352,7 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Poses read the wrong way have another scale too.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
-  CheckDirections(arguments, run, warnings);
+  CheckDirections(arguments, settings.sequence.laser, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
   if (prior) {
     const auto doubt = DoubtOfPrior(arguments.map, request.settings.mapper, run.camera.has_value());

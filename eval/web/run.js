@@ -52,7 +52,7 @@ function headline() {
       add(String(RUN.own_scans), RUN.prior_scans ? `frames added to the finished map's ${RUN.prior_scans}` : "frames mapped");
     }
     add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
-    add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved`);
+    add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved${RUN.prior_scans ? " from there on" : ""}`);
     add(fixed(median(frames.match_score), 2), "share of the beams that the map explains, median");
     add(`${fixed(RUN.map.width * RUN.map.resolution, 1)} x ${fixed(RUN.map.height * RUN.map.resolution, 1)} m`, "extent");
   }

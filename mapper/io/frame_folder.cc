@@ -85,7 +85,7 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
                                           const fs::path& folder, FrameFolder& listed) {
   Recording& recording = listed.recording;
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
-    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording, 0.0),
+    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording),
                        list->string(), recording.warnings);
   }
   std::vector<std::optional<Pose3>> poses;

@@ -31,6 +31,12 @@ std::string RemedyOf(const FrameNames& names, double first_pose_s, double last_p
         names.time_offset_s + first_pose_s - first_s);
   }
   if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
+  if (names.interpolated_gap_s) {
+    return fmt::format(
+        "between poses more than {:g} s apart none is taken, --set "
+        "sequence.recording.max_interpolation_gap_s=S goes between those up to S",
+        *names.interpolated_gap_s);
+  }
   return "--set sequence.recording.interpolate_poses=true goes between poses, those up to "
          "max_interpolation_gap_s apart";
 }

@@ -18,6 +18,8 @@ struct FrameNames {
   std::vector<std::int64_t> numbers = {};
   // What was added to the recording's own stamps to get those of the poses.
   double time_offset_s = 0.0;
+  // Poses this near to each other are interpolated; none: a frame has the pose of its stamp.
+  std::optional<double> interpolated_gap_s = {};
   // Those that are read: poses and events are of the whole recording, messages of these.
   FramePart part = {};
 

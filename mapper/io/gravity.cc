@@ -41,6 +41,8 @@ constexpr std::size_t kFirstViews = 3;
 // Or where these have it farther off than this, though the camera is as high above what they see as
 // later: in a few seconds SLAM's height drifts by less than kAgreeM for half of the images.
 constexpr double kFirstFloorOffM = 0.03;
+// Above a table the camera stands so much lower than above the floor, whatever its hand does.
+constexpr double kTableM = 0.3;
 // Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
 // all that some see); more is SLAM's drift.
 constexpr double kDriftRad = RadFromDeg(0.8);
@@ -210,11 +212,9 @@ CommonLevel FitCommonLevel(const Views& views, const Eigen::Vector3d& about_up) 
 }
 
 Patches PatchesOf(const Views& views) {
-  Patches patches = views.front().patches;
-  for (std::size_t i = 1; i < views.size(); ++i) {
-    patches.insert(patches.end(), views[i].patches.begin(), views[i].patches.end());
-  }
-  return patches;
+  Patches all;
+  for (const auto& [camera, own] : views) all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 struct FloorOfViews {
@@ -301,13 +301,28 @@ std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
   return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
 }
 
+std::vector<FloorOfViews> WithoutTables(std::vector<FloorOfViews> floors, double usual_camera_m) {
+  std::erase_if(floors, [&](const FloorOfViews& floor) {
+    return floor.camera_height_m < usual_camera_m - kTableM;
+  });
+  return floors;
+}
+
 // As the first images have it; the camera's height is that above each image's own lowest surface.
-FloorOfViews FirstFloor(std::vector<FloorOfViews> first, const std::vector<FloorOfViews>& own) {
-  const bool is_late = first.size() < kFirstViews;
-  if (is_late) first = own;
-  first.resize(std::min(first.size(), kFirstViews));
-  return {MiddleOf(first, &FloorOfViews::height_m), MiddleOf(own, &FloorOfViews::camera_height_m),
-          is_late};
+// Where few of the first see the floor the next ones say where it is: late, unless the few agree.
+FloorOfViews FirstFloor(const std::vector<FloorOfViews>& first,
+                        const std::vector<FloorOfViews>& own) {
+  const double usual_m = MiddleOf(own, &FloorOfViews::camera_height_m);
+  const auto first_height_m = [](std::vector<FloorOfViews> floors) {
+    floors.resize(std::min(floors.size(), kFirstViews));
+    return MiddleOf(floors, &FloorOfViews::height_m);
+  };
+  const auto seeing = WithoutTables(first, usual_m);
+  const double next_m = first_height_m(WithoutTables(own, usual_m));
+  if (seeing.empty()) return {next_m, usual_m, true};
+  const double first_m = first_height_m(seeing);
+  if (seeing.size() >= kFirstViews) return {first_m, usual_m, false};
+  return {next_m, usual_m, std::abs(first_m - next_m) > kFirstFloorOffM};
 }
 
 // Whether SLAM's height drifts: the images do not agree on the lowest of all surfaces, or the first

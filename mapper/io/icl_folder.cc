@@ -52,7 +52,7 @@ SlamOutput SlamOutputOf(std::vector<std::optional<Pose3>> poses, Recording& reco
     throw InputError(path, fmt::format("holds {} for {}", Counted(poses.size(), "pose"),
                                        Counted(images, "image")));
   }
-  poses = PairInOrder(std::move(poses), NamesOf(recording, 0.0), path, recording.warnings);
+  poses = PairInOrder(std::move(poses), NamesOf(recording), path, recording.warnings);
   SlamOutput slam;
   for (std::size_t i = 0; i < images; ++i) {
     const auto& pose = poses[i];

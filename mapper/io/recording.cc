@@ -127,7 +127,7 @@ class RecordingSource final : public FrameSource {
     return ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
-    return StampRanges(NamesOf(recording_, options.time_offset_s), slam.live.front().stamp_s,
+    return StampRanges(NamesOf(recording_, options), slam.live.front().stamp_s,
                        slam.live.back().stamp_s);
   }
 
@@ -192,7 +192,7 @@ std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput
 }
 
 FramePart FindPart(const PartOptions& part, const Recording& recording) {
-  return FindPart(part, NamesOf(recording, 0.0).stamps_s, recording.name);
+  return FindPart(part, NamesOf(recording).stamps_s, recording.name);
 }
 
 std::span<const RecordedImage> ImagesOfPart(const Recording& recording) {
@@ -200,12 +200,13 @@ std::span<const RecordedImage> ImagesOfPart(const Recording& recording) {
   return images.subspan(recording.part.begin, recording.part.CountAmong(images.size()));
 }
 
-FrameNames NamesOf(const Recording& recording, double time_offset_s) {
+FrameNames NamesOf(const Recording& recording, const RecordingOptions& options) {
   FrameNames names;
-  names.time_offset_s = time_offset_s;
+  names.time_offset_s = options.time_offset_s;
+  if (options.interpolate_poses) names.interpolated_gap_s = options.max_interpolation_gap_s;
   names.part = recording.part;
   for (const RecordedImage& image : recording.images) {
-    names.stamps_s.push_back(image.stamp_s + time_offset_s);
+    names.stamps_s.push_back(image.stamp_s + options.time_offset_s);
     names.numbers.push_back(image.number);
   }
   return names;

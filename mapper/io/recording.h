@@ -36,8 +36,8 @@ struct Recording {
 FramePart FindPart(const PartOptions& part, const Recording& recording);
 std::span<const RecordedImage> ImagesOfPart(const Recording& recording);
 
-// `time_offset_s` is added to the stamps.
-FrameNames NamesOf(const Recording& recording, double time_offset_s);
+// With the stamps as recorded, but for the options' offset.
+FrameNames NamesOf(const Recording& recording, const RecordingOptions& options = {});
 
 // Reads one depth image; throws InputError.
 using DepthReader = std::function<DepthImage(const std::string& path)>;

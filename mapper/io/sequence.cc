@@ -336,7 +336,7 @@ FrameNames SequenceFrames(const std::string& path, const SequenceOptions& option
                             ? ListIclFolder(path)
                             : ListFrameFolder(path, options.recording).recording;
   recording.part = FindPart(options.part, recording);
-  return NamesOf(recording, options.recording.time_offset_s);
+  return NamesOf(recording, options.recording);
 }
 
 Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
@@ -357,7 +357,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
                            : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
                                                             : FrameSequence(path, options, slam);
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
-  SayPart(NamesOf(sequence.recording, 0.0), result.notes);
+  SayPart(NamesOf(sequence.recording), result.notes);
   if (!slam) FindCorrections(path, options.recording, sequence, result.notes);
   result.pose_doubt = CheckPoses(sequence, options.recording);
   if (options.world_up != WorldUp::kAuto) result.up_doubt = DoubtOfUp(sequence, options);

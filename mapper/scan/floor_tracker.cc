@@ -18,9 +18,13 @@ constexpr double kNearPoseM = 0.35;
 constexpr double kLeastPoseHeightM = 0.1;
 constexpr double kMostPoseHeightM = 3.0;
 // A lower surface is the floor, and what was taken for it a table; a few frames in a row must say
-// so. A higher one is mostly a table that hides the floor; only if it stays did SLAM jump.
+// so. A higher one is mostly a table that hides the floor; only if it stays did SLAM jump. Where
+// the camera stands so much lower above it than above the floor when that was seen last, SLAM did
+// not: it is a table, unless it stays very long.
 constexpr int kFramesToBelieveLower = 5;
 constexpr int kFramesToBelieveHigher = 60;
+constexpr int kFramesToBelieveTable = 600;
+constexpr double kTableM = 0.3;
 // What SLAM errs from frame to frame (docs/slam_surrogate.md: 0.1-0.2 degrees, 2-5 mm), with
 // something to spare; before the floor was seen, tilts as recordings have them.
 constexpr double kStepSigmaM = 0.03;
@@ -56,8 +60,9 @@ bool FloorTracker::Believes(double height_m, double expected_m) {
   other_higher_m_ = higher_m;
   ++other_frames_;
   // The floor lower than thought is the camera higher above it.
-  const int enough = higher_m > 0.0 ? kFramesToBelieveLower : kFramesToBelieveHigher;
-  if (other_frames_ < enough) return false;
+  const bool table = floor_height_m_ && height_m < *floor_height_m_ - kTableM;
+  const int higher = table ? kFramesToBelieveTable : kFramesToBelieveHigher;
+  if (other_frames_ < (higher_m > 0.0 ? kFramesToBelieveLower : higher)) return false;
   other_frames_ = 0;
   return true;
 }
@@ -97,6 +102,7 @@ void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera
       slam_from_camera.rotation * expected.level_from_camera.conjugate();
   floor_.up = (slam_from_level * plane->up).normalized();
   floor_.offset_m = plane->height_m - floor_.up.dot(slam_from_camera.translation);
+  floor_height_m_ = plane->height_m;
   seen_ = true;
 }
 

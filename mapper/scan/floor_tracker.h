@@ -42,7 +42,8 @@ class FloorTracker {
   double other_higher_m_ = 0.0;
   int other_frames_ = 0;
   int looks_ = 0;
-  std::optional<double> height_m_;  // of the last frame, once the floor was seen
+  std::optional<double> height_m_;        // of the last frame, once the floor was seen
+  std::optional<double> floor_height_m_;  // of the last frame that saw it
   LevelPoints memory_;
 };
 

@@ -64,6 +64,26 @@ TEST_F(EvalMap, WhatCouldBeSeenIsReducedAsWell) {
                 {"coarse.yaml: resolution is 0.1, must be the 0.05 of fine.yaml or a whole part"});
 }
 
+// A wall of 20 cells in the first of seven columns, and in one of the others.
+TEST_F(EvalMap, WallsThatLieElsewhereAreSaid) {
+  const auto write_wall = [&](const std::string& name, int column) {
+    std::string pgm = "P2 7 20 255\n";
+    for (int row = 0; row < 20; ++row) {
+      for (int i = 0; i < 7; ++i) pgm += i == column ? "0 " : "254 ";
+      pgm += "\n";
+    }
+    WriteCells(name, 0.05, pgm);
+  };
+  write_wall("truth", 0);
+  write_wall("near", 2);
+  write_wall("far", 3);
+  EXPECT_EQ(Program("eval map truth.yaml near.yaml").err, "");
+  EXPECT_EQ(Program("eval map truth.yaml far.yaml").err,
+            "depthgrid: warning: far.yaml: 0 % of its walls lie within 2 cells of walls of "
+            "truth.yaml: in another frame (a map lies in that of its poses), of another place, or "
+            "wrong\n");
+}
+
 TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
   ExpectRefusal("eval map fine.yaml other.yaml",
                 {"other.yaml: resolution is 0.03, must be the 0.05 of fine.yaml, a whole multiple "

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "tests/eval/program.h"
 
@@ -85,6 +86,26 @@ TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
   EXPECT_EQ(Program("eval trajectory m.txt m.txt").err, "");
   EXPECT_THAT(Program("eval trajectory m.txt mm.txt").err,
               HasSubstr("mm.txt: fits m.txt best 0.001 times as large"));
+  Write("single.txt", "3 3 0 0 0 0 0 1\n");
+  EXPECT_THAT(Program("eval trajectory truth.txt single.txt").err,
+              HasSubstr("single.txt: one pose is matched, aligned and relative errors need more"));
+}
+
+// The axes of a camera that looks along the truth's x: z forward, y down.
+TEST_F(EvalTrajectory, SaysThatOneWorldIsTilted) {
+  std::string level;
+  std::string tilted;
+  for (int i = 0; i <= 12; ++i) {
+    const auto [x, y, z] = std::tuple(i, i * i % 5, 0.1 * (i % 2));
+    level += fmt::format("{} {} {} {} 0 0 0 1\n", i, x, y, z);
+    tilted += fmt::format("{} {} {} {} 0 0 0 1\n", i, -y, -z, x);
+  }
+  Write("level.txt", level);
+  Write("tilted.txt", tilted);
+  const Outcome outcome = Program("eval trajectory level.txt tilted.txt");
+  EXPECT_THAT(outcome.err, HasSubstr("tilted.txt: fits level.txt to 0.000 m in space"));
+  EXPECT_THAT(outcome.err, HasSubstr("their worlds are tilted against each other"));
+  EXPECT_EQ(Program("eval trajectory level.txt level.txt").err, "");
 }
 
 // evo takes the nearest stamp within 0.01 s, TUM's scripts within 0.02 s.

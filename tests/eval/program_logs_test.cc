@@ -36,16 +36,19 @@ std::string ThereAndBack(double odometry_scale) {
   return log;
 }
 
-// Half round the room, by a laser whose readings are written from left to right.
-std::string HalfRoundUpsideDown() {
+// Half round the room, by a laser whose readings are written from left to right if it is mounted
+// upside down.
+std::string HalfRound(bool upside_down) {
   std::string log;
   for (int i = 0; i <= 120; ++i) {
     const double at_rad = i * kPi / 120.0;
     const double x_m = 3.0 + std::sin(at_rad);
     const double y_m = 2.0 - std::cos(at_rad);
     log += "FLASER 181";
-    for (int k = 180; k >= 0; --k)
-      log += fmt::format(" {:.3f}", RangeM(x_m, y_m, at_rad + (k - 90) * kPi / 180.0));
+    for (int k = 0; k <= 180; ++k) {
+      const int to_left_deg = upside_down ? 90 - k : k - 90;
+      log += fmt::format(" {:.3f}", RangeM(x_m, y_m, at_rad + to_left_deg * kPi / 180.0));
+    }
     log += fmt::format(" {0:.3f} {1:.3f} {2:.4f} {0:.3f} {1:.3f} {2:.4f} {3} host 0\n", x_m, y_m,
                        at_rad, i);
   }
@@ -91,7 +94,7 @@ TEST_F(ProgramLogs, OdometryOfAnotherScaleIsSaid) {
 }
 
 TEST_F(ProgramLogs, ALaserMountedUpsideDownIsSaidAndSettled) {
-  Write("robot.log", HalfRoundUpsideDown());
+  Write("robot.log", HalfRound(true));
   EXPECT_THAT(Program("map robot.log -o out").err,
               HasSubstr("robot.log: the scans turn the other way than the odometry, so the map is "
                         "mirrored: is the laser mounted upside down? --set "
@@ -99,6 +102,10 @@ TEST_F(ProgramLogs, ALaserMountedUpsideDownIsSaidAndSettled) {
   const Outcome settled = Program("map robot.log -o out2 --set sequence.laser.upside_down=true");
   EXPECT_EQ(settled.exit_code, 0);
   EXPECT_EQ(settled.err, "");
+  Write("upright.log", HalfRound(false));
+  EXPECT_THAT(
+      Program("map upright.log -o out3 --set sequence.laser.upside_down=true").err,
+      HasSubstr("the laser not mounted upside down? --set sequence.laser.upside_down=false\n"));
 }
 
 TEST_F(ProgramLogs, ThatNothingWasMatchedIsSaid) {

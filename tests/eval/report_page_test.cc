@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "mapper/io/trajectory_file.h"
+
 namespace depthgrid {
 namespace {
 
@@ -104,6 +106,16 @@ TEST_F(ReportPage, OfARunInAFinishedMap) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
   EXPECT_EQ(browser_->Evaluate("RUN.scans.map((scan) => scan.row).join()"),
             "0,1,2,3,4,5,6,7,8,9,10,11");
+  // SLAM's frame lies elsewhere: its path is shown where the run begins in the map.
+  Trajectory moved = ReadTrajectory(Path("seq/groundtruth.txt"));
+  for (StampedPose& pose : moved) pose.world_from_camera.translation.x() += 20.0;
+  WriteTrajectory(Path("moved.txt"), moved);
+  Succeed("map seq --poses moved.txt --map first -o elsewhere");
+  browser_->Open(Path("elsewhere/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("Math.abs(RUN.paths.slam.x[0] - RUN.paths.est.x[0]) < 1e-6"), true);
+  EXPECT_EQ(browser_->Evaluate("largestCorrection() < 0.5"), true);
+  browser_->Open(Path("longer/report.html"));
   // What was there before the first frame is what that was matched against.
   EXPECT_EQ(browser_->Evaluate("RUN.worst.every((w) => w.surface)"), true);
 }

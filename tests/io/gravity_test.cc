@@ -81,8 +81,8 @@ TEST(Gravity, DriftInHeightTiltsNothing) {
   EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3);
   EXPECT_LT(gravity->wander_rad, RadFromDeg(2.0));
   EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.03);
-  // Where the first of them have it.
-  EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)) - 0.8 / 11.0, 0.03);
+  // Where the second to fourth of them have it: the first sees a table in its place.
+  EXPECT_NEAR(gravity->floor_m, up.dot(Eigen::Vector3d(4, 5, 6)) - 2.0 * 0.8 / 11.0, 0.03);
   EXPECT_TRUE(gravity->floor_is_late);
 }
 
@@ -112,6 +112,35 @@ TEST(Gravity, ATableThatTheFirstImagesSeeIsNoFloor) {
   const auto gravity = finder.Find();
   ASSERT_TRUE(gravity);
   EXPECT_NEAR(gravity->floor_m, 6.0, 0.02);
+}
+
+// SLAM's height drifts from the fifth spread view on, so that the images agree on no floor.
+TEST(Gravity, ATableThatTheFirstImagesSeeIsNoFloorWhereHeightDrifts) {
+  AnalyticRoom table = FurnishedRoom();
+  table.boxes.push_back({{-3.0, -3.0, 0.0}, {3.0, 3.0, 0.7}});
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  const auto told = [](Pose3 pose, double drift_m) {
+    pose.translation += Eigen::Vector3d(4.0, 5.0, 6.0 - drift_m);
+    return pose;
+  };
+  for (const bool first_sees_floor : {true, false}) {
+    GravityFinder finder;
+    for (int i = 0; i < 12; ++i) {
+      const Pose3 pose = TiltedCamera({0.1 * i, 0.0, kPi * i / 6.0}, kHeightM, 0.4, 0.0);
+      const DepthImage image = AnalyticRoom{}.Render(camera, pose);
+      finder.Add(image, camera, told(pose, 0.1 * std::max(0, i - 3)));
+    }
+    for (int i = 0; i < 5; ++i) {
+      const Pose3 pose = TiltedCamera({0.1 * i, 0.0, 0.1 * i}, kHeightM, 0.4, 0.0);
+      const AnalyticRoom seen = i == 0 && first_sees_floor ? AnalyticRoom{} : table;
+      finder.AddFirst(seen.Render(camera, pose), camera, told(pose, 0.0));
+    }
+    const auto gravity = finder.Find();
+    ASSERT_TRUE(gravity);
+    EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
+    EXPECT_NEAR(gravity->floor_m, 6.0, 0.02);
+    EXPECT_EQ(gravity->floor_is_late, !first_sees_floor);
+  }
 }
 
 TEST(Gravity, DriftInTiltLeavesTheFirstUp) {

@@ -241,6 +241,15 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
                                     "poses from 0.000 to 0.300 s; --set "
                                     "sequence.recording.interpolate_poses=true goes between poses, "
                                     "those up to max_interpolation_gap_s apart"));
+  RecordingOptions interpolate;
+  interpolate.interpolate_poses = true;
+  const Trajectory sparse = {PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)};
+  EXPECT_THAT(OpenTumFolder(folder_, SlamOutputOf(sparse), interpolate)->Warnings(),
+              ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
+                                    "poses from 0.000 to 0.300 s; between poses more than 0.2 s "
+                                    "apart none is taken, --set "
+                                    "sequence.recording.max_interpolation_gap_s=S goes between "
+                                    "those up to S"));
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
 }

@@ -111,6 +111,23 @@ TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
   EXPECT_NEAR(FloorTracker(camera, {}).Follow(seen, from_zero, 0).height_m, kCameraHeightM, 0.005);
 }
 
+// Ten seconds in front of it; after twenty it is believed, since the floor may have been mistaken.
+TEST(FloorTracker, ATableThatStaysInViewIsNotTheFloor) {
+  const PinholeCamera camera = SmallCamera();
+  FloorTracker tracker(camera, {});
+  AnalyticRoom table = RoomWithTable();
+  table.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, 0.45}}};
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+  const DepthImage hidden = table.Render(camera, pose);
+  tracker.Follow(RoomWithTable().Render(camera, pose), pose, 0);
+  for (int frame = 0; frame < 300; ++frame) {
+    ASSERT_NEAR(tracker.Follow(hidden, pose, 0).height_m, kCameraHeightM, 0.005) << frame;
+  }
+  double height_m = 0.0;
+  for (int frame = 0; frame < 300; ++frame) height_m = tracker.Follow(hidden, pose, 0).height_m;
+  EXPECT_NEAR(height_m, kCameraHeightM - 0.45, 0.005);
+}
+
 TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
   const PinholeCamera camera = SmallCamera();
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
