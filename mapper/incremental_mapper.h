@@ -16,8 +16,8 @@
 namespace depthgrid {
 
 struct MapperResult {
-  // Per input frame, in input order: the final estimate; empty where neither SLAM nor the map knew
-  // a pose.
+  // Per frame that AddFrame() took, in that order (one it refused has no place here): the final
+  // estimate; empty where neither SLAM nor the map knew a pose.
   std::vector<std::optional<Pose3>> map_from_camera;
   std::vector<MappedFrame> mapped;  // what the map was drawn from, at final poses
   std::vector<PlanarLoop> loops;    // those that entered the graph
