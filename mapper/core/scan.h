@@ -26,7 +26,8 @@ struct Beam {
   bool operator==(const Beam&) const = default;
 };
 
-// Their origin is base's origin.
+// Their origin is base's origin. Of a laser's readings ScanOf() in mapper/io/carmen_log.h makes
+// one.
 struct Scan {
   // By increasing bearing; of a ready scan given to the mapper in any order.
   std::vector<Beam> beams;
