@@ -16,11 +16,12 @@
 namespace depthgrid {
 
 struct MapperResult {
-  // Per input frame, in input order: the final estimate; empty where neither SLAM nor the map knew
-  // a pose.
+  // Per frame that AddFrame() took, in that order (one it refused has no place here): the final
+  // estimate; empty where neither SLAM nor the map knew a pose.
   std::vector<std::optional<Pose3>> map_from_camera;
-  std::vector<MappedFrame> mapped;  // what the map was drawn from, at final poses
-  std::vector<PlanarLoop> loops;    // those that entered the graph
+  // What the map was drawn from, at final poses: the frames whose scans are kept.
+  std::vector<MappedFrame> mapped;
+  std::vector<PlanarLoop> loops;  // those that entered the graph
   OccupancyMap map;
 };
 
@@ -33,12 +34,15 @@ using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predict
 // what the match says of its own sureness stays.
 using MatchOracle = std::function<Pose2(int frame)>;
 
-// A finished map to go on from.
+// A map to go on from.
 struct PriorMap {
-  // In order of time, at final poses; their `frame` is below 0 and increases. A finished mapper's
-  // `mapped` becomes this by counting it -size() to -1.
+  // In order of time, at final poses, each with both its scans, which may be one; their `frame` is
+  // below 0 and increases. `mapped` of a result, or of a mapper that runs, becomes this by counting
+  // it -size() to -1; read from files (mapper/io/scan_file.h) frame, stamp, pose and scans are
+  // enough (docs/examples/second_drive.cc).
   std::vector<MappedFrame> frames;
-  // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees.
+  // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees; FindStart()
+  // in mapper/map_start.h finds it. Nothing puts right one that is farther off.
   Pose2 map_from_slam;
   // Localise only: nothing is inserted, no pose and no cell of the prior map changes.
   bool fixed = false;
@@ -63,15 +67,21 @@ class IncrementalMapper {
 
   // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
   // InputError, and nothing was begun, when a frame's number, pose, stamp or scans are not as
-  // PriorMap wants them, a beam is none that CanBeKept(), or `map_from_slam` is not finite.
+  // PriorMap wants them, a beam is none that CanBeKept(), or `map_from_slam` is not finite. Method
+  // paper matches against the last two submaps alone: `submap.scans` must be as many as the scans.
   void StartFrom(PriorMap prior);
 
   // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
-  // come, when its number is below 0 or was given before, its stamp, pose or a loop is not made of
-  // finite numbers (a pose: of a unit quaternion within 10,000 km, a sigma: positive), or its image
-  // is not the camera's size. What else is amiss is lived with: without a pose nothing is known of
-  // the frame, without image or scan only its pose is corrected; stamps that repeat or go back tell
-  // no speed; a loop with a frame that never came or has no pose counts as rejected.
+  // come, when
+  // - its number is below 0 or was given before, or its stamp is not finite;
+  // - its pose or a loop is not made of finite numbers: of a unit quaternion (to 0.001) within
+  //   10,000 km, a sigma positive;
+  // - its image is not the camera's size, there is no camera, or a scan as well;
+  // - a scan's max_range_m is negative or not finite, or there is a matched_scan alone.
+  // What else is amiss is lived with: without a pose nothing is known of the frame, without image
+  // or scan only its pose is corrected; beams and pixels that are no distances say nothing
+  // (mapper/scan/frame_scans.h); stamps that repeat or go back tell no speed; a loop with a frame
+  // that never came or has no pose counts as rejected.
   // Mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens of ms, or fill up what is
   // remembered of all frames, which is then moved: 0.1 s each hour or so. A frame leaves 0.6 kB
   // behind, 60 MB an hour, and its scan where that is kept (KeepOptions), 3 kB and more.
@@ -80,12 +90,17 @@ class IncrementalMapper {
   // seconds after tens of thousands of frames; frames may come after it, and another end.
   // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
   // when SLAM is trusted alone (K = 0); frames without one keep their live pose. Throws InputError
-  // when it is of another length, or holds a pose that AddFrame() would not take.
+  // when it is of another length, or holds a pose that AddFrame() would not take, and when the map
+  // would be larger than 2^28 cells, 819 m square at 5 cm; CurrentPoses() tells the way even then.
   MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
   // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them, so ask
   // once in a while rather than after each frame. Empty, of no size, while nothing was mapped.
   // Throws InputError, as Finish() does, when the map would be larger than 2^28 cells.
   OccupancyMap CurrentMap() const;
+  // What a result's `map_from_camera` and `mapped` would be without the last correction: the way
+  // so far, which loops move, and what is to be saved of a map that is not finished.
+  std::vector<std::optional<Pose3>> CurrentPoses() const;
+  std::vector<MappedFrame> CurrentMapped() const;
 
  private:
   struct State;

@@ -30,9 +30,15 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::Final(
   return mapped.empty() ? FinalAsItIs() : FinalByAdjusting();
 }
 
+std::vector<Pose2> IncrementalMapper::State::MappedPoses() const {
+  std::vector<Pose2> map_from_base;
+  for (const MappedFrame& frame : mapped.all()) map_from_base.push_back(frame.map_from_base);
+  return map_from_base;
+}
+
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalAsItIs() const {
   FinalEstimate final;
-  for (const MappedFrame& frame : mapped.all()) final.map_from_base.push_back(frame.map_from_base);
+  final.map_from_base = MappedPoses();
   final.map_from_camera = FinalPoses(history, final.map_from_base, stands);
   return final;
 }
@@ -67,6 +73,14 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalOfSlam(
 }
 
 OccupancyMap IncrementalMapper::CurrentMap() const { return state_->Draw(state_->mapped.all()); }
+
+std::vector<std::optional<Pose3>> IncrementalMapper::CurrentPoses() const {
+  return state_->FinalAsItIs().map_from_camera;
+}
+
+std::vector<MappedFrame> IncrementalMapper::CurrentMapped() const {
+  return KeptFrames(state_->mapped.all(), state_->MappedPoses());
+}
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
   MapDrawing drawing(options.grid);

@@ -111,6 +111,7 @@ struct IncrementalMapper::State {
     std::vector<PlanarLoop> loops;                      // those taken, among the kept frames
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
+  std::vector<Pose2> MappedPoses() const;
   FinalEstimate FinalAsItIs() const;
   FinalEstimate FinalByAdjusting() const;
   FinalEstimate FinalOfSlam(const std::vector<std::optional<Pose3>>& slam_final) const;

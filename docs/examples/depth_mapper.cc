@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <vector>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
@@ -15,6 +16,7 @@ using namespace depthgrid;
 
 constexpr int kFrames = 330;  // a turn on the spot and a little more
 constexpr int kLoopFrame = 300;
+constexpr int kTornFrame = 100;  // of which the driver brings half an image
 const PinholeCamera kCamera{
     .width_px = 160, .height_px = 120, .fx_px = 140, .fy_px = 140, .cx_px = 79.5, .cy_px = 59.5};
 
@@ -62,11 +64,14 @@ int main(int argc, char** argv) {
   MapperOptions options;
   options.scan.min_range_m = 0.3;
   IncrementalMapper mapper(options, kCamera);
+  std::vector<double> stamps_s;  // of the frames that it took: the result has a pose for each
   for (int i = 0; i < kFrames; ++i) {
     Frame frame;
     frame.index = i;
     frame.stamp_s = i / 30.0;
-    frame.depth = std::make_shared<DepthImage>(Look(Truth(i)));
+    const auto image = std::make_shared<DepthImage>(Look(Truth(i)));
+    if (i == kTornFrame) image->z_m.resize(image->z_m.size() / 2);
+    frame.depth = image;
     frame.slam_from_camera = kWorldFromFirst * PoseOfSlam(i);
     // Poses before and after a correction of SLAM are no motion: without another number the jump
     // would be taken for one.
@@ -80,6 +85,7 @@ int main(int argc, char** argv) {
     }
     try {
       const FrameReport report = mapper.AddFrame(frame);
+      stamps_s.push_back(frame.stamp_s);
       if (report.loops_accepted > 0) std::printf("frame %d: loop taken\n", i);
     } catch (const InputError& error) {
       std::fprintf(stderr, "left out: %s\n", error.what());
@@ -87,9 +93,9 @@ int main(int argc, char** argv) {
   }
   const MapperResult result = mapper.Finish();
   Trajectory trajectory;
-  for (int i = 0; i < kFrames; ++i) {
-    const auto& pose = result.map_from_camera[static_cast<std::size_t>(i)];
-    if (pose) trajectory.push_back({i / 30.0, *pose});
+  for (std::size_t i = 0; i < stamps_s.size(); ++i) {
+    const auto& pose = result.map_from_camera.at(i);
+    if (pose) trajectory.push_back({stamps_s[i], *pose});
   }
   if (trajectory.empty()) return 1;  // nothing was mapped: no map to write
   WriteMap((folder / "map.yaml").string(), result.map);

@@ -10,7 +10,6 @@
 #include "eval/cli/console.h"
 #include "eval/cli/map_settings.h"
 #include "eval/cli/video_output.h"
-#include "eval/map_start.h"
 #include "eval/mapping_run.h"
 #include "eval/place_check.h"
 #include "eval/prior_run.h"
@@ -22,6 +21,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
+#include "mapper/map_start.h"
 
 namespace depthgrid::cli {
 namespace {

@@ -15,16 +15,19 @@ namespace depthgrid {
 // bearing is free of obstacles through the whole band (empty when clear_to_m <= clear_from_m);
 // everything else is unknown. For a hit clear_to_m <= range_m.
 struct Beam {
-  float bearing_rad = 0.0F;   // from base's x axis, counter-clockwise
-  float range_m = 0.0F;       // horizontal distance of the obstacle; meaningful only when `hit`
-  float clear_from_m = 0.0F;  // horizontal distances
+  float bearing_rad = 0.0F;  // from base's x axis, counter-clockwise
+  float range_m = 0.0F;      // horizontal distance of the obstacle; meaningful only when `hit`
+  // Horizontal distances. Where nothing came back, as far as the sensor would have seen something:
+  // the mapper leaves out what is infinite.
+  float clear_from_m = 0.0F;
   float clear_to_m = 0.0F;
   bool hit = false;
 
   bool operator==(const Beam&) const = default;
 };
 
-// Their origin is base's origin.
+// Their origin is base's origin. Of a laser's readings ScanOf() in mapper/io/carmen_log.h makes
+// one.
 struct Scan {
   // By increasing bearing; of a ready scan given to the mapper in any order.
   std::vector<Beam> beams;

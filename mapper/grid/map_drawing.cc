@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "mapper/core/error.h"
@@ -32,6 +33,28 @@ void RequireDrawable(const GridGeometry& seen) {
                               ": a pose lies far off, or the resolution is too fine");
 }
 
+// The smallest rectangle around its cells; empty when it has none.
+GridGeometry RectangleOf(const CellMask& mask, double resolution_m) {
+  constexpr int kNone = std::numeric_limits<int>::max();
+  int low_x = kNone, end_x = -kNone, low_y = kNone, end_y = -kNone;
+  for (int y = mask.first_row(); y < mask.first_row() + mask.rows(); ++y) {
+    const std::uint64_t* row = mask.Row(y);
+    int first = 0;
+    int last = mask.words_per_row() - 1;
+    while (first <= last && row[first] == 0) ++first;
+    if (first > last) continue;
+    while (row[last] == 0) --last;
+    const int first_x = (mask.first_word() + first) * kWordCells + std::countr_zero(row[first]);
+    const int last_end = (mask.first_word() + last + 1) * kWordCells - std::countl_zero(row[last]);
+    low_x = std::min(low_x, first_x);
+    end_x = std::max(end_x, last_end);
+    low_y = std::min(low_y, y);
+    end_y = y + 1;
+  }
+  if (low_x == kNone) return {resolution_m, {}, 0, 0};
+  return {resolution_m, {low_x, low_y}, end_x - low_x, end_y - low_y};
+}
+
 }  // namespace
 
 MapDrawing::MapDrawing(const GridOptions& options)
@@ -39,12 +62,18 @@ MapDrawing::MapDrawing(const GridOptions& options)
       hit_units_(LogOddsUnits(options.hit_prob)),
       miss_units_(LogOddsUnits(options.miss_prob)),
       min_units_(LogOddsUnits(options.min_prob)),
-      max_units_(LogOddsUnits(options.max_prob)) {}
+      max_units_(LogOddsUnits(options.max_prob)) {
+  seen_.resolution_m = options.resolution_m;
+}
 
 void MapDrawing::Add(const Scan& scan, const Pose2& map_from_base) {
   const double clear_margin_m = options_.clear_margin_cells * options_.resolution_m;
   const ScanCells& cells =
       rasterizer_.Rasterize(scan, map_from_base, options_.resolution_m, clear_margin_m);
+  for (const CellMask* mask : {&cells.hit, &cells.passed}) {
+    seen_ = Union(seen_, RectangleOf(*mask, options_.resolution_m));
+  }
+  RequireDrawable(seen_);
   AddMask(cells.hit, true);
   AddMask(cells.passed, false);
   if (options_.min_surface_share > 0.0) AddSurface(scan, map_from_base);
@@ -106,24 +135,9 @@ float MapDrawing::Probability(const CellRecord& cell) const {
   return static_cast<float>(weighted_hits / (weighted_hits + cell.passes));
 }
 
-GridGeometry MapDrawing::SeenRectangle() const {
-  GridGeometry seen;
-  seen.resolution_m = options_.resolution_m;
-  for (const auto& [index, tile] : tiles_) {
-    for (int i = 0; i < kWordCells * kWordCells; ++i) {
-      const CellRecord& cell = tile->cells[static_cast<std::size_t>(i)];
-      if (cell.hits + cell.passes == 0) continue;
-      const Cell at = CellOfTile(index.first, index.second, i);
-      seen = Union(seen, OnlyCell(at, options_.resolution_m));
-    }
-  }
-  return seen;
-}
-
 OccupancyMap MapDrawing::Map() const {
-  const GridGeometry seen = SeenRectangle();
-  RequireDrawable(seen);
-  OccupancyMap map(seen);
+  RequireDrawable(seen_);
+  OccupancyMap map(seen_);
   for (const auto& [index, tile] : tiles_) {
     for (int i = 0; i < kWordCells * kWordCells; ++i) {
       const Cell cell = CellOfTile(index.first, index.second, i);

@@ -18,6 +18,8 @@ class MapDrawing {
  public:
   explicit MapDrawing(const GridOptions& options);
 
+  // Throws InputError when the map would have more than kMaxMapCells, before it takes memory for
+  // them; so does Map() from then on.
   void Add(const Scan& scan, const Pose2& map_from_base);
   // The smallest rectangle around all cells that were seen; empty when none was.
   OccupancyMap Map() const;
@@ -49,7 +51,6 @@ class MapDrawing {
   Peak PeakAlong(const Cell& cell, const CellRecord& record) const;
   void ThinWalls(OccupancyMap& map) const;
   float Probability(const CellRecord& cell) const;
-  GridGeometry SeenRectangle() const;
 
   GridOptions options_;
   int hit_units_;
@@ -57,6 +58,7 @@ class MapDrawing {
   int min_units_;
   int max_units_;
   ScanRasterizer rasterizer_;
+  GridGeometry seen_;  // the smallest rectangle around all cells that were seen
   std::map<TileIndex, std::unique_ptr<Tile>> tiles_;  // ordered: no result depends on addresses
 };
 

@@ -43,7 +43,8 @@ struct CarmenLogOptions {
 FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {},
                         const PartOptions& part = {});
 
-// What a line's readings mean.
+// What a line's readings mean, or those of any laser's driver (ROS's LaserScan: +infinity is
+// "nothing there", -infinity and NaN are no data): a scan in the laser's own axes.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that

@@ -195,6 +195,9 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
   Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,
           "a map to write has cells");
   const fs::path image_path = MapImageOf(yaml_path, mode);
+  if (image_path == fs::path(yaml_path)) {
+    throw InputError(yaml_path, "is the name that the map's image has, must be the YAML file's");
+  }
   // Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
   const StateThresholds written = mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : thresholds;
   const Eigen::Vector2d origin = map.geometry.OriginM();

@@ -11,7 +11,7 @@
 namespace depthgrid {
 
 struct StoredScan {
-  int frame = 0;  // of the input, counted from 0
+  int frame = 0;  // of the input, counted from 0; below 0: of a map that was gone on in
   double stamp_s = 0.0;
   Pose2 map_from_base;
   KeptScan scan;
@@ -23,6 +23,7 @@ struct StoredScan {
 std::vector<StoredScan> ReadScans(const std::string& path);
 // The same from the file's bytes.
 std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& place);
+// Beams must be such that CanBeKept(), as a mapper's are: others are not read again.
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans);
 
 }  // namespace depthgrid

@@ -12,9 +12,12 @@
 namespace depthgrid {
 namespace {
 
+bool KnowsReach(const Scan& scan) {
+  return scan.max_range_m > 0.0 && scan.max_range_m < kFarthestSeenM;
+}
+
 float ReachOf(const Scan& scan) {
-  const bool known = scan.max_range_m > 0.0 && scan.max_range_m < kFarthestSeenM;
-  return static_cast<float>(known ? scan.max_range_m : kFarthestSeenM);
+  return static_cast<float>(KnowsReach(scan) ? scan.max_range_m : kFarthestSeenM);
 }
 
 // The sound beams in their order, none clear beyond its scan's reach.
@@ -24,6 +27,9 @@ void CopySound(const Scan& given, Scan& sound) {
   sound.beams.clear();
   for (const Beam& beam : given.beams) {
     if (!IsSound(beam, reach_m)) continue;
+    // A number that stands for "nothing came back": were it taken at its word, as far as anything
+    // is seen at all would be free, and each map a square kilometre.
+    if (!KnowsReach(given) && !beam.hit && beam.clear_to_m > reach_m) continue;
     Beam& kept = sound.beams.emplace_back(beam);
     kept.clear_to_m = std::min(beam.clear_to_m, reach_m);
     // Drivers write infinity where nothing came back; files and prior maps hold numbers only.

@@ -38,9 +38,10 @@ class FrameScanner {
 
   // Of a ready scan both are a copy of it, so that the caller's may change: its beams in order of
   // bearing, less those that say nothing, as they are not finite, start behind the sensor, or hit
-  // nearer than 1 mm or beyond the scan's reach (1 km where it does not tell), and clear no
-  // farther than that. A depth image without a pose gives neither; a ready scan needs none. Frames
-  // come in order: the floor is followed from one to the next.
+  // nearer than 1 mm or beyond the scan's reach, and clear no farther than that. Where it does not
+  // tell its reach that is 1 km, and a beam without a hit that clears farther says nothing either.
+  // A depth image without a pose gives neither; a ready scan needs none. Frames come in order: the
+  // floor is followed from one to the next.
   FrameScans ScansOf(const Frame& frame);
 
  private:

@@ -207,5 +207,12 @@ TEST_F(MapFileTest, RealMapsReadOrFailWithOneLine) {
   EXPECT_EQ(StatesOf(ReadMap(test + "testmap.yaml").map), StatesOf(ReadMap(Path("p.yaml")).map));
 }
 
+TEST_F(MapFileTest, TheImageIsNeverWrittenOver) {
+  const OccupancyMap map(GridGeometry{0.05, {0, 0}, 2, 2});
+  EXPECT_THROW(WriteMap(Path("m.pgm"), map), InputError);
+  EXPECT_FALSE(fs::exists(Path("m.pgm")));
+  EXPECT_NO_THROW(WriteMap(Path("m.png"), map));  // odd, but the image is m.pgm
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -213,14 +213,23 @@ TEST(MapDrawing, AMapOfAbsurdSizeIsRefusedBeforeItIsMade) {
   MapDrawing drawing{GridOptions{}};
   const Scan scan{{HitAt(0.0F, 0.2F)}, 6.0};
   drawing.Add(scan, {0.0, 0.0, 0.0});
-  drawing.Add(scan, {8000.0, 14000.0, 0.0});
   try {
-    drawing.Map();
+    drawing.Add(scan, {8000.0, 14000.0, 0.0});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("map: spans 800"));
     EXPECT_THAT(error.what(), testing::HasSubstr(" x 1400"));
   }
+  EXPECT_THROW(drawing.Map(), InputError);
+}
+
+// Its cells would take 7 GB before anything was said.
+TEST(MapDrawing, ASingleScanMayBeTooLarge) {
+  Scan fan;
+  for (int i = 0; i <= 90; ++i) {
+    fan.beams.push_back({static_cast<float>(RadFromDeg(i)), 0.0F, 0.0F, 900.0F, false});
+  }
+  EXPECT_THROW(MapDrawing{GridOptions{}}.Add(fan, {}), InputError);
 }
 
 TEST(MapDrawing, CountsWeighHits) {

@@ -242,5 +242,37 @@ TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
   }
 }
 
+TEST(PriorMap, IsMadeOfAMapperThatStillRuns) {
+  constexpr int kFrames = 100;
+  IncrementalMapper mapper(MapperOptions{}, std::nullopt);
+  const std::vector<Pose2> slam_from_base = DriftingRound();
+  Pose3 last;
+  for (int i = 0; i < kFrames; ++i) {
+    last = *mapper.AddFrame(PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]))
+                .map_from_camera;
+  }
+  Frame lost;
+  lost.index = kFrames;
+  lost.stamp_s = kFrames / 30.0;
+  mapper.AddFrame(lost);
+  const std::vector<std::optional<Pose3>> poses = mapper.CurrentPoses();
+  ASSERT_EQ(poses.size(), kFrames + 1U);
+  EXPECT_FALSE(poses[kFrames]);
+  EXPECT_LT((poses[kFrames - 1]->translation - last.translation).norm(), 1e-9);
+  PriorMap prior;
+  prior.frames = mapper.CurrentMapped();
+  ASSERT_EQ(prior.frames.size(), static_cast<std::size_t>(kFrames));
+  for (int i = 0; i < kFrames; ++i) {
+    MappedFrame& frame = prior.frames[static_cast<std::size_t>(i)];
+    const Pose2 base = BaseOf(*poses[static_cast<std::size_t>(i)]);
+    EXPECT_LT(Separation(frame.map_from_base, base), 1e-9);
+    frame.frame = i - kFrames;
+  }
+  IncrementalMapper second(MapperOptions{}, std::nullopt);
+  second.StartFrom(prior);
+  EXPECT_EQ(StatesOf(second.CurrentMap()), StatesOf(mapper.CurrentMap()));
+  EXPECT_LT(PoseErrorM(BaseOf(*mapper.Finish().map_from_camera[0]), TruthAt(0)), 0.015);
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -1,7 +1,8 @@
-// Where in a finished map a sequence begins.
+// Where in a finished map a sequence begins (docs/formats.md, "Going on in a finished map").
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/incremental_mapper.h"
@@ -30,7 +31,14 @@ struct MapStart {
 // The first views of `source` (of its first 3 m) are laid over the whole map. From each place where
 // they fit the first metres are placed in it, and the one from which they agree with it best is
 // taken; the way back tells where exactly they began. Nothing when no scan shows anything.
+// `prior.map_from_slam` does not count: the place found is what it is to be. Of the source 9 m or
+// 400 frames are read at most. It takes a second, and more of large maps.
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
+                                  const MapperOptions& options);
+// The same of the first frames of a live robot, collected until there is a mapper to give them to:
+// the more of those 9 m they show, the surer the place. `camera` is that of their depth images.
+std::optional<MapStart> FindStart(const PriorMap& prior, const std::vector<Frame>& first_frames,
+                                  const std::optional<PinholeCamera>& camera,
                                   const MapperOptions& options);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-#include "eval/map_start.h"
+#include "mapper/map_start.h"
 
 #include <algorithm>
 #include <iterator>
@@ -49,6 +49,26 @@ constexpr double kOffWallM = 0.3;
 constexpr double kUnknownWorth = 0.1;
 
 double Way(const Pose2& motion) { return motion.translation().norm(); }
+
+// Frames that are there already.
+class CollectedFrames final : public FrameSource {
+ public:
+  CollectedFrames(const std::vector<Frame>& frames, const std::optional<PinholeCamera>& camera)
+      : frames_(frames), camera_(camera) {}
+
+  std::optional<Frame> Next() override {
+    if (next_ == frames_.size()) return {};
+    return frames_[next_++];
+  }
+  std::optional<PinholeCamera> Camera() const override { return camera_; }
+  int FrameCount() const override { return static_cast<int>(frames_.size()); }
+  std::vector<std::string> Warnings() const override { return {}; }
+
+ private:
+  const std::vector<Frame>& frames_;
+  std::optional<PinholeCamera> camera_;
+  std::size_t next_ = 0;
+};
 
 // The first frames with a pose and a scan, of one epoch of SLAM's, read as far as is asked for.
 class FirstFrames {
@@ -244,6 +264,13 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
   MapStart start{Nearer(*found, map, views), {}};
   if (!options.fusion.TrustsSlamAlone()) TryAll(frames, prior, map, options, start);
   return start;
+}
+
+std::optional<MapStart> FindStart(const PriorMap& prior, const std::vector<Frame>& first_frames,
+                                  const std::optional<PinholeCamera>& camera,
+                                  const MapperOptions& options) {
+  CollectedFrames source(first_frames, camera);
+  return FindStart(prior, source, options);
 }
 
 }  // namespace depthgrid

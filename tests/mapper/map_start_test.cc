@@ -1,4 +1,4 @@
-#include "eval/map_start.h"
+#include "mapper/map_start.h"
 
 #include <gtest/gtest.h>
 
@@ -98,6 +98,20 @@ TEST(FindStart, SaysThatItIsUncertain) {
   const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
   ASSERT_TRUE(start);
   EXPECT_TRUE(start->uncertain());
+}
+
+TEST(FindStart, TakesFramesThatWereCollected) {
+  const Pose2 begin{24.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 12.0);
+  std::vector<Frame> frames;
+  while (auto frame = walk.Next()) frames.push_back(std::move(*frame));
+  WalkThroughHall again(begin, 12.0);
+  const PriorMap map = MapOfHall();
+  const auto expected = FindStart(map, again, MapperOptions{});
+  const auto start = FindStart(map, frames, {}, MapperOptions{});
+  ASSERT_TRUE(expected && start);
+  EXPECT_EQ(start->place.map_from_slam, expected->place.map_from_slam);
+  EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.5, 0.05));
 }
 
 TEST(FindStart, IsNothingWithoutFrames) {

@@ -1,0 +1,147 @@
+// Maps what a laser's driver gives with a robot's odometry and saves the map; a second drive, begun
+// somewhere else, finds its place in it and goes on. Usage: second_drive FOLDER
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "mapper/core/level.h"
+#include "mapper/incremental_mapper.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/scan_file.h"
+#include "mapper/map_start.h"
+
+using namespace depthgrid;
+
+constexpr Pose2 kBaseFromLaser{.x_m = 0.2};  // 20 cm before the robot's axle
+constexpr double kLaserHeightM = 0.3;
+constexpr int kFrames = 250;
+constexpr int kFramesToFindPlace = 120;  // 6 m of way
+
+// Where the robot really is: it goes round an oval. A robot knows its odometry only.
+Pose2 Truth(int step) {
+  const double turn = 0.025 * step;
+  return {2.6 * std::cos(turn), 1.8 * std::sin(turn),
+          std::atan2(1.8 * std::cos(turn), -2.6 * std::sin(turn))};
+}
+
+struct Box {
+  double left, bottom, right, top;
+};
+constexpr Box kRoom{-4.5, -3.5, 4.5, 3.5};
+constexpr Box kFurniture[] = {
+    {-1, -0.6, 0.8, 0.5}, {-4.5, 2, -3, 3.5}, {3.6, -3.5, 4.5, -1.5}, {1, 2.4, 4.5, 3.5}};
+
+// How far along a ray one side of a box is, beyond which nothing of it is seen.
+double ToSide(double from, double along, double side, double other_from, double other_along,
+              double low, double high) {
+  const double range = (side - from) / along;
+  const double at = other_from + range * other_along;
+  return range > 0.0 && at >= low && at <= high ? range : std::numeric_limits<double>::infinity();
+}
+
+double ToBox(const Pose2& from, double heading, const Box& box) {
+  const double x = std::cos(heading), y = std::sin(heading);
+  return std::min({ToSide(from.x_m, x, box.left, from.y_m, y, box.bottom, box.top),
+                   ToSide(from.x_m, x, box.right, from.y_m, y, box.bottom, box.top),
+                   ToSide(from.y_m, y, box.bottom, from.x_m, x, box.left, box.right),
+                   ToSide(from.y_m, y, box.top, from.x_m, x, box.left, box.right)});
+}
+
+// What a driver gives, such as a LaserScan of ROS: ranges from right to left.
+CarmenScan Readings(const Pose2& world_from_laser) {
+  CarmenScan readings;
+  readings.first_bearing_rad = -RadFromDeg(120.0);
+  readings.bearing_step_rad = RadFromDeg(1.0);
+  readings.max_range_m = 8.0;  // beyond it, nothing comes back
+  for (int i = 0; i <= 240; ++i) {
+    const double heading = world_from_laser.yaw_rad + RadFromDeg(i - 120.0);
+    double range = ToBox(world_from_laser, heading, kRoom);
+    for (const Box& box : kFurniture)
+      range = std::min(range, ToBox(world_from_laser, heading, box));
+    readings.range_m.push_back(range);
+  }
+  return readings;
+}
+
+// A drive of the robot: it begins at this step, and counts its odometry from there.
+std::vector<Frame> Drive(int first_step) {
+  std::vector<Frame> frames;
+  Pose2 odom_from_base;
+  for (int i = 0; i < kFrames; ++i) {
+    if (i > 0) {
+      const Pose2 driven = Between(Truth(first_step + i - 1), Truth(first_step + i));
+      odom_from_base = odom_from_base * Pose2{1.02 * driven.x_m, driven.y_m, 0.99 * driven.yaw_rad};
+    }
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 10.0;
+    // ScanOf() knows what readings of nothing, glass and faults mean.
+    frame.scan =
+        std::make_shared<Scan>(ScanOf(Readings(Truth(first_step + i) * kBaseFromLaser), {}));
+    // The mapper's `base` is where the scans are taken from: the laser.
+    frame.slam_from_camera = CameraOf(odom_from_base * kBaseFromLaser, kLaserHeightM);
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+// A depth camera's frames have a second scan each, MappedFrame::scan: another such file.
+void Save(const std::string& path, const std::vector<MappedFrame>& mapped) {
+  std::vector<StoredScan> scans;
+  for (const MappedFrame& frame : mapped) {
+    scans.push_back({frame.frame, frame.stamp_s, frame.map_from_base, frame.obstacles});
+  }
+  WriteScans(path, scans);
+}
+
+PriorMap Load(const std::string& path) {
+  PriorMap prior;
+  const std::vector<StoredScan> scans = ReadScans(path);
+  for (const StoredScan& stored : scans) {
+    MappedFrame frame;
+    frame.frame = static_cast<int>(prior.frames.size()) - static_cast<int>(scans.size());
+    frame.stamp_s = stored.stamp_s;
+    frame.map_from_base = stored.map_from_base;
+    frame.scan = frame.obstacles = stored.scan;
+    prior.frames.push_back(frame);
+  }
+  return prior;
+}
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  std::filesystem::create_directories(argv[1]);
+  const std::string file = (std::filesystem::path(argv[1]) / "scans.bin").string();
+  const MapperOptions options;
+
+  IncrementalMapper first(options, std::nullopt);
+  for (const Frame& frame : Drive(0)) {
+    first.AddFrame(frame);
+    // Now and then, so that a flat battery does not cost the map.
+    if (frame.index % 100 == 99) Save(file, first.CurrentMapped());
+  }
+  Save(file, first.Finish().mapped);
+
+  constexpr int kSecondBegin = 60;
+  const std::vector<Frame> frames = Drive(kSecondBegin);
+  PriorMap prior = Load(file);
+  const std::vector<Frame> seen(frames.begin(), frames.begin() + kFramesToFindPlace);
+  const auto start = FindStart(prior, seen, std::nullopt, options);
+  if (!start || start->uncertain()) return 1;  // go on collecting, or ask somebody
+  prior.map_from_slam = start->place.map_from_slam;
+  IncrementalMapper second(options, std::nullopt);
+  second.StartFrom(std::move(prior));
+  FrameReport report;
+  for (const Frame& frame : frames) report = second.AddFrame(frame);
+
+  // The map's frame is the first drive's odometry, which began at Truth(0).
+  const Pose2 estimate = BaseOf(*report.map_from_camera) * Inverse(kBaseFromLaser);
+  const Pose2 truth = Between(Truth(0), Truth(kSecondBegin + kFrames - 1));
+  const double error_m = (estimate.translation() - truth.translation()).norm();
+  std::printf("%s: %d scans; the second drive's last pose is %.1f mm off\n", file.c_str(),
+              static_cast<int>(second.Finish().mapped.size()), 1e3 * error_m);
+  return error_m < 0.03 ? 0 : 1;
+}
