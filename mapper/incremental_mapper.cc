@@ -101,6 +101,10 @@ void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
 FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& report) {
   const StageTimer timer(clocks, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
+  if (reference && scans.matched && frame.slam_from_camera) {
+    const int epoch = history.newest().epoch;
+    scans.matched = moving.LeftOut(scans.matched, BaseOf(*frame.slam_from_camera), epoch);
+  }
   if (scans.matched) report.beams = HitCount(*scans.matched);
   report.stand = scans.stand;
   const bool follows_floor = options.scan.floor == FloorSource::kImage;

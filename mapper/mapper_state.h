@@ -15,6 +15,7 @@
 #include "mapper/mapped_frames.h"
 #include "mapper/reference_factory.h"
 #include "mapper/scan/frame_scans.h"
+#include "mapper/scan/moving_objects.h"
 #include "mapper/slip_search.h"
 
 namespace depthgrid {
@@ -30,6 +31,7 @@ struct IncrementalMapper::State {
   GainOracle oracle;
   MatchOracle match_oracle;
   FrameScanner scanner;
+  MovingObjects moving;
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
   FrameHistory history;
   StandBlend stands;
@@ -54,6 +56,7 @@ struct IncrementalMapper::State {
         clocks(std::move(clks)),
         oracle(std::move(orc)),
         scanner(cam, opts.scan),
+        moving(opts.method == MapperMethod::kSurfel ? opts.surfel.moving_m : 0.0),
         stands(opts.scan.floor_z_m),
         filter(opts.fusion),
         errors(opts.submap.scans),

@@ -186,9 +186,12 @@ int Measure(int argc, char** argv) {
   app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread");
   app.add_option("--slip-deg", prior.slip_deg, "by so much");
   app.add_option("--slip-m", prior.slip_m, "and forward or back by so much");
-  app.add_option("--people", people, "none, crossing or ahead")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, People>{
-          {"none", People::kNone}, {"crossing", People::kCrossing}, {"ahead", People::kAhead}}));
+  app.add_option("--people", people, "none, crossing, ahead or swaying")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, People>{{"none", People::kNone},
+                                                                {"crossing", People::kCrossing},
+                                                                {"ahead", People::kAhead},
+                                                                {"swaying", People::kSwaying}}));
   app.add_option("--set", sets);
   app.add_flag("-v", verbose);
   CLI11_PARSE(app, argc, argv);

@@ -15,6 +15,7 @@ enum class People {
   kNone,
   kCrossing,  // three, one after the other, walk through the view
   kAhead,     // one walks on before the robot, for three quarters of the time
+  kSwaying,   // the same, now nearer, now farther, and from foot to foot
 };
 
 constexpr double kPersonRadiusM = 0.22;
@@ -46,8 +47,12 @@ inline LaserWorld WithPeople(const LaserWorld& world, People people,
     }
   }
   constexpr std::size_t kRound = 400, kAheadFrames = 300;
-  if (people == People::kAhead && frame % kRound < kAheadFrames) {
-    AddPerson(world_from_base[frame] * Eigen::Vector2d(kPersonAheadM, 0.0), peopled);
+  if ((people == People::kAhead || people == People::kSwaying) && frame % kRound < kAheadFrames) {
+    const double at_s = static_cast<double>(frame) / kFrameRateHz;
+    const double sways = people == People::kSwaying ? 1.0 : 0.0;
+    const Eigen::Vector2d ahead_m(kPersonAheadM + 0.25 * sways * std::sin(2.0 * kPi * 0.3 * at_s),
+                                  0.08 * sways * std::sin(2.0 * kPi * 0.9 * at_s));
+    AddPerson(world_from_base[frame] * ahead_m, peopled);
   }
   return peopled;
 }

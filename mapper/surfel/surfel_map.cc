@@ -149,6 +149,9 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
            "a match that moves the estimate, or what lies 3 m away, so far moves its group along");
   v.Number("stay_m", stay_m, {0.0, 1000.0},
            "at the end frames stay this near to where the joint adjustment has them; 0: anywhere");
+  v.Number("moving_m", moving_m, {0.0, 10.0},
+           "what stands free is matched once SLAM moved the camera so far past it and it stood; 0: "
+           "from the start");
 }
 
 SurfelMap::SurfelMap(const SurfelOptions& options)

@@ -29,6 +29,8 @@ struct SurfelOptions {
   double jump_m = 0.02;
   // At the end each frame's pose stays near that of the joint adjustment (Smoothed).
   double stay_m = 0.3;
+  // MovingObjects: what stands free is matched once it was seen to stand over so much of a way.
+  double moving_m = 0.12;
 
   void Visit(OptionsVisitor& v);
 };
