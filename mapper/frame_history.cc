@@ -1,11 +1,13 @@
 #include "mapper/frame_history.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/core/usual_step.h"
 
 namespace depthgrid {
 namespace {
@@ -67,6 +69,21 @@ const FrameRecord* FrameHistory::PosedBefore(const FrameRecord& record) const {
 bool FrameHistory::WasLost() const {
   const FrameRecord* last = PosedBefore(newest());
   return last != nullptr && (last + 1 != &newest() || last->epoch != newest().epoch);
+}
+
+int FrameHistory::FramesToNewest() const {
+  constexpr std::size_t kRecentSteps = 15;
+  if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return 1;
+  std::array<double, kRecentSteps> steps_s;
+  std::size_t count = 0;
+  for (std::size_t i = records_.size() - 2; i > 0 && count < kRecentSteps; --i) {
+    const double step_s = records_[i].stamp_s - records_[i - 1].stamp_s;
+    if (step_s > 0.0) steps_s[count++] = step_s;
+  }
+  if (count == 0) return 1;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.begin() + static_cast<std::ptrdiff_t>(count));
+  return StepsIn(newest().stamp_s - records_[records_.size() - 2].stamp_s, *middle);
 }
 
 const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {

@@ -41,6 +41,9 @@ class FrameHistory {
   // Whether SLAM comes back with the newest frame: to poses of another epoch, or after frames
   // without any. A recording that paused lost nothing.
   bool WasLost() const;
+  // From the record before to the newest, in usual steps of time: more than one where the recording
+  // paused; one where SLAM was lost or began another epoch.
+  int FramesToNewest() const;
   // The mapped frame closest in order to a frame, itself if it is mapped, of the same epoch and at
   // most `reach` input frames away; null if there is none.
   const FrameRecord* NearestMapped(const FrameRecord& record, int reach) const;

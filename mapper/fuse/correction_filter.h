@@ -16,6 +16,10 @@ class CorrectionFilter {
   explicit CorrectionFilter(const FusionOptions& options)
       : options_(options), gain_(options.gain) {}
 
+  // SLAM's next pose comes so many frames after the last one committed: more than one where the
+  // recording paused. `learned`; the other modes count the time.
+  void SetFrames(int frames) { tracker_.SetFrames(frames); }
+
   // Where SLAM's pose is in the map before matching. The pose must be of the epoch of the last one
   // committed: the difference of the two is taken as a motion.
   Prediction Predict(const Pose2& slam_from_base, double stamp_s) const;

@@ -9,22 +9,20 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
 
-Eigen::Vector3d RenewedBias(const MotionNoise& noise) {
-  return (1.0 - noise.bias_kept.array().square()).sqrt().matrix().cwiseProduct(noise.bias);
-}
-
-DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionNoise& noise) {
+DriftState Predicted(const DriftState& state, const Pose2& motion, int frames,
+                     const MotionNoise& noise) {
+  const MotionErrors errors = ErrorsOver(frames, noise);
   DriftState next;
-  const Pose2 corrected = motion * Pose2::FromVector(state.bias);
+  const Pose2 corrected = motion * Pose2::FromVector(errors.bias_added.cwiseProduct(state.bias));
   next.map_from_base = state.map_from_base * corrected;
-  next.bias = noise.bias_kept.cwiseProduct(state.bias);
+  next.bias = errors.bias_kept.cwiseProduct(state.bias);
   Matrix6 f = Matrix6::Zero();
   f.topLeftCorner<3, 3>() = AdjointOf(Inverse(corrected));
-  f.topRightCorner<3, 3>().setIdentity();
-  f.bottomRightCorner<3, 3>() = noise.bias_kept.asDiagonal();
+  f.topRightCorner<3, 3>() = errors.bias_added.asDiagonal();
+  f.bottomRightCorner<3, 3>() = errors.bias_kept.asDiagonal();
   next.covariance = f * state.covariance * f.transpose();
-  next.covariance.topLeftCorner<3, 3>() += Squared(noise.walk);
-  next.covariance.bottomRightCorner<3, 3>() += Squared(RenewedBias(noise));
+  next.covariance.topLeftCorner<3, 3>() += Squared(errors.walk);
+  next.covariance.bottomRightCorner<3, 3>() += Squared(errors.bias_renewed);
   return next;
 }
 

@@ -17,11 +17,9 @@ struct DriftState {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-// The standard deviation of what is new in the bias of each frame.
-Eigen::Vector3d RenewedBias(const MotionNoise& noise);
-
-// SLAM moved by `motion`.
-DriftState Predicted(const DriftState& state, const Pose2& motion, const MotionNoise& noise);
+// SLAM moved by `motion`, in so many frames' time.
+DriftState Predicted(const DriftState& state, const Pose2& motion, int frames,
+                     const MotionNoise& noise);
 
 // The pose of the camera itself: SLAM's without its jitter.
 Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise);

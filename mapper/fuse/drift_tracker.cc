@@ -26,6 +26,9 @@ constexpr double kCaution = 1.4;
 // Motions before the first look at the noise; later looks are a quarter of all frames apart.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
+// What one frame's motion errs by is not learnt from motions over more frames: some may be missing
+// now and then, a pause is another thing.
+constexpr int kMostLearntFrames = 3;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
@@ -50,7 +53,7 @@ void DriftTracker::StartAnew() {
 }
 
 DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
-  return Predicted(state_, Between(last_->slam_from_base, slam_from_base), noise_);
+  return Predicted(state_, Between(last_->slam_from_base, slam_from_base), frames_, noise_);
 }
 
 Prediction DriftTracker::Predict(const Pose2& slam_from_base) const {
@@ -67,10 +70,12 @@ FilterStep DriftTracker::StepTo(const Pose2& predicted) const {
   FilterStep step;
   step.predicted = predicted;
   if (!last_) return step;
-  step.walk = learnt_.walk;
+  const MotionErrors errors = ErrorsOver(frames_, learnt_);
+  step.walk = errors.walk;
   step.jitter = learnt_.jitter;
-  step.bias_kept = learnt_.bias_kept;
-  step.bias_renewed = RenewedBias(learnt_);
+  step.bias_added = errors.bias_added;
+  step.bias_kept = errors.bias_kept;
+  step.bias_renewed = errors.bias_renewed;
   return step;
 }
 
@@ -89,6 +94,7 @@ void DriftTracker::Restart(const Pose2& slam_from_base, const Pose2& map_from_ba
   step_.new_bias = learnt_.bias;
   state_ = AnewAt(map_from_base, covariance);
   last_ = Last{slam_from_base, {}};
+  frames_ = 1;
   learner_.Break();
 }
 
@@ -116,13 +122,14 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
       step_.new_bias.reset();
     }
   }
-  if (matched && last_->match) {
+  if (matched && last_->match && frames_ <= kMostLearntFrames) {
     Learn(Between(last_->slam_from_base, slam_from_base), *last_->match, *matched);
   } else {
     learner_.Break();
   }
   state_ = next;
   last_ = Last{slam_from_base, matched};
+  frames_ = 1;
 }
 
 void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now) {

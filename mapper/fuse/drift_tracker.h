@@ -15,6 +15,9 @@ class DriftTracker {
  public:
   DriftTracker();
 
+  // SLAM's next pose comes so many frames after the last one committed: more than one where the
+  // recording paused.
+  void SetFrames(int frames) { frames_ = frames; }
   Prediction Predict(const Pose2& slam_from_base) const;
   FusedPose Fuse(const Pose2& slam_from_base, const MatchResult& match) const;
   // The pose that SLAM's newest was given. When it is not what Fuse() returns for the match, it was
@@ -59,6 +62,7 @@ class DriftTracker {
   FilterStep step_;
   DriftState state_;
   std::optional<Last> last_;
+  int frames_ = 1;  // from it to the next pose
 };
 
 }  // namespace depthgrid

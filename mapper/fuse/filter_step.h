@@ -16,7 +16,8 @@ struct FilterStep {
 
   Pose2 predicted;                                         // map_from_base
   Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // added to the pose
-  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias of the frame before
+  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // of the bias before, to the pose
+  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias before
   Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // added to it
   // The bias was forgotten, and is known like this.
   std::optional<Eigen::Vector3d> new_bias;

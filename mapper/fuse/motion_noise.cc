@@ -28,6 +28,10 @@ std::array<double, kParts> UnitVariances(double lag, double kept) {
   return {2.0, lag, bias};
 }
 
+Eigen::Vector3d Renewed(const Eigen::Vector3d& kept, const Eigen::Vector3d& bias) {
+  return (1.0 - kept.array().square()).sqrt().matrix().cwiseProduct(bias);
+}
+
 struct Fit3 {
   std::array<double, kParts> variance{};
   double misfit = 0.0;
@@ -72,6 +76,26 @@ Fit3 FitParts(const std::vector<double>& lag, const std::vector<double>& varianc
 }
 
 }  // namespace
+
+MotionErrors ErrorsOver(int frames, const MotionNoise& noise) {
+  MotionErrors errors;
+  errors.walk = noise.walk;
+  errors.bias_kept = noise.bias_kept;
+  for (int axis = 0; frames > 1 && axis < 3; ++axis) {
+    const double kept = noise.bias_kept[axis];
+    errors.bias_kept[axis] = std::pow(kept, frames);
+    errors.bias_added[axis] = kept < 1.0 ? (1.0 - errors.bias_kept[axis]) / (1.0 - kept) : frames;
+    // What is new in the bias on the way adds to the pose as well: all of the sum but what the bias
+    // before gives it.
+    const double added = errors.bias_added[axis];
+    const double sum = kept < 1.0 ? UnitVariances(frames, kept)[2] : added * added;
+    const double new_bias =
+        std::max(0.0, sum - added * added) * noise.bias[axis] * noise.bias[axis];
+    errors.walk[axis] = std::sqrt(frames * noise.walk[axis] * noise.walk[axis] + new_bias);
+  }
+  errors.bias_renewed = Renewed(errors.bias_kept, noise.bias);
+  return errors;
+}
 
 // A bias sums up with the number of frames, a walk with its root.
 void Bound(const MotionSpread& spread, MotionNoise& noise) {

@@ -21,6 +21,16 @@ struct MotionNoise {
   Eigen::Vector3d bias_kept = Eigen::Vector3d::Constant(0.98);
 };
 
+// What a motion does to the errors of a pose and of the bias before it. Standard deviations.
+struct MotionErrors {
+  Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // added to the pose
+  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // of the bias before, to the pose
+  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias before
+  Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // added to it
+};
+// Over so many frames at once, where a recording paused.
+MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
+
 // The same as seen from poses and map adjusted together: the error of SLAM's motion over stretches
 // of so many frames, as that of one frame if it grows with their number.
 struct MotionSpread {

@@ -129,7 +129,8 @@ void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts)
   const Eigen::Matrix3d origin_from_step = OriginFromBase(step.predicted);
   const double noise_kept = 1.0 - 1.0 / (1.0 + kNoiseAge * AgeOf(parts, knots_.back().mapped + 1));
   Matrix9 f = Matrix9::Identity();
-  f.block<3, 3>(kPose, kBias) = origin_from_step;
+  const Eigen::Matrix3d origin_from_bias = origin_from_step * step.bias_added.asDiagonal();
+  f.block<3, 3>(kPose, kBias) = origin_from_bias;
   f.block<3, 3>(kBias, kBias) = step.bias_kept.asDiagonal();
   f.block<3, 3>(kMapNoise, kMapNoise) *= noise_kept;
   Matrix9 state = f * newest_.topLeftCorner<9, 9>() * f.transpose();
@@ -137,7 +138,7 @@ void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts)
   state.block<3, 3>(kBias, kBias) += Squared(step.bias_renewed);
   auto knots_with_bias = knots_with_newest_.middleCols<3>(kBias);
   knots_with_newest_.middleCols<3>(kPose).noalias() +=
-      knots_with_bias * origin_from_step.transpose();
+      knots_with_bias * origin_from_bias.transpose();
   knots_with_bias = (knots_with_bias * step.bias_kept.asDiagonal()).eval();
   knots_with_newest_.middleCols<3>(kMapNoise) *= noise_kept;
   newest_.topLeftCorner<9, 9>() = state;

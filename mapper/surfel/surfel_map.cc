@@ -6,6 +6,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/median.h"
+#include "mapper/core/usual_step.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
 #include "mapper/surfel/pose_covariance.h"
@@ -20,8 +21,6 @@ const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
 // kept").
 constexpr double kTieOverconfidence = 4.0;
 constexpr double kTieHuberSigmas = 2.0;
-// A recording that paused for longer errs by no more.
-constexpr double kMostSteps = 1000.0;
 
 // From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
 GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
@@ -47,9 +46,7 @@ double UsualStepS(const std::vector<MappedFrame>& frames) {
 // How many usual steps it took from the frame before: more than one where the recording paused.
 int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s) {
   const bool follows = frame.frame == before.frame + 1;
-  const double step_s = frame.stamp_s - before.stamp_s;
-  if (!follows || usual_s <= 0.0 || step_s <= usual_s) return 1;
-  return static_cast<int>(std::min(std::round(step_s / usual_s), kMostSteps));
+  return follows ? StepsIn(frame.stamp_s - before.stamp_s, usual_s) : 1;
 }
 
 // SLAM's motion from each group to the next, from those of the frames between.

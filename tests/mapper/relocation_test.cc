@@ -265,7 +265,9 @@ double WorstErrorAfterPauses(double field_of_view_deg, const Pose2& error_of_eac
   return worst_m;
 }
 
-TEST(Pause, OfARecordingIsNoLoss) { EXPECT_LT(WorstErrorAfterPauses(67.0, {}), 0.0005); }
+// Taken for one it is 35 mm. Exact poses are believed over it no more than over the frames that did
+// not come: half a millimetre better if they were (docs/tried.md, "Pauses").
+TEST(Pause, OfARecordingIsNoLoss) { EXPECT_LT(WorstErrorAfterPauses(67.0, {}), 0.002); }
 
 // What SLAM drifts by in two seconds is not taken for the error of one frame.
 TEST(Pause, SlamErrsOverItAsOverTheFramesThatDidNotCome) {

@@ -1,0 +1,90 @@
+// A recording that paused: SLAM's motion over the pause errs by as much as one over the frames that
+// did not come.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mapper/core/level.h"
+#include "mapper/core/usual_step.h"
+#include "mapper/frame_history.h"
+#include "mapper/fuse/drift_tracker.h"
+
+namespace depthgrid {
+namespace {
+
+MotionNoise NoiseOfTest() {
+  MotionNoise noise;
+  noise.walk.setConstant(0.3);
+  noise.bias.setConstant(0.1);
+  noise.bias_kept.setConstant(0.5);
+  return noise;
+}
+
+TEST(StepsIn, CountsUsualSteps) {
+  EXPECT_EQ(StepsIn(0.04, 0.03), 1);
+  EXPECT_EQ(StepsIn(0.06, 0.03), 2);
+  EXPECT_EQ(StepsIn(-5.0, 0.03), 1);
+  EXPECT_EQ(StepsIn(0.06, 0.0), 1);
+  EXPECT_EQ(StepsIn(1e9, 0.03), 1000);
+}
+
+TEST(ErrorsOver, OneFrameAreTheNoiseItself) {
+  const MotionErrors errors = ErrorsOver(1, NoiseOfTest());
+  EXPECT_EQ(errors.walk, NoiseOfTest().walk);
+  EXPECT_EQ(errors.bias_added, Eigen::Vector3d::Ones());
+  EXPECT_EQ(errors.bias_kept, NoiseOfTest().bias_kept);
+  EXPECT_NEAR(errors.bias_renewed.x(), 0.1 * std::sqrt(0.75), 1e-15);
+}
+
+// Two frames: b and b' = b / 2 + r, var r = 3/4 var b. Their sum is 3/2 b + r.
+TEST(ErrorsOver, TwoFramesAddUp) {
+  const MotionErrors errors = ErrorsOver(2, NoiseOfTest());
+  EXPECT_NEAR(errors.bias_added.x(), 1.5, 1e-12);
+  EXPECT_NEAR(errors.bias_kept.y(), 0.25, 1e-12);
+  EXPECT_NEAR(errors.walk.z(), std::sqrt(2.0 * 0.09 + 0.75 * 0.01), 1e-12);
+  EXPECT_NEAR(errors.bias_renewed.x(), 0.1 * std::sqrt(15.0 / 16.0), 1e-12);
+}
+
+TEST(ErrorsOver, ABiasThatStaysAddsAtEachFrame) {
+  MotionNoise noise = NoiseOfTest();
+  noise.bias_kept.setOnes();
+  const MotionErrors errors = ErrorsOver(7, noise);
+  EXPECT_EQ(errors.bias_added.x(), 7.0);
+  EXPECT_NEAR(errors.walk.x(), 0.3 * std::sqrt(7.0), 1e-12);
+}
+
+TEST(FrameHistory, TellsForHowManyFramesARecordingPaused) {
+  FrameHistory history;
+  int index = 0;
+  const auto frames_to = [&](double stamp_s, bool posed = true) {
+    Frame frame;
+    frame.index = index++;
+    frame.stamp_s = stamp_s;
+    if (posed) frame.slam_from_camera = CameraOf({}, 1.0);
+    history.Start(frame);
+    return history.FramesToNewest();
+  };
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(frames_to(0.1 * i), 1);
+  EXPECT_EQ(frames_to(2.9), 10);  // the last was at 1.9
+  EXPECT_EQ(frames_to(3.0), 1);
+  EXPECT_EQ(frames_to(3.5, false), 1);
+  EXPECT_EQ(frames_to(4.0), 1);  // SLAM was lost
+}
+
+TEST(DriftTracker, BelievesSlamsMotionOverAPauseLess) {
+  DriftTracker tracker;
+  MatchResult match;
+  match.found = true;
+  match.information = 1e10 * Eigen::Matrix3d::Identity();
+  tracker.Commit({}, {}, Eigen::Matrix3d::Zero(), match);
+  const double variance = tracker.Predict({0.1, 0.0, 0.0}).covariance(0, 0);
+  tracker.SetFrames(25);
+  const double paused = tracker.Predict({0.1, 0.0, 0.0}).covariance(0, 0);
+  EXPECT_GT(paused, 20.0 * variance);
+  // The next one is one frame again.
+  tracker.Commit({0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}, Eigen::Matrix3d::Zero(), match);
+  EXPECT_LT(tracker.Predict({0.2, 0.0, 0.0}).covariance(0, 0), 2.0 * variance);
+}
+
+}  // namespace
+}  // namespace depthgrid
