@@ -6,6 +6,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
+#include "mapper/frame_check.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/match/distance_field.h"
 #include "mapper/scan/frame_scans.h"
@@ -74,7 +75,7 @@ class CollectedFrames final : public FrameSource {
 class FirstFrames {
  public:
   FirstFrames(FrameSource& source, const ScanOptions& options)
-      : source_(source), scanner_(source.Camera(), options) {}
+      : source_(source), camera_(source.Camera()), scanner_(camera_, options) {}
 
   const std::vector<Frame>& all() const { return frames_; }
 
@@ -83,6 +84,7 @@ class FirstFrames {
     while (auto frame = source_.Next()) {
       if (!frame->slam_from_camera) continue;
       if (!frames_.empty() && frame->slam_epoch != frames_.front().slam_epoch) return false;
+      RequireSound(*frame, camera_);
       const FrameScans scans = scanner_.ScansOf(*frame);
       if (!scans.obstacles) continue;
       frame->depth.reset();
@@ -98,6 +100,7 @@ class FirstFrames {
 
  private:
   FrameSource& source_;
+  std::optional<PinholeCamera> camera_;
   FrameScanner scanner_;
   std::vector<Frame> frames_;
 };
@@ -254,6 +257,7 @@ bool MapStart::uncertain() const {
 
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options) {
+  RequireSound(prior);
   MapDrawing drawing(options.grid);
   for (const MappedFrame& frame : prior.frames) drawing.Add(*frame.obstacles, frame.map_from_base);
   const OccupancyMap map = drawing.Map();

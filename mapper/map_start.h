@@ -31,8 +31,10 @@ struct MapStart {
 // The first views of `source` (of its first 3 m) are laid over the whole map. From each place where
 // they fit the first metres are placed in it, and the one from which they agree with it best is
 // taken; the way back tells where exactly they began. Nothing when no scan shows anything.
-// `prior.map_from_slam` does not count: the place found is what it is to be. Of the source 9 m or
-// 400 frames are read at most. It takes a second, and more of large maps.
+// `prior.map_from_slam` does not count: the place found is what it is to be. Of the source the
+// first 3 m are read, however long the robot stands before, and then 6 m more, or up to 400 frames
+// in all. It takes a second, and more of large maps. Throws InputError as StartFrom() and
+// AddFrame() do.
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options);
 // The same of the first frames of a live robot, collected until there is a mapper to give them to:

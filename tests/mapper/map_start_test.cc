@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 
+#include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "tests/mapper/planar_world.h"
 
@@ -112,6 +113,36 @@ TEST(FindStart, TakesFramesThatWereCollected) {
   ASSERT_TRUE(expected && start);
   EXPECT_EQ(start->place.map_from_slam, expected->place.map_from_slam);
   EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.5, 0.05));
+}
+
+// As a mapper refuses them, with the same words.
+TEST(FindStart, RefusesWhatIsNotSound) {
+  const auto error_of = [](const PriorMap& prior, const Frame& frame,
+                           const std::optional<PinholeCamera>& camera) -> std::string {
+    try {
+      FindStart(prior, std::vector{frame}, camera, MapperOptions{});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  WalkThroughHall walk({24.0, 0.0, kPi}, 1.0);
+  const Frame frame = *walk.Next();
+  PriorMap without_scans = MapOfHall();
+  without_scans.frames[2].obstacles = {};
+  EXPECT_EQ(error_of(without_scans, frame, {}),
+            "prior map, entry 2: has no scans of its own, must have both");
+  EXPECT_FALSE(FindStart(PriorMap{}, std::vector{frame}, {}, MapperOptions{}));
+  const PriorMap map = MapOfHall();
+  Frame image = frame;
+  image.scan.reset();
+  image.depth = std::make_shared<DepthImage>(4, 2);
+  EXPECT_EQ(error_of(map, image, {}),
+            "frame 0: has a depth image, but the mapper was made without a camera");
+  const PinholeCamera camera{
+      .width_px = 4, .height_px = 3, .fx_px = 3, .fy_px = 3, .cx_px = 1.5, .cy_px = 1};
+  EXPECT_EQ(error_of(map, image, camera),
+            "frame 0: its depth image has 4 x 2 pixels, must have the camera's 4 x 3 pixels");
 }
 
 TEST(FindStart, IsNothingWithoutFrames) {
