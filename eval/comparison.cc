@@ -340,7 +340,10 @@ void Judge(const std::vector<std::size_t>& tested, double level, Comparison& com
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
   const std::vector<double> least = HolmAdjusted(least_p_values);
-  for (MetricComparison& row : comparison.metrics) row.verdict = Verdict::kNotTested;
+  for (MetricComparison& row : comparison.metrics) {
+    const bool all_equal = row.paired.wilcoxon.pairs == 0;  // which no test would tell apart
+    row.verdict = all_equal ? Verdict::kNotToldApart : Verdict::kNotTested;
+  }
   for (std::size_t k = 0; k < tested.size(); ++k) {
     MetricComparison& row = comparison.metrics[tested[k]];
     row.p_holm = adjusted[k];

@@ -102,13 +102,13 @@ void PrintTooFew(const Comparison& comparison) {
                Counted(comparison.pairs_for_one, unit), all);
     return;
   }
-  const bool some_tested =
+  const bool some_are_not =
       std::any_of(comparison.metrics.begin(), comparison.metrics.end(),
                   [](const MetricComparison& c) { return c.verdict == Verdict::kNotTested; });
   fmt::print(
       "\n{} can tell apart {} at once{}{}. Choose with --metric what is asked, before looking.\n",
       Counted(comparison.units, unit), Counted(most, "row"), all,
-      some_tested ? "; the others are not tested" : "");
+      some_are_not ? "; the others are not tested" : "");
 }
 
 void PrintTable(const Comparison& comparison, const CompareArguments& arguments) {

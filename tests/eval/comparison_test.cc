@@ -274,8 +274,11 @@ TEST(Compare, OfTheHeadlinesAsManyAreTestedAsThePairsCanTellApart) {
   EXPECT_EQ(Compare(a, b, both).metrics[0].verdict, Verdict::kTooFew);
   a.metrics[0].values = b.metrics[0].values;
   const Comparison second = Compare(a, b, {});
-  EXPECT_EQ(second.metrics[0].verdict, Verdict::kNotTested);
+  EXPECT_EQ(second.metrics[0].verdict, Verdict::kNotToldApart);  // equal: there is nothing to test
   EXPECT_EQ(second.metrics[1].verdict, Verdict::kABetter);
+  for (const MetricComparison& row : Compare(a, a, {}).metrics) {
+    EXPECT_EQ(row.verdict, Verdict::kNotToldApart);
+  }
 }
 
 // By their sizes six such differences are enough, by the ranks of these the p-value is 4 / 2^6.
