@@ -64,7 +64,7 @@ struct FrameReport {
   int motion_from = -1;
   Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   bool innovation_rejected = false;  // the gate refused the match
-  int beams = 0;                     // beams with a hit
+  int beams = 0;                     // beams with a hit, of what is matched
   int loops_accepted = 0;            // loop events of this frame that entered the graph
   int loops_rejected = 0;
   bool slipped = false;    // SLAM's motion to here did not fit what is seen: it was put right

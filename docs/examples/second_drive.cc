@@ -88,7 +88,8 @@ std::vector<Frame> Drive(int first_step) {
   return frames;
 }
 
-// A depth camera's frames have a second scan each, MappedFrame::scan: another such file.
+// What was matched, MappedFrame::scan, lacks what may move, and of a depth camera is another scan:
+// a second such file keeps it. Here one does for both.
 void Save(const std::string& path, const std::vector<MappedFrame>& mapped) {
   std::vector<StoredScan> scans;
   for (const MappedFrame& frame : mapped) {
