@@ -103,7 +103,7 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   FrameScans scans = scanner.ScansOf(frame);
   if (reference && scans.matched && frame.slam_from_camera) {
     const int epoch = history.newest().epoch;
-    scans.matched = moving.LeftOut(scans.matched, BaseOf(*frame.slam_from_camera), epoch);
+    scans.matched = moving.ToMatch(scans.matched, BaseOf(*frame.slam_from_camera), epoch);
   }
   if (scans.matched) report.beams = HitCount(*scans.matched);
   report.stand = scans.stand;

@@ -105,7 +105,7 @@ void MovingObjects::Judge(Object& object) const {
   }
 }
 
-bool MovingObjects::IsLeftOut(const Object& object, bool unjudged_too) const {
+bool MovingObjects::IsLeftOut(const Object& object, bool unjudged_too) {
   return object.verdict == Verdict::kMoves || (unjudged_too && object.verdict == Verdict::kNone);
 }
 
@@ -136,7 +136,7 @@ std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan
   return rest;
 }
 
-std::shared_ptr<const Scan> MovingObjects::LeftOut(const std::shared_ptr<const Scan>& scan,
+std::shared_ptr<const Scan> MovingObjects::ToMatch(const std::shared_ptr<const Scan>& scan,
                                                    const Pose2& slam_from_base, int epoch) {
   if (after_m_ <= 0.0) return scan;
   if (!slam_from_before_ || epoch_ != epoch) {

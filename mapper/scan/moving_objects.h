@@ -20,10 +20,10 @@ class MovingObjects {
   // view if it stands; 0: nothing is followed.
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
-  // The scan without what moves, and without what is not judged yet unless that is half of what is
-  // seen; mostly the scan itself. Of frames that have one, in the order of time, with SLAM's pose;
-  // nothing is compared from one epoch to another (SlamEpochs).
-  std::shared_ptr<const Scan> LeftOut(const std::shared_ptr<const Scan>& scan,
+  // What is to be matched: the scan without what moves, and without what is not judged yet unless
+  // that is half of what is seen; mostly the scan itself. Of frames that have one, in the order of
+  // time, with SLAM's pose; nothing is compared from one epoch to another (SlamEpochs).
+  std::shared_ptr<const Scan> ToMatch(const std::shared_ptr<const Scan>& scan,
                                       const Pose2& slam_from_base, int epoch);
 
  private:
@@ -42,7 +42,7 @@ class MovingObjects {
   void Carry(const Pose2& base_from_before);
   void Recognise(Object& object);
   void Judge(Object& object) const;
-  bool IsLeftOut(const Object& object, bool unjudged_too) const;
+  static bool IsLeftOut(const Object& object, bool unjudged_too);
   std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan);
 
   double after_m_;

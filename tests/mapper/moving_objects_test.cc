@@ -40,7 +40,7 @@ Seen Follow(MovingObjects& moving, const Pose2& world_from_base, const Pose2& sl
   const auto scan = std::make_shared<const Scan>(ScanOfRoom(world_from_base, post_m));
   const Eigen::Vector2d in_view_m = Inverse(world_from_base) * post_m;
   return {HitsNear(*scan, in_view_m),
-          HitsNear(*moving.LeftOut(scan, slam_from_base, epoch), in_view_m)};
+          HitsNear(*moving.ToMatch(scan, slam_from_base, epoch), in_view_m)};
 }
 
 Pose2 At(int step) { return {kStepM * step, 0.0, 0.0}; }
@@ -128,15 +128,15 @@ TEST(MovingObjects, WhatIsHalfOfTheViewIsMatchedUntilItIsJudged) {
     }
     return std::make_shared<const Scan>(seen);
   };
-  EXPECT_EQ(HitsNear(*moving.LeftOut(scan(1.0), At(0), 0), {1.0, 0.0}), 39);
-  for (int i = 1; i < 6; ++i) moving.LeftOut(scan(1.0), At(i), 0);
-  EXPECT_EQ(HitsNear(*moving.LeftOut(scan(1.0), At(7), 0), {1.0, 0.0}), 0);
+  EXPECT_EQ(HitsNear(*moving.ToMatch(scan(1.0), At(0), 0), {1.0, 0.0}), 39);
+  for (int i = 1; i < 6; ++i) moving.ToMatch(scan(1.0), At(i), 0);
+  EXPECT_EQ(HitsNear(*moving.ToMatch(scan(1.0), At(7), 0), {1.0, 0.0}), 0);
 }
 
 TEST(MovingObjects, ZeroFollowsNothing) {
   MovingObjects moving(0.0);
   const auto scan = std::make_shared<const Scan>(ScanOfRoom({}, {1.5, 0.0}));
-  EXPECT_EQ(moving.LeftOut(scan, {}, 0), scan);
+  EXPECT_EQ(moving.ToMatch(scan, {}, 0), scan);
 }
 
 // SLAM's way is 1 % too long. Who walks on 1.5 m ahead takes up a third of the view.
