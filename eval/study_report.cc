@@ -39,22 +39,25 @@ CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
   return files;
 }
 
-// Short names for the rooms. Maps in other cells cannot be held beside each other: another room.
-void NameRooms(std::vector<CaseFiles>& cases) {
-  const std::vector<CaseFiles> as_set = cases;
-  for (CaseFiles& c : cases) {
-    const std::string file = c.scene;
-    const double cell_m = c.run.map.geometry.resolution_m;
-    const std::string stem = fs::path(file).stem().string();
-    bool is_stem_shared = false;
-    bool has_other_cells = false;
-    for (const CaseFiles& other : as_set) {
-      is_stem_shared |= other.scene != file && fs::path(other.scene).stem() == stem;
-      has_other_cells |= other.scene == file && other.run.map.geometry.resolution_m != cell_m;
-    }
-    c.scene = is_stem_shared ? file : stem;
-    if (has_other_cells) c.scene += fmt::format(", cells of {} m", cell_m);
+// A short name for a case's room among those of all. Maps in other cells cannot be held beside each
+// other: another room.
+std::string RoomName(const CaseFiles& c, const std::vector<CaseFiles>& cases) {
+  const double cell_m = c.run.map.geometry.resolution_m;
+  const std::string stem = fs::path(c.scene).stem().string();
+  bool is_stem_shared = false;
+  bool has_other_cells = false;
+  for (const CaseFiles& other : cases) {
+    is_stem_shared |= other.scene != c.scene && fs::path(other.scene).stem() == stem;
+    has_other_cells |= other.scene == c.scene && other.run.map.geometry.resolution_m != cell_m;
   }
+  const std::string& name = is_stem_shared ? c.scene : stem;
+  return has_other_cells ? fmt::format("{}, cells of {} m", name, cell_m) : name;
+}
+
+void NameRooms(std::vector<CaseFiles>& cases) {
+  std::vector<std::string> names;
+  for (const CaseFiles& c : cases) names.push_back(RoomName(c, cases));
+  for (std::size_t i = 0; i < cases.size(); ++i) cases[i].scene = names[i];
 }
 
 // Corners of the path of the camera on the floor, [x, y, x, y, ...] in metres.

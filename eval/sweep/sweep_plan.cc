@@ -310,15 +310,14 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   CheckValues(plan);
   CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);
+  const ChosenAnew anew = {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)};
   for (const auto& doubt :
        {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
     if (doubt) plan.warnings.push_back(*doubt);
   }
-  const auto changed =
-      DoubtsOfRecord(experiment, record, ReadExperiment(plan.base, plan.base_folder),
-                     {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)});
   for (const auto& doubts :
-       {changed, DoubtsOfAxisKeys(plan, fixed, set),
+       {DoubtsOfRecord(experiment, record, ReadExperiment(plan.base, plan.base_folder), anew),
+        DoubtsOfAxisKeys(plan, fixed, set),
         DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment))}) {
     plan.warnings.insert(plan.warnings.end(), doubts.begin(), doubts.end());
   }
