@@ -125,8 +125,10 @@ SweepAxis ReadAxis(const ConfigEntry& entry) {
   std::set<std::vector<std::string>> seen;
   for (const auto& value : axis.values) {
     if (seen.insert(value).second) continue;
-    throw InputError(entry.place, fmt::format("axis '{}' has the value {} twice", entry.key,
-                                              fmt::join(value, ", ")));
+    // Of a range of whole numbers each step goes to the nearest one.
+    throw InputError(entry.place, fmt::format("axis '{}' has the value {} twice{}", entry.key,
+                                              fmt::join(value, ", "),
+                                              entry.map ? ": give a smaller count" : ""));
   }
   return axis;
 }

@@ -64,6 +64,13 @@ TEST_F(SweepPlanTest, RangesOfWholeNumbersAreWhole) {
   EXPECT_EQ(std::set<std::string>(values.begin(), values.end()),
             (std::set<std::string>{"5", "6", "7"}));
   EXPECT_THROW(PlanOf("axes: {mapper.submap.scans: {from: 0.5, to: 7, count: 3}}\n"), InputError);
+  try {
+    PlanOf("axes: {mapper.submap.scans: {from: 1, to: 3, count: 5}}\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::EndsWith("axis 'mapper.submap.scans' has the value 2 twice: "
+                                                "give a smaller count"));
+  }
 }
 
 // A shipped experiment names no files: those of the sweep lie beside it.
