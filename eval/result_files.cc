@@ -54,9 +54,10 @@ bool IsMapFile(const fs::path& relative) {
 
 // With what needs the truth or SLAM's own account, and a study's input map.
 bool IsRunFile(const fs::path& relative) {
-  static const Names names = {"truth_map.yaml", "truth_map.pgm",        "observable.yaml",
-                              "observable.pgm", "trajectory_truth.txt", "loops.csv",
-                              "metrics.json",   "input_map.yaml",       "input_map.pgm"};
+  static const Names names = {"truth_map.yaml",     "truth_map.pgm",        "observable.yaml",
+                              "observable.pgm",     "trajectory_truth.txt", "loops.csv",
+                              "metrics.json",       "input_map.yaml",       "input_map.pgm",
+                              "input_map.scale.png"};
   return IsMapFile(relative) || names.contains(relative.string()) ||
          IsSamplePicture(relative, "_colour.png");
 }

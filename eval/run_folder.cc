@@ -33,13 +33,6 @@ void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
   }
 }
 
-// A run that mapped nothing still has a map: one unknown cell.
-OccupancyMap MapOf(const MappingRun& run) {
-  if (run.result.map.geometry.size() > 0) return run.result.map;
-  const GridGeometry& none = run.result.map.geometry;
-  return OccupancyMap(OnlyCell(none.min_cell, none.resolution_m));
-}
-
 // In the map's frame, wherever SLAM's own lies in a finished map that the run went on in.
 Trajectory ShownSlam(const MappingRun& run) {
   const auto& mapped = run.result.mapped;
@@ -49,7 +42,7 @@ Trajectory ShownSlam(const MappingRun& run) {
 }
 
 void WriteMapPicture(const OutputFolder& folder, const RunRecord& record) {
-  const OccupancyMap map = MapOf(*record.mapping);
+  const OccupancyMap map = MapToWrite(record.mapping->result.map);
   std::vector<Path> paths;
   if (record.truth != nullptr) {
     paths.push_back({"truth", palette::kTruth, record.truth->trajectory, PathStyle::kBeneath});
@@ -87,6 +80,11 @@ void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
 }
 
 }  // namespace
+
+OccupancyMap MapToWrite(const OccupancyMap& map) {
+  if (map.geometry.size() > 0) return map;
+  return OccupancyMap(OnlyCell(map.geometry.min_cell, map.geometry.resolution_m));
+}
 
 std::string MetricsOf(const RunScores& scores) {
   return MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
@@ -127,7 +125,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
   WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.world));
   WriteFile(folder.File("warnings.txt"), Lines(record.warnings));
-  WriteMap(folder.File("map.yaml"), MapOf(*record.mapping), record.map_mode);
+  WriteMap(folder.File("map.yaml"), MapToWrite(record.mapping->result.map), record.map_mode);
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
   if (record.truth != nullptr) WriteTruthMaps(folder.work().string(), *record.truth);

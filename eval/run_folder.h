@@ -28,6 +28,9 @@ struct RunRecord {
 RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,
                    const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores);
 
+// A run that mapped nothing still has a map: one unknown cell.
+OccupancyMap MapToWrite(const OccupancyMap& map);
+
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 

@@ -3,12 +3,14 @@
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "eval/input_map.h"
 #include "eval/joint_runs.h"
 #include "eval/metrics_json.h"
 #include "eval/run_folder.h"
 #include "eval/study_report.h"
+#include "eval/view_check.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
@@ -40,7 +42,7 @@ Progress PartOf(const Progress& whole, std::size_t group, std::size_t groups) {
 
 // A case's folder, with the times of the joint run it was part of.
 CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const JointRuns& joint,
-                     const OutputFolder& study_folder, double wall_s) {
+                     MapMode map_mode, const OutputFolder& study_folder, double wall_s) {
   const OccupancyMap input = InputPoseMap(run.mapping, run.options.mapper.grid);
   CaseResult result;
   result.name = study_case.name;
@@ -52,11 +54,14 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   OutputFolder folder(study_folder.File(study_case.name), false);
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
+  if (const auto doubt = DoubtOfView(run.mapping, run.options)) record.warnings.push_back(*doubt);
+  record.map_mode = map_mode;
   record.wall_s_total = wall_s;
   record.cpu_s_total = ProcessCpuS();
-  WriteMap(folder.File("input_map.yaml"), input);
+  WriteMap(folder.File("input_map.yaml"), MapToWrite(input), map_mode);
   WriteRunFolder(folder, record);
   folder.Commit();
+  result.warnings = std::move(record.warnings);
   return result;
 }
 
@@ -75,7 +80,7 @@ std::string SummaryJson(const std::vector<CaseResult>& results) {
 
 }  // namespace
 
-std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
+std::vector<CaseResult> RunStudy(const Study& study, const std::string& text, MapMode map_mode,
                                  const OutputFolder& folder, const RunContext& context) {
   using Clock = std::chrono::steady_clock;
   std::vector<CaseResult> results(study.experiments.size());
@@ -90,7 +95,8 @@ std::vector<CaseResult> RunStudy(const Study& study, const std::string& text,
     for (std::size_t k = 0; k < groups[g].size(); ++k) {
       const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
       const std::size_t i = groups[g][k];
-      results[i] = WriteCase(study.outline.cases[i], joint.runs[k], joint, folder, wall_s);
+      results[i] =
+          WriteCase(study.outline.cases[i], joint.runs[k], joint, map_mode, folder, wall_s);
     }
   }
   WriteFile(folder.File("study.yaml"), text);

@@ -143,9 +143,15 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   OutputFolder folder =
       OpenOutput(arguments.common, ResultKind::kStudy, InputsOf(path, study.experiments));
   ProgressBar bar("mapping");
-  const auto results = RunStudy(study, ReadFile(path), folder, ContextOf(arguments, bar));
+  const auto results =
+      RunStudy(study, ReadFile(path), arguments.output.map_mode, folder, ContextOf(arguments, bar));
   folder.Commit();
   bar.Clear();
+  for (const CaseResult& result : results) {
+    for (const std::string& warning : result.warnings) {
+      warnings.push_back("case " + result.name + ": " + warning);
+    }
+  }
   Warn(warnings);
   PrintCases(results);
   SayReport(arguments.common.output);

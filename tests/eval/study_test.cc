@@ -86,6 +86,32 @@ TEST_F(StudyRun, OverridesHoldForEveryCase) {
   }
 }
 
+TEST_F(StudyRun, MapsOfEveryCaseHaveTheModeAskedFor) {
+  Succeed("run ./study.yaml -o out --map-mode scale --set frames=2");
+  for (const char* name : {"orb", "other_seed", "truth"}) {
+    for (const char* map : {"map", "input_map"}) {
+      const std::string path = std::string("out/") + name + "/" + map;
+      EXPECT_THAT(ReadFile(Path(path + ".yaml")), HasSubstr("mode: scale"));
+      EXPECT_TRUE(std::filesystem::exists(Path(path + ".scale.png")));
+    }
+  }
+  Succeed("run ./study.yaml -o out --force --set frames=2");
+  for (const char* map : {"map", "input_map"}) {
+    EXPECT_TRUE(std::filesystem::exists(Path(std::string("out/orb/") + map + ".pgm")));
+    EXPECT_FALSE(std::filesystem::exists(Path(std::string("out/orb/") + map + ".scale.png")));
+  }
+}
+
+TEST_F(StudyRun, WhatIsWrongWithACaseIsSaidWithItsName) {
+  const std::string err = Program("run ./study.yaml -o out --set sensor.max_range_m=0.1").err;
+  for (const std::string name : {"orb", "other_seed", "truth"}) {
+    const std::string line = ReadFile(Path("out/" + name + "/warnings.txt"));
+    EXPECT_THAT(line, HasSubstr("hold no measurement"));
+    EXPECT_THAT(err, HasSubstr("depthgrid: warning: case " + name + ": " + line));
+  }
+  EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 3);
+}
+
 TEST_F(StudyRun, CasesThatBecameTheSameAreSaid) {
   EXPECT_EQ(Program("run ./study.yaml -o out --set slam.profile=ground_truth").err,
             "depthgrid: warning: case truth: is the same as case orb\n");
