@@ -24,8 +24,8 @@ std::string WithFileFromHere(std::string assignment) {
 
 }  // namespace
 
-void AddSet(CLI::App& app, CommonArguments& common) {
-  app.add_option("--set", common.set, "Override a key: key.path=value (repeat for more)")
+void AddSet(CLI::App& app, CommonArguments& common, const char* meaning) {
+  app.add_option("--set", common.set, meaning)
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->transform(CLI::Validator(

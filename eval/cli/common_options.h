@@ -8,7 +8,12 @@
 
 namespace depthgrid::cli {
 
-void AddSet(CLI::App& app, CommonArguments& common);
+constexpr const char* kSetMeaning = "Override a key: key.path=value (repeat for more)";
+// Of commands without --keys.
+constexpr const char* kSetOfExperimentMeaning =
+    "Override a key: key.path=value (repeat for more); `depthgrid run --keys` lists them";
+// `meaning`: what --set takes, in --help.
+void AddSet(CLI::App& app, CommonArguments& common, const char* meaning = kSetMeaning);
 constexpr const char* kForceMeaning =
     "Write into a folder that is not empty: what an earlier such command wrote there goes, all "
     "other names stay; never over a file that this one reads";

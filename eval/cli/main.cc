@@ -26,7 +26,7 @@ constexpr const char* kFirstSteps =
     "  depthgrid run living_room -o out     a minute; then open out/report.html\n"
     "  depthgrid COMMAND --help             options and examples of a command\n"
     "Exit codes: 0 done, 1 failed while running, 2 bad usage or input, 130 ended by Ctrl-C,\n"
-    "143 by kill.";
+    "143 by kill, 129 by a closed terminal.";
 
 struct Program {
   CLI::App app{"depthgrid: 2D navigation maps from RGB-D cameras, simulated and recorded",
@@ -61,7 +61,7 @@ void AddRender(Program& program) {
   app->add_option("scene", arguments->scene, "Shipped scene or experiment, or a file")->required();
   app->add_flag("--no-colour", arguments->no_colour, "Depth images only: several times as fast");
   AddOutput(*app, arguments->common);
-  AddSet(*app, arguments->common);
+  AddSet(*app, arguments->common, kSetOfExperimentMeaning);
   AddThreads(*app, arguments->common);
   AddCache(*app, arguments->common);
 }
@@ -167,7 +167,8 @@ void AddSlam(Program& program) {
       ->capture_default_str();
   AddSeed(*app, "--seed", arguments->seed, "Of the errors");
   AddOutput(*app, arguments->common);
-  AddSet(*app, arguments->common);
+  AddSet(*app, arguments->common,
+         "Override a key, slam.NAME=value (repeat for more); `depthgrid run --keys` lists them");
 }
 
 void AddSlamCalibrate(Program& program) {
@@ -185,7 +186,7 @@ void AddSlamCalibrate(Program& program) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
-  AddSet(*app, arguments->common);
+  AddSet(*app, arguments->common, kSetOfExperimentMeaning);
   AddThreads(*app, arguments->common);
 }
 
@@ -271,7 +272,7 @@ void AddAblate(Program& program) {
   AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
   app->add_flag("--json", arguments->json, "Print JSON instead of tables");
   AddOutput(*app, arguments->common);
-  AddSet(*app, arguments->common);
+  AddSet(*app, arguments->common, kSetOfExperimentMeaning);
   AddThreads(*app, arguments->common);
   AddCache(*app, arguments->common);
 }
