@@ -76,6 +76,10 @@ BearingLineTable BearingLines(const PinholeCamera& camera,
                               const std::vector<Bearing>& bearings, bool transposed,
                               BearingLineTable memory = {});
 
+// Whether the image shows what lies straight ahead at the camera's own height, at whatever
+// distance: one that looks below the horizon does not.
+bool ShowsHorizon(const BearingLineTable& lines);
+
 namespace internal {
 // The camera as the (possibly transposed) image has it: rows of the matrix are forward, left and up
 // of a ray (a, b, 1), a along the image's columns and b along its rows.

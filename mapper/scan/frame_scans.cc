@@ -103,6 +103,7 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (drop_cut_ends_) DropCutEnds(scans.noise, farthest_m_, scans.slice);
   *obstacles = std::move(scans.obstacles);
   *slice = std::move(scans.slice);
+  if (!ShowsHorizon(memory_.lines)) return {obstacles, obstacles, stand};
   return {obstacles, slice, stand};
 }
 

@@ -2,7 +2,8 @@
 // obstacle band; but which surface that is changes with the camera's tilt and distance (a table top
 // leaves the image when the camera comes near), so such scans do not fit each other rigidly. A thin
 // level slice at the camera's own height is seen at any distance and is the paper's "horizontal
-// point cloud": that is what is matched.
+// point cloud": that is what is matched. An image that looks below the horizon shows next to
+// nothing of it, and its obstacles are matched.
 #pragma once
 
 #include <memory>

@@ -36,8 +36,8 @@ struct ScanOptions {
   // one is as low as what lies below the band.
   double max_gap_m = 0.1;
   // What is matched is a level slice of this half height around the camera (see frame_scans.h); 0
-  // matches the obstacle scan. 0.1 m keeps three rows or more of the image up to 6 m with a tilted
-  // camera and is thin against furniture.
+  // matches the obstacle scan, as is done of images below the horizon. 0.1 m keeps three rows or
+  // more of the image up to 6 m with a tilted camera and is thin against furniture.
   double slice_half_height_m = 0.1;
   // Beyond so many sigmas of noise, what lies above and below the slice's inner half is another
   // surface (SteadyRange); 0 takes all for one. Of pure noise 2.5 drops one bearing in forty.

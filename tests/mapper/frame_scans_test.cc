@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 #include "tests/mapper/analytic_room.h"
@@ -132,6 +133,32 @@ TEST(FrameScanner, WithoutASliceTheObstaclesAreMatched) {
   options.slice_half_height_m = 0.0;
   const FrameScans scans = FrameScanner(PinholeCamera{}, options).ScansOf(WallFrame());
   EXPECT_EQ(scans.obstacles, scans.matched);
+}
+
+// The image reaches 26.6 degrees above its axis. From 30 degrees down it ends 3.4 below the
+// horizon, where the slice is in view up to 0.1 m / tan 3.4 = 1.7 m: no wall stands as near.
+TEST(FrameScanner, BelowTheHorizonTheObstaclesAreMatched) {
+  const PinholeCamera camera;
+  const AnalyticRoom room;
+  ScanOptions options;
+  options.floor = FloorSource::kPose;
+  FrameScanner scanner(camera, options);
+  for (const double roll_deg : {0.0, 90.0, 180.0}) {
+    for (const double down_deg : {20.0, 30.0, 40.0}) {
+      SCOPED_TRACE(testing::Message() << down_deg << " down, rolled " << roll_deg);
+      Frame frame;
+      frame.slam_from_camera =
+          TiltedCamera({}, kCameraHeightM, RadFromDeg(down_deg), RadFromDeg(roll_deg));
+      frame.depth = std::make_shared<DepthImage>(room.Render(camera, *frame.slam_from_camera));
+      const FrameScans scans = scanner.ScansOf(frame);
+      // On its side the image is 67 degrees high.
+      const bool sees_horizon = down_deg < (roll_deg == 90.0 ? 33.6 : 26.6);
+      EXPECT_EQ(scans.matched != scans.obstacles, sees_horizon);
+      const auto hits = std::count_if(scans.matched->beams.begin(), scans.matched->beams.end(),
+                                      [](const Beam& beam) { return beam.hit; });
+      EXPECT_GT(hits, 500);
+    }
+  }
 }
 
 TEST(FrameScanner, AReadyScanIsBoth) {
