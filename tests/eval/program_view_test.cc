@@ -1,0 +1,91 @@
+// The program end to end: what it says of a camera that sees nothing to map or to match.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "mapper/io/file.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class ProgramView : public ProgramTest {};
+
+TEST_F(ProgramView, AnEmptyMapIsSaidWithItsCause) {
+  const auto said = [&](const std::string& arguments) {
+    const Outcome outcome = Program(arguments + " -o out --force");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string band = " --set mapper.scan.band_low_m=5 --set mapper.scan.band_high_m=6";
+  const auto names_band =
+      AllOf(HasSubstr("no frame sees anything from 5 to 6 m above the floor"),
+            HasSubstr("and 0.4 to 6 m away"), HasSubstr("the images, 80x60 pixels and "),
+            HasSubstr("show depth from "), Not(HasSubstr("path")));
+  EXPECT_THAT(said("run ./small.yaml" + band), names_band);
+  EXPECT_THAT(said("run ./small.yaml --set sensor.max_range_m=0.1"),
+              AllOf(HasSubstr("degrees wide, hold no measurement"), Not(HasSubstr("path"))));
+  Succeed("render ./small.yaml --no-colour -o seq");
+  EXPECT_THAT(said("map seq" + band), AllOf(HasSubstr("warning: seq: "), names_band));
+  EXPECT_EQ(said("map seq"), "");
+}
+
+// Three rows of an image make an obstacle, but no slice of so few pixels has them.
+TEST_F(ProgramView, ThatNothingCanBeMatchedIsSaidWithItsCause) {
+  const std::string said =
+      Program("run ./small.yaml -o out --set sensor.width=8 --set sensor.height=8").err;
+  EXPECT_THAT(said, AllOf(HasSubstr("nothing could be matched, the poses are those given"),
+                          HasSubstr("within 0.1 m of the camera's height"), HasSubstr("8x8 pixels"),
+                          Not(HasSubstr("path"))));
+}
+
+// Of frames.csv: rows with a score of their match.
+int RowsWithMatch(const std::string& file) {
+  std::istringstream lines(ReadFile(file));
+  std::string line;
+  std::getline(lines, line);
+  const auto commas_to = line.find("match_score");
+  const auto column = std::count(line.begin(), line.begin() + commas_to, ',');
+  int rows = 0;
+  while (std::getline(lines, line)) {
+    std::size_t at = 0;
+    for (int k = 0; k < column; ++k) at = line.find(',', at) + 1;
+    rows += line[at] != ',' ? 1 : 0;
+  }
+  return rows;
+}
+
+// Walls come as near as that for part of the way only.
+TEST_F(ProgramView, ThatFewFramesCouldBeMatchedIsSaid) {
+  const std::string said =
+      Program("run ./small.yaml -o out --set frames=60 --set mapper.scan.max_range_m=2").err;
+  const int matched = RowsWithMatch(Path("out/frames.csv"));
+  EXPECT_GT(matched, 10);
+  EXPECT_LT(matched, 50);
+  EXPECT_THAT(said, AllOf(HasSubstr("warning: " + std::to_string(matched) +
+                                    " of 59 frames could be matched, the poses of the others are "
+                                    "those given: on average "),
+                          HasSubstr("mapper.scan.mode, slice_half_height_m"),
+                          HasSubstr("80x60 pixels"), Not(HasSubstr("path"))));
+}
+
+// A pose that turns nothing looks straight up.
+TEST_F(ProgramView, APathThatSeesNothingIsSaid) {
+  Write("up.txt", "0 1.5 1.5 1.2 0 0 0 1\n0.1 1.5 1.6 1.2 0 0 0 1\n");
+  const Outcome outcome =
+      Program("run ./small.yaml -o out --set frames=0 --set trajectory=./up.txt");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("warning: no frame sees anything from 0.1 to 1.8 m above the floor"),
+                    HasSubstr("; the path's poses must be those of the camera's axes, x right, y "
+                              "down, z forward\n")));
+}
+
+}  // namespace
+}  // namespace depthgrid
