@@ -265,8 +265,10 @@ void JointOptions::Visit(OptionsVisitor& v) {
            "rounds go on to so many while the prior turns out better with each");
   v.Number("refine_rounds", refine_rounds, {0, 1000}, "the same during the run, without new loops");
   v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first gate then");
+  v.Number("little_m", little_m, {0.0, 10.0},
+           "loops that bend poses, or what lies 3 m away, by no more are adjusted like none");
   v.Number("refine_groups", refine_groups, {1, 1000000},
-           "of more groups than this two neighbours are adjusted as one then");
+           "of more groups than this two neighbours are adjusted as one during the run");
   v.Number("first_gate_m", first_gate_m, {0.01, 10.0},
            "how far apart one landmark may be seen, first");
   v.Number("last_gate_m", last_gate_m, {0.01, 10.0}, "and in the last round");

@@ -17,11 +17,13 @@ struct JointOptions {
   int rounds = 6;
   // They go on to so many while the prior turns out better with each.
   int most_rounds = 6;
-  // Rounds and first gate of adjustments during the run without new loops. Of more groups than
-  // these two neighbours are adjusted as one: half the time and no less accurate (docs/tried.md,
-  // "Loops that hold up a frame").
+  // Rounds and first gate of adjustments during the run without new loops, or with loops that bend
+  // no pose, and nothing 3 m away from it, by more than `little_m`.
   int refine_rounds = 3;
   double refine_gate_m = 0.2;
+  double little_m = 0.1;
+  // Of more groups than these two neighbours are adjusted as one during the run: half the time and
+  // no less accurate (docs/tried.md, "Loops that hold up a frame").
   int refine_groups = 150;
   // What groups see is one landmark when it lies this near: in the first round, in the last.
   double first_gate_m = 0.5;

@@ -22,12 +22,14 @@ constexpr double kMetresARadian = 1.0;
 // independent.
 constexpr std::size_t kProbes = 12;
 
+Eigen::Index ProbeOf(std::size_t link) { return static_cast<Eigen::Index>(link % kProbes); }
+
 // Motions of which this share was seen count as much as any: where the prior is nearly perfect
 // little is seen beside it, and of all motions alike.
 constexpr double kWhollyCounted = 0.1;
 
-// Signs of links probed together, without a pattern that repeats (Thue and Morse).
-double SignOf(std::size_t i) { return std::popcount(i) % 2 == 0 ? 1.0 : -1.0; }
+// Links probed together have signs without a pattern that repeats (Thue and Morse).
+double SignOf(std::size_t link) { return std::popcount(link / kProbes) % 2 == 0 ? 1.0 : -1.0; }
 
 // How an axis of the link's error, over its sigma, changes with small motions of its two groups.
 struct ErrorRow {
@@ -70,20 +72,19 @@ std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<ErrorRow> rows;
     for (const GroupLink& link : motions) rows.push_back(RowOf(link, axis, map_from_group));
-    for (std::size_t begin = 0; begin < std::min(kProbes, motions.size()); ++begin) {
-      Eigen::VectorXd probe = Eigen::VectorXd::Zero(factored.size());
-      for (std::size_t i = begin; i < motions.size(); i += kProbes) {
-        const double sign = SignOf(i / kProbes);
-        probe.segment<3>(3 * motions[i].first) += sign * rows[i].by_first.transpose();
-        probe.segment<3>(3 * motions[i].second) += sign * rows[i].by_second.transpose();
-      }
-      const Eigen::VectorXd solved = factored.Solve(probe);
-      for (std::size_t i = begin; i < motions.size(); i += kProbes) {
-        const double left =
-            SignOf(i / kProbes) * (rows[i].by_first.dot(solved.segment<3>(3 * motions[i].first)) +
-                                   rows[i].by_second.dot(solved.segment<3>(3 * motions[i].second)));
-        shares[i][axis] = std::clamp(1.0 - left, 0.0, 1.0);
-      }
+    Eigen::MatrixXd probes = Eigen::MatrixXd::Zero(factored.size(), kProbes);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      auto probe = probes.col(ProbeOf(i));
+      probe.segment<3>(3 * motions[i].first) += SignOf(i) * rows[i].by_first.transpose();
+      probe.segment<3>(3 * motions[i].second) += SignOf(i) * rows[i].by_second.transpose();
+    }
+    const Eigen::MatrixXd solved = factored.SolveAll(probes);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      const auto answer = solved.col(ProbeOf(i));
+      const double left =
+          SignOf(i) * (rows[i].by_first.dot(answer.segment<3>(3 * motions[i].first)) +
+                       rows[i].by_second.dot(answer.segment<3>(3 * motions[i].second)));
+      shares[i][axis] = std::clamp(1.0 - left, 0.0, 1.0);
     }
   }
   return shares;

@@ -35,6 +35,8 @@ class PoseMatrix {
   virtual bool Factor() = 0;
   // x of A x = b, after Factor().
   virtual Eigen::VectorXd Solve(Eigen::VectorXd b) const = 0;
+  // The same of several b, one a column; all at once read the factor once.
+  virtual Eigen::MatrixXd SolveAll(const Eigen::MatrixXd& b) const = 0;
 };
 
 }  // namespace depthgrid

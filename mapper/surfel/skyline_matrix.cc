@@ -171,4 +171,22 @@ Eigen::VectorXd SkylineMatrix::Solve(Eigen::VectorXd b) const {
   return b;
 }
 
+Eigen::MatrixXd SkylineMatrix::SolveAll(const Eigen::MatrixXd& b) const {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  RowMajor x = b;
+  for (int i = 0; i < size(); ++i) {
+    const int begin = First(i);
+    const ConstVector row(At(i, begin), i - begin);
+    x.row(i).noalias() -= row.transpose() * x.middleRows(begin, i - begin);
+    x.row(i) /= *At(i, i);
+  }
+  for (int i = size() - 1; i >= 0; --i) {
+    const int begin = First(i);
+    const ConstVector row(At(i, begin), i - begin);
+    x.row(i) /= *At(i, i);
+    x.middleRows(begin, i - begin).noalias() -= row * x.row(i);
+  }
+  return x;
+}
+
 }  // namespace depthgrid

@@ -33,6 +33,7 @@ class SkylineMatrix : public PoseMatrix {
   // Becomes the lower factor L of L L^T.
   bool Factor() override;
   Eigen::VectorXd Solve(Eigen::VectorXd b) const override;
+  Eigen::MatrixXd SolveAll(const Eigen::MatrixXd& b) const override;
 
  private:
   // Whether rows come in threes that begin in one column, at a multiple of three.

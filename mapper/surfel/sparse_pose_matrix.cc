@@ -85,4 +85,9 @@ Eigen::VectorXd SparsePoseMatrix::Solve(Eigen::VectorXd b) const {
   return factored_->sparse.solve(b);
 }
 
+Eigen::MatrixXd SparsePoseMatrix::SolveAll(const Eigen::MatrixXd& b) const {
+  if (factored_->is_dense) return factored_->dense.solve(b);
+  return factored_->sparse.solve(b);
+}
+
 }  // namespace depthgrid

@@ -22,6 +22,7 @@ class SparsePoseMatrix : public PoseMatrix {
   double& Diagonal(int i) override;
   bool Factor() override;
   Eigen::VectorXd Solve(Eigen::VectorXd b) const override;
+  Eigen::MatrixXd SolveAll(const Eigen::MatrixXd& b) const override;
 
  private:
   struct Entry {

@@ -230,6 +230,9 @@ double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
 Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
                              const std::vector<PlanarLoop>& loops, AdjustEffort effort,
                              std::span<const int> asked) {
+  if (effort == AdjustEffort::kCloseLoops && MoveLittle(loops, frames)) {
+    effort = AdjustEffort::kRefine;
+  }
   const SurfelGroups groups = GroupsOf(frames, effort);
   const JointOptions joint = JointOptionsFor(effort, groups_.groups().size());
   std::vector<GroupLink> links;
@@ -269,6 +272,17 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   return adjustment;
 }
 
+bool SurfelMap::MoveLittle(const std::vector<PlanarLoop>& loops,
+                           const std::vector<MappedFrame>& frames) {
+  if (loops.empty() || options_.joint.little_m <= 0.0) return false;
+  const Adjustment bent = Adjust(frames, loops, AdjustEffort::kBend, {});
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Pose2 motion = Between(frames[i].map_from_base, bent.map_from_base[i]);
+    if (motion.vector().cwiseQuotient(kMotionUnit).norm() > options_.joint.little_m) return false;
+  }
+  return true;
+}
+
 SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort) {
   const auto joined = [&](const SurfelGroups& groups) {
     Require(groups.places().size() == frames.size(), "the frames are those inserted");
@@ -290,6 +304,8 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups)
   if (effort == AdjustEffort::kRefine) {
     joint.rounds = joint.refine_rounds;
     joint.first_gate_m = joint.refine_gate_m;
+  }
+  if (effort == AdjustEffort::kRefine || effort == AdjustEffort::kCloseLoops) {
     const int two_as_one = static_cast<int>(2 * groups / 3);  // as some stay apart
     joint.groups.most = std::min(joint.groups.most, std::max(joint.refine_groups, two_as_one));
   }

@@ -68,6 +68,8 @@ class SurfelMap : public ReferenceMap {
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                   const Pose2& map_from_surfels, double frame) const;
+  // Whether bending the poses as loops want it leaves all of them nearly where they are.
+  bool MoveLittle(const std::vector<PlanarLoop>& loops, const std::vector<MappedFrame>& frames);
   // The frames' groups, joined as far as an adjustment wants them.
   SurfelGroups GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort);
   JointOptions JointOptionsFor(AdjustEffort effort, std::size_t groups) const;

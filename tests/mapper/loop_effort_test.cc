@@ -14,9 +14,9 @@ constexpr int kLoopFrames = 200;
 struct DriftingRound {
   std::vector<MappedFrame> frames;
   std::vector<Pose2> truth;
-  SurfelMap map{SurfelOptions{}};
+  SurfelMap map;
 
-  DriftingRound() {
+  explicit DriftingRound(const SurfelOptions& options = {}) : map(options) {
     const PlanarWorld room = FurnishedRoom();
     ScanArchive archive;
     Pose2 drifted;
@@ -104,6 +104,28 @@ TEST(LoopEffort, ALongRunIsBent) {
             round.map.Adjust(round.frames, {loop}, AdjustEffort::kBend, {}).map_from_base);
   EXPECT_EQ(poses_with(kLoopFrames + 1),
             round.map.Adjust(round.frames, {loop}, AdjustEffort::kCloseLoops, {}).map_from_base);
+}
+
+// Where the map is right already nothing has to be found from half a metre away.
+TEST(LoopEffort, LoopsThatMoveLittleAreAdjustedLikeNone) {
+  const auto poses_by = [](double little_m, AdjustEffort effort) {
+    SurfelOptions options;
+    options.joint.little_m = little_m;
+    DriftingRound round(options);
+    return round.map.Adjust(round.frames, {round.TrueLoop()}, effort, {}).map_from_base;
+  };
+  const auto refined = poses_by(0.0, AdjustEffort::kRefine);
+  const auto closed = poses_by(0.0, AdjustEffort::kCloseLoops);
+  EXPECT_NE(refined, closed);
+  // The loop moves the last pose by what it drifted.
+  DriftingRound round;
+  const auto bent = round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kBend, {});
+  const double moved_m = Between(round.frames.back().map_from_base, bent.map_from_base.back())
+                             .vector()
+                             .cwiseQuotient(kMotionUnit)
+                             .norm();
+  EXPECT_EQ(poses_by(0.9 * moved_m, AdjustEffort::kCloseLoops), closed);
+  EXPECT_EQ(poses_by(2.0 * moved_m, AdjustEffort::kCloseLoops), refined);
 }
 
 }  // namespace

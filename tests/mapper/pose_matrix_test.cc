@@ -60,12 +60,15 @@ TEST(PoseMatrix, BothSolveWhatTheDenseMatrixSays) {
     dense(4, 4) += 7.0;
     Eigen::VectorXd b(3 * poses);
     for (double& value : b) value = random.Normal();
+    Eigen::MatrixXd several(3 * poses, 5);
+    for (double& value : several.reshaped()) value = random.Normal();
     for (const auto& matrix : BothFor(poses)) {
       ASSERT_EQ(matrix->size(), 3 * poses);
       for (const BlockEntry& e : entries) matrix->AddBlock(e.row, e.column, e.block);
       matrix->Diagonal(4) += 7.0;
       ASSERT_TRUE(matrix->Factor());
       EXPECT_LT((dense * matrix->Solve(b) - b).norm(), 1e-10);
+      EXPECT_LT((dense * matrix->SolveAll(several) - several).norm(), 1e-10);
     }
   }
 }
