@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "mapper/core/error.h"
@@ -80,10 +81,8 @@ int FrameHistory::FramesToNewest() const {
     const double step_s = records_[i].stamp_s - records_[i - 1].stamp_s;
     if (step_s > 0.0) steps_s[count++] = step_s;
   }
-  if (count == 0) return 1;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.begin() + static_cast<std::ptrdiff_t>(count));
-  return StepsIn(newest().stamp_s - records_[records_.size() - 2].stamp_s, *middle);
+  return StepsIn(newest().stamp_s - records_[records_.size() - 2].stamp_s,
+                 UsualStepS(std::span(steps_s).first(count)));
 }
 
 const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {

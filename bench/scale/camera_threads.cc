@@ -2,12 +2,12 @@
 // time, and how much processor time each second of it got: below 2 for two threads, the cores were
 // not free.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <vector>
 
 #include "mapper/core/level.h"
+#include "mapper/core/median.h"
 #include "sim/depth_camera.h"
 #include "tests/sim/test_meshes.h"
 
@@ -52,13 +52,12 @@ void Compare(int triangles, int frames, int rounds) {
     if (round == 0 || a.wall_s < one.wall_s) one = a;
     if (round == 0 || b.wall_s < two.wall_s) two = b;
   }
-  std::nth_element(ratios.begin(), ratios.begin() + rounds / 2, ratios.end());
   std::printf("| threads | ms a frame, best of %d | of CPU | cores it had | times one thread |\n",
               rounds);
   std::printf("|--:|--:|--:|--:|--:|\n");
   PrintRow(1, frames, one, one);
   PrintRow(2, frames, two, one);
-  std::printf("median of the pairs: %.2f\n", ratios[static_cast<std::size_t>(rounds / 2)]);
+  std::printf("median of the pairs: %.2f\n", UpperMedian(ratios));
 }
 
 }  // namespace

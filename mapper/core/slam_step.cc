@@ -2,21 +2,14 @@
 
 #include <algorithm>
 
+#include "mapper/core/median.h"
+
 namespace depthgrid {
 namespace {
 
 constexpr double kAccelerationMps2 = 10.0;
 constexpr double kTurnAccelerationRadps2 = 30.0;
 constexpr double kLongestStepS = 0.2;
-
-// The upper of the two middle ones where steps are even in number.
-template <typename Value>
-double MedianOf(std::span<SlamStep> steps, Value value) {
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end(),
-                   [&](const SlamStep& a, const SlamStep& b) { return value(a) < value(b); });
-  return value(*middle);
-}
 
 // In which the usual motion takes `dt_s`.
 bool BreaksWithin(double dt_s, const SlamStep& step, const SlamStep& usual) {
@@ -36,12 +29,12 @@ SlamStep StepOf(const Pose3& slam_from_first, const Pose3& slam_from_second, dou
 SlamStep UsualOf(std::span<SlamStep> steps) {
   SlamStep usual;
   if (steps.empty()) return usual;
-  usual.duration_s = MedianOf(steps, [](const SlamStep& step) { return step.duration_s; });
+  usual.duration_s = UpperMedianAmong(steps, [](const SlamStep& step) { return step.duration_s; });
   for (int axis = 0; axis < 3; ++axis) {
     usual.velocity[axis] =
-        MedianOf(steps, [=](const SlamStep& step) { return step.velocity[axis]; });
+        UpperMedianAmong(steps, [=](const SlamStep& step) { return step.velocity[axis]; });
     usual.turn_rate[axis] =
-        MedianOf(steps, [=](const SlamStep& step) { return step.turn_rate[axis]; });
+        UpperMedianAmong(steps, [=](const SlamStep& step) { return step.turn_rate[axis]; });
   }
   return usual;
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
+#include "mapper/core/usual_step.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
@@ -271,19 +271,19 @@ class BestReading {
 };
 
 // From one image to the next; pauses are few.
-double UsualStepS(std::span<const RecordedImage> images) {
+double UsualImageStepS(std::span<const RecordedImage> images) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < images.size(); ++i) {
     steps_s.push_back(images[i].stamp_s - images[i - 1].stamp_s);
   }
-  return steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
+  return UsualStepS(steps_s);
 }
 
 }  // namespace
 
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
   std::vector<RecordedImage> pairs;
-  const double most_apart_s = kMostApart * std::max(kPairApartS, UsualStepS(images));
+  const double most_apart_s = kMostApart * std::max(kPairApartS, UsualImageStepS(images));
   const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
   std::size_t second = 0;
   for (std::size_t first = 0; first < images.size(); first += every) {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "mapper/core/error.h"
-#include "mapper/core/median.h"
 #include "mapper/core/usual_step.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
@@ -33,14 +32,14 @@ GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& m
           kTieHuberSigmas};
 }
 
-// Between two frames that follow one another, in the median; 0 where nothing tells.
-double UsualStepS(const std::vector<MappedFrame>& frames) {
+// From a frame to the one that follows it; 0 where nothing tells.
+double UsualFrameStepS(const std::vector<MappedFrame>& frames) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const double step_s = frames[i].stamp_s - frames[i - 1].stamp_s;
     if (frames[i].slam_motion && step_s > 0.0) steps_s.push_back(step_s);
   }
-  return steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
+  return UsualStepS(steps_s);
 }
 
 // How many usual steps it took from the frame before: more than one where the recording paused.
@@ -53,7 +52,7 @@ int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s)
 std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
   const std::vector<SurfelGroup>& groups = of.groups();
   std::vector<GroupMotion> motions(groups.size());
-  const double usual_s = UsualStepS(frames);
+  const double usual_s = UsualFrameStepS(frames);
   for (std::size_t g = 1; g < groups.size(); ++g) {
     GroupMotion& motion = motions[g];
     motion.known = true;
@@ -131,6 +130,23 @@ const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 // Fewer groups that saw something do not tell how the prior errs: from the seven of the first 60
 // frames a prior that drifts 0.375 m was called nearly perfect (docs/tried.md).
 constexpr int kMinGroupsForSpread = 20;
+
+// How SLAM's motion errs from group to group of this run's own, `motion_sigma` being a frame's.
+std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
+                                     const std::vector<MappedFrame>& frames,
+                                     const Eigen::Vector3d& motion_sigma) {
+  const int first_new = FirstNew(frames);
+  int new_groups = 0;
+  int that_saw = 0;
+  for (const SurfelGroup& group : groups) {
+    if (group.first_frame < first_new) continue;
+    ++new_groups;
+    that_saw += group.surfels.empty() ? 0 : 1;
+  }
+  if (that_saw < kMinGroupsForSpread) return std::nullopt;
+  const int new_frames = static_cast<int>(frames.size()) - first_new;
+  return MotionSpread{motion_sigma, static_cast<double>(new_frames) / new_groups};
+}
 
 }  // namespace
 
@@ -247,20 +263,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
         PoseCovariance(*result.factored, result.map_from_group, GroupsAt(asked, groups.places()));
     result.factored.reset();
   }
-  const int first_new = FirstNew(frames);
-  const auto new_groups =
-      std::count_if(groups.groups().begin(), groups.groups().end(),
-                    [&](const SurfelGroup& group) { return group.first_frame >= first_new; });
-  const auto that_saw =
-      std::count_if(groups.groups().begin(), groups.groups().end(), [&](const SurfelGroup& group) {
-        return group.first_frame >= first_new && !group.surfels.empty();
-      });
-  if (that_saw >= kMinGroupsForSpread) {
-    adjustment.motion_spread = {
-        result.motion_sigma,
-        static_cast<double>(frames.size() - static_cast<std::size_t>(first_new)) /
-            static_cast<double>(new_groups)};
-  }
+  adjustment.motion_spread = SpreadOf(groups.groups(), frames, result.motion_sigma);
   adjustment.map_from_base =
       effort == AdjustEffort::kFinish
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)

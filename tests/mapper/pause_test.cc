@@ -20,6 +20,12 @@ MotionNoise NoiseOfTest() {
   return noise;
 }
 
+TEST(UsualStepS, IsTheMedianWhichPausesDoNotMove) {
+  std::vector<double> steps_s = {0.03, 5.0, 0.04, 0.02, 0.03};
+  EXPECT_EQ(UsualStepS(steps_s), 0.03);
+  EXPECT_EQ(UsualStepS({}), 0.0);
+}
+
 TEST(StepsIn, CountsUsualSteps) {
   EXPECT_EQ(StepsIn(0.04, 0.03), 1);
   EXPECT_EQ(StepsIn(0.06, 0.03), 2);
