@@ -47,12 +47,4 @@ Eigen::AlignedBox3f BoundsOf(const TriangleMesh& mesh) {
   return bounds;
 }
 
-double SignedVolume(const TriangleMesh& mesh) {
-  double six_volumes = 0.0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    six_volumes += mesh.vertices[mesh.triangles[i][0]].cast<double>().dot(ScaledNormal(mesh, i));
-  }
-  return six_volumes / 6.0;
-}
-
 }  // namespace depthgrid

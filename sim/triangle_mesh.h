@@ -38,7 +38,4 @@ Eigen::Vector3d ScaledNormal(const TriangleMesh& mesh, std::size_t triangle);
 // The box around all vertices; empty when there are none.
 Eigen::AlignedBox3f BoundsOf(const TriangleMesh& mesh);
 
-// Enclosed volume of a closed mesh, positive when its triangles face outward (divergence theorem).
-double SignedVolume(const TriangleMesh& mesh);
-
 }  // namespace depthgrid

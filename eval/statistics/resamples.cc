@@ -1,7 +1,5 @@
 #include "eval/statistics/resamples.h"
 
-#include <algorithm>
-
 #include "eval/metrics/statistics.h"
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
@@ -13,17 +11,6 @@ double MeanAt(const std::vector<double>& values, std::span<const std::uint32_t> 
   double sum = 0.0;
   for (const std::uint32_t i : indices) sum += values[i];
   return sum / static_cast<double>(indices.size());
-}
-
-// `taken` is room to work in.
-double MedianAt(const std::vector<double>& values, std::span<const std::uint32_t> indices,
-                std::vector<double>& taken) {
-  taken.clear();
-  for (const std::uint32_t i : indices) taken.push_back(values[i]);
-  const auto middle = taken.begin() + static_cast<std::ptrdiff_t>(taken.size() / 2);
-  std::nth_element(taken.begin(), middle, taken.end());
-  if (taken.size() % 2 == 1) return *middle;
-  return 0.5 * (*std::max_element(taken.begin(), middle) + *middle);
 }
 
 }  // namespace
@@ -64,16 +51,6 @@ std::optional<ConfidenceInterval> MeanInterval(const std::vector<double>& values
   if (values.size() < 2) return std::nullopt;
   const auto figures =
       FiguresOf(resamples, [&](std::span<const std::uint32_t> at) { return MeanAt(values, at); });
-  return PercentileInterval(figures, resamples.confidence());
-}
-
-std::optional<ConfidenceInterval> MedianInterval(const std::vector<double>& values,
-                                                 const Resamples& resamples) {
-  Require(values.size() == resamples.size(), "resamples are of as many values as there are");
-  if (values.size() < 2) return std::nullopt;
-  std::vector<double> taken;
-  const auto figures = FiguresOf(
-      resamples, [&](std::span<const std::uint32_t> at) { return MedianAt(values, at, taken); });
   return PercentileInterval(figures, resamples.confidence());
 }
 

@@ -50,10 +50,8 @@ std::vector<double> FiguresOf(const Resamples& resamples, const ResampledFigure&
 // figures, interpolated as NumPy does.
 ConfidenceInterval PercentileInterval(const std::vector<double>& figures, double confidence);
 
-// Of the mean and of the median. Empty for fewer than two values, of which nothing can be said.
+// Empty for fewer than two values, of which nothing can be said.
 std::optional<ConfidenceInterval> MeanInterval(const std::vector<double>& values,
                                                const Resamples& resamples);
-std::optional<ConfidenceInterval> MedianInterval(const std::vector<double>& values,
-                                                 const Resamples& resamples);
 
 }  // namespace depthgrid

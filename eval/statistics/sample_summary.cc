@@ -16,7 +16,6 @@ SampleSummary SummariseSample(const std::vector<double>& values, const Resamples
   summary.min = s.min;
   summary.max = s.max;
   summary.mean_interval = MeanInterval(values, resamples);
-  summary.median_interval = MedianInterval(values, resamples);
   return summary;
 }
 

@@ -1,6 +1,9 @@
 // One grid point of a sweep in a few numbers: a metric over the seeds.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "eval/statistics/resamples.h"
 
 namespace depthgrid {
@@ -12,9 +15,7 @@ struct SampleSummary {
   double std = 0.0;  // of the sample (divided by n - 1); 0 for one value
   double min = 0.0;
   double max = 0.0;
-  // Bootstrap; empty for one value.
-  std::optional<ConfidenceInterval> mean_interval;
-  std::optional<ConfidenceInterval> median_interval;
+  std::optional<ConfidenceInterval> mean_interval;  // bootstrap; empty for one value
 };
 
 // Finite values, at least one, as many as the resamples are of.

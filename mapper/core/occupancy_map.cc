@@ -12,10 +12,10 @@ OccupancyMap CertainMap(const StateMap& map) {
   return certain;
 }
 
-StateMap StatesOf(const OccupancyMap& map, const StateThresholds& thresholds) {
+StateMap StatesOf(const OccupancyMap& map) {
   StateMap states(map.geometry);
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
-    states.states[i] = StateOf(map.occupied_prob[i], thresholds);
+    states.states[i] = StateOf(map.occupied_prob[i]);
   }
   return states;
 }

@@ -37,7 +37,7 @@ struct StateThresholds {
   double free_prob = 0.196;  // below the 205/255 pixel's 0.1961, which means unknown
 };
 
-inline CellState StateOf(float occupied_prob, const StateThresholds& thresholds) {
+inline CellState StateOf(float occupied_prob, const StateThresholds& thresholds = {}) {
   if (occupied_prob > thresholds.occupied_prob) return CellState::kOccupied;
   if (occupied_prob < thresholds.free_prob) return CellState::kFree;
   return CellState::kUnknown;  // NaN compares false with both
@@ -59,6 +59,6 @@ struct StateMap {
 // Of certain cells: probability 1, 0, or NaN where unknown.
 OccupancyMap CertainMap(const StateMap& map);
 
-StateMap StatesOf(const OccupancyMap& map, const StateThresholds& thresholds = {});
+StateMap StatesOf(const OccupancyMap& map);
 
 }  // namespace depthgrid

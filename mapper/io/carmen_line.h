@@ -1,4 +1,4 @@
-// One scan line of a CARMEN log (FLASER or ROBOTLASER1), to and from text.
+// One scan line of a CARMEN log (FLASER or ROBOTLASER1), from text.
 #pragma once
 
 #include <string>
@@ -39,8 +39,5 @@ struct CarmenDamage {
 using CarmenLine = std::variant<CarmenScan, CarmenMaximum, CarmenOther, CarmenDamage>;
 
 CarmenLine ParseCarmenLine(std::string_view line);
-
-// The scan as a ROBOTLASER1 line without the line end; ranges in 0.1 mm, poses in nanometres.
-std::string RobotLaserLine(const CarmenScan& scan, double accuracy);
 
 }  // namespace depthgrid

@@ -135,7 +135,7 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
   }
   for (const NumberedImage& image : images) {
     const double stamp_s = static_cast<double>(image.number) / options.frame_rate_hz;
-    recording.images.push_back({stamp_s, image.path.string(), "", image.number});
+    recording.images.push_back({stamp_s, image.path.string(), image.number});
   }
   const auto poses = PosesOf(images, images_folder, listed);
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -79,7 +79,7 @@ Recording ListIclFolder(const std::string& folder) {
   for (const NumberedImage& image : images) {
     const auto stamp_s = static_cast<double>(image.number);
     if (!recording.images.empty() && recording.images.back().stamp_s == stamp_s) continue;
-    recording.images.push_back({stamp_s, image.path.string(), "", image.number});
+    recording.images.push_back({stamp_s, image.path.string(), image.number});
   }
   if (recording.images.empty()) {
     throw InputError(folder, "holds neither depth/<n>.png nor *_<n>.depth");

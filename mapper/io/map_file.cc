@@ -190,8 +190,7 @@ std::string MapImageOf(const std::string& yaml_path, MapMode mode) {
   return fs::path(yaml_path).replace_extension(ending).string();
 }
 
-void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode,
-              const StateThresholds& thresholds) {
+void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode) {
   Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,
           "a map to write has cells");
   const fs::path image_path = MapImageOf(yaml_path, mode);
@@ -199,9 +198,10 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
     throw InputError(yaml_path, "is the name that the map's image has, must be the YAML file's");
   }
   // Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
-  const StateThresholds written = mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : thresholds;
+  const StateThresholds written =
+      mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : StateThresholds{};
   const Eigen::Vector2d origin = map.geometry.OriginM();
-  WriteFile(image_path.string(), internal::EncodeMapImage(map, mode, thresholds));
+  WriteFile(image_path.string(), internal::EncodeMapImage(map, mode));
   WriteFile(yaml_path,
             fmt::format("image: {}\nmode: {}\nresolution: {:.9g}\norigin: [{:.9g}, {:.9g}, 0]\n"
                         "negate: 0\noccupied_thresh: {}\nfree_thresh: {}\n",

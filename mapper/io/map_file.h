@@ -18,7 +18,7 @@ namespace depthgrid {
 enum class MapMode { kTrinary, kScale, kRaw };
 
 // A map as read. The thresholds of the file have been applied: certain cells have probability 0 or
-// 1, unknown ones NaN, so that StatesOf with the default thresholds gives the states Nav2 gives.
+// 1, unknown ones NaN, so that StatesOf gives the states Nav2 gives.
 struct MapFile {
   OccupancyMap map;
   // From the frame of the map's cells to the world the file speaks of: the identity unless the
@@ -43,11 +43,11 @@ CellSet ReadFreeCells(const std::string& path);
 std::string MapImageOf(const std::string& yaml_path, MapMode mode);
 
 // Writes a map of at least one cell: `yaml_path` and the image beside it (MapImageOf). In `trinary`
-// a cell is what the thresholds make of it; the other modes keep probabilities, to 1/255 and 1 %.
+// a cell is what StatesOf makes of it; the other modes keep probabilities, to 1/255 and 1 %.
 // Throws InputError when both files would have one name, std::runtime_error when they cannot be
 // written.
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map,
-              MapMode mode = MapMode::kTrinary, const StateThresholds& thresholds = {});
+              MapMode mode = MapMode::kTrinary);
 void WriteMap(const std::string& yaml_path, const StateMap& map);
 
 }  // namespace depthgrid

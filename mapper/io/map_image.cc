@@ -55,7 +55,7 @@ void RequireDrawable(int width_px, int height_px, const std::string& path) {
                                      kMaxMapCells));
 }
 
-std::uint8_t PixelOf(float occupied_prob, MapMode mode, const StateThresholds& thresholds) {
+std::uint8_t PixelOf(float occupied_prob, MapMode mode) {
   if (mode == MapMode::kRaw) {
     return std::isnan(occupied_prob)
                ? kUnknownRawPixel
@@ -66,7 +66,7 @@ std::uint8_t PixelOf(float occupied_prob, MapMode mode, const StateThresholds& t
                ? kUnknownPixel
                : static_cast<std::uint8_t>(std::lround((1.0 - occupied_prob) * kWhite));
   }
-  switch (StateOf(occupied_prob, thresholds)) {
+  switch (StateOf(occupied_prob)) {
     case CellState::kOccupied:
       return kOccupiedPixel;
     case CellState::kFree:
@@ -105,15 +105,14 @@ float OccupiedProb(double shade, bool opaque, const ShadeRule& rule) {
   return static_cast<float>((p - free) / (occupied - free));
 }
 
-std::string EncodeMapImage(const OccupancyMap& map, MapMode mode,
-                           const StateThresholds& thresholds) {
+std::string EncodeMapImage(const OccupancyMap& map, MapMode mode) {
   const auto& [resolution_m, min_cell, width, height] = map.geometry;
   GreyImage grey{width, height, {}};
   RgbaImage rgba{width, height, {}};
   for (int v = 0; v < height; ++v) {
     for (int u = 0; u < width; ++u) {
       const float prob = map.At({min_cell.x + u, min_cell.y + height - 1 - v});
-      const std::uint8_t pixel = PixelOf(prob, mode, thresholds);
+      const std::uint8_t pixel = PixelOf(prob, mode);
       grey.grey.push_back(pixel);
       const std::uint8_t alpha = std::isnan(prob) ? 0 : 255;
       if (mode == MapMode::kScale) rgba.rgba.insert(rgba.rgba.end(), {pixel, pixel, pixel, alpha});

@@ -28,7 +28,6 @@ ShadeImage ReadShades(const std::string& path, MapMode mode);
 float OccupiedProb(double shade, bool opaque, const ShadeRule& rule);
 
 // The image's bytes: PGM, or PNG with transparency for kScale.
-std::string EncodeMapImage(const OccupancyMap& map, MapMode mode,
-                           const StateThresholds& thresholds);
+std::string EncodeMapImage(const OccupancyMap& map, MapMode mode);
 
 }  // namespace depthgrid::internal

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/png_codec.h"
 
@@ -34,14 +33,6 @@ std::uint16_t DepthUnits(float z_m, double scale_per_m) {
   if (!(z_m > 0.0F)) return 0;
   const double units = std::floor(static_cast<double>(z_m) * scale_per_m + 0.5);
   return static_cast<std::uint16_t>(std::clamp(units, 1.0, static_cast<double>(kFarthestUnits)));
-}
-
-float DepthOfUnits(std::uint16_t units, const DepthPngFormat& format) {
-  const auto& invalid = format.invalid_units;
-  if (units == 0 || std::find(invalid.begin(), invalid.end(), units) != invalid.end()) {
-    return kInvalidDepth;
-  }
-  return static_cast<float>(static_cast<double>(units) / format.scale_per_m);
 }
 
 DepthImage QuantiseDepth(const DepthImage& image, const DepthPngFormat& format) {

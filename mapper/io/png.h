@@ -32,7 +32,6 @@ struct DepthPngFormat {
 // Depth in units. A positive depth never becomes 0 (too near is not invalid) and beyond the range
 // it becomes 65534 (too far is not invalid either: 13.1 m at 5000 a metre).
 std::uint16_t DepthUnits(float z_m, double scale_per_m);
-float DepthOfUnits(std::uint16_t units, const DepthPngFormat& format);
 // The image as it will be read back.
 DepthImage QuantiseDepth(const DepthImage& image, const DepthPngFormat& format = {});
 

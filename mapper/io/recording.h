@@ -3,6 +3,7 @@
 // only make the list.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -21,7 +22,6 @@ namespace depthgrid {
 struct RecordedImage {
   double stamp_s = 0.0;     // of the frame, and of its pose
   std::string depth_path;   // empty: the frame is known to have no image
-  std::string colour_path;  // empty when there is none
   std::int64_t number = 0;  // in the recording as it was recorded, see FrameNames
 };
 

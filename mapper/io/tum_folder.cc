@@ -57,9 +57,9 @@ StampedFileList ReadFileList(const std::string& path) {
   return ParseFileList(ReadTextFile(path), path);
 }
 
-// Depth images with the colour image nearest in time; a frame's stamp is that of its pose.
-void PairWithColour(const std::string& folder, const RecordingOptions& options,
-                    Recording& recording) {
+// Each depth image takes the stamp of the colour image nearest in time where poses have those.
+void StampByColour(const std::string& folder, const RecordingOptions& options,
+                   Recording& recording) {
   const std::string path = Joined(folder, "rgb.txt");
   if (!fs::exists(path)) return;
   const StampedFileList colour = ReadFileList(path);
@@ -74,7 +74,6 @@ void PairWithColour(const std::string& folder, const RecordingOptions& options,
       ++unpaired;
       continue;
     }
-    image.colour_path = Joined(folder, colour.files[*nearest].path);
     if (options.pose_stamp == PoseStamp::kColour) image.stamp_s = stamps_s[*nearest];
   }
   if (unpaired > 0) {
@@ -180,9 +179,9 @@ Recording ListTumFolder(const std::string& folder, const RecordingOptions& optio
   StampedFileList depth = ReadFileList(Joined(folder, "depth.txt"));
   recording.warnings = std::move(depth.warnings);
   for (const StampedFile& file : depth.files) {
-    recording.images.push_back({file.stamp_s, Joined(folder, file.path), "", file.number});
+    recording.images.push_back({file.stamp_s, Joined(folder, file.path), file.number});
   }
-  PairWithColour(folder, options, recording);
+  StampByColour(folder, options, recording);
   DropRepeatedStamps(folder, recording);
   return recording;
 }

@@ -2,14 +2,12 @@
 // scored against the truth.
 #include <gmock/gmock.h>
 
-#include <fstream>
-
-#include "mapper/core/level.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/trajectory_file.h"
 #include "sim/laser_world.h"
 #include "sim/odometry_noise.h"
 #include "tests/eval/program.h"
+#include "tests/io/log_text.h"
 
 namespace depthgrid {
 namespace {
@@ -84,7 +82,7 @@ TEST_F(LaserBuilding, IsMappedFarBetterThanItsOdometry) {
     scan.max_range_m = 81.83;
     scan.range_m = DisturbScan(CastScan(world, truth[k], laser), laser, 3, static_cast<int>(k));
     scan.odom_from_laser = odometry[k];
-    log += RobotLaserLine(scan, 0.01) + "\n";
+    log += RobotLaserLine(scan) + "\n";
   }
   Write("storey.log", log);
   const Outcome outcome = Program("map storey.log -o out");

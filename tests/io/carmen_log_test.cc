@@ -302,7 +302,7 @@ TEST(CarmenLog, SaysThatAFileIsNoText) {
   EXPECT_EQ(OpenCarmenLog(crashed.path())->FrameCount(), 1);
 }
 
-TEST(CarmenLog, WrittenLinesReadBack) {
+TEST(CarmenLine, IsReadAsItWasWritten) {
   CarmenScan scan;
   scan.stamp_s = 3.033333;
   scan.first_bearing_rad = -0.7;
@@ -310,7 +310,7 @@ TEST(CarmenLog, WrittenLinesReadBack) {
   scan.max_range_m = 6.0;
   scan.range_m = {1.2345, 6.0, 0.0};
   scan.odom_from_laser = {1.25, -3.5, 2.0};
-  const auto line = ParseCarmenLine(RobotLaserLine(scan, 0.01));
+  const auto line = ParseCarmenLine(RobotLaserLine(scan));
   const auto& read = std::get<CarmenScan>(line);
   EXPECT_EQ(read.stamp_s, scan.stamp_s);
   EXPECT_EQ(read.first_bearing_rad, scan.first_bearing_rad);

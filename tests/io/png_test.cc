@@ -7,7 +7,6 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
-#include "mapper/io/file.h"
 #include "tests/refusal.h"
 #include "tests/scratch.h"
 
@@ -49,11 +48,10 @@ TEST(DepthPng, KeepsTooNearTooFarAndInvalidApart) {
   EXPECT_EQ(DepthUnits(1.0F, 5000.0), 5000);
   EXPECT_EQ(DepthUnits(20.0F, 5000.0), 65534);
   EXPECT_EQ(DepthUnits(std::numeric_limits<float>::infinity(), 5000.0), 65534);
-  const DepthPngFormat format{1000.0, {65535, 7}};
-  EXPECT_EQ(DepthOfUnits(0, format), kInvalidDepth);
-  EXPECT_EQ(DepthOfUnits(7, format), kInvalidDepth);
-  EXPECT_EQ(DepthOfUnits(65535, format), kInvalidDepth);
-  EXPECT_EQ(DepthOfUnits(1500, format), 1.5F);
+  DepthImage image(4, 1);
+  image.z_m = {kInvalidDepth, 0.007F, 100.0F, 1.5F};
+  EXPECT_EQ(QuantiseDepth(image, {1000.0, {65534, 7}}).z_m,
+            (std::vector<float>{kInvalidDepth, kInvalidDepth, kInvalidDepth, 1.5F}));
 }
 
 TEST(DepthPng, SameBytesEachTime) {

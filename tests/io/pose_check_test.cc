@@ -75,7 +75,7 @@ TEST(PoseCheck, NoPairLiesAcrossAPause) {
   std::vector<RecordedImage> images;
   std::vector<std::pair<double, double>> expected;
   for (const double begin_s : {0.0, 24 * kStepS + 5.0}) {
-    for (int i = 0; i < 24; ++i) images.push_back({begin_s + i * kStepS, "", "", 0});
+    for (int i = 0; i < 24; ++i) images.push_back({begin_s + i * kStepS, "", 0});
     for (int i = 0; i < 20; i += 2) {
       expected.emplace_back(begin_s + i * kStepS, begin_s + i * kStepS + 0.5);
     }
@@ -86,7 +86,7 @@ TEST(PoseCheck, NoPairLiesAcrossAPause) {
 TEST(PoseCheck, ImagesThatAreAlwaysFarApartArePairedWithTheNext) {
   std::vector<RecordedImage> images;
   for (const double stamp_s : {0.0, 3.0, 6.0, 9.0, 21.0, 24.0}) {
-    images.push_back({stamp_s, "", "", 0});
+    images.push_back({stamp_s, "", 0});
   }
   EXPECT_EQ(
       StampsOfPairs(PairsAmong(images)),

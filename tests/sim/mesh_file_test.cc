@@ -9,6 +9,7 @@
 #include "sim/scene.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
+#include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
 namespace {
@@ -170,7 +171,7 @@ void ExpectTetrahedron(const TriangleMesh& mesh, const Eigen::Vector3f& low,
   EXPECT_EQ(mesh.vertices.size(), 4U);  // joined
   EXPECT_TRUE(BoundsOf(mesh).min().isApprox(low, 1e-5F)) << BoundsOf(mesh).min().transpose();
   EXPECT_TRUE(BoundsOf(mesh).max().isApprox(high, 1e-5F)) << BoundsOf(mesh).max().transpose();
-  EXPECT_NEAR(SignedVolume(mesh), (high - low).prod() / 6.0F, 1e-5);  // faces outward
+  EXPECT_NEAR(test::SignedVolume(mesh), (high - low).prod() / 6.0F, 1e-5);  // faces outward
 }
 
 TEST_F(MeshFiles, EachFormatGivesTheSameSolid) {

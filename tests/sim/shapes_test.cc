@@ -8,7 +8,6 @@
 #include <map>
 
 #include "mapper/core/angle.h"
-#include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "sim/box.h"
 #include "sim/polygon.h"
@@ -18,6 +17,7 @@
 #include "sim/sweep_shapes.h"
 #include "sim/wall.h"
 #include "tests/refusal.h"
+#include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
 namespace {
@@ -49,7 +49,7 @@ void ExpectSolid(const TriangleMesh& mesh, double volume_m3, double relative_tol
   EXPECT_TRUE(IsClosed(mesh));
   EXPECT_TRUE(HasAreaEverywhere(mesh));
   EXPECT_EQ(mesh.triangles.size(), mesh.material_of_triangle.size());
-  EXPECT_NEAR(SignedVolume(mesh), volume_m3, relative_tolerance * volume_m3);
+  EXPECT_NEAR(test::SignedVolume(mesh), volume_m3, relative_tolerance * volume_m3);
 }
 
 constexpr double kExact = 2e-6;  // float vertices
@@ -124,7 +124,7 @@ TEST(Shapes, TubesFollowTheirPath) {
   TubeShape bent{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}}, 0.02, 0.02, false, 4, 24};
   const TriangleMesh bent_mesh = MakeTube(bent);
   EXPECT_TRUE(IsClosed(bent_mesh));
-  EXPECT_GT(SignedVolume(bent_mesh), 0.0);
+  EXPECT_GT(test::SignedVolume(bent_mesh), 0.0);
   EXPECT_NEAR(BoundsOf(bent_mesh).max().z(), 1.0, 1e-6);  // corner cutting keeps the ends
   TubeShape hoop{{}, 0.01, 0.01, true, 0, 16};
   for (int i = 0; i < 256; ++i) {
@@ -154,8 +154,8 @@ TEST(Shapes, ASmoothLatheHasNoPitAtItsAxis) {
     ++within;
   }
   EXPECT_EQ(within, 2 + 2 * 32);  // the ends of the axis and a ring around each
-  EXPECT_LT(SignedVolume(drum), RegularArea(32) * 2.0);
-  EXPECT_GT(SignedVolume(drum), 0.8 * RegularArea(32) * 2.0);
+  EXPECT_LT(test::SignedVolume(drum), RegularArea(32) * 2.0);
+  EXPECT_GT(test::SignedVolume(drum), 0.8 * RegularArea(32) * 2.0);
 }
 
 TEST(Shapes, ATubeThatFoldsBackIsRefused) {
@@ -176,7 +176,7 @@ TEST(Shapes, ClothAndLeavesAreThinSolids) {
   ExpectSolid(MakeCurtain(flat), 0.02, 1e-4);
   const TriangleMesh wavy = MakeCurtain({1.0, 2.0, 0.1, 0.004, 6, 32});
   EXPECT_TRUE(IsClosed(wavy));
-  EXPECT_GT(SignedVolume(wavy), 0.008);  // longer than it is wide
+  EXPECT_GT(test::SignedVolume(wavy), 0.008);  // longer than it is wide
   const LeafShape leaf_shape{0.4, 0.1, 0.004, 90.0, 24};
   const TriangleMesh leaf = MakeLeaf(leaf_shape);
   EXPECT_TRUE(IsClosed(leaf));
@@ -185,7 +185,7 @@ TEST(Shapes, ClothAndLeavesAreThinSolids) {
   for (int i = 0; i < 10000; ++i) {
     mean_square += std::pow(std::sin(kPi * std::pow((i + 0.5) / 10000, 0.7)), 2) / 10000;
   }
-  EXPECT_NEAR(SignedVolume(leaf), 0.5 * 0.1 * 0.004 * 0.4 * mean_square, 3e-7);
+  EXPECT_NEAR(test::SignedVolume(leaf), 0.5 * 0.1 * 0.004 * 0.4 * mean_square, 3e-7);
 }
 
 TEST(Polygons, TrianglesCoverThePolygonOnce) {
@@ -283,7 +283,7 @@ TEST(Shapes, EveryKindOfTheFileIsASolid) {
     Config config = Config::FromText(text, "x");
     const BuiltItem built = BuildShape(name, config);
     EXPECT_TRUE(IsClosed(built.mesh)) << name;
-    EXPECT_GT(SignedVolume(built.mesh), 0.0) << name;
+    EXPECT_GT(test::SignedVolume(built.mesh), 0.0) << name;
     ++kinds;
   }
   EXPECT_EQ(kinds, 12);

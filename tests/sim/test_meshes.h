@@ -17,6 +17,15 @@ inline void AddQuad(TriangleMesh& mesh, const Eigen::Vector3f& a, const Eigen::V
   mesh.material_of_triangle.resize(mesh.triangles.size(), 0);
 }
 
+// Enclosed volume of a closed mesh, positive when its triangles face outward (divergence theorem).
+inline double SignedVolume(const TriangleMesh& mesh) {
+  double six_volumes = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    six_volumes += mesh.vertices[mesh.triangles[i][0]].cast<double>().dot(ScaledNormal(mesh, i));
+  }
+  return six_volumes / 6.0;
+}
+
 // The parallelogram a, a + u, a + u + v, a + v, cut into n x n squares that share their vertices.
 inline TriangleMesh Patch(const Eigen::Vector3f& a, const Eigen::Vector3f& u,
                           const Eigen::Vector3f& v, int n) {
