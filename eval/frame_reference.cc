@@ -52,6 +52,23 @@ bool AreApart(const Scan& scan, const Pose2& pose, const Scan& shown, const Pose
   return distance_m > ReachM(scan) + surroundings_m + kMarginCells * resolution_m;
 }
 
+// How the poses of a run's scans were at the time of one of them. Where loops moved the map since
+// the first that matters here, what is known of it is that it moved as a whole.
+struct PosesThen {
+  const RunFiles& run;
+  bool corrected = false;
+  Pose2 then_from_final;
+
+  Pose2 Of(std::size_t scan_index) const {
+    const StoredScan& stored = run.scans[scan_index];
+    // Of a map that the run went on in no row tells, but it stays where it is.
+    if (scan_index < run.prior_scans) return stored.map_from_base;
+    const std::optional<std::size_t> row = RowOf(run.frames, stored.frame);
+    const std::optional<Pose2> pose = row ? PoseAt(run.frames, *row) : std::nullopt;
+    return corrected || !pose ? then_from_final * stored.map_from_base : *pose;
+  }
+};
+
 }  // namespace
 
 std::optional<FrameAtTheTime> FrameAtRow(const CsvTable& frames, std::size_t row) {
@@ -80,29 +97,20 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
   const std::size_t submap_index = scan_index / scans;
   const std::size_t first = submap_index > 0 ? (submap_index - 1) * scans : 0;
   if (scan_index < run.prior_scans) return {};
-  // Of the map that the run went on in no row tells, but it stays where it is.
   const std::size_t first_own = std::min(std::max(first, run.prior_scans), scan_index);
   const std::optional<std::size_t> first_row = RowOf(run.frames, run.scans[first_own].frame);
   const std::optional<std::size_t> row = RowOf(run.frames, run.scans[scan_index].frame);
   const std::optional<Pose2> pose_then = row ? PoseAt(run.frames, *row) : std::nullopt;
   if (!first_row || !pose_then) return {};
-  const bool corrected = LoopsBetween(run.frames, *first_row, *row);
-  const Pose2 then_from_final = *pose_then * Inverse(run.scans[scan_index].map_from_base);
-
+  const PosesThen poses{run, LoopsBetween(run.frames, *first_row, *row),
+                        *pose_then * Inverse(run.scans[scan_index].map_from_base)};
   const Scan shown = *run.scans[scan_index].scan;
-
   ActiveSubmaps submaps(submap, grid);
   submaps.RestartAt(static_cast<int>(first));
   ScanRasterizer rasterizer;
   for (std::size_t i = first; i < scan_index; ++i) {
-    const StoredScan& stored = run.scans[i];
-    Pose2 pose = stored.map_from_base;
-    if (i >= run.prior_scans) {
-      const std::optional<std::size_t> its_row = RowOf(run.frames, stored.frame);
-      const std::optional<Pose2> its_pose = its_row ? PoseAt(run.frames, *its_row) : std::nullopt;
-      pose = corrected || !its_pose ? then_from_final * stored.map_from_base : *its_pose;
-    }
-    Scan scan = *stored.scan;
+    Pose2 pose = poses.Of(i);
+    Scan scan = *run.scans[i].scan;
     // It counts as one of the submap's scans, but poses flung far apart need no grid over them all.
     if (AreApart(scan, pose, shown, *pose_then, grid.resolution_m)) {
       scan.beams.clear();

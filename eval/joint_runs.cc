@@ -27,6 +27,35 @@ std::string SharedPart(const ExperimentOptions& options) {
   return ToYaml(shared);
 }
 
+namespace {
+
+// Each image is made once, and given to the mapper of each run with that run's poses.
+void MapAll(const World& world, const RunContext& context, std::vector<JointRun>& runs) {
+  const SyntheticSensor sensor(world, runs.front().options, context.cache_folder);
+  std::vector<SlamPlayback> playbacks(runs.size());
+  std::deque<FrameRecorder> recorders;
+  for (const JointRun& run : runs) {
+    recorders.emplace_back(run.options.mapper, sensor.camera(), sensor.FrameCount(),
+                           OracleOf(world.trajectory));
+  }
+  OrderedFrames<std::shared_ptr<const DepthImage>> images(
+      sensor.FrameCount(), context.threads,
+      [&](int frame) { return std::make_shared<const DepthImage>(sensor.Image(frame)); });
+  for (int index = 0; const auto image = images.Next(); ++index) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      Frame frame = playbacks[i].FrameAt(index, runs[i].slam);
+      frame.depth = *image;
+      recorders[i].Add(frame);
+    }
+    if (context.progress) context.progress(index + 1, sensor.FrameCount());
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].mapping = recorders[i].Finish(runs[i].slam.final);
+  }
+}
+
+}  // namespace
+
 JointRuns RunJointly(const std::vector<ExperimentOptions>& given, const RunContext& context) {
   Require(!given.empty(), "there is something to run");
   for (const ExperimentOptions& options : given) {
@@ -38,32 +67,9 @@ JointRuns RunJointly(const std::vector<ExperimentOptions>& given, const RunConte
     SlamOutput slam = DisturbTrajectory(world.trajectory, options.slam, options.SlamSeed());
     runs.push_back({Completed(options, world.scene), std::move(slam), {}, {}});
   }
-  const ExperimentOptions& first = runs.front().options;
-  TruthRecord truth = MakeTruth(world, first.mapper, context.threads);
-  {
-    const SyntheticSensor sensor(world, first, context.cache_folder);
-    std::vector<SlamPlayback> playbacks(runs.size());
-    std::deque<FrameRecorder> recorders;
-    for (const JointRun& run : runs) {
-      recorders.emplace_back(run.options.mapper, sensor.camera(), sensor.FrameCount(),
-                             OracleOf(world.trajectory));
-    }
-    OrderedFrames<std::shared_ptr<const DepthImage>> images(
-        sensor.FrameCount(), context.threads,
-        [&](int frame) { return std::make_shared<const DepthImage>(sensor.Image(frame)); });
-    for (int index = 0; const auto image = images.Next(); ++index) {
-      for (std::size_t i = 0; i < runs.size(); ++i) {
-        Frame frame = playbacks[i].FrameAt(index, runs[i].slam);
-        frame.depth = *image;
-        recorders[i].Add(frame);
-      }
-      if (context.progress) context.progress(index + 1, sensor.FrameCount());
-    }
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      runs[i].mapping = recorders[i].Finish(runs[i].slam.final);
-      runs[i].scores = Score(runs[i].mapping, truth, runs[i].options.metrics);
-    }
-  }
+  TruthRecord truth = MakeTruth(world, runs.front().options.mapper, context.threads);
+  MapAll(world, context, runs);
+  for (JointRun& run : runs) run.scores = Score(run.mapping, truth, run.options.metrics);
   return {std::move(world), std::move(truth), std::move(runs)};
 }
 

@@ -48,12 +48,13 @@ Json MapJson(const RunFiles& run) {
   return json;
 }
 
-// The pose of every row of frames.csv, null where there is none.
-std::vector<std::optional<Pose3>> PosesAt(const Trajectory& trajectory,
-                                          const std::vector<double>& stamps_s) {
+// One a row of frames.csv, null where there is none.
+using PosesOfRows = std::vector<std::optional<Pose3>>;
+
+PosesOfRows PosesAt(const Trajectory& trajectory, const std::vector<double>& stamps_s) {
   std::vector<double> known_s;
   for (const StampedPose& pose : trajectory) known_s.push_back(pose.stamp_s);
-  std::vector<std::optional<Pose3>> poses;
+  PosesOfRows poses;
   for (const double stamp_s : stamps_s) {
     const auto entry = NearestStamp(known_s, stamp_s, kSameStampS);
     poses.push_back(entry ? std::optional(trajectory[*entry].world_from_camera) : std::nullopt);
@@ -67,7 +68,7 @@ bool IsPlanar(const Pose3& pose) { return pose.rotation.x() == 0.0 && pose.rotat
 
 Pose2 BaseOfRow(const Pose3& pose) { return IsPlanar(pose) ? PlanarPoseOf(pose) : BaseOf(pose); }
 
-Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
+Json PathJson(const PosesOfRows& poses) {
   Json json = {{"x", Json::array()}, {"y", Json::array()}, {"yaw", Json::array()}};
   for (const auto& pose : poses) {
     const Pose2 base = pose ? BaseOfRow(*pose) : Pose2{};
@@ -78,15 +79,14 @@ Json PathJson(const std::vector<std::optional<Pose3>>& poses) {
   return json;
 }
 
-std::vector<std::optional<Pose2>> BasesOf(const std::vector<std::optional<Pose3>>& poses) {
+std::vector<std::optional<Pose2>> BasesOf(const PosesOfRows& poses) {
   std::vector<std::optional<Pose2>> bases;
   for (const auto& pose : poses)
     bases.push_back(pose ? std::optional(BaseOfRow(*pose)) : std::nullopt);
   return bases;
 }
 
-std::vector<double> FinalErrors(const std::vector<std::optional<Pose3>>& est,
-                                const std::vector<std::optional<Pose3>>& truth) {
+std::vector<double> FinalErrors(const PosesOfRows& est, const PosesOfRows& truth) {
   std::vector<double> errors_m;
   for (std::size_t i = 0; i < est.size(); ++i) {
     errors_m.push_back(
@@ -184,9 +184,33 @@ std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings, bool went_
   return {grid, submap};
 }
 
+Json PathsJson(const RunFiles& run, const PosesOfRows& est, const PosesOfRows& truth) {
+  const std::vector<double>& stamps_s = run.frames.Column("stamp_s");
+  const bool in_prior_map = run.prior_scans > 0;
+  Json json;
+  json["slam"] =
+      PathJson(PosesAt(in_prior_map ? PlacedWhereItBegins(run.slam, run.est) : run.slam, stamps_s));
+  json["online"] = PathJson(PosesAt(run.online, stamps_s));
+  json["est"] = PathJson(est);
+  if (run.truth) json["truth"] = PathJson(truth);
+  return json;
+}
+
+// Of each row, for the choice of the worst: its final error, or how badly it was matched where no
+// truth is known.
+std::vector<double> BadnessOf(const RunFiles& run, const std::vector<double>& final_errors_m) {
+  if (run.truth) return final_errors_m;
+  std::vector<double> badness;
+  for (const double score : run.frames.Column("match_score")) badness.push_back(1.0 - score);
+  return badness;
+}
+
 Json RunJson(const RunFiles& run, const Config& settings) {
   const std::vector<double>& stamps_s = run.frames.Column("stamp_s");
-  const auto est = PosesAt(run.est, stamps_s);
+  const PosesOfRows est = PosesAt(run.est, stamps_s);
+  const PosesOfRows truth = run.truth ? PosesAt(*run.truth, stamps_s) : PosesOfRows{};
+  const std::vector<double> final_errors_m =
+      run.truth ? FinalErrors(est, truth) : std::vector<double>{};
   Json json;
   json["subtitle"] = Counted(run.frames.rows, "frame") + MainSettings(settings);
   json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(settings), ", "));
@@ -200,27 +224,11 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["prior_scans"] = run.prior_scans;
   json["only_placed"] = run.only_placed;
   json["map"] = MapJson(run);
-  const bool in_prior_map = run.prior_scans > 0;
-  json["paths"]["slam"] =
-      PathJson(PosesAt(in_prior_map ? PlacedWhereItBegins(run.slam, run.est) : run.slam, stamps_s));
-  json["paths"]["online"] = PathJson(PosesAt(run.online, stamps_s));
-  json["paths"]["est"] = PathJson(est);
-  std::vector<double> final_errors_m;
-  std::vector<std::optional<Pose2>> true_bases;
-  if (run.truth) {
-    const auto truth = PosesAt(*run.truth, stamps_s);
-    json["paths"]["truth"] = PathJson(truth);
-    final_errors_m = FinalErrors(est, truth);
-    true_bases = BasesOf(truth);
-  }
+  json["paths"] = PathsJson(run, est, truth);
   json["frames"] = FramesJson(run.frames, final_errors_m);
-  std::vector<double> badness = final_errors_m;
-  if (badness.empty()) {
-    for (const double score : run.frames.Column("match_score")) badness.push_back(1.0 - score);
-  }
-  const std::vector<std::size_t> worst = WorstRows(badness);
+  const std::vector<std::size_t> worst = WorstRows(BadnessOf(run, final_errors_m));
   const auto [grid, submap] = GridSettingsOf(settings, run.prior_scans > 0);
-  json["worst"] = WorstFramesJson(run, worst, true_bases, grid, submap);
+  json["worst"] = WorstFramesJson(run, worst, BasesOf(truth), grid, submap);
   json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
                                : "By the match score, the lowest first.";
   json["scans"] = ScansJson(run, worst);

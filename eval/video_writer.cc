@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // x264's constant quality: a map's sharp edges stay sharp, 30 s of it are about 1 MB.
-constexpr const char* kQuality = "20";
+constexpr int kQuality = 20;
 
 bool HasProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -37,44 +38,14 @@ bool HasProgram(const std::string& name) {
 // even sizes.
 std::vector<std::string> CommandFor(const std::string& path, int width_px, int height_px,
                                     int frames_per_s) {
-  const std::string size = fmt::format("{}x{}", width_px, height_px);
-  return {"ffmpeg",
-          "-nostdin",
-          "-loglevel",
-          "error",
-          "-y",
-          "-f",
-          "rawvideo",
-          "-pix_fmt",
-          "rgb24",
-          "-s",
-          size,
-          "-r",
-          std::to_string(frames_per_s),
-          "-i",
-          "pipe:0",
-          "-an",
-          "-vf",
-          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-          "-c:v",
-          "libx264",
-          "-preset",
-          "medium",
-          "-crf",
-          kQuality,
-          "-pix_fmt",
-          "yuv420p",
-          "-threads",
-          "1",
-          "-fflags",
-          "+bitexact",
-          "-flags:v",
-          "+bitexact",
-          "-movflags",
-          "+faststart",
-          "-f",
-          "mp4",
-          path};
+  std::istringstream words(fmt::format(
+      "ffmpeg -nostdin -loglevel error -y -f rawvideo -pix_fmt rgb24 -s {}x{} -r {} -i pipe:0 -an "
+      "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -preset medium -crf {} -pix_fmt yuv420p "
+      "-threads 1 -fflags +bitexact -flags:v +bitexact -movflags +faststart -f mp4",
+      width_px, height_px, frames_per_s, kQuality));
+  std::vector<std::string> command(std::istream_iterator<std::string>(words), {});
+  command.push_back(path);
+  return command;
 }
 
 // Starts ffmpeg reading from a pipe; its other end.

@@ -42,17 +42,16 @@ CubicSpline::CubicSpline(std::vector<double> knots, Eigen::MatrixXd values)
   second_derivatives_ = SecondDerivatives(knots_, values_);
 }
 
-Eigen::Index CubicSpline::IntervalOf(double u) const {
+CubicSpline::Segment CubicSpline::SegmentAt(double u) const {
   const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, u);
-  return after - knots_.begin() - 1;
+  const double knot = *(after - 1);
+  const double step = *after - knot;
+  const double right = (u - knot) / step;
+  return {after - knots_.begin() - 1, step, 1.0 - right, right};
 }
 
 Eigen::VectorXd CubicSpline::Value(double u) const {
-  const Eigen::Index k = IntervalOf(u);
-  const auto i = static_cast<std::size_t>(k);
-  const double step = knots_[i + 1] - knots_[i];
-  const double b = (u - knots_[i]) / step;
-  const double a = 1.0 - b;
+  const auto [k, step, a, b] = SegmentAt(u);
   return a * values_.col(k) + b * values_.col(k + 1) +
          ((a * a * a - a) * second_derivatives_.col(k) +
           (b * b * b - b) * second_derivatives_.col(k + 1)) *
@@ -60,11 +59,7 @@ Eigen::VectorXd CubicSpline::Value(double u) const {
 }
 
 Eigen::VectorXd CubicSpline::Slope(double u) const {
-  const Eigen::Index k = IntervalOf(u);
-  const auto i = static_cast<std::size_t>(k);
-  const double step = knots_[i + 1] - knots_[i];
-  const double b = (u - knots_[i]) / step;
-  const double a = 1.0 - b;
+  const auto [k, step, a, b] = SegmentAt(u);
   return (values_.col(k + 1) - values_.col(k)) / step +
          ((3.0 * b * b - 1.0) * second_derivatives_.col(k + 1) -
           (3.0 * a * a - 1.0) * second_derivatives_.col(k)) *
@@ -72,10 +67,8 @@ Eigen::VectorXd CubicSpline::Slope(double u) const {
 }
 
 Eigen::VectorXd CubicSpline::Bend(double u) const {
-  const Eigen::Index k = IntervalOf(u);
-  const auto i = static_cast<std::size_t>(k);
-  const double b = (u - knots_[i]) / (knots_[i + 1] - knots_[i]);
-  return (1.0 - b) * second_derivatives_.col(k) + b * second_derivatives_.col(k + 1);
+  const auto [k, step, a, b] = SegmentAt(u);
+  return a * second_derivatives_.col(k) + b * second_derivatives_.col(k + 1);
 }
 
 }  // namespace depthgrid

@@ -18,7 +18,14 @@ class CubicSpline {
   Eigen::VectorXd Bend(double u) const;   // second derivative
 
  private:
-  Eigen::Index IntervalOf(double u) const;
+  // Between knots k and k + 1, `step` apart: the shares that each of the two has of u.
+  struct Segment {
+    Eigen::Index k = 0;
+    double step = 1.0;
+    double left = 0.0;
+    double right = 0.0;
+  };
+  Segment SegmentAt(double u) const;
 
   std::vector<double> knots_;
   Eigen::MatrixXd values_;

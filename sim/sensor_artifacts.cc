@@ -39,6 +39,64 @@ float AcrossEdge(const DepthFrame& clean, const PinholeCamera& camera, int u, in
 
 float UniformOf(std::uint32_t word) { return (static_cast<float>(word >> 9) + 0.5F) * 0x1.0p-23F; }
 
+// A row of the image as the projector sees it: each pixel moved sideways by its disparity, f b / z.
+class ProjectorRow {
+ public:
+  // `fb` is focal length times baseline, pixels times metres; negative of a projector to the left.
+  ProjectorRow(int width_px, float fb)
+      : width_(width_px),
+        fb_(fb),
+        columns_(static_cast<std::size_t>(width_px)),
+        nearest_(static_cast<std::size_t>(3 * width_px)) {}
+
+  // Invalidates what nearer surfaces of the row keep from being lit.
+  void Shade(float* z_m) {
+    std::fill(nearest_.begin(), nearest_.end(), 0.0F);
+    for (int u = 0; u < width_; ++u) {
+      const float disparity = DisparityOf(z_m[u]);
+      const float shift = fb_ < 0 ? -disparity : disparity;
+      Column(u) = width_ + static_cast<int>(std::floor(static_cast<float>(u) - shift + 0.5F));
+    }
+    for (int u = 0; u < width_; ++u) LightFrom(z_m, u);
+    for (int u = 0; u < width_; ++u) {
+      if (!IsSeen(Column(u))) continue;
+      if (Nearest(Column(u)) > DisparityOf(z_m[u]) + kBiasPx) z_m[u] = kInvalidDepth;
+    }
+  }
+
+ private:
+  static constexpr float kBiasPx = 1.5F;       // a slanted surface does not shade itself
+  static constexpr int kWidestGapColumns = 4;  // neighbours further apart are different surfaces
+
+  float DisparityOf(float z_m) const { return z_m > 0.0F ? std::abs(fb_) / z_m : 0.0F; }
+  int& Column(int u) { return columns_[static_cast<std::size_t>(u)]; }
+  // Disparities beyond the image's width leave the projector's columns: nearer than f b / width.
+  bool IsSeen(int column) const {
+    return column >= 0 && column < static_cast<int>(nearest_.size());
+  }
+  float& Nearest(int column) { return nearest_[static_cast<std::size_t>(column)]; }
+  void Light(int column, float disparity) {
+    if (IsSeen(column)) Nearest(column) = std::max(Nearest(column), disparity);
+  }
+  // By the surface of pixel u and of its neighbour to the right.
+  void LightFrom(const float* z_m, int u) {
+    if (z_m[u] <= 0.0F) return;
+    const float disparity = DisparityOf(z_m[u]);
+    Light(Column(u), disparity);
+    if (u + 1 == width_ || z_m[u + 1] <= 0.0F) return;
+    const int next = Column(u + 1);
+    if (next - Column(u) > kWidestGapColumns) return;
+    for (int between = Column(u) + 1; between < next; ++between) {
+      Light(between, std::min(disparity, DisparityOf(z_m[u + 1])));
+    }
+  }
+
+  int width_;
+  float fb_;
+  std::vector<int> columns_;    // of each pixel
+  std::vector<float> nearest_;  // largest disparity in each column; the image's begin at width_
+};
+
 }  // namespace
 
 DepthImage WithFlyingPixels(const DepthFrame& clean, const PinholeCamera& camera,
@@ -60,47 +118,8 @@ DepthImage WithFlyingPixels(const DepthFrame& clean, const PinholeCamera& camera
 }
 
 void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double baseline_m) {
-  constexpr float kBiasPx = 1.5F;       // a slanted surface does not shade itself
-  constexpr int kWidestGapColumns = 4;  // neighbours further apart are different surfaces
-  const int width = depth.width_px;
-  // Disparities beyond the image's width leave the projector's buffer: nearer than f b / width.
-  const auto span = static_cast<std::size_t>(3 * width);
-  const auto fb = static_cast<float>(camera.fx_px * baseline_m);
-  std::vector<float> nearest(span);
-  std::vector<int> columns(static_cast<std::size_t>(width));
-  for (int v = 0; v < depth.height_px; ++v) {
-    float* const row = depth.Row(v);
-    std::fill(nearest.begin(), nearest.end(), 0.0F);
-    const auto disparity = [&](int u) { return row[u] > 0.0F ? std::abs(fb) / row[u] : 0.0F; };
-    const auto light = [&](int column, float with_disparity) {
-      if (column < 0 || column >= static_cast<int>(span)) return;
-      float& kept = nearest[static_cast<std::size_t>(column)];
-      kept = std::max(kept, with_disparity);
-    };
-    for (int u = 0; u < width; ++u) {
-      const float shift = fb < 0 ? -disparity(u) : disparity(u);
-      columns[static_cast<std::size_t>(u)] =
-          width + static_cast<int>(std::floor(static_cast<float>(u) - shift + 0.5F));
-    }
-    for (int u = 0; u < width; ++u) {
-      if (row[u] <= 0.0F) continue;
-      const int column = columns[static_cast<std::size_t>(u)];
-      light(column, disparity(u));
-      if (u + 1 == width || row[u + 1] <= 0.0F) continue;
-      const int next = columns[static_cast<std::size_t>(u + 1)];
-      if (next - column > kWidestGapColumns) continue;
-      for (int between = column + 1; between < next; ++between) {
-        light(between, std::min(disparity(u), disparity(u + 1)));
-      }
-    }
-    for (int u = 0; u < width; ++u) {
-      const int column = columns[static_cast<std::size_t>(u)];
-      if (column < 0 || column >= static_cast<int>(span)) continue;
-      if (nearest[static_cast<std::size_t>(column)] > disparity(u) + kBiasPx) {
-        row[u] = kInvalidDepth;
-      }
-    }
-  }
+  ProjectorRow projector(depth.width_px, static_cast<float>(camera.fx_px * baseline_m));
+  for (int v = 0; v < depth.height_px; ++v) projector.Shade(depth.Row(v));
 }
 
 void DropEdges(const DepthImage& clean, float step_m, DepthImage& measured) {

@@ -51,19 +51,32 @@ void RequireNoSeed(const std::vector<std::string>& set) {
   }
 }
 
-void AblateNamed(const AblateArguments& arguments) {
+void WarnOfRepeatedSeeds(std::size_t counted, std::size_t seeds) {
+  if (counted == seeds) return;
+  Warn(
+      {fmt::format("{} of {} give what another gave and do not count: nothing here "
+                   "depends on the seed",
+                   seeds - counted, Counted(seeds, "seed"))});
+}
+
+AblationPlan PlanOf(const AblateArguments& arguments) {
   RequireNoSeed(arguments.common.set);
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
-  Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
+  return plan;
+}
+
+void AblateNamed(const AblateArguments& arguments) {
+  const AblationPlan plan = PlanOf(arguments);
+  Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
   OutputFolder folder = OpenOutput(arguments.common, ResultKind::kAblation,
                                    InputsOf(arguments.experiment, {plan.experiment}));
+  ProgressBar bar("ablating");
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);
-  ProgressBar bar("ablating");
   context.progress = bar.AsProgress();
   const auto [runs, warnings] = RunAblation(plan, context);
   const std::vector<AblationRun> counted = WithoutRepeatedSeeds(runs);
@@ -77,12 +90,7 @@ void AblateNamed(const AblateArguments& arguments) {
   folder.Commit();
   bar.Clear();
   Warn(warnings);
-  if (seeds < plan.seeds.size()) {
-    Warn(
-        {fmt::format("{} of {} give what another gave and do not count: nothing here "
-                     "depends on the seed",
-                     plan.seeds.size() - seeds, Counted(plan.seeds.size(), "seed"))});
-  }
+  WarnOfRepeatedSeeds(seeds, plan.seeds.size());
   if (arguments.json) {
     fmt::print("{}", json);
     return;

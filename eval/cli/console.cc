@@ -10,7 +10,6 @@
 #include <cstring>
 #include <iterator>
 #include <stdexcept>
-#include <string_view>
 
 #include "eval/cli/interrupts.h"
 #include "sim/usable_threads.h"

@@ -66,6 +66,18 @@ void AddRender(Program& program) {
   AddCache(*app, arguments->common);
 }
 
+void AddSlamFiles(CLI::App& app, MapArguments& arguments) {
+  app.add_option("--poses", arguments.poses,
+                 "SLAM's live poses, TUM format or a matrix a frame; default: the folder's own")
+      ->type_name("FILE");
+  app.add_option("--final-poses", arguments.final_poses,
+                 "SLAM's poses after all corrections; without --loops, loops are read off them")
+      ->type_name("FILE");
+  app.add_option("--loops", arguments.loops,
+                 "SLAM's events: loops.csv of `depthgrid slam`, ORB-SLAM2's, or stamped loops")
+      ->type_name("FILE");
+}
+
 void AddMap(Program& program) {
   const auto [app, arguments] = program.Add<MapArguments>(
       program.app, "map", "Map a recorded or rendered sequence",
@@ -79,15 +91,7 @@ void AddMap(Program& program) {
          "A TUM, ICL-NUIM or frame-by-frame folder, a CARMEN laser log, or the run.yaml of a "
          "map, which is made again")
       ->required();
-  app->add_option("--poses", arguments->poses,
-                  "SLAM's live poses, TUM format or a matrix a frame; default: the folder's own")
-      ->type_name("FILE");
-  app->add_option("--final-poses", arguments->final_poses,
-                  "SLAM's poses after all corrections; without --loops, loops are read off them")
-      ->type_name("FILE");
-  app->add_option("--loops", arguments->loops,
-                  "SLAM's events: loops.csv of `depthgrid slam`, ORB-SLAM2's, or stamped loops")
-      ->type_name("FILE");
+  AddSlamFiles(*app, *arguments);
   app->add_option("--format", arguments->format,
                   "Kind of the input, in place of what it looks like: tum, icl, frames, carmen")
       ->type_name("KIND");
@@ -199,42 +203,48 @@ void AddSlamFit(Program& program) {
       ->expected(2, 1000);
 }
 
+void AddEvalTrajectory(Program& program, CLI::App& eval) {
+  const auto [app, arguments] = program.Add<EvalTrajectoryArguments>(
+      eval, "trajectory", "Errors of a trajectory, TUM or KITTI files, evo's conventions",
+      "depthgrid eval trajectory groundtruth.txt trajectory_est.txt", &EvalTrajectory);
+  app->add_option("reference", arguments->reference, "True trajectory")->required();
+  app->add_option("estimate", arguments->estimate, "Estimated trajectory")->required();
+  app->add_option("--max-difference", arguments->max_difference_s,
+                  "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
+      ->check(RefusalIfNegative);
+  app->add_option("--convention", arguments->convention,
+                  "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
+      ->check(CLI::IsMember({"evo", "tum"}))
+      ->capture_default_str();
+  app->add_option("--errors", arguments->errors,
+                  "Write the errors over time to this CSV, not aligned")
+      ->type_name("FILE");
+  app->add_flag("--force", arguments->force,
+                "Replace that file if it is there already, but neither trajectory");
+  app->add_flag("--json", arguments->json, "Print JSON instead of a table");
+}
+
+void AddEvalMap(Program& program, CLI::App& eval) {
+  const auto [app, arguments] = program.Add<EvalMapArguments>(
+      eval, "map", "Agreement of a map with the true one, Nav2 YAML files",
+      "depthgrid eval map OUT/truth_map.yaml OUT/map.yaml", &EvalMap);
+  app->add_option("reference", arguments->reference, "True map")->required();
+  app->add_option("estimate", arguments->estimate, "Estimated map")->required();
+  app->add_option(
+         "--observable", arguments->observable,
+         "Map whose free cells could be seen; default: observable.yaml beside the true map")
+      ->type_name("FILE");
+  app->add_flag("--json", arguments->json, "Print JSON instead of a table");
+}
+
 void AddEval(Program& program) {
   CLI::App* eval = program.app.add_subcommand("eval", "Score a trajectory or a map");
   eval->require_subcommand(1);
   eval->footer(
       "Example:\n  depthgrid eval trajectory groundtruth.txt trajectory_est.txt\n"
       "  depthgrid eval map OUT/truth_map.yaml OUT/map.yaml --json");
-  const auto [trajectory, t] = program.Add<EvalTrajectoryArguments>(
-      *eval, "trajectory", "Errors of a trajectory, TUM or KITTI files, evo's conventions",
-      "depthgrid eval trajectory groundtruth.txt trajectory_est.txt", &EvalTrajectory);
-  trajectory->add_option("reference", t->reference, "True trajectory")->required();
-  trajectory->add_option("estimate", t->estimate, "Estimated trajectory")->required();
-  trajectory
-      ->add_option("--max-difference", t->max_difference_s,
-                   "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
-      ->check(RefusalIfNegative);
-  trajectory
-      ->add_option("--convention", t->convention,
-                   "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
-      ->check(CLI::IsMember({"evo", "tum"}))
-      ->capture_default_str();
-  trajectory
-      ->add_option("--errors", t->errors, "Write the errors over time to this CSV, not aligned")
-      ->type_name("FILE");
-  trajectory->add_flag("--force", t->force,
-                       "Replace that file if it is there already, but neither trajectory");
-  trajectory->add_flag("--json", t->json, "Print JSON instead of a table");
-  const auto [map, m] = program.Add<EvalMapArguments>(
-      *eval, "map", "Agreement of a map with the true one, Nav2 YAML files",
-      "depthgrid eval map OUT/truth_map.yaml OUT/map.yaml", &EvalMap);
-  map->add_option("reference", m->reference, "True map")->required();
-  map->add_option("estimate", m->estimate, "Estimated map")->required();
-  map->add_option(
-         "--observable", m->observable,
-         "Map whose free cells could be seen; default: observable.yaml beside the true map")
-      ->type_name("FILE");
-  map->add_flag("--json", m->json, "Print JSON instead of a table");
+  AddEvalTrajectory(program, *eval);
+  AddEvalMap(program, *eval);
 }
 
 void AddCompare(Program& program) {
@@ -304,6 +314,23 @@ void AddRegrid(Program& program) {
   app->add_flag("--force", arguments->force, "Replace a map of that name");
 }
 
+// In the order in which --help lists them.
+void AddCommands(Program& program) {
+  AddScenes(program);
+  AddRender(program);
+  AddMap(program);
+  AddRun(program);
+  AddSweep(program);
+  AddSlam(program);
+  AddSlamCalibrate(program);
+  AddSlamFit(program);
+  AddEval(program);
+  AddRegrid(program);
+  AddCompare(program);
+  AddAblate(program);
+  AddReport(program);
+}
+
 // One line, whatever the message holds.
 int Complain(const std::string& message, int exit_code) {
   std::string line = message;
@@ -326,25 +353,24 @@ void RequireNames(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) RequireNames(*command);
 }
 
+// Of what a command threw.
+int ComplainOf(const std::exception& error) {
+  // Whatever came of being stopped, that is what happened.
+  if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
+  if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
+  }
+  const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
+  return Complain(error.what(), bad_input ? kBadInput : kFailed);
+}
+
 int Main(int argc, char** argv) {
   OpenStandardStreams();
   Program program;
   program.app.require_subcommand(1);
   program.app.set_version_flag("--version", DEPTHGRID_VERSION);
   program.app.footer(kFirstSteps);
-  AddScenes(program);
-  AddRender(program);
-  AddMap(program);
-  AddRun(program);
-  AddSweep(program);
-  AddSlam(program);
-  AddSlamCalibrate(program);
-  AddSlamFit(program);
-  AddEval(program);
-  AddRegrid(program);
-  AddCompare(program);
-  AddAblate(program);
-  AddReport(program);
+  AddCommands(program);
   RequireNames(program.app);
   CatchInterrupts();
   try {
@@ -359,13 +385,7 @@ int Main(int argc, char** argv) {
     FinishOutput();
     return kDone;
   } catch (const std::exception& error) {
-    // Whatever came of being stopped, that is what happened.
-    if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
-    if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
-      return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
-    }
-    const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
-    return Complain(error.what(), bad_input ? kBadInput : kFailed);
+    return ComplainOf(error);
   }
 }
 

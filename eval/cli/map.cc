@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 
 #include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/map_settings.h"
+#include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
 #include "eval/mapping_run.h"
 #include "eval/place_check.h"
@@ -151,75 +151,12 @@ void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const Fu
   }
 }
 
-std::string PitchOf(const PoseDoubt& doubt) {
-  return fmt::format("about {:.0f} degrees {}", std::abs(DegFromRad(doubt.down_rad)),
-                     doubt.down_rad > 0.0 ? "below" : "above");
-}
-
-// Three digits, which is how well it is known: 0.664, 1000.
-std::string ShownScale(double scale) {
-  const double unit = std::pow(10.0, std::floor(std::log10(scale)) - 2.0);
-  return fmt::format("{:g}", std::round(scale / unit) * unit);
-}
-
-// A slow camera moves a centimetre in it.
-constexpr double kSureOfTimeS = 0.04;
-
-// What is to be done about it: the poses are mapped as they were read.
-std::string RemedyOf(const PoseDoubt& doubt) {
-  switch (doubt.reading) {
-    case PoseReading::kWFirst:
-      return "with quaternions that begin with w; rows must be t x y z qx qy qz qw";
-    case PoseReading::kInverse:
-      return "with each pose inverted; poses must take the camera to the world";
-    case PoseReading::kBodyAxes:
-      return "with poses of axes x forward, y left, z up; they must be the camera's x right, y "
-             "down, z forward";
-    case PoseReading::kGlAxes:
-      return "with poses of axes x right, y up, z backward; they must be the camera's x right, y "
-             "down, z forward";
-    case PoseReading::kScaled:
-      return fmt::format(
-          "with images {} times as deep: their scale (depth_scale of the camera file, or --set "
-          "sequence.recording.depth_scale) or SLAM's is wrong",
-          ShownScale(1.0 / doubt.scale));
-    case PoseReading::kPitched:
-      return fmt::format(
-          "with a camera that looks {} the poses' z axis; they must be the camera's own "
-          "(formats.md, \"Poses of a robot's base\")",
-          PitchOf(doubt));
-    case PoseReading::kPitchedBodyAxes:
-      return fmt::format(
-          "with poses of axes x forward, y left, z up, the camera looking {} x; they must be the "
-          "camera's x right, y down, z forward (formats.md, \"Poses of a robot's base\")",
-          PitchOf(doubt));
-    case PoseReading::kFocal:
-      return fmt::format(
-          "with fx and fy about {:.2g} times as large: those of the camera are wrong", doubt.scale);
-    case PoseReading::kImageSize:
-      return fmt::format(
-          "with fx, fy, cx and cy about {:.2g} times as large: those of the camera are for images "
-          "of another size",
-          doubt.scale);
-    case PoseReading::kShifted:
-      break;
-  }
-  const std::string setting = fmt::format(
-      "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
-  if (doubt.time_unsure_s < kSureOfTimeS) return setting;
-  return fmt::format("{}, {:.2f} s more or less fit alike", setting, doubt.time_unsure_s);
-}
-
 void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
                 std::vector<std::string>& warnings) {
   const auto& doubt = sequence.pose_doubt;
   if (!doubt) return;
-  constexpr double kPercent = 100.0;
-  warnings.push_back(fmt::format(
-      "{}: the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their "
-      "depth apart; they would, at {:.1f} %, {}",
-      arguments.poses.empty() ? arguments.input : arguments.poses, kPercent * doubt->misfit,
-      kPercent * doubt->better_misfit, RemedyOf(*doubt)));
+  const std::string& poses = arguments.poses.empty() ? arguments.input : arguments.poses;
+  warnings.push_back(poses + ": " + PoseDoubtText(*doubt));
 }
 
 // The map of another axis than up is a cut through the walls, and looks like a map.
@@ -329,6 +266,42 @@ void SayResult(const MappingRun& run, bool localised) {
   fmt::print("\n");
 }
 
+// What may be wrong with what was mapped; `begin`: in a finished map, where.
+std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest& request,
+                                     const Sequence& input, const std::optional<FoundPlace>& begin,
+                                     const MappingRun& run) {
+  const MapArguments& arguments = request.arguments;
+  const MapSettings& settings = request.settings;
+  std::vector<std::string> warnings = run.warnings;
+  CheckPoses(arguments, input, warnings);
+  CheckUp(request.config, input, warnings);
+  const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
+  warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  // Poses read the wrong way have another scale too.
+  if (!input.pose_doubt) CheckScale(arguments, run, warnings);
+  CheckDirections(arguments, settings.sequence.laser, run, warnings);
+  CheckMatches(arguments, settings, run, warnings);
+  if (!begin) return warnings;
+  const auto doubt = DoubtOfPrior(arguments.map, settings.mapper, run.camera.has_value());
+  if (doubt) warnings.push_back(*doubt);
+  CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
+  return warnings;
+}
+
+// All but the time that it took.
+RunRecord RecordOf(const MapRequest& request, const MappingRun& run,
+                   const std::vector<std::string>& warnings) {
+  MapSettings settings = request.settings;
+  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
+  RunRecord record;
+  for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
+  record.settings = ToYaml(settings);
+  record.mapping = &run;
+  record.scan = settings.mapper.scan;
+  record.map_mode = request.arguments.output.map_mode;
+  return record;
+}
+
 void MapRequested(const MapArguments& given, MapRequest request) {
   const auto start = std::chrono::steady_clock::now();
   const MapArguments& arguments = request.arguments;
@@ -345,27 +318,9 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
-  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
-  CheckPoses(arguments, input, warnings);
-  CheckUp(request.config, input, warnings);
-  const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
+  const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-  // Poses read the wrong way have another scale too.
-  if (!input.pose_doubt) CheckScale(arguments, run, warnings);
-  CheckDirections(arguments, settings.sequence.laser, run, warnings);
-  CheckMatches(arguments, settings, run, warnings);
-  if (prior) {
-    const auto doubt = DoubtOfPrior(arguments.map, request.settings.mapper, run.camera.has_value());
-    if (doubt) warnings.push_back(*doubt);
-  }
-  if (begin) CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
-  RunRecord record;
-  for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
-  settings.sequence.camera = FromEverywhere(settings.sequence.camera);
-  record.settings = ToYaml(settings);
-  record.mapping = &run;
-  record.scan = settings.mapper.scan;
-  record.map_mode = arguments.output.map_mode;
+  RunRecord record = RecordOf(request, run, warnings);
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();

@@ -11,7 +11,6 @@
 #include "eval/cli/video_output.h"
 #include "eval/experiment.h"
 #include "eval/idle_settings.h"
-#include "eval/kept_inputs.h"
 #include "eval/run_folder.h"
 #include "eval/shipped.h"
 #include "eval/study.h"

@@ -14,6 +14,7 @@
 #include "eval/shell_word.h"
 #include "eval/shipped.h"
 #include "eval/sweep/slurm.h"
+#include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_folder.h"
 #include "eval/sweep/sweep_progress.h"
 #include "eval/sweep_report.h"

@@ -244,6 +244,34 @@ void RequireKeys(const Config& config, const std::string& path) {
   }
 }
 
+// The experiment that a sweep runs many times over.
+struct ExperimentFile {
+  std::string path;
+  std::string folder;  // where its file names start
+  Config config;
+  Config record;  // `provenance`, of a run.yaml
+};
+
+// `place`: where the sweep names it.
+ExperimentFile ReadExperimentFile(const std::string& name, const std::string& place,
+                                  const std::string& sweep_folder) {
+  ExperimentFile file;
+  file.path = ResolveNameAt(place, name, ShippedKind::kExperiment, sweep_folder);
+  // A shipped one names no files; those of the sweep are its author's.
+  file.folder = IsFileName(name) ? fs::path(file.path).parent_path().string() : sweep_folder;
+  file.config = Config::FromFile(file.path);
+  file.record = file.config.Take("provenance");
+  // So that its own errors name its own file; a copy would not know its lines.
+  ReadExperiment(Config::FromFile(file.path), file.folder);
+  return file;
+}
+
+// What the sweep's file sets in all runs, and --set after it.
+void Change(const Config& fixed, const std::vector<std::string>& set, Config& config) {
+  for (const ConfigEntry& entry : fixed.Entries()) config.Set(entry.key, entry.text, entry.place);
+  for (const std::string& assignment : set) config.Set(assignment);
+}
+
 // Whether the sweep itself says which room or path, on an axis or for all runs.
 bool IsChosen(const std::string& key, const Config& changes, const SweepPlan& plan) {
   const auto& keys = plan.parameter_keys;
@@ -253,6 +281,25 @@ bool IsChosen(const std::string& key, const Config& changes, const SweepPlan& pl
 // Whether runs that differ in this key alone see the same scans.
 bool IsOfMapperOnly(const std::string& key) {
   return key.starts_with("mapper.") && !key.starts_with("mapper.scan");
+}
+
+std::vector<std::string> DoubtsOf(const SweepPlan& plan, const std::string& experiment_name,
+                                  const ExperimentFile& experiment, const SweepLayers& layers) {
+  Config changes;
+  Change(layers.fixed, layers.set, changes);
+  const ChosenAnew anew = {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)};
+  std::vector<std::string> warnings;
+  for (const auto& doubt : {DoubtOfProfiles(experiment_name, experiment.config, changes, plan.axes),
+                            DoubtOfRepeats(plan)}) {
+    if (doubt) warnings.push_back(*doubt);
+  }
+  const ExperimentOptions base = ReadExperiment(plan.base, plan.base_folder);
+  for (const auto& doubts : {DoubtsOfRecord(experiment.path, experiment.record, base, anew),
+                             DoubtsOfAxisKeys(plan, layers.fixed, layers.set),
+                             DoubtsOfLayers(plan, layers, !IsFileName(experiment_name))}) {
+    warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  }
+  return warnings;
 }
 
 }  // namespace
@@ -285,23 +332,12 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   SweepFileOptions file;
   config.Read(file);
   RequireFewEnough(file, plan.axes, path);
-  const std::string sweep_folder = fs::path(path).parent_path().string();
-  const std::string experiment =
-      ResolveNameAt(place, file.experiment, ShippedKind::kExperiment, sweep_folder);
-  // A shipped one names no files; those of the sweep are its author's.
-  plan.base_folder =
-      IsFileName(file.experiment) ? fs::path(experiment).parent_path().string() : sweep_folder;
-  Config own = Config::FromFile(experiment);
-  const Config record = own.Take("provenance");  // of a run.yaml
-  // So that its own errors name its own file; a copy would not know its lines.
-  ReadExperiment(Config::FromFile(experiment), plan.base_folder);
-  Config changes;
-  for (const ConfigEntry& entry : fixed.Entries()) changes.Set(entry.key, entry.text, entry.place);
-  for (const std::string& assignment : set) changes.Set(assignment);
+  const ExperimentFile experiment =
+      ReadExperimentFile(file.experiment, place, fs::path(path).parent_path().string());
+  plan.base_folder = experiment.folder;
   const auto base_with = [&](const std::vector<std::string>& some) {
-    Config base = Config::FromText(own.ToYaml(), path + ", set");
-    for (const ConfigEntry& entry : fixed.Entries()) base.Set(entry.key, entry.text, entry.place);
-    for (const std::string& assignment : some) base.Set(assignment);
+    Config base = Config::FromText(experiment.config.ToYaml(), path + ", set");
+    Change(fixed, some, base);
     return base;
   };
   plan.base = base_with(set);
@@ -310,17 +346,8 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   CheckValues(plan);
   CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);
-  const ChosenAnew anew = {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)};
-  for (const auto& doubt :
-       {DoubtOfProfiles(file.experiment, own, changes, plan.axes), DoubtOfRepeats(plan)}) {
-    if (doubt) plan.warnings.push_back(*doubt);
-  }
-  for (const auto& doubts :
-       {DoubtsOfRecord(experiment, record, ReadExperiment(plan.base, plan.base_folder), anew),
-        DoubtsOfAxisKeys(plan, fixed, set),
-        DoubtsOfLayers(plan, {own, fixed, set, base_with}, !IsFileName(file.experiment))}) {
-    plan.warnings.insert(plan.warnings.end(), doubts.begin(), doubts.end());
-  }
+  plan.warnings =
+      DoubtsOf(plan, file.experiment, experiment, {experiment.config, fixed, set, base_with});
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
 
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -128,24 +131,30 @@ CameraDescription FromRos(const Config& config, const std::string& place) {
   return camera;
 }
 
-// ORB-SLAM2's settings ("Camera.fx") or ORB-SLAM3's ("Camera1.fx"); dots are part of the names.
-CameraDescription FromOrbSlam(const std::string& text, const std::string& place) {
-  CameraDescription camera;
-  camera.kind = "ORB-SLAM settings";
-  std::vector<std::pair<std::string, double>> values;
+// The numbers of ORB-SLAM2's settings ("Camera.fx") or ORB-SLAM3's ("Camera1.fx") by ORB-SLAM2's
+// names; dots are part of them.
+using OrbSlamNumbers = std::map<std::string, double, std::less<>>;
+
+OrbSlamNumbers OrbSlamNumbersOf(const std::string& text) {
+  OrbSlamNumbers numbers;
   for (const TextRow& row : SplitRows(text)) {
     if (row.fields.size() < 2 || !row.fields[0].ends_with(':')) continue;
     std::string key(row.fields[0].substr(0, row.fields[0].size() - 1));
     if (key.starts_with("Camera1.")) key.replace(0, 8, "Camera.");
-    if (const auto number = ParseNumber(row.fields[1])) values.emplace_back(key, *number);
+    if (const auto number = ParseNumber(row.fields[1])) numbers.emplace(key, *number);
   }
-  const auto find = [&](const char* key) -> std::optional<double> {
-    for (const auto& [name, value] : values) {
-      if (name == key) return value;
-    }
-    return {};
+  return numbers;
+}
+
+CameraDescription FromOrbSlam(const std::string& text, const std::string& place) {
+  CameraDescription camera;
+  camera.kind = "ORB-SLAM settings";
+  const OrbSlamNumbers numbers = OrbSlamNumbersOf(text);
+  const auto find = [&](std::string_view key) -> std::optional<double> {
+    const auto found = numbers.find(key);
+    return found == numbers.end() ? std::nullopt : std::optional(found->second);
   };
-  const auto need = [&](const char* key) {
+  const auto need = [&](std::string_view key) {
     const auto value = find(key);
     if (!value) throw InputError(place, fmt::format("key '{}' is missing", key));
     return *value;

@@ -124,46 +124,8 @@ class CarmenLogSource : public FrameSource {
     RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
     Rewind();
-    std::vector<double> speeds_mps;
-    std::optional<CarmenScan> last;
-    CarmenCheck check(options_.min_range_m, options_.fov_deg > 0.0);
-    while (auto scan = NextScan()) {
-      names_.stamps_s.push_back(scan->stamp_s);
-      names_.numbers.push_back(lines_of_scans_ - 1);
-      if (place_ != Place::kInPart) continue;
-      check.Add(*scan, ReachOf(*scan, options_).no_return_m, line_number_);
-      if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
-      last = std::move(scan);
-    }
-    names_.part = FindPart(part_, names_.stamps_s, path_);
-    std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
-    const int lines = line_number_;
-    for (const auto& [reason, seen] : problems_) {
-      warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
-                                          : fmt::format("{}:{}: {} ({} such lines)", path_,
-                                                        seen.first_line, reason, seen.count));
-    }
-    WarnOfOrder();
-    for (std::string& doubt : check.Warnings(path_)) warnings_.push_back(std::move(doubt));
-    if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
-      warnings_.push_back(fmt::format(
-          "{}: the laser moves at {:.0f} m/s: is the odometry in metres, and are the stamps in "
-          "seconds?",
-          path_, *speed_mps));
-    }
-    if (names_.stamps_s.empty()) {
-      if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
-      if (const auto nameless = problems_.find(kNamelessLine);
-          nameless != problems_.end() && problems_.size() == 1) {
-        throw InputError(
-            PlaceOfLine(path_, nameless->second.first_line),
-            "begins with no message name, must be a CARMEN log's; images are given by their folder "
-            "and poses by --poses");
-      }
-      throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
-                                          Counted(lines, "line"),
-                                          warnings_.empty() ? "" : "; first: " + warnings_[0]));
-    }
+    Survey();
+    RequireScans();
     Rewind();
   }
 
@@ -192,6 +154,56 @@ class CarmenLogSource : public FrameSource {
     int count = 0;
     int first_line = 0;
   };
+
+  // Reads all of the log once: names its scans and says what may be wrong with them.
+  void Survey() {
+    std::vector<double> speeds_mps;
+    std::optional<CarmenScan> last;
+    CarmenCheck check(options_.min_range_m, options_.fov_deg > 0.0);
+    while (auto scan = NextScan()) {
+      names_.stamps_s.push_back(scan->stamp_s);
+      names_.numbers.push_back(lines_of_scans_ - 1);
+      if (place_ != Place::kInPart) continue;
+      check.Add(*scan, ReachOf(*scan, options_).no_return_m, line_number_);
+      if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
+      last = std::move(scan);
+    }
+    names_.part = FindPart(part_, names_.stamps_s, path_);
+    std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
+    WarnOfProblems();
+    WarnOfOrder();
+    for (std::string& doubt : check.Warnings(path_)) warnings_.push_back(std::move(doubt));
+    if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
+      warnings_.push_back(fmt::format(
+          "{}: the laser moves at {:.0f} m/s: is the odometry in metres, and are the stamps in "
+          "seconds?",
+          path_, *speed_mps));
+    }
+  }
+
+  void WarnOfProblems() {
+    for (const auto& [reason, seen] : problems_) {
+      warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
+                                          : fmt::format("{}:{}: {} ({} such lines)", path_,
+                                                        seen.first_line, reason, seen.count));
+    }
+  }
+
+  // After Survey().
+  void RequireScans() const {
+    if (!names_.stamps_s.empty()) return;
+    if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
+    if (const auto nameless = problems_.find(kNamelessLine);
+        nameless != problems_.end() && problems_.size() == 1) {
+      throw InputError(
+          PlaceOfLine(path_, nameless->second.first_line),
+          "begins with no message name, must be a CARMEN log's; images are given by their folder "
+          "and poses by --poses");
+    }
+    throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
+                                        Counted(line_number_, "line"),
+                                        warnings_.empty() ? "" : "; first: " + warnings_[0]));
+  }
 
   void Rewind() {
     RequireFile(path_);
@@ -256,6 +268,28 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
+  // False for a scan that is not later than the one before it: it is left out.
+  bool GoOnWith(const CarmenScan& scan) {
+    const bool is_same = IsSameStamp(scan.stamp_s, last_stamp_s_);
+    if (!is_same) ++lines_of_scans_;
+    // Also what drops the second of two messages written for one scan.
+    if (is_same || scan.stamp_s < last_stamp_s_) {
+      const bool counts = place_ != Place::kBehindPart;
+      earlier_ += counts && !is_same ? 1 : 0;
+      Note("a scan that is not later than the one before it");
+      return false;
+    }
+    MoveTo(scan.stamp_s);
+    if (odom_from_last_ &&
+        IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
+      Note("the pose jumps by more than 10 m: no motion is taken there");
+      ++epoch_;
+    }
+    last_stamp_s_ = scan.stamp_s;
+    odom_from_last_ = scan.odom_from_laser;
+    return true;
+  }
+
   std::optional<CarmenScan> NextScan() {
     while (ReadLine()) {
       std::string_view text{line_.data(), line_size_};
@@ -274,23 +308,7 @@ class CarmenLogSource : public FrameSource {
       if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
         scan->max_range_m = front_max_m_;
       }
-      const bool is_same = IsSameStamp(scan->stamp_s, last_stamp_s_);
-      if (!is_same) ++lines_of_scans_;
-      // Also what drops the second of two messages written for one scan.
-      if (is_same || scan->stamp_s < last_stamp_s_) {
-        const bool counts = place_ != Place::kBehindPart;
-        earlier_ += counts && !is_same ? 1 : 0;
-        Note("a scan that is not later than the one before it");
-        continue;
-      }
-      MoveTo(scan->stamp_s);
-      if (odom_from_last_ &&
-          IsJump(*odom_from_last_, scan->odom_from_laser, scan->stamp_s - last_stamp_s_)) {
-        Note("the pose jumps by more than 10 m: no motion is taken there");
-        ++epoch_;
-      }
-      last_stamp_s_ = scan->stamp_s;
-      odom_from_last_ = scan->odom_from_laser;
+      if (!GoOnWith(*scan)) continue;
       if (file_.eof()) Note("the last line has no line end; it is used, but may be cut");
       return std::move(*scan);
     }

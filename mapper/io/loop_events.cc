@@ -20,6 +20,8 @@ using internal::FrameFinder;
 // Stamps of loops.csv are copies of the recording's.
 constexpr double kSameStampS = 1e-3;
 
+enum class EventKind { kCsv, kOrbSlam, kStamped };
+
 // Whether anything in the text is of a loops.csv.
 bool LooksLikeCsv(std::string_view text) {
   const auto begins_a_line = [text](std::string_view word) {
@@ -28,6 +30,29 @@ bool LooksLikeCsv(std::string_view text) {
   const std::size_t columns = SplitAtCommas(text.substr(0, text.find('\n'))).size();
   return columns == internal::kCsvColumns || columns == internal::kCsvColumnsWithStamps ||
          begins_a_line("kind,") || begins_a_line("loop,") || begins_a_line("relocalisation,");
+}
+
+// By the first word. Throws InputError for what is none of them.
+EventKind KindOf(std::string_view text, const std::vector<TextRow>& rows,
+                 const std::string& place) {
+  if (rows.empty()) throw InputError(place, "is empty, must hold a header or events");
+  const std::string row_place = PlaceOfLine(place, rows.front().line);
+  const std::string_view first = rows.front().fields.front();
+  if (ParseNumber(first)) {
+    constexpr std::size_t kPoseColumns = 8;
+    if (rows.front().fields.size() != kPoseColumns) return EventKind::kStamped;
+    throw InputError(row_place, "has 8 columns as a trajectory has, must be SLAM's events");
+  }
+  if (first == "LOOP" || first == "RELOC" || first == "GBA_DONE") return EventKind::kOrbSlam;
+  if (LooksLikeCsv(text)) return EventKind::kCsv;
+  throw InputError(row_place, fmt::format("begins with '{}', must be SLAM's events: a loops.csv, "
+                                          "ORB-SLAM2's or stamped loops",
+                                          first.substr(0, 40)));
+}
+
+std::string NameOf(EventKind kind) {
+  if (kind == EventKind::kCsv) return kOwnEvents;
+  return kind == EventKind::kOrbSlam ? "ORB-SLAM2 events" : "stamped loops";
 }
 
 bool IsHeader(std::string_view row) {
@@ -138,13 +163,14 @@ std::vector<SlamEvent> FindFrames(const std::vector<CsvEvent>& rows, const Frame
   return events;
 }
 
-std::vector<SlamEvent> StampedEvents(const std::vector<TextRow>& rows, bool orb,
+std::vector<SlamEvent> StampedEvents(const std::vector<TextRow>& rows, EventKind kind,
                                      const std::string& place, const FrameFinder& frames,
                                      RowDamage& damage, int& missing) {
   std::vector<SlamEvent> events;
   for (const TextRow& row : rows) {
     damage.Try([&] {
-      const internal::FoundEvent found = orb ? internal::ParseOrbEvent(row, place, frames)
+      const internal::FoundEvent found = kind == EventKind::kOrbSlam
+                                             ? internal::ParseOrbEvent(row, place, frames)
                                              : internal::ParseStampedLoop(row, place, frames);
       if (found.event) events.push_back(*found.event);
       if (found.missing) ++missing;
@@ -158,32 +184,16 @@ std::vector<SlamEvent> StampedEvents(const std::vector<TextRow>& rows, bool orb,
 SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
                            const FrameNames& frames, double max_difference_s) {
   const std::vector<TextRow> rows = SplitRows(text);
-  if (rows.empty()) throw InputError(place, "is empty, must hold a header or events");
-  const std::string_view first = rows.front().fields.front();
-  const bool stamped = ParseNumber(first).has_value();
-  const bool orb = first == "LOOP" || first == "RELOC" || first == "GBA_DONE";
-  constexpr std::size_t kPoseColumns = 8;
-  if (stamped && rows.front().fields.size() == kPoseColumns) {
-    throw InputError(PlaceOfLine(place, rows.front().line),
-                     "has 8 columns as a trajectory has, must be SLAM's events");
-  }
-  if (!stamped && !orb && !LooksLikeCsv(text)) {
-    throw InputError(
-        PlaceOfLine(place, rows.front().line),
-        fmt::format("begins with '{}', must be SLAM's events: a loops.csv, ORB-SLAM2's or stamped "
-                    "loops",
-                    first.substr(0, 40)));
-  }
+  const EventKind kind = KindOf(text, rows, place);
   SlamEvents result;
+  result.kind = NameOf(kind);
   RowDamage damage;
   int missing = 0;
-  if (stamped || orb) {
-    result.kind = orb ? "ORB-SLAM2 events" : "stamped loops";
-    const FrameFinder finder(frames.stamps_s, max_difference_s);
-    result.events = StampedEvents(rows, orb, place, finder, damage, missing);
-  } else {
-    result.kind = kOwnEvents;
+  if (kind == EventKind::kCsv) {
     result.events = FindFrames(CsvRows(text, place, damage), frames, max_difference_s, missing);
+  } else {
+    const FrameFinder finder(frames.stamps_s, max_difference_s);
+    result.events = StampedEvents(rows, kind, place, finder, damage, missing);
   }
   std::stable_sort(result.events.begin(), result.events.end(),
                    [](const auto& a, const auto& b) { return a.frame < b.frame; });
