@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "eval/statistics/metric_direction.h"
 
@@ -47,6 +48,32 @@ SweepResults Table() {
   return results;
 }
 
+struct Seeds {
+  int slam = 0;
+  int depth = 0;
+};
+
+// Gains 0 and 1 with four pairs of seeds each; runs err by their numbers.
+SweepResults TwoGains(const std::function<Seeds(int run_of_gain)>& seeds_of) {
+  SweepResults table;
+  table.parameters = {
+      {"mapper.fusion.gain", {}, {}}, {"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
+  table.metrics = {{"trajectory.est.mean_euclidean_m", {}}};
+  for (int run = 0; run < 8; ++run) {
+    table.runs.push_back(run);
+    table.points.push_back(run / 4);
+    table.failures.emplace_back();
+    table.metrics[0].values.push_back(run);
+    const Seeds seeds = seeds_of(run % 4);
+    const std::array<int, 3> values = {run / 4, seeds.slam, seeds.depth};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      table.parameters[i].texts.push_back(std::to_string(values[i]));
+      table.parameters[i].numbers.push_back(values[i]);
+    }
+  }
+  return table;
+}
+
 TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
   const SweepGrid grid = GridOf(Table());
   ASSERT_EQ(grid.axes.size(), 2U);
@@ -62,24 +89,10 @@ TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
 
 // Two seeds of the one with two of the other are no four.
 TEST(SweepGrid, CrossedSeedsCountAsManyAsOneOfThemHas) {
-  SweepResults table;
-  table.parameters = {
-      {"mapper.fusion.gain", {}, {}}, {"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
-  std::vector<double> errors;
-  for (int run = 0; run < 8; ++run) {
-    table.runs.push_back(run);
-    table.points.push_back(run / 4);
-    table.failures.emplace_back();
-    const std::array<int, 3> values = {run / 4, run / 2 % 2, run % 2};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      table.parameters[i].texts.push_back(std::to_string(values[i]));
-      table.parameters[i].numbers.push_back(values[i]);
-    }
-    errors.push_back(run);
-  }
+  const SweepResults table = TwoGains([](int run) -> Seeds { return {run / 2, run % 2}; });
   const SweepGrid grid = GridOf(table);
   EXPECT_EQ(grid.seed_axes, 2U);
-  const auto lines = LinesAlong(grid, 0, errors, Better::kLower, {});
+  const auto lines = LinesAlong(grid, 0, table.metrics[0].values, Better::kLower, {});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].seeds, 2U);
   EXPECT_EQ(lines[0].best->setting, 0.0);
@@ -131,22 +144,8 @@ TEST(SweepGrid, AValueWithoutAFigureIsLeftOutOfItsLine) {
 
 // One axis of seeds that come in families: slam_seed 0 with depth seeds 0 and 1, 1 with 2 and 3.
 TEST(SweepGrid, SeedsWithinAnotherSeedCountAsThatOne) {
-  SweepResults table;
-  table.parameters = {
-      {"mapper.fusion.gain", {}, {}}, {"slam_seed", {}, {}}, {"depth_seed", {}, {}}};
-  std::vector<double> errors;
-  for (int run = 0; run < 8; ++run) {
-    table.runs.push_back(run);
-    table.points.push_back(run / 4);
-    table.failures.emplace_back();
-    const std::array<int, 3> values = {run / 4, run % 4 / 2, run % 4};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      table.parameters[i].texts.push_back(std::to_string(values[i]));
-      table.parameters[i].numbers.push_back(values[i]);
-    }
-    errors.push_back(run);
-  }
-  const auto lines = LinesAlong(GridOf(table), 0, errors, Better::kLower, {});
+  const SweepResults table = TwoGains([](int run) -> Seeds { return {run / 2, run}; });
+  const auto lines = LinesAlong(GridOf(table), 0, table.metrics[0].values, Better::kLower, {});
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].seeds, 2U);
   EXPECT_EQ(lines[0].best->setting, 0.0);

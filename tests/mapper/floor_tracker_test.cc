@@ -18,6 +18,13 @@ AnalyticRoom RoomWithTable() {
   return room;
 }
 
+// The same with one that hides all of the floor.
+AnalyticRoom RoomUnderTable() {
+  AnalyticRoom room = RoomWithTable();
+  room.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, 0.45}}};
+  return room;
+}
+
 DepthImage WithFloorNoise(DepthImage image, RandomStream& random, double sigma_at_1_m = 0.002) {
   for (float& z_m : image.z_m) {
     z_m += static_cast<float>(sigma_at_1_m * z_m * z_m * random.Normal());
@@ -94,10 +101,8 @@ TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
 TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
   const PinholeCamera camera = SmallCamera();
   FloorTracker tracker(camera, {});
-  AnalyticRoom table = RoomWithTable();
-  table.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, 0.45}}};
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
-  const DepthImage hidden = table.Render(camera, pose);
+  const DepthImage hidden = RoomUnderTable().Render(camera, pose);
   // Neither at the first sight, as the pose says how high the camera is, nor later.
   EXPECT_EQ(tracker.Follow(hidden, pose, 0).height_m, kCameraHeightM);
   const DepthImage seen = RoomWithTable().Render(camera, pose);
@@ -115,10 +120,8 @@ TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
 TEST(FloorTracker, ATableThatStaysInViewIsNotTheFloor) {
   const PinholeCamera camera = SmallCamera();
   FloorTracker tracker(camera, {});
-  AnalyticRoom table = RoomWithTable();
-  table.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, 0.45}}};
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
-  const DepthImage hidden = table.Render(camera, pose);
+  const DepthImage hidden = RoomUnderTable().Render(camera, pose);
   tracker.Follow(RoomWithTable().Render(camera, pose), pose, 0);
   for (int frame = 0; frame < 300; ++frame) {
     ASSERT_NEAR(tracker.Follow(hidden, pose, 0).height_m, kCameraHeightM, 0.005) << frame;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/rng.h"
+#include "tests/mapper/mapped_frame.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {
@@ -11,24 +12,18 @@ namespace {
 const PlanarLaser kNarrowLaser{
     .beams = 160, .field_of_view_rad = RadFromDeg(58.0), .sigma_of_range = 0.01};
 
-std::vector<MappedFrame> StraightOn(int count, ScanArchive& archive) {
+std::vector<MappedFrame> StraightOn(int count) {
+  const PlanarWorld room = FurnishedRoom();
   std::vector<MappedFrame> frames;
   for (int i = 0; i < count; ++i) {
-    MappedFrame frame;
-    frame.frame = i;
-    frame.stamp_s = i / 30.0;
-    frame.map_from_base = {1.0 + 0.02 * i, 1.0, 0.3};
-    frame.scan = archive.Keep(ScanOf(FurnishedRoom(), frame.map_from_base, kNarrowLaser, 1,
-                                     static_cast<std::uint32_t>(i)));
-    frame.obstacles = frame.scan;
-    frames.push_back(frame);
+    const Pose2 pose{1.0 + 0.02 * i, 1.0, 0.3};
+    frames.push_back(MappedFrameAt(room, kNarrowLaser, pose, pose, i));
   }
   return frames;
 }
 
 TEST(WallPyramid, SumsOfSquaresAreThoseOfEachSquare) {
-  ScanArchive archive;
-  const std::vector<MappedFrame> frames = StraightOn(10, archive);
+  const std::vector<MappedFrame> frames = StraightOn(10);
   const WallPyramid walls(DrawPlace(frames, {0, 3, 6, 9}, 5, 0.05));
   RandomStream random(3, RandomStage::kTest);
   std::vector<Cell> cells;
@@ -53,8 +48,7 @@ TEST(WallPyramid, SumsOfSquaresAreThoseOfEachSquare) {
 }
 
 TEST(SeenPlace, OfAllIsTheSameWithAndWithoutHalves) {
-  ScanArchive archive;
-  const std::vector<MappedFrame> frames = StraightOn(40, archive);
+  const std::vector<MappedFrame> frames = StraightOn(40);
   const OverlapOptions options;
   const std::vector<int> members = FramesOfPlace(frames, 20, options, 40), even{0, 10, 20, 30};
   ASSERT_EQ(members, (std::vector<int>{0, 5, 10, 15, 20, 25, 30, 35}));
@@ -69,8 +63,7 @@ TEST(SeenPlace, OfAllIsTheSameWithAndWithoutHalves) {
 
 // SLAM jumped far away after frame 19 and back before frame 30.
 TEST(SeenPlace, EndsWhereSlamJumpedFarAway) {
-  ScanArchive archive;
-  std::vector<MappedFrame> frames = StraightOn(40, archive);
+  std::vector<MappedFrame> frames = StraightOn(40);
   for (int i = 20; i < 30; ++i) frames[static_cast<std::size_t>(i)].map_from_base.x_m += 3000.0;
   EXPECT_EQ(FramesOfPlace(frames, 15, {}, 40), (std::vector<int>{0, 5, 10, 15, 30, 35}));
   EXPECT_EQ(FramesOfPlace(frames, 24, {}, 40), (std::vector<int>{24, 29}));
@@ -78,8 +71,7 @@ TEST(SeenPlace, EndsWhereSlamJumpedFarAway) {
 
 // A wall counts for every cell within the tolerance and for none beyond.
 TEST(SeenPlace, WallsReachAsFarAsTheTolerance) {
-  ScanArchive archive;
-  const std::vector<MappedFrame> frames = StraightOn(1, archive);
+  const std::vector<MappedFrame> frames = StraightOn(1);
   OverlapOptions options;
   options.tolerance_m = 0.0;
   const SeenPlace thin = SeenFrom(frames, {0}, 0, options);
@@ -101,8 +93,7 @@ TEST(SeenPlace, WallsReachAsFarAsTheTolerance) {
 }
 
 TEST(KnownPlaces, AreMadeAgainWhereTheFramesLieOtherwise) {
-  ScanArchive archive;
-  std::vector<MappedFrame> frames = StraightOn(60, archive);
+  std::vector<MappedFrame> frames = StraightOn(60);
   KnownPlaces places;
   const auto surfels = [&](int middle) {
     return &places.Of({frames, middle, {}, {}}).Surfels(frames);

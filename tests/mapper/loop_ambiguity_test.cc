@@ -5,6 +5,7 @@
 
 #include "mapper/graph/loop_search.h"
 #include "mapper/surfel/surfel_map.h"
+#include "tests/mapper/mapped_frame.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {
@@ -77,17 +78,10 @@ class CorridorWalk {
  private:
   static Pose2 Along(int i) { return {0.1 * i, 0.1, 0.0}; }
   void Add(const PlanarWorld& world, const Pose2& truth, const Pose2& estimate) {
-    const int i = static_cast<int>(frames_.size());
-    MappedFrame frame;
-    frame.frame = i;
-    frame.stamp_s = i / 30.0;
-    frame.map_from_base = estimate;
-    frame.scan = archive_.Keep(ScanOf(world, truth, kWideLaser, 1, static_cast<std::uint32_t>(i)));
-    frame.obstacles = frame.scan;
-    frames_.push_back(frame);
+    frames_.push_back(
+        MappedFrameAt(world, kWideLaser, truth, estimate, static_cast<int>(frames_.size())));
   }
 
-  ScanArchive archive_;
   std::vector<MappedFrame> frames_;
 };
 

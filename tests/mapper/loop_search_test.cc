@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "mapper/graph/place_search.h"
+#include "mapper/match/search_lattice.h"
 #include "mapper/surfel/surfel_map.h"
+#include "tests/mapper/mapped_frame.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {
@@ -12,18 +14,6 @@ namespace {
 constexpr PlanarLaser kSearchLaser{
     .beams = 320, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
 
-MappedFrame SearchFrameAt(const PlanarWorld& world, const Pose2& truth, const Pose2& estimate,
-                          int i) {
-  ScanArchive archive;
-  MappedFrame frame;
-  frame.frame = i;
-  frame.stamp_s = i / 30.0;
-  frame.map_from_base = estimate;
-  frame.scan = archive.Keep(ScanOf(world, truth, kSearchLaser, 1, static_cast<std::uint32_t>(i)));
-  frame.obstacles = frame.scan;
-  return frame;
-}
-
 // Straight on for 1.5 m in x at each of the places, looking along the way; the estimate of the
 // second place is off by `drift`.
 std::vector<MappedFrame> TwoVisits(const PlanarWorld& world, const Pose2& first,
@@ -31,7 +21,7 @@ std::vector<MappedFrame> TwoVisits(const PlanarWorld& world, const Pose2& first,
   std::vector<MappedFrame> frames;
   for (int i = 0; i < 60; ++i) {
     const Pose2 truth = (i < 30 ? first : second) * Pose2{0.05 * (i % 30), 0.0, 0.0};
-    frames.push_back(SearchFrameAt(world, truth, i < 30 ? truth : drift * truth, i));
+    frames.push_back(MappedFrameAt(world, kSearchLaser, truth, i < 30 ? truth : drift * truth, i));
   }
   return frames;
 }
@@ -129,7 +119,8 @@ TEST(LoopSearch, FindsTheSlipWithinAFewMetresAndFourPlacesConsent) {
     const Pose2 truth{3.0 + 0.8 * std::cos(angle_rad), 1.5 + 0.8 * std::sin(angle_rad),
                       WrapAngle(angle_rad)};
     const bool slipped = i >= 450;
-    frames.push_back(SearchFrameAt(FurnishedRoom(), truth, slipped ? slip * truth : truth, i));
+    frames.push_back(
+        MappedFrameAt(FurnishedRoom(), kSearchLaser, truth, slipped ? slip * truth : truth, i));
     const auto scan = std::make_shared<const Scan>(*frames.back().scan);
     map.Insert(scan, frames.back().map_from_base, Eigen::Matrix3d::Zero());
     found = search.Find(frames, scan, {}, map);

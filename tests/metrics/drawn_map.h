@@ -10,9 +10,10 @@
 namespace depthgrid {
 
 // Rows from the top (largest y) down: '#' occupied, '.' free, '?' unknown.
-inline StateMap DrawnMap(const std::vector<std::string>& rows, double resolution_m = 0.05) {
-  StateMap map(GridGeometry{
-      resolution_m, {}, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
+inline StateMap DrawnMap(const std::vector<std::string>& rows, double resolution_m = 0.05,
+                         const Cell& min_cell = {}) {
+  StateMap map(GridGeometry{resolution_m, min_cell, static_cast<int>(rows[0].size()),
+                            static_cast<int>(rows.size())});
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
       const std::size_t index = (rows.size() - 1 - r) * rows[0].size() + c;

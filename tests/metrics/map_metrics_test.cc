@@ -12,28 +12,12 @@
 namespace depthgrid {
 namespace {
 
-// Rows from the top (largest y) down: '#' occupied, '.' free, '?' unknown.
-StateMap Drawn(const std::vector<std::string>& rows, Cell min_cell = {}) {
-  StateMap map(
-      GridGeometry{0.1, min_cell, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t c = 0; c < rows[r].size(); ++c) {
-      const std::size_t index = (rows.size() - 1 - r) * rows[0].size() + c;
-      map.states[index] = rows[r][c] == '#'   ? CellState::kOccupied
-                          : rows[r][c] == '.' ? CellState::kFree
-                                              : CellState::kUnknown;
-    }
-  }
-  return map;
+StateMap Drawn(const std::vector<std::string>& rows, const Cell& min_cell = {}) {
+  return DrawnMap(rows, 0.1, min_cell);
 }
 
 CellSet MaskDrawn(const std::vector<std::string>& rows, Cell min_cell = {}) {
-  const StateMap drawn = Drawn(rows, min_cell);
-  CellSet mask(drawn.geometry);
-  for (std::size_t i = 0; i < mask.members.size(); ++i) {
-    mask.members[i] = drawn.states[i] == CellState::kOccupied;
-  }
-  return mask;
+  return CellsIn(Drawn(rows, min_cell), CellState::kOccupied);
 }
 
 CellSet RandomMask(RandomStream& random) {
