@@ -91,7 +91,6 @@ TEST(Relocation, SlamsCorrectionsMoveWhatWasSeenSinceTheLoss) {
   constexpr int kLost = 100, kBack = 101, kFirstCorrection = 115, kSecondCorrection = 130;
   const auto truth_at = [](int i) { return RoundTheRoom(i < kBack ? i : i + 60); };
   IncrementalMapper mapper({}, std::nullopt);
-  std::vector<int> corrections;
   constexpr int kFrames = 150;
   for (int i = 0; i < kFrames; ++i) {
     Frame frame;

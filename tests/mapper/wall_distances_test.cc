@@ -44,6 +44,7 @@ TEST(WallDistances, AreAcrossTheWallHoweverItIsSeen) {
   const Scan scan = ScanOf(wall, {}, {.beams = 200, .field_of_view_rad = RadFromDeg(40.0)});
   std::vector<WallHit> hits;
   FindWallHits(scan, 0.1, hits);
+  ASSERT_EQ(hits.size(), 200U);
   for (const WallHit& hit : hits) {
     EXPECT_NEAR(hit.normal.x(), std::sqrt(0.5), 1e-5);
     EXPECT_NEAR(hit.normal.y(), std::sqrt(0.5), 1e-5);

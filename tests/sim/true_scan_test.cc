@@ -104,14 +104,16 @@ TEST(TrueScanner, NothingWithinRangeOnlyClears) {
   TrueScanOptions near;
   near.max_range_m = 1.9;
   const TrueScanner scanner(mesh, 0.0, RayScene(mesh), kCamera, near);
-  for (const Beam& beam : scanner.Slice(CameraOf({0.0, 0.0, 0.0}, 1.0)).beams) {
+  const Scan before_wall = scanner.Slice(CameraOf({0.0, 0.0, 0.0}, 1.0));
+  ASSERT_EQ(before_wall.beams.size(), 640U);
+  for (const Beam& beam : before_wall.beams) {
     EXPECT_FALSE(beam.hit);
     EXPECT_NEAR(beam.clear_to_m, 1.9, 1e-6);
   }
   // Behind the camera there is nothing at all.
-  for (const Beam& beam : scanner.Obstacles(CameraOf({0.0, 0.0, kPi}, 1.0)).beams) {
-    EXPECT_FALSE(beam.hit);
-  }
+  const Scan turned_away = scanner.Obstacles(CameraOf({0.0, 0.0, kPi}, 1.0));
+  ASSERT_EQ(turned_away.beams.size(), 640U);
+  for (const Beam& beam : turned_away.beams) EXPECT_FALSE(beam.hit);
 }
 
 }  // namespace
