@@ -1,52 +1,46 @@
 // Accuracy of `depthgrid map` on laser worlds over many seeds: the tables of docs/results.md,
 // "Laser logs". Results, not times.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <future>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "bench/accuracy/laser_run.h"
 #include "bench/accuracy/people.h"
 #include "bench/guarded_main.h"
+#include "bench/mapper_settings.h"
 #include "eval/consistency.h"
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_metrics.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
-#include "mapper/io/config.h"
 #include "sim/odometry_noise.h"
 
 using namespace depthgrid;
 
 namespace {
-struct Scores {
-  double mean = 0, ate = 0, max = 0;
+
+// How far an estimate is off in the plane, metres.
+struct Errors {
+  double mean = 0.0;
+  double max = 0.0;
+  double ate = 0.0;  // root mean square, laid over the truth first
 };
-Scores Score(const std::vector<Pose2>& truth, const std::vector<Pose2>& est) {
-  Scores s;
-  const double n = static_cast<double>(truth.size());
-  Eigen::Vector2d mt(0, 0), me(0, 0);
+
+Errors ErrorsOf(const std::vector<Pose2>& truth, const std::vector<Pose2>& estimate) {
+  std::vector<PosePair> pairs;
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const double e = (truth[i].translation() - est[i].translation()).norm();
-    s.mean += e / n;
-    s.max = std::max(s.max, e);
-    mt += truth[i].translation() / n;
-    me += est[i].translation() / n;
+    pairs.push_back({{0.0, Lift(truth[i])}, {0.0, Lift(estimate[i])}});
   }
-  double a = 0, b = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const Eigen::Vector2d p = est[i].translation() - me, q = truth[i].translation() - mt;
-    a += p.dot(q);
-    b += p.x() * q.y() - p.y() * q.x();
-  }
-  const Pose2 r{0, 0, std::atan2(b, a)};
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const Eigen::Vector2d p = est[i].translation() - me, q = truth[i].translation() - mt;
-    s.ate += (r * p - q).squaredNorm() / n;
-  }
-  s.ate = std::sqrt(s.ate);
-  return s;
+  const Statistics as_it_is = Summarise(TranslationErrorsXy(pairs));
+  const auto over_truth = Align(pairs, Alignment::kSe2);
+  if (over_truth) pairs = Aligned(std::move(pairs), *over_truth);
+  return {as_it_is.mean, as_it_is.max, Summarise(TranslationErrorsXy(pairs)).rmse};
 }
 
 // The prior errs from a later frame on only.
@@ -90,17 +84,37 @@ std::vector<Pose2> PriorOf(const std::vector<Pose2>& truth, const PriorOptions& 
   return WithSlips(PerfectAtFirst(truth, drifting, prior.perfect_frames), prior);
 }
 
-struct Run {
-  Scores prior, online, final;
-  std::vector<ChiSquareSample> nis, nees;
-  double frame_us = 0, finish_us = 0, match_us = 0, insert_us = 0;
+struct Experiment {
+  LaserOptions laser;
+  PriorOptions prior;
+  MapperOptions mapper;
+  People people = People::kNone;
+  int first_seed = 1;
+  int seeds = 3;
+  int threads = 2;
+  bool verbose = false;
 };
 
-Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOptions& laser,
-        const PriorOptions& prior, const MapperOptions& options, People people, int seed,
-        bool verbose) {
-  const std::vector<Pose2> odometry = PriorOf(truth, prior, seed);
-  IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
+struct Run {
+  Errors prior, online, final;
+  std::vector<ChiSquareSample> nis, nees;
+  double frame_us = 0.0, finish_us = 0.0, match_us = 0.0, insert_us = 0.0;  // means over the frames
+};
+
+void PrintFrame(std::size_t k, const Pose2& error, const FrameReport& report) {
+  std::printf(
+      "%4zu err %.4f %.4f %.2fdeg sig %.4f %.4f %.3f score %.2f it %d innov %.4f %.4f %.3f\n", k,
+      error.x_m, error.y_m, DegFromRad(error.yaw_rad), std::sqrt(report.covariance(0, 0)),
+      std::sqrt(report.covariance(1, 1)), DegFromRad(std::sqrt(report.covariance(2, 2))),
+      report.match.score, report.match.iterations, report.innovation[0], report.innovation[1],
+      DegFromRad(report.innovation[2]));
+}
+
+Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experiment& experiment,
+        int seed) {
+  const std::vector<Pose2> odometry = PriorOf(truth, experiment.prior, seed);
+  const auto frames = static_cast<double>(truth.size());
+  IncrementalMapper mapper(experiment.mapper, std::nullopt, {ThreadCpuUs, SteadyUs});
   Run run;
   std::vector<Pose2> online, final;
   std::vector<FrameReport> reports;
@@ -109,41 +123,78 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const LaserOpt
     Frame frame;
     frame.index = static_cast<int>(k);
     frame.stamp_s = static_cast<double>(k) / 30.0;
-    frame.scan = SimulatedScan(WithPeople(world, people, truth, k), truth[k], laser, seed,
-                               static_cast<int>(k));
+    frame.scan = SimulatedScan(WithPeople(world, experiment.people, truth, k), truth[k],
+                               experiment.laser, seed, static_cast<int>(k));
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
     stamped_truth.push_back({frame.stamp_s, CameraOf(truth[k], 0.0)});
-    const FrameReport report = mapper.AddFrame(frame);
+    reports.push_back(mapper.AddFrame(frame));
+    const FrameReport& report = reports.back();
     online.push_back(BaseOf(*report.map_from_camera));
-    reports.push_back(report);
-    run.frame_us += report.times.total_us;
-    run.match_us += report.times.match_us;
-    run.insert_us += report.times.insert_us;
-    if (verbose && k % 30 == 0) {
-      const Pose2 e = Between(truth[k], online[k]);
-      std::printf(
-          "%4zu err %.4f %.4f %.2fdeg sig %.4f %.4f %.3f score %.2f it %d innov %.4f %.4f %.3f\n",
-          k, e.x_m, e.y_m, DegFromRad(e.yaw_rad), std::sqrt(report.covariance(0, 0)),
-          std::sqrt(report.covariance(1, 1)), DegFromRad(std::sqrt(report.covariance(2, 2))),
-          report.match.score, report.match.iterations, report.innovation[0], report.innovation[1],
-          DegFromRad(report.innovation[2]));
-    }
+    run.frame_us += report.times.total_us / frames;
+    run.match_us += report.times.match_us / frames;
+    run.insert_us += report.times.insert_us / frames;
+    if (experiment.verbose && k % 30 == 0) PrintFrame(k, Between(truth[k], online[k]), report);
   }
-  const double t = ThreadCpuUs();
+  const double start_us = ThreadCpuUs();
   const MapperResult result = mapper.Finish();
-  const double n = static_cast<double>(truth.size());
-  run.finish_us = (ThreadCpuUs() - t) / n;
-  run.frame_us /= n;
-  run.match_us /= n;
-  run.insert_us /= n;
+  run.finish_us = (ThreadCpuUs() - start_us) / frames;
   for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
   run.nis = InnovationSamples(reports);
   run.nees = MotionSamples(reports, stamped_truth);
-  run.prior = Score(truth, odometry);
-  run.online = Score(truth, online);
-  run.final = Score(truth, final);
+  run.prior = ErrorsOf(truth, odometry);
+  run.online = ErrorsOf(truth, online);
+  run.final = ErrorsOf(truth, final);
   return run;
 }
+
+// One a seed, each thread taking every so many.
+std::vector<Run> MapAll(const LaserWorld& world, const std::vector<Pose2>& truth,
+                        const Experiment& experiment) {
+  std::vector<Run> runs(static_cast<std::size_t>(experiment.seeds));
+  std::vector<std::future<void>> jobs;
+  for (int thread = 0; thread < experiment.threads; ++thread) {
+    jobs.push_back(std::async(std::launch::async, [&, thread] {
+      for (int i = thread; i < experiment.seeds; i += experiment.threads) {
+        runs[static_cast<std::size_t>(i)] =
+            Map(world, truth, experiment, experiment.first_seed + i);
+      }
+    }));
+  }
+  for (std::future<void>& job : jobs) job.get();
+  return runs;
+}
+
+void PrintRun(const std::string& world, int seed, const Run& run) {
+  std::printf(
+      "%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us "
+      "frame %.0f match %.0f insert %.0f finish %.0f\n",
+      world.c_str(), seed, run.prior.mean, run.prior.ate, run.online.mean, run.online.ate,
+      run.online.max, run.final.mean, run.final.ate, run.final.max, run.frame_us, run.match_us,
+      run.insert_us, run.finish_us);
+}
+
+void PrintMeans(const std::string& world, const std::vector<Run>& runs) {
+  Errors online, final, worst_online, worst_final;
+  double online_less_prior = -1e9, final_less_prior = -1e9;  // the worst
+  const auto count = static_cast<double>(runs.size());
+  for (const Run& run : runs) {
+    online.mean += run.online.mean / count;
+    online.ate += run.online.ate / count;
+    final.mean += run.final.mean / count;
+    final.ate += run.final.ate / count;
+    worst_online.mean = std::max(worst_online.mean, run.online.mean);
+    worst_final.mean = std::max(worst_final.mean, run.final.mean);
+    worst_final.ate = std::max(worst_final.ate, run.final.ate);
+    online_less_prior = std::max(online_less_prior, run.online.mean - run.prior.mean);
+    final_less_prior = std::max(final_less_prior, run.final.mean - run.prior.mean);
+  }
+  std::printf(
+      "%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f/%.4f  minus prior %.4f "
+      "%.4f\n",
+      world.c_str(), online.mean, online.ate, worst_online.mean, final.mean, final.ate,
+      worst_final.mean, worst_final.ate, online_less_prior, final_less_prior);
+}
+
 void PrintConsistency(const char* name, const std::vector<Run>& runs,
                       std::vector<ChiSquareSample> Run::*samples) {
   std::vector<ChiSquareSample> all;
@@ -155,21 +206,13 @@ void PrintConsistency(const char* name, const std::vector<Run>& runs,
   std::printf("  %-5s a degree %.2f (95 %%: %.2f to %.2f) within 95 %%: %.3f of %d\n", name,
               c->mean, c->low, c->high, c->share_within_95, c->count);
 }
-}  // namespace
 
-namespace {
-int Measure(int argc, char** argv) {
-  CLI::App app;
-  std::vector<std::string> worlds, sets;
-  LaserOptions laser;
-  PriorOptions prior;
-  int first_seed = 1, seeds = 3, threads = 2;
-  bool verbose = false;
-  People people = People::kNone;
-  app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
-  app.add_option("--seeds", seeds);
-  app.add_option("--first-seed", first_seed);
-  app.add_option("--threads", threads);
+void AddOptions(CLI::App& app, Experiment& experiment) {
+  LaserOptions& laser = experiment.laser;
+  PriorOptions& prior = experiment.prior;
+  app.add_option("--seeds", experiment.seeds);
+  app.add_option("--first-seed", experiment.first_seed);
+  app.add_option("--threads", experiment.threads);
   app.add_option("--beams", laser.beams);
   app.add_option("--fov", laser.field_of_view_deg);
   app.add_option("--noise", laser.noise_relative);
@@ -186,65 +229,38 @@ int Measure(int argc, char** argv) {
   app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread");
   app.add_option("--slip-deg", prior.slip_deg, "by so much");
   app.add_option("--slip-m", prior.slip_m, "and forward or back by so much");
-  app.add_option("--people", people, "none, crossing, ahead or swaying")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, People>{{"none", People::kNone},
-                                                                {"crossing", People::kCrossing},
-                                                                {"ahead", People::kAhead},
-                                                                {"swaying", People::kSwaying}}));
+  const std::map<std::string, People> people = {{"none", People::kNone},
+                                                {"crossing", People::kCrossing},
+                                                {"ahead", People::kAhead},
+                                                {"swaying", People::kSwaying}};
+  app.add_option("--people", experiment.people, "none, crossing, ahead or swaying")
+      ->transform(CLI::CheckedTransformer(people));
+  app.add_flag("-v", experiment.verbose);
+}
+
+int Measure(int argc, char** argv) {
+  CLI::App app;
+  std::vector<std::string> worlds, sets;
+  Experiment experiment;
+  app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
+  AddOptions(app, experiment);
   app.add_option("--set", sets);
-  app.add_flag("-v", verbose);
   CLI11_PARSE(app, argc, argv);
-  MapperOptions options;
-  options.method = MapperMethod::kSurfel;
-  options.fusion.mode = FusionMode::kLearned;
-  Config config;
-  for (const auto& s : sets) config.Set(s);
-  config.Read(options);
+  experiment.mapper = MapperWith(sets);
   for (const std::string& name : worlds) {
-    const LaserWorld world = ReadLaserWorld(name + ".world.txt");
-    const std::vector<Pose2> truth = ReadPlanarTruth(name);
-    std::vector<Run> runs(static_cast<std::size_t>(seeds));
-    std::vector<std::future<void>> jobs;
-    for (int t = 0; t < threads; ++t) {
-      jobs.push_back(std::async(std::launch::async, [&, t] {
-        for (int i = t; i < seeds; i += threads)
-          runs[static_cast<std::size_t>(i)] =
-              Map(world, truth, laser, prior, options, people, first_seed + i, verbose);
-      }));
-    }
-    for (auto& j : jobs) j.get();
+    const std::vector<Run> runs =
+        MapAll(ReadLaserWorld(name + ".world.txt"), ReadPlanarTruth(name), experiment);
     const std::string shown = name.substr(name.rfind('/') + 1);
-    Run mean;
-    double won = 0, wfn = 0, wat = 0, worse_on = -1e9, worse_fn = -1e9;
-    for (int i = 0; i < seeds; ++i) {
-      const Run& r = runs[static_cast<std::size_t>(i)];
-      std::printf(
-          "%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us "
-          "frame %.0f match %.0f insert %.0f finish %.0f\n",
-          shown.c_str(), first_seed + i, r.prior.mean, r.prior.ate, r.online.mean, r.online.ate,
-          r.online.max, r.final.mean, r.final.ate, r.final.max, r.frame_us, r.match_us, r.insert_us,
-          r.finish_us);
-      mean.online.mean += r.online.mean / seeds;
-      mean.online.ate += r.online.ate / seeds;
-      mean.final.mean += r.final.mean / seeds;
-      mean.final.ate += r.final.ate / seeds;
-      won = std::max(won, r.online.mean);
-      wfn = std::max(wfn, r.final.mean);
-      wat = std::max(wat, r.final.ate);
-      worse_on = std::max(worse_on, r.online.mean - r.prior.mean);
-      worse_fn = std::max(worse_fn, r.final.mean - r.prior.mean);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      PrintRun(shown, experiment.first_seed + static_cast<int>(i), runs[i]);
     }
-    std::printf(
-        "%-10s MEAN online %.4f/%.4f worst %.4f final %.4f/%.4f worst %.4f/%.4f  minus prior %.4f "
-        "%.4f\n",
-        shown.c_str(), mean.online.mean, mean.online.ate, won, mean.final.mean, mean.final.ate, wfn,
-        wat, worse_on, worse_fn);
+    PrintMeans(shown, runs);
     PrintConsistency("NIS", runs, &Run::nis);
     PrintConsistency("NEES", runs, &Run::nees);
   }
   return 0;
 }
+
 }  // namespace
 
 int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

@@ -6,11 +6,11 @@
 
 #include "bench/accuracy/laser_run.h"
 #include "bench/guarded_main.h"
+#include "bench/mapper_settings.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 #include "mapper/incremental_mapper.h"
-#include "mapper/io/config.h"
 #include "sim/odometry_noise.h"
 
 using namespace depthgrid;
@@ -34,60 +34,78 @@ struct Outcome {
   double worst_ms = 0.0;
 };
 
-Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Drive& drive,
-            const MapperOptions& options, int seed) {
-  std::vector<Pose2> driven;
+// What is driven: `before` the loss, and after it.
+struct Driven {
+  std::vector<Pose2> poses;
   std::vector<double> stamps_s;
+  std::size_t before = 0;
+};
+
+Driven DrivenOf(const std::vector<Pose2>& truth, const Drive& drive) {
+  Driven driven;
   for (int i = 0; i < drive.lost_at; ++i) {
-    driven.push_back(truth[static_cast<std::size_t>(i)]);
-    stamps_s.push_back(i / 30.0);
+    driven.poses.push_back(truth[static_cast<std::size_t>(i)]);
+    driven.stamps_s.push_back(i / 30.0);
   }
-  const std::size_t before = driven.size();
-  const double back_s = stamps_s.back() + drive.lost_s;
+  driven.before = driven.poses.size();
+  const double back_s = driven.stamps_s.back() + drive.lost_s;
   for (int k = 0; k < drive.frames_after; ++k) {
     const int i = drive.back_at + (drive.backwards ? -k : k);
     if (i < 0 || i >= static_cast<int>(truth.size())) break;
-    driven.push_back(truth[static_cast<std::size_t>(i)]);
-    stamps_s.push_back(back_s + k / 30.0);
+    driven.poses.push_back(truth[static_cast<std::size_t>(i)]);
+    driven.stamps_s.push_back(back_s + k / 30.0);
   }
-  const LaserOptions laser;
-  const std::vector<Pose2> odometry = DisturbOdometry(driven, {}, static_cast<std::uint64_t>(seed));
+  return driven;
+}
+
+// Odometry that begins anew after the loss: SLAM believes to be where it was lost, but for an
+// offset.
+std::vector<Pose2> SlamOf(const Driven& driven, const Drive& drive, int seed) {
+  std::vector<Pose2> slam = DisturbOdometry(driven.poses, {}, static_cast<std::uint64_t>(seed));
   RandomStream random(static_cast<std::uint64_t>(seed), RandomStage::kTest, 77);
   const double way_rad = random.Uniform(-kPi, kPi);
   const Pose2 off{drive.off_m * std::cos(way_rad), drive.off_m * std::sin(way_rad),
                   RadFromDeg(drive.off_deg) * (random.Uniform() < 0.5 ? 1.0 : -1.0)};
-  // SLAM believes to be where it was lost, but for this.
-  const Pose2 new_slam = odometry[before - 1] * off * Inverse(odometry[before]);
+  const Pose2 new_from_old = slam[driven.before - 1] * off * Inverse(slam[driven.before]);
+  for (std::size_t k = driven.before; k < slam.size(); ++k) slam[k] = new_from_old * slam[k];
+  return slam;
+}
+
+double ErrorM(const Pose3& map_from_camera, const Pose2& truth) {
+  return (BaseOf(map_from_camera).translation() - truth.translation()).norm();
+}
+
+Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Drive& drive,
+            const MapperOptions& options, int seed) {
+  const Driven driven = DrivenOf(truth, drive);
+  const std::vector<Pose2> slam = SlamOf(driven, drive, seed);
+  const auto frames = static_cast<double>(driven.poses.size());
   IncrementalMapper mapper(options, std::nullopt, {ThreadCpuUs, SteadyUs});
   Outcome outcome;
-  for (std::size_t k = 0; k < driven.size(); ++k) {
+  for (std::size_t k = 0; k < driven.poses.size(); ++k) {
     Frame frame;
     frame.index = static_cast<int>(k);
-    frame.stamp_s = stamps_s[k];
-    frame.scan = SimulatedScan(world, driven[k], laser, seed, static_cast<int>(k));
-    frame.slam_from_camera = CameraOf(k < before ? odometry[k] : new_slam * odometry[k], 0.0);
-    frame.slam_epoch = k < before ? 0 : 1;
+    frame.stamp_s = driven.stamps_s[k];
+    frame.scan = SimulatedScan(world, driven.poses[k], {}, seed, static_cast<int>(k));
+    frame.slam_from_camera = CameraOf(slam[k], 0.0);
+    frame.slam_epoch = k < driven.before ? 0 : 1;
     const FrameReport report = mapper.AddFrame(frame);
-    if (report.relocated) outcome.found_after = static_cast<int>(k - before);
-    outcome.online_m +=
-        (BaseOf(*report.map_from_camera).translation() - driven[k].translation()).norm() /
-        static_cast<double>(driven.size());
+    if (report.relocated) outcome.found_after = static_cast<int>(k - driven.before);
+    outcome.online_m += ErrorM(*report.map_from_camera, driven.poses[k]) / frames;
     outcome.worst_ms = std::max(outcome.worst_ms, 1e-3 * report.times.total_us);
   }
   const MapperResult result = mapper.Finish();
-  for (std::size_t k = 0; k < driven.size(); ++k) {
-    const double error_m =
-        (BaseOf(*result.map_from_camera[k]).translation() - driven[k].translation()).norm();
-    outcome.final_m += error_m / static_cast<double>(driven.size());
+  for (std::size_t k = 0; k < driven.poses.size(); ++k) {
+    const double error_m = ErrorM(*result.map_from_camera[k], driven.poses[k]);
+    outcome.final_m += error_m / frames;
     outcome.worst_m = std::max(outcome.worst_m, error_m);
-    if (k >= before) outcome.after_m += error_m / static_cast<double>(driven.size() - before);
+    if (k >= driven.before) {
+      outcome.after_m += error_m / static_cast<double>(driven.poses.size() - driven.before);
+    }
   }
   return outcome;
 }
 
-}  // namespace
-
-namespace {
 int Measure(int argc, char** argv) {
   CLI::App app("A run whose SLAM is lost for a while and comes back elsewhere");
   std::string world_name;
@@ -108,13 +126,8 @@ int Measure(int argc, char** argv) {
   const LaserWorld world = ReadLaserWorld(world_name + ".world.txt");
   const std::vector<Pose2> truth = ReadPlanarTruth(world_name);
   for (const bool use : {false, true}) {
-    MapperOptions options;
-    options.method = MapperMethod::kSurfel;
-    options.fusion.mode = FusionMode::kLearned;
+    MapperOptions options = MapperWith(sets);
     options.loops.relocation.use = use;
-    Config config;
-    for (const std::string& set : sets) config.Set(set);
-    config.Read(options);
     for (int seed = 1; seed <= seeds; ++seed) {
       const Outcome o = Map(world, truth, drive, options, seed);
       std::printf(
@@ -126,6 +139,7 @@ int Measure(int argc, char** argv) {
   }
   return 0;
 }
+
 }  // namespace
 
 int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

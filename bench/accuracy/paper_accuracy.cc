@@ -118,49 +118,45 @@ void PrintSummary(const std::vector<Key>& keys, const std::map<Key, std::vector<
   }
 }
 
-}  // namespace
-
-namespace {
-int Measure(int argc, char** argv) {
-  CLI::App app;
-  std::string study_name = "paper";
-  std::vector<std::string> variant_texts, sets, only;
-  RunContext context;
-  int first_seed = 1, seeds = 20, depth_seed = 1;
-  app.add_option("--study", study_name);
-  app.add_option("--variant", variant_texts)->required();
-  app.add_option("--case", only, "only cases whose name contains one of these");
-  app.add_option("--seeds", seeds);
-  app.add_option("--first-seed", first_seed);
-  app.add_option("--depth-seed", depth_seed, "of the depth noise, the same for all seeds of SLAM");
-  app.add_option("--set", sets)->allow_extra_args(false);
-  app.add_option("--threads", context.threads);
-  app.add_option("--cache", context.cache_folder);
-  CLI11_PARSE(app, argc, argv);
+struct Choice {
+  std::string study = "paper";
   std::vector<Variant> variants;
-  for (const std::string& text : variant_texts) variants.push_back(ParseVariant(text));
-  const std::string path = ResolveName(study_name, ShippedKind::kExperiment);
+  std::vector<std::string> sets;
+  std::vector<std::string> only;  // cases whose name contains one of these; none: all
+  int first_seed = 1;
+  int seeds = 20;
+  int depth_seed = 1;
+
+  bool Has(const std::string& name) const {
+    return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& part) {
+             return name.find(part) != std::string::npos;
+           });
+  }
+};
+
+Config OverridesOf(const Choice& choice, const Variant& variant, int seed) {
+  Config overrides = variant.keys;
+  overrides.Set("seed", std::to_string(seed));
+  overrides.Set("depth_seed", std::to_string(choice.depth_seed));
+  for (const char* dear : {"registration", "ssim", "navigation"}) {
+    overrides.Set(std::string("metrics.") + dear, "false");
+  }
+  for (const std::string& set : choice.sets) overrides.Set(set);
+  return overrides;
+}
+
+// What shares room and images, and so runs together.
+std::map<std::string, Group> GroupsOf(const Choice& choice) {
+  const std::string path = ResolveName(choice.study, ShippedKind::kExperiment);
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  std::map<Key, std::vector<Row>> rows;
-  std::vector<Key> order;
-  std::map<std::string, Group> groups;  // what shares room and images runs together
-  for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
-    for (const Variant& variant : variants) {
-      Config overrides = variant.keys;
-      overrides.Set("seed", std::to_string(seed));
-      overrides.Set("depth_seed", std::to_string(depth_seed));
-      for (const char* dear : {"registration", "ssim", "navigation"}) {
-        overrides.Set(std::string("metrics.") + dear, "false");
-      }
-      for (const std::string& set : sets) overrides.Set(set);
-      const Study study = ReadStudy(Config::FromFile(path), overrides, folder);
+  std::map<std::string, Group> groups;
+  for (int seed = choice.first_seed; seed < choice.first_seed + choice.seeds; ++seed) {
+    for (const Variant& variant : choice.variants) {
+      const Study study =
+          ReadStudy(Config::FromFile(path), OverridesOf(choice, variant, seed), folder);
       for (std::size_t i = 0; i < study.experiments.size(); ++i) {
         const std::string& name = study.outline.cases[i].name;
-        const bool wanted =
-            only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& part) {
-              return name.find(part) != std::string::npos;
-            });
-        if (!wanted) continue;
+        if (!choice.Has(name)) continue;
         Group& group = groups[SharedPart(study.experiments[i])];
         group.keys.push_back({name, variant.name});
         group.seeds.push_back(seed);
@@ -168,29 +164,57 @@ int Measure(int argc, char** argv) {
       }
     }
   }
+  return groups;
+}
+
+void PrintRow(const Key& key, int seed, const Row& row) {
+  fmt::print(
+      "{},{},{},{:.5f},{:.4f},{:.5f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{},{},{:.0f}\n",
+      key.first, key.second, seed, row.input_m, row.input_f1, row.final_m, row.final_f1,
+      row.online_m, row.output_m, row.output_ate_m, row.f1, row.thickness_m, row.accepted,
+      row.offered, row.us_per_frame);
+}
+
+int Measure(int argc, char** argv) {
+  CLI::App app;
+  Choice choice;
+  std::vector<std::string> variant_texts;
+  RunContext context;
+  app.add_option("--study", choice.study);
+  app.add_option("--variant", variant_texts)->required();
+  app.add_option("--case", choice.only, "only cases whose name contains one of these");
+  app.add_option("--seeds", choice.seeds);
+  app.add_option("--first-seed", choice.first_seed);
+  app.add_option("--depth-seed", choice.depth_seed,
+                 "of the depth noise, the same for all seeds of SLAM");
+  app.add_option("--set", choice.sets)->allow_extra_args(false);
+  app.add_option("--threads", context.threads);
+  app.add_option("--cache", context.cache_folder);
+  CLI11_PARSE(app, argc, argv);
+  for (const std::string& text : variant_texts) choice.variants.push_back(ParseVariant(text));
+  context.progress = [](int done, int total) {
+    if (done % 100 == 0) fmt::print(stderr, "{} of {} frames\n", done, total);
+  };
+  const std::map<std::string, Group> groups = GroupsOf(choice);
   fmt::print(
       "case,variant,seed,input_m,input_f1,final_m,final_f1,online_m,output_m,output_ate_m,f1,"
       "thickness_m,loops_accepted,loops_offered,time_us_per_frame\n");
+  std::map<Key, std::vector<Row>> rows;
+  std::vector<Key> order;
   for (const auto& [shared, group] : groups) {
-    context.progress = [](int done, int total) {
-      if (done % 100 == 0) fmt::print(stderr, "{} of {} frames\n", done, total);
-    };
     const JointRuns joint = RunJointly(group.options, context);
     for (std::size_t i = 0; i < group.keys.size(); ++i) {
       const Key& key = group.keys[i];
       const Row row = RowOf(joint.runs[i], joint.truth);
       if (!rows.contains(key)) order.push_back(key);
       rows[key].push_back(row);
-      fmt::print(
-          "{},{},{},{:.5f},{:.4f},{:.5f},{:.4f},{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{},{},{:.0f}\n",
-          key.first, key.second, group.seeds[i], row.input_m, row.input_f1, row.final_m,
-          row.final_f1, row.online_m, row.output_m, row.output_ate_m, row.f1, row.thickness_m,
-          row.accepted, row.offered, row.us_per_frame);
+      PrintRow(key, group.seeds[i], row);
     }
   }
   PrintSummary(order, rows);
   return 0;
 }
+
 }  // namespace
 
 int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

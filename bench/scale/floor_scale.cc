@@ -8,10 +8,11 @@
 #include <string>
 
 #include "bench/guarded_main.h"
+#include "bench/mapper_settings.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
+#include "mapper/core/median.h"
 #include "mapper/incremental_mapper.h"
-#include "mapper/io/config.h"
 #include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
@@ -114,12 +115,6 @@ class Walker {
   Pose2 pose_;
 };
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Settings {
   MapperOptions mapper;
   bool finish = true;
@@ -129,6 +124,10 @@ struct Settings {
   double drift = 1.0;
   double noise = 0.01;
 };
+
+double ErrorM(const Pose3& map_from_camera, const Pose2& truth) {
+  return (BaseOf(map_from_camera).translation() - truth.translation()).norm();
+}
 
 struct JudgedLoop {
   int first = 0;  // frames
@@ -161,20 +160,21 @@ double PeakMib() {
   return 0.0;
 }
 
-void Walk(double floor_m, int frames, const Settings& settings) {
-  const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
-  const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
-  const double before_mib = ResidentMib();
-  IncrementalMapper mapper(settings.mapper, std::nullopt, {ThreadCpuUs, SteadyUs});
+struct Walked {
+  std::vector<Pose2> truths;
+  std::vector<double> times_us;  // of each frame
+  double mean_us = 0.0;
+  double error_m = 0.0;  // of the online estimate, the mean
+};
+
+Walked Walk(const Floor& floor, int frames, const Settings& settings, IncrementalMapper& mapper) {
   Walker walker(floor);
   const PlanarLaser laser{.beams = 640,
                           .field_of_view_rad = RadFromDeg(58.0),
                           .max_range_m = 6.0,
                           .sigma_of_range = settings.noise};
-  std::vector<double> times_us;
-  std::vector<Pose2> truths;
+  Walked walked;
   Pose2 odometry, last;
-  double sum_us = 0.0, error_m = 0.0;
   for (int k = 0; k < frames; ++k) {
     const Pose2 truth = walker.Next();
     // Odometry with a slowly varying bias: 1 % of the way, 0.1 degree a metre.
@@ -183,7 +183,7 @@ void Walk(double floor_m, int frames, const Settings& settings) {
         k == 0 ? truth
                : odometry * Between(last, truth) * Pose2{4e-4 * swing, 2e-4 * swing, 7e-5 * swing};
     last = truth;
-    truths.push_back(truth);
+    walked.truths.push_back(truth);
     Frame frame;
     frame.index = k;
     frame.stamp_s = k / 30.0;
@@ -192,44 +192,66 @@ void Walk(double floor_m, int frames, const Settings& settings) {
                                             floor.seed + 1, static_cast<std::uint32_t>(k)));
     frame.slam_from_camera = CameraOf(odometry, 0.0);
     const FrameReport report = mapper.AddFrame(frame);
-    times_us.push_back(report.times.total_us);
-    sum_us += report.times.total_us;
-    error_m += (BaseOf(*report.map_from_camera).translation() - truth.translation()).norm();
+    walked.times_us.push_back(report.times.total_us);
+    walked.mean_us += report.times.total_us;
+    walked.error_m += ErrorM(*report.map_from_camera, truth);
   }
-  const auto part = [&](double from, double to) {
+  walked.mean_us /= frames;
+  walked.error_m /= frames;
+  return walked;
+}
+
+void PrintWalk(double floor_m, const Walked& walked, double mib) {
+  const auto frames = static_cast<double>(walked.times_us.size());
+  const auto median_us = [&](double from, double to) {
     const auto at = [&](double share) {
-      return times_us.begin() + static_cast<std::ptrdiff_t>(share * frames);
+      return walked.times_us.begin() + static_cast<std::ptrdiff_t>(share * frames);
     };
-    return Median({at(from), at(to)});
+    return UpperMedian({at(from), at(to)});
   };
-  std::vector<JudgedLoop> loops;
-  const double walked_mib = ResidentMib() - before_mib;
   std::printf("| %4.0f m | %6d | %5.0f | %5.0f | %5.0f | %6.0f | %6.1f | %7.1f | %7.3f |", floor_m,
-              frames, part(0.05, 0.15), part(0.45, 0.55), part(0.9, 1.0), sum_us / frames,
-              *std::max_element(times_us.begin(), times_us.end()) * 1e-3, walked_mib,
-              error_m / frames);
+              static_cast<int>(walked.times_us.size()), median_us(0.05, 0.15),
+              median_us(0.45, 0.55), median_us(0.9, 1.0), walked.mean_us,
+              *std::max_element(walked.times_us.begin(), walked.times_us.end()) * 1e-3, mib,
+              walked.error_m);
   std::fflush(stdout);
-  if (settings.finish) {
-    const double start_us = ThreadCpuUs();
-    const MapperResult result = mapper.Finish();
-    const double finish_us = ThreadCpuUs() - start_us;
-    double final_error_m = 0.0, scan_bytes = 0.0;
-    for (std::size_t k = 0; k < truths.size(); ++k) {
-      final_error_m +=
-          (BaseOf(*result.map_from_camera[k]).translation() - truths[k].translation()).norm();
-    }
-    for (const MappedFrame& frame : result.mapped) {
-      const PackedScan packed = frame.scan.packed();
-      scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
-    }
-    loops = JudgedLoops(result, truths);
-    const auto wrong = std::count_if(loops.begin(), loops.end(),
-                                     [](const JudgedLoop& loop) { return loop.error_m > kWrongM; });
-    const auto kept = static_cast<double>(result.mapped.size());
-    std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f | %d, %d |", finish_us / frames,
-                final_error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib,
-                static_cast<int>(loops.size()), static_cast<int>(wrong));
+}
+
+// Returns the loops that were taken.
+std::vector<JudgedLoop> FinishAndPrint(const std::vector<Pose2>& truths, double before_mib,
+                                       IncrementalMapper& mapper) {
+  const double start_us = ThreadCpuUs();
+  const MapperResult result = mapper.Finish();
+  const double finish_us = ThreadCpuUs() - start_us;
+  const auto frames = static_cast<double>(truths.size());
+  double error_m = 0.0, scan_bytes = 0.0;
+  for (std::size_t k = 0; k < truths.size(); ++k) {
+    error_m += ErrorM(*result.map_from_camera[k], truths[k]);
   }
+  for (const MappedFrame& frame : result.mapped) {
+    const PackedScan packed = frame.scan.packed();
+    scan_bytes += static_cast<double>(packed.values.size_bytes() + packed.codes.size_bytes());
+  }
+  std::vector<JudgedLoop> loops = JudgedLoops(result, truths);
+  const auto wrong = std::count_if(loops.begin(), loops.end(),
+                                   [](const JudgedLoop& loop) { return loop.error_m > kWrongM; });
+  const auto kept = static_cast<double>(result.mapped.size());
+  std::printf(" %7.0f | %7.3f | %6.0f | %6.0f | %7.1f | %d, %d |", finish_us / frames,
+              error_m / frames, kept, scan_bytes / kept, PeakMib() - before_mib,
+              static_cast<int>(loops.size()), static_cast<int>(wrong));
+  return loops;
+}
+
+// A row of the table.
+void MeasureFloor(double floor_m, int frames, const Settings& settings) {
+  const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
+  const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
+  const double before_mib = ResidentMib();
+  IncrementalMapper mapper(settings.mapper, std::nullopt, {ThreadCpuUs, SteadyUs});
+  const Walked walked = Walk(floor, frames, settings, mapper);
+  PrintWalk(floor_m, walked, ResidentMib() - before_mib);
+  std::vector<JudgedLoop> loops;
+  if (settings.finish) loops = FinishAndPrint(walked.truths, before_mib, mapper);
   std::printf("\n");
   if (settings.loops) {
     for (const JudgedLoop& loop : loops) {
@@ -260,11 +282,7 @@ int Measure(int argc, char** argv) {
   app.add_option("--noise", settings.noise, "of ranges, as a share");
   app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
   CLI11_PARSE(app, argc, argv);
-  settings.mapper.method = depthgrid::MapperMethod::kSurfel;
-  settings.mapper.fusion.mode = depthgrid::FusionMode::kLearned;
-  depthgrid::Config config;
-  for (const std::string& set : sets) config.Set(set);
-  config.Read(settings.mapper);
+  settings.mapper = depthgrid::MapperWith(sets);
   settings.finish = !no_finish;
   std::printf(
       "| floor | frames | us/frame, first | middle | last tenth | mean | worst ms | MiB | online "
@@ -275,7 +293,7 @@ int Measure(int argc, char** argv) {
   std::printf("|--:|--:|--:|--:|--:|--:|--:|--:|--:|%s\n",
               settings.finish ? "--:|--:|--:|--:|--:|--:|" : "");
   for (std::size_t i = 0; i < std::min(floors.size(), frames.size()); ++i) {
-    depthgrid::Walk(floors[i], frames[i], settings);
+    depthgrid::MeasureFloor(floors[i], frames[i], settings);
   }
   return 0;
 }
