@@ -1,5 +1,5 @@
-// The learning Kalman filter from frame to frame: DriftFilter's equations with the noise that
-// MotionNoiseLearner finds.
+// The learning Kalman filter from frame to frame: the equations of drift_filter.h with the noise
+// that MotionNoiseLearner finds.
 #pragma once
 
 #include <optional>

@@ -18,7 +18,7 @@ struct PlanarGraph {
     int first = 0;  // ids
     int second = 0;
     Pose2 first_from_second;
-    Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // x, y, yaw
+    Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // x m, y m, yaw rad
   };
   std::vector<Vertex> vertices;
   std::vector<Edge> edges;
