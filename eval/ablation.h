@@ -2,8 +2,10 @@
 // (docs/statistics.md, "Ablation").
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "eval/experiment.h"

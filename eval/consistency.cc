@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <map>
 
-#include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/fuse/fusion.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "eval/consistency.h"
 #include "eval/experiment_options.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <set>
-#include <utility>
 
 #include "eval/study.h"
 #include "mapper/core/error.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "eval/experiment.h"
 #include "eval/output_folder.h"

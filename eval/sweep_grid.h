@@ -1,6 +1,10 @@
 // A sweep's table as a grid: what was varied, which points there are, which runs repeat each.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "eval/statistics/best_setting.h"
 #include "eval/statistics/seed_units.h"
 #include "eval/sweep/sweep_results.h"

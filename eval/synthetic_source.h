@@ -2,7 +2,11 @@
 // disturbed and quantised as a PNG would, ahead of the mapper on several threads.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "eval/depth_cache.h"
 #include "eval/experiment_options.h"

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "eval/run_files.h"
 #include "mapper/grid/grid_options.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/incremental_mapper.h"

@@ -1,6 +1,7 @@
 // The frames that were mapped, and their scans: kept for the final map, or for a while only.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mapper/scan/frame_scans.h"

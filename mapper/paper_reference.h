@@ -2,6 +2,10 @@
 // closed in a graph of scan and submap poses (Eq. 5-6).
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "mapper/graph/scan_submap_graph.h"
 #include "mapper/grid/scan_rasterizer.h"
 #include "mapper/grid/submap.h"

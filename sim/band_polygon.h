@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "mapper/core/error.h"
 #include "mapper/core/grid_geometry.h"

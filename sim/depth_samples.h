@@ -2,6 +2,7 @@
 // Works on blocks of pixels so that the arithmetic vectorises; only for sim's own noise.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 

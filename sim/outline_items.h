@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <vector>
+
 #include "mapper/core/error.h"
 #include "sim/corner_cutting.h"
 #include "sim/item_options.h"

@@ -3,6 +3,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <cstdint>
+
 #include "sim/ray_scene.h"
 
 namespace depthgrid {

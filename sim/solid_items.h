@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string>
+
 #include "mapper/core/error.h"
 #include "sim/box.h"
 #include "sim/item_options.h"

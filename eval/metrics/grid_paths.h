@@ -1,6 +1,7 @@
 // Shortest ways over a grid's cells.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 

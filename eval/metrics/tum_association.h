@@ -2,6 +2,8 @@
 // Sturm et al. 2012).
 #pragma once
 
+#include <vector>
+
 #include "eval/metrics/association.h"
 
 namespace depthgrid {

@@ -1,6 +1,9 @@
 // Two settings over the same seeds: which is better, by how much, and how sure that is.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "eval/statistics/resamples.h"
 #include "eval/statistics/wilcoxon.h"
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "eval/sweep/sweep_database.h"
 #include "eval/sweep/sweep_plan.h"

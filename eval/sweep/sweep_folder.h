@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "eval/sweep/sweep_engine.h"
-
 namespace depthgrid {
 
 // Held while a program works in a sweep's folder; another one is refused with an InputError.

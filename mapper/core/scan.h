@@ -2,11 +2,10 @@
 // mapped.
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include "mapper/core/pose2.h"
 
 namespace depthgrid {
 

@@ -1,7 +1,5 @@
 #include "mapper/fuse/drift_filter.h"
 
-#include <cmath>
-
 namespace depthgrid {
 namespace {
 

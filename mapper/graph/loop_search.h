@@ -2,6 +2,7 @@
 // it? (docs/math.md, "Loops found by the mapper")
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "mapper/core/error.h"
+#include "mapper/match/search_lattice.h"
 
 namespace depthgrid {
 namespace {

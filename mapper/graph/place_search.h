@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mapper/core/occupancy_map.h"
-#include "mapper/match/search_lattice.h"
+#include "mapper/core/pose2.h"
 
 namespace depthgrid {
 

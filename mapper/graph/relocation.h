@@ -2,6 +2,7 @@
 // is laid over all that was seen before (docs/math.md, "Wide search after a loss").
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/core/grid_geometry.h"
+#include "mapper/core/pose2.h"
 #include "mapper/core/scan.h"
 
 namespace depthgrid {

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include "mapper/core/options.h"
 #include "mapper/grid/probability_grid.h"

@@ -1,6 +1,7 @@
 // The rows of the kinds of event files that mapper/io/loop_events.h tells apart.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mapper/core/frame.h"
 #include "mapper/io/camera_formats.h"

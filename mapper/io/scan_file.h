@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/core/kept_scan.h"
+#include "mapper/core/pose2.h"
 
 namespace depthgrid {
 

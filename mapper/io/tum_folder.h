@@ -2,7 +2,9 @@
 // groundtruth.txt, and our camera.yaml (docs/formats.md, "TUM folder").
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/core/occupancy_map.h"
+#include "mapper/core/pose2.h"
 #include "mapper/core/scan.h"
 
 namespace depthgrid {

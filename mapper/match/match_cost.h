@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "mapper/core/pose2.h"
 #include "mapper/match/match_points.h"
 #include "mapper/match/probability_view.h"
 

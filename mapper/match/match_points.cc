@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/angle.h"
+
 namespace depthgrid {
 namespace {
 

@@ -1,7 +1,5 @@
 #include "mapper/match/scan_matcher.h"
 
-#include <cmath>
-
 #include "mapper/core/frame.h"
 
 namespace depthgrid {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "mapper/core/pose2.h"
 #include "mapper/match/match_points.h"
 #include "mapper/match/probability_view.h"
 

@@ -9,7 +9,6 @@
 #endif
 
 #include <bit>
-#include <type_traits>
 
 #include "mapper/scan/bearing_tile-inl.h"
 

@@ -1,5 +1,4 @@
 // What the columns of some rows hold (bearing_block.h).
-#include <cstdint>
 
 #include "mapper/scan/bearing_block.h"
 

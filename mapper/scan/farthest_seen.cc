@@ -1,7 +1,6 @@
 #include "mapper/scan/farthest_seen.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace depthgrid {
 namespace {

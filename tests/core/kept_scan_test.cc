@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 
-#include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 
 namespace depthgrid {

@@ -4,8 +4,6 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include <fstream>
-
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "tests/scratch.h"

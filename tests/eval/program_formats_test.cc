@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "mapper/io/map_file.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/eval/program.h"

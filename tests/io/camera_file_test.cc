@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "tests/refusal.h"
 

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "mapper/core/error.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 

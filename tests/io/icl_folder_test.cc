@@ -6,7 +6,6 @@
 
 #include <filesystem>
 
-#include "mapper/core/error.h"
 #include "mapper/io/png.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/core/error.h"
 #include "tests/refusal.h"
 
 namespace depthgrid {

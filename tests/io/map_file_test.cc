@@ -9,7 +9,6 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
-#include "mapper/io/pgm.h"
 #include "tests/io/temporary_folder.h"
 
 namespace depthgrid {

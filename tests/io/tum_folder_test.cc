@@ -5,7 +5,6 @@
 
 #include <filesystem>
 
-#include "mapper/core/error.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/io/temporary_folder.h"

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "tests/mapper/analytic_room.h"
 #include "tests/refusal.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/pose2.h"
 #include "mapper/core/rng.h"
 
 namespace depthgrid {

@@ -8,7 +8,6 @@
 
 #include "mapper/grid/probability_grid.h"
 #include "mapper/match/fast_match_cost.h"
-#include "mapper/match/least_squares.h"
 #include "mapper/match/scan_matcher.h"
 #include "tests/mapper/match_world.h"
 

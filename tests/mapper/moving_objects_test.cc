@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <memory>
-#include <vector>
 
 #include "mapper/incremental_mapper.h"
 #include "tests/mapper/planar_world.h"

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/graph/scan_submap_graph.h"
 #include "tests/mapper/poses.h"

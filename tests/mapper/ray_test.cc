@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <set>
-#include <tuple>
 #include <vector>
 
 #include "mapper/core/angle.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include "mapper/core/level.h"
-#include "mapper/core/median.h"
 #include "mapper/fuse/motion_noise.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/surfel/debias.h"

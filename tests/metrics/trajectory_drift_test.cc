@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "eval/metrics/tum_association.h"
 
 namespace depthgrid {

@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 
-#include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_results.h"
 #include "tests/eval/program.h"
 
