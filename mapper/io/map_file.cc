@@ -167,9 +167,12 @@ OccupancyMap AlignedMap(const MapFile& file) {
   const double r = file.map.geometry.resolution_m;
   OccupancyMap aligned(AlignedGeometry(file));
   const Pose2 grid_from_world = Inverse(file.world_from_grid);
+  // Where origins differ by half a cell, centres lie on boundaries: all of them in the cell above,
+  // not now on one side and now on the other by rounding.
+  const Eigen::Vector2d above = Eigen::Vector2d::Constant(kOriginRoundingM);
   for (std::size_t i = 0; i < aligned.occupied_prob.size(); ++i) {
     const Eigen::Vector2d centre = CellCentre(aligned.geometry.CellAt(i), r);
-    aligned.occupied_prob[i] = file.map.At(CellOf(grid_from_world * centre, r));
+    aligned.occupied_prob[i] = file.map.At(CellOf(grid_from_world * centre + above, r));
   }
   return aligned;
 }

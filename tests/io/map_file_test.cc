@@ -95,6 +95,23 @@ TEST_F(MapFileTest, YawAndOffLatticeOriginsArePoses) {
   EXPECT_EQ(aligned.At(CellOf({1.75, 3.75}, 0.5)), 0.0F);
 }
 
+// Half a cell off, every centre lies on a boundary: each takes the cell above, none twice.
+TEST_F(MapFileTest, HalfACellOffNoCellIsLostOrDoubled) {
+  std::string pgm = "P2 40 1 255";
+  for (int i = 0; i < 40; ++i) pgm += i % 2 == 0 ? " 0" : " 254";
+  int cases = 0;
+  for (const char* x : {"0.025", "-10.025", "7.325"}) {
+    const MapFile file = Read(pgm, "resolution: 0.05\norigin: [" + std::string(x) + ", 0, 0]\n");
+    const OccupancyMap aligned = AlignedMap(file);
+    const Cell first = CellOf({std::stod(x) + 1e-6, 0.025}, 0.05);
+    for (int i = 0; i < 40; ++i) {
+      EXPECT_EQ(aligned.At({first.x + i, 0}), i % 2 == 0 ? 1.0F : 0.0F) << x << " " << i;
+    }
+    ++cases;
+  }
+  EXPECT_EQ(cases, 3);
+}
+
 TEST_F(MapFileTest, AMapThatTurnsIntoTooManyCellsIsRefused) {
   const std::string row = "P5 65535 1 255\n" + std::string(65535, '\0');
   EXPECT_EQ(ErrorOf(row, "resolution: 0.5\norigin: [0, 0, 0]\n"), "no error");
