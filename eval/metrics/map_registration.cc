@@ -101,10 +101,10 @@ Eigen::Vector3d Climb(const WallPoints& points, const SplineField& field, Eigen:
 
 // From coarse to fine, and at the finest level from where the map lies: where walls leave a
 // direction open, the coarse hills must not carry it away.
-Eigen::Vector3d BestMotion(const WallPoints& points, const CellSet& true_walls) {
+Eigen::Vector3d BestMotion(const WallPoints& points, const CellSet& true_walls,
+                           const SplineField& finest) {
   // Three box filters of radius r reach 3 r + 2 cells; the last level is the walls themselves.
   constexpr std::array<int, 3> kSmoothingRadii = {6, 3, 1};
-  const SplineField finest(true_walls, 0);
   const Eigen::Vector3d near = Climb(points, finest, Eigen::Vector3d::Zero());
   Eigen::Vector3d far = Eigen::Vector3d::Zero();
   for (const int radius : kSmoothingRadii) {
@@ -133,7 +133,9 @@ std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap
   const CellSet walls = CellsIn(estimate, CellState::kOccupied);
   if (CentresOf(true_walls).empty() || CentresOf(walls).empty()) return std::nullopt;
   const WallPoints points = PointsOf(walls);
-  const Eigen::Vector3d motion = BestMotion(points, true_walls);
+  const SplineField finest(true_walls, 0);
+  const Eigen::Vector3d motion = BestMotion(points, true_walls, finest);
+  if (CorrelationAt(points, finest, motion).value <= 0.0) return std::nullopt;
   const double resolution_m = estimate.geometry.resolution_m;
   // x -> centroid + shift + R (x - centroid), as a pose.
   const Pose2 turn{0.0, 0.0, WrapAngle(motion.z())};

@@ -122,6 +122,18 @@ TEST(RegisterMap, NothingToLayOver) {
   EXPECT_FALSE(Registered(map, StateMap(map.geometry)));
 }
 
+// Walls of another place: no hill is in reach, which is not "lies as it should".
+TEST(RegisterMap, NothingInReach) {
+  StateMap truth(GridGeometry{0.05, {0, 0}, 200, 20});
+  StateMap estimate = truth;
+  for (int y = 0; y < 20; ++y) {
+    truth.states[truth.geometry.Index({10, y})] = CellState::kOccupied;
+    truth.states[truth.geometry.Index({11, y})] = CellState::kFree;
+    estimate.states[estimate.geometry.Index({150, y})] = CellState::kOccupied;
+  }
+  EXPECT_FALSE(Registered(truth, estimate));
+}
+
 TEST(NearestDistances, AgreesWithBruteForce) {
   RandomStream random(5, RandomStage::kTest);
   int compared = 0;
