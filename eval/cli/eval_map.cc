@@ -222,8 +222,9 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
                     Counted(score.all.occupied.size() - 1, "cell"), arguments.reference));
   }
   if (!score.observable) return doubts;
-  if (const double share = UnknownShare(*score.observable);
-      score.observable->scored_cells == 0 || share > kMostUnknown) {
+  if (score.observable->scored_cells == 0) {
+    doubts.push_back(observable_path + ": holds no cell that could be seen, as free cells say");
+  } else if (const double share = UnknownShare(*score.observable); share > kMostUnknown) {
     doubts.push_back(
         fmt::format("{}: of the cells that could be seen, {} does not know {:.0f} %: of "
                     "another place, or in another frame",

@@ -84,6 +84,13 @@ TEST_F(EvalMap, WallsThatLieElsewhereAreSaid) {
             "wrong\n");
 }
 
+TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
+  WriteCells("nothing", 0.1, "P2 3 2 255\n205 205 205\n205 205 205\n");
+  EXPECT_EQ(Program("eval map coarse.yaml coarse.yaml --observable nothing.yaml").err,
+            "depthgrid: warning: nothing.yaml: holds no cell that could be seen, as free cells "
+            "say\n");
+}
+
 TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
   ExpectRefusal("eval map fine.yaml other.yaml",
                 {"other.yaml: resolution is 0.03, must be the 0.05 of fine.yaml, a whole multiple "
