@@ -9,8 +9,11 @@ namespace depthgrid {
 
 std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& record,
                                         const ExperimentOptions& options, const ChosenAnew& anew) {
-  if (anew.scene || !record.Has("scene_hash")) return {};
-  const WorldHashes now = HashesOf(options);
+  const bool is_file = IsFileName(options.trajectory);
+  const bool is_same_path = !anew.trajectory && (is_file || !anew.scene);
+  if (!record.Has("scene_hash") || (anew.scene && !is_same_path)) return {};
+  // Of a room that is chosen anew nothing need be known, not even whether it can be read.
+  const WorldHashes now = anew.scene ? WorldHashes{"", HashOfPathFile(options)} : HashesOf(options);
   std::vector<std::string> doubts;
   const auto compare = [&](const std::string& key, const std::string& hash,
                            const std::string& what) {
@@ -19,10 +22,11 @@ std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& r
     doubts.push_back(fmt::format("{}: {} is {}, but that of {} is {} now: this run is another one",
                                  path, key, recorded, what, hash));
   };
-  compare("scene_hash", now.scene, options.scene);
-  if (anew.trajectory) return doubts;
-  compare("trajectory_hash", now.trajectory,
-          IsFileName(options.trajectory) ? options.trajectory : "the path in " + options.scene);
+  if (!anew.scene) compare("scene_hash", now.scene, options.scene);
+  if (is_same_path) {
+    compare("trajectory_hash", now.trajectory,
+            is_file ? options.trajectory : "the path in " + options.scene);
+  }
   return doubts;
 }
 

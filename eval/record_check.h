@@ -11,7 +11,7 @@ namespace depthgrid {
 
 // What is chosen anew, and so may be another one.
 struct ChosenAnew {
-  bool scene = false;  // with its path
+  bool scene = false;  // with its path, but for one of a file
   bool trajectory = false;
 };
 

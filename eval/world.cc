@@ -144,12 +144,13 @@ std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Trian
 
 bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
 
+void AddPathFile(const ExperimentOptions& options, ContentHash& hash) {
+  RequireTrajectoryFile(options);
+  hash.Text(ReadFile(options.trajectory));
+}
+
 void AddPath(const Scene& scene, const ExperimentOptions& options, ContentHash& hash) {
-  if (IsFile(options.trajectory)) {
-    RequireTrajectoryFile(options);
-    hash.Text(ReadFile(options.trajectory));
-    return;
-  }
+  if (IsFile(options.trajectory)) return AddPathFile(options, hash);
   const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
   hash.Text(ToYaml(path));
   for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
@@ -165,6 +166,12 @@ WorldHashes HashesOf(const Scene& scene, const ExperimentOptions& options) {
 
 WorldHashes HashesOf(const ExperimentOptions& options) {
   return HashesOf(LoadScene(ResolveName(options.scene, ShippedKind::kScene)), options);
+}
+
+std::string HashOfPathFile(const ExperimentOptions& options) {
+  ContentHash hash;
+  AddPathFile(options, hash);
+  return hash.Hex();
 }
 
 std::string WorldHash(const ExperimentOptions& options) {

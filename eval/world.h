@@ -32,7 +32,8 @@ struct World {
 
 // Of the room and the path that an experiment names. Throw InputError when they cannot be read.
 WorldHashes HashesOf(const ExperimentOptions& options);
-std::string WorldHash(const ExperimentOptions& options);  // both as one
+std::string HashOfPathFile(const ExperimentOptions& options);  // of a path from a file, alone
+std::string WorldHash(const ExperimentOptions& options);       // both as one
 
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
 // path that comes too near to geometry, and for one of a file that leads out of all reach.

@@ -12,6 +12,7 @@ namespace depthgrid::cli {
 void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   const ExperimentOptions options = ExperimentOrScene(arguments.experiment, arguments.common.set);
   const World world = LoadWorld(options, ThreadsOr(arguments.common.threads));
+  Warn(DoubtsOfRecord(arguments.experiment, arguments.common.set));
   Warn(world.path_doubts);
   const SeedRange seeds = {arguments.first_seed, arguments.seeds};
   const DriftCalibration found =

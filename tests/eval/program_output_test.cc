@@ -98,6 +98,8 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   EXPECT_EQ(of_scene, warning("scene_hash", ""));
   EXPECT_EQ(hash("again", "trajectory_hash"), hash("out", "trajectory_hash"));
   EXPECT_THAT(Program("render out/run.yaml --no-colour -o seq").err, HasSubstr(of_scene));
+  EXPECT_THAT(Program("slam-calibrate out/run.yaml --target 0.1 --seeds 2").err,
+              HasSubstr(of_scene));
   Write("sweep.yaml", "experiment: out/run.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
   EXPECT_THAT(Program("sweep ./sweep.yaml --dry-run -o sweep").err,
               HasSubstr(of_scene.substr(of_scene.find("out/run.yaml"))));
