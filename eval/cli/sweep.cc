@@ -17,6 +17,7 @@
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_folder.h"
 #include "eval/sweep/sweep_progress.h"
+#include "eval/sweep/sweep_rooms.h"
 #include "eval/sweep_report.h"
 #include "mapper/core/error.h"
 #include "mapper/io/end_task.h"
@@ -285,6 +286,7 @@ void Sweep(const SweepArguments& arguments) {
   const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
   const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
   Warn(plan.warnings);
+  Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
   if (arguments.dry_run) {
     SweepContext context;
     context.threads = ThreadsOr(arguments.jobs);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
+#include "eval/shipped.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
 
@@ -19,26 +21,48 @@ std::string HashOrNone(const ExperimentOptions& options) {
   }
 }
 
-}  // namespace
-
-std::string RoomsText(const SweepPlan& plan) {
+// Of the first run in each of them.
+std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
   std::vector<std::size_t> naming;  // positions of the keys that choose room and path
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
     if (IsFileKey(plan.parameter_keys[i])) naming.push_back(i);
   }
   std::set<std::vector<std::string>> seen;
-  std::string text;
+  std::vector<ExperimentOptions> rooms;
   for (const PlannedRun& run : plan.runs) {
     std::vector<std::string> names;
     for (const std::size_t i : naming) names.push_back(run.values[i]);
-    if (!seen.insert(std::move(names)).second) continue;
-    const ExperimentOptions options = plan.OptionsOf(run);
+    if (seen.insert(std::move(names)).second) rooms.push_back(plan.OptionsOf(run));
+  }
+  return rooms;
+}
+
+}  // namespace
+
+std::string RoomsText(const SweepPlan& plan) {
+  std::string text;
+  for (const ExperimentOptions& options : RoomsOf(plan)) {
     const std::string scene = std::filesystem::path(options.scene).filename().string();
     text += fmt::format("{}{}{}: {}\n", scene, options.trajectory.empty() ? "" : ", ",
                         std::filesystem::path(options.trajectory).filename().string(),
                         HashOrNone(options));
   }
   return text;
+}
+
+std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads) {
+  std::vector<std::string> doubts;
+  for (const ExperimentOptions& options : RoomsOf(plan)) {
+    if (!IsFileName(options.trajectory)) continue;
+    try {
+      for (std::string& doubt : LoadWorld(options, threads).path_doubts) {
+        const bool is_new = std::find(doubts.begin(), doubts.end(), doubt) == doubts.end();
+        if (is_new) doubts.push_back(std::move(doubt));
+      }
+    } catch (const InputError&) {  // its runs fail and say why
+    }
+  }
+  return doubts;
 }
 
 }  // namespace depthgrid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "eval/sweep/sweep_plan.h"
 
@@ -10,5 +11,9 @@ namespace depthgrid {
 // A line for each of them, with a hash of what its files hold: a sweep that goes on after one was
 // changed would mix two rooms.
 std::string RoomsText(const SweepPlan& plan);
+
+// What is amiss with the paths that are read from files, a line each: of those in rooms that can be
+// read, for the runs of the others fail and say why.
+std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads);
 
 }  // namespace depthgrid

@@ -70,6 +70,30 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
     EXPECT_THAT(said(command, "near.txt"),
                 HasSubstr("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m from geometry"));
   }
+  Write("sweep.yaml",
+        "experiment: ./small.yaml\nset: {frames: 0}\naxes:\n"
+        "  trajectory: [./inside.txt, ./near.txt, ./nothing.txt]\n  mapper.fusion.gain: [0, 1]\n");
+  const Outcome sweep = Program("sweep ./sweep.yaml --dry-run -o sweep");
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
+  const std::size_t once = sweep.err.find("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m");
+  ASSERT_NE(once, std::string::npos) << sweep.err;
+  EXPECT_EQ(sweep.err.find("near.txt", once + 1), std::string::npos);
+  EXPECT_EQ(sweep.err.find("inside.txt"), std::string::npos);
+}
+
+// A file's path stays when the room is chosen anew, and may have changed since.
+TEST_F(TruthPaths, AFilesPathIsComparedInAnotherRoomToo) {
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  const std::string path = "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look;
+  Write("path.txt", path);
+  std::filesystem::copy_file(Path("room.yaml"), Path("other.yaml"));
+  Succeed("run ./small.yaml --set frames=0 --set trajectory=./path.txt -o out");
+  const std::string command = "run out/run.yaml --set scene=./other.yaml --force -o again";
+  EXPECT_EQ(Program(command).err, "");
+  Write("path.txt", path + "0.2 1.5 3.3 1.1" + look);
+  EXPECT_THAT(Program(command).err,
+              AllOf(HasSubstr("out/run.yaml: trajectory_hash is "), HasSubstr("path.txt is ")));
+  EXPECT_EQ(Program(command + " --set trajectory=./path.txt").err, "");
 }
 
 }  // namespace
