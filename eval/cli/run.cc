@@ -73,10 +73,10 @@ void PrintCases(const std::vector<CaseResult>& results) {
                                                  "input ATE m", "output mean m", "output ATE m",
                                                  "input map F1", "output map F1"}};
   const auto mean = [](const std::optional<TrajectoryScore>& score) {
-    return score ? Number(score->xy_unaligned.mean, 3) : "-";
+    return score ? Number(score->xy_unaligned.mean, 4) : "-";
   };
   const auto aligned = [](const std::optional<TrajectoryScore>& score) {
-    return score && score->xy_se2 ? Number(score->xy_se2->rmse, 3) : "-";
+    return score && score->xy_se2 ? Number(score->xy_se2->rmse, 4) : "-";
   };
   for (const CaseResult& r : results) {
     rows.push_back({r.name, Number(r.published_mean_m, 3), mean(r.scores.slam),

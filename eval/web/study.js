@@ -13,8 +13,8 @@ const sourceOf = (c) => (isAlone(c) ? nameOf(c.pose_source) : `${nameOf(c.pose_s
 const millimetres = (value) => fixed(isNumber(value) ? 1000 * value : value, 1);
 const seen = (map) => map?.observable ?? map?.all;
 
-// Without alignment, and aligned.
-const errorCells = (score) => [fixed(score?.mean_euclidean_m, 3), fixed(score?.ate_rmse_se2_m, 3)];
+// Without alignment, and aligned; the best are a few millimetres.
+const errorCells = (score) => [fixed(score?.mean_euclidean_m, 4), fixed(score?.ate_rmse_se2_m, 4)];
 const linkTo = (c, text) => make("a", { href: `${STUDY.back}${c.name}/report.html` }, text);
 
 // Rooms above what the errors are of, above how they are taken.

@@ -1,4 +1,5 @@
 // Several experiments side by side: `depthgrid run` of a file with cases.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -71,6 +72,8 @@ TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
   EXPECT_FALSE(SameFile("out/orb/input_map.pgm", "out/truth/input_map.pgm"));
   const Outcome again = Program("run ./study.yaml -o again --threads 1");
   EXPECT_THAT(again.out, HasSubstr("other_seed"));
+  const double mean_m = alone["trajectory"]["est"]["mean_euclidean_m"];
+  EXPECT_THAT(again.out, HasSubstr(fmt::format("  {:.4f}  ", mean_m)));
   EXPECT_THAT(again.out, HasSubstr("look at again/report.html"));
   EXPECT_EQ(again.err, "");
   ExpectSameBytes("out", "again");
