@@ -1,7 +1,9 @@
 #include "eval/sweep_grid.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
@@ -39,26 +41,49 @@ std::vector<std::string> SeedTexts(const SweepResults& results) {
   return seeds;
 }
 
-using SeedValues = std::map<std::string, double>;
-
-SeedValues ValuesBySeed(const SweepGrid& grid, const GridPoint& point,
-                        const std::vector<double>& metric) {
-  SeedValues values;
-  for (const std::size_t row : point.rows) {
-    if (std::isfinite(metric[row])) values[grid.seeds_of_row[row]] = metric[row];
+std::vector<std::size_t> Measurements(const SweepResults& results, const SweepGrid& grid) {
+  std::vector<std::size_t> measurement_of_row(results.rows());
+  std::iota(measurement_of_row.begin(), measurement_of_row.end(), std::size_t{0});
+  for (const GridPoint& point : grid.points) {
+    std::map<std::vector<std::uint64_t>, std::size_t> row_of_scores;
+    for (const std::size_t row : point.rows) {
+      std::vector<std::uint64_t> bits;
+      for (const SweepColumn& column : results.metrics) {
+        bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
+      }
+      measurement_of_row[row] = row_of_scores.try_emplace(std::move(bits), row).first->second;
+    }
   }
-  return values;
+  return measurement_of_row;
 }
 
-// Which seeds every point of a line has, in the order of the first point's runs.
+using SeedRows = std::map<std::string, std::size_t>;
+
+SeedRows RowsBySeed(const SweepGrid& grid, const GridPoint& point,
+                    const std::vector<double>& metric) {
+  SeedRows rows;
+  for (const std::size_t row : point.rows) {
+    if (std::isfinite(metric[row])) rows[grid.seeds_of_row[row]] = row;
+  }
+  return rows;
+}
+
+// Which seeds every point of a line has, in the order of the first point's runs, less those that
+// gave at all of them what one before gave.
 std::vector<std::string> SharedSeeds(const SweepGrid& grid, const GridPoint& first,
-                                     const std::vector<SeedValues>& by_point) {
+                                     const std::vector<SeedRows>& by_point) {
   std::vector<std::string> shared;
+  std::set<std::vector<std::size_t>> known;
   for (const std::size_t row : first.rows) {
     const std::string& seed = grid.seeds_of_row[row];
     const bool everywhere = std::all_of(by_point.begin(), by_point.end(),
-                                        [&](const SeedValues& v) { return v.contains(seed); });
-    if (everywhere) shared.push_back(seed);
+                                        [&](const SeedRows& rows) { return rows.contains(seed); });
+    if (!everywhere) continue;
+    std::vector<std::size_t> measurements;
+    for (const SeedRows& rows : by_point) {
+      measurements.push_back(grid.measurement_of_row[rows.at(seed)]);
+    }
+    if (known.insert(std::move(measurements)).second) shared.push_back(seed);
   }
   return shared;
 }
@@ -69,12 +94,12 @@ double Mean(const std::vector<double>& values) {
 
 void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>& metric,
               Better better, const BootstrapOptions& bootstrap, GridLine& line) {
-  std::vector<SeedValues> by_point;
+  std::vector<SeedRows> by_point;
   for (const std::size_t point : std::exchange(line.points, {})) {
-    SeedValues values = ValuesBySeed(grid, grid.points[point], metric);
+    SeedRows rows = RowsBySeed(grid, grid.points[point], metric);
     // One whose runs all fail would leave no seed that all points share, and so no best value.
-    (values.empty() ? line.left_out : line.points).push_back(point);
-    if (!values.empty()) by_point.push_back(std::move(values));
+    (rows.empty() ? line.left_out : line.points).push_back(point);
+    if (!rows.empty()) by_point.push_back(std::move(rows));
   }
   if (line.points.size() < 2) return;
   const std::vector<std::string> seeds =
@@ -84,7 +109,9 @@ void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>
   for (std::size_t i = 0; i < line.points.size(); ++i) {
     const GridPoint& point = grid.points[line.points[i]];
     settings.push_back({grid.axes[axis].numbers[point.values[axis]], {}});
-    for (const std::string& seed : seeds) settings.back().by_seed.push_back(by_point[i].at(seed));
+    for (const std::string& seed : seeds) {
+      settings.back().by_seed.push_back(metric[by_point[i].at(seed)]);
+    }
   }
   const std::vector<double> best_of_seed = BestOfEachSeed(settings, better);
   for (const SettingRuns& setting : settings) {
@@ -136,6 +163,7 @@ SweepGrid GridOf(const SweepResults& results) {
     }
     if (results.failures[row].empty()) grid.points[entry->second].rows.push_back(row);
   }
+  grid.measurement_of_row = Measurements(results, grid);
   return grid;
 }
 

@@ -29,6 +29,9 @@ struct SweepGrid {
   std::vector<GridPoint> points;  // in the sweep's order
   std::size_t seed_axes = 0;
   std::vector<std::string> seeds_of_row;  // the texts of all seed axes together
+  // The first row of its point that gave the same in every score, as where nothing is random: one
+  // measurement, however many seeds it was made with. Mostly the row itself.
+  std::vector<std::size_t> measurement_of_row;
 };
 
 SweepGrid GridOf(const SweepResults& results);

@@ -88,7 +88,10 @@ Json AxesJson(const SweepResults& results, const SweepGrid& grid) {
 Json PointsJson(const SweepGrid& grid) {
   Json json = Json::array();
   for (const GridPoint& point : grid.points) {
-    json.push_back({{"values", point.values}, {"runs", point.rows.size()}});
+    const auto counts = std::count_if(point.rows.begin(), point.rows.end(), [&](std::size_t row) {
+      return grid.measurement_of_row[row] == row;
+    });
+    json.push_back({{"values", point.values}, {"runs", point.rows.size()}, {"counting", counts}});
   }
   return json;
 }
@@ -150,7 +153,7 @@ void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<d
   std::vector<double> sample;
   std::vector<std::string> seeds;
   for (const std::size_t row : point.rows) {
-    if (!std::isfinite(values[row])) continue;
+    if (!std::isfinite(values[row]) || grid.measurement_of_row[row] != row) continue;
     sample.push_back(values[row]);
     seeds.push_back(grid.seeds_of_row[row]);
   }
@@ -243,7 +246,11 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
     if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
   }
   if (grid.seed_axes > 1) {
-    const SeedUnits units = UnitsOf(grid.seeds_of_row);
+    std::vector<std::string> seeds;
+    for (std::size_t row = 0; row < results.rows(); ++row) {
+      if (grid.measurement_of_row[row] == row) seeds.push_back(grid.seeds_of_row[row]);
+    }
+    const SeedUnits units = UnitsOf(seeds);
     if (!units.crossed().empty()) json["crossed_seeds"] = units.count();
   }
   json["axes"] = AxesJson(results, grid);

@@ -7,7 +7,7 @@ function subtitle() {
   // Axes that are not crossed with each other: the number of points says more.
   const crossed = AXES.reduce((product, axis) => product * axis.texts.length, 1) === POINTS.length;
   const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [SWEEP.seed_keys.length > 1 ? `${seeds} of ${SWEEP.seed_keys.join(", ")}` : `${seeds} seeds`] : [])].join(" x ");
-  const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} runs` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
+  const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} ${SWEEP.finished === 1 ? "run" : "runs"}` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
   byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
 }
 
@@ -26,9 +26,8 @@ function headline() {
     const axis = AXES[along.axis];
     const held = heldText(line);
     cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
-    const seeds = POINTS[line.points[line.best]].runs;
-    if (seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
-    if (seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss to the best value of each ${EACH}`));
+    if (line.seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
+    if (line.seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss to the best value of each ${EACH}`));
   }
   byId("headline").replaceChildren(...cards);
   byId("direction").textContent = aimText();

@@ -78,9 +78,12 @@ function drawAlong() {
     title: `${metric.label} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
-  const seeds = Math.max(...POINTS.map((p) => p.runs));
+  const seeds = Math.max(...POINTS.map((p) => p.counting));
+  const sum = (of) => POINTS.reduce((total, p) => total + of(p), 0);
+  const repeats = sum((p) => p.runs - p.counting);
   byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}. ` +
     (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples). ` : "") +
+    (repeats ? `A seed that gave in every score what another one gave, as where nothing is random, counts once: ${repeats} of ${sum((p) => p.runs)} runs are such repeats. ` : "") +
     (SWEEP.crossed_seeds ? `${SWEEP.seed_keys.join(" and ")} are crossed: it is as sure as ${SWEEP.crossed_seeds} seeds. ` : "") +
     (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
   drawBest();
@@ -137,10 +140,9 @@ function drawBest() {
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
   const rows = lines.map((line) => {
-    const p = POINTS[line.points[line.best]];
     const asGood = line.p.map((value, k) => [value, k]).filter(([value, k]) => k === line.best || (isNumber(value) && value >= 0.05)).map(([, k]) => at(line, k));
     const mean = compact(metric.mean[line.points[line.best]]);
-    if (p.runs < 2) return [heldText(line), at(line, line.best), "–", "–", mean, "one seed tells nothing", "–", String(p.runs)];
+    if (line.seeds < 2) return [heldText(line), at(line, line.best), "–", "–", mean, "one seed tells nothing", "–", String(line.seeds)];
     return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
       percent(line.share_best[line.best]),
       `${mean} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,

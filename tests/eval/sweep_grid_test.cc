@@ -74,6 +74,45 @@ SweepResults TwoGains(const std::function<Seeds(int run_of_gain)>& seeds_of) {
   return table;
 }
 
+// Nothing is random at gain 0: all seeds give the same. Seed 3 gives what seed 1 gives everywhere.
+SweepResults TableOfRepeats() {
+  SweepResults results;
+  SweepParameter gain{"mapper.fusion.gain", {}, {}};
+  SweepParameter seed{"seed", {}, {}};
+  SweepColumn error{"trajectory.est.mean_euclidean_m", {}};
+  SweepColumn f1{"map.observable.occupied.f1", {}};
+  for (const int g : {0, 1}) {
+    for (const int s : {1, 2, 3}) {
+      results.runs.push_back(static_cast<int>(results.runs.size()));
+      results.points.push_back(g);
+      results.failures.emplace_back();
+      gain.texts.push_back(std::to_string(g));
+      gain.numbers.push_back(g);
+      seed.texts.push_back(std::to_string(s));
+      seed.numbers.push_back(s);
+      error.values.push_back(g == 0 ? 0.5 : s == 2 ? 0.7 : 0.1);
+      f1.values.push_back(kNone);  // the same of all: not defined
+    }
+  }
+  results.parameters = {gain, seed};
+  results.metrics = {error, f1};
+  return results;
+}
+
+TEST(SweepGrid, ASeedThatRepeatsAnotherCountsOnce) {
+  const SweepResults results = TableOfRepeats();
+  const SweepGrid grid = GridOf(results);
+  EXPECT_EQ(grid.measurement_of_row, (std::vector<std::size_t>{0, 0, 0, 3, 4, 3}));
+  const auto lines = LinesAlong(grid, 0, results.metrics[0].values, Better::kLower, {});
+  ASSERT_EQ(lines.size(), 1U);
+  // 0.5 against the mean of 0.1 and 0.7; of three seeds it would be 0.3.
+  EXPECT_EQ(lines[0].seeds, 2U);
+  ASSERT_TRUE(lines[0].best);
+  EXPECT_EQ(lines[0].best->setting, 1.0);
+  EXPECT_NEAR(lines[0].mean_regret_of_seed[0], 0.2, 1e-12);
+  EXPECT_NEAR(lines[0].mean_regret_of_seed[1], 0.1, 1e-12);
+}
+
 TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
   const SweepGrid grid = GridOf(Table());
   ASSERT_EQ(grid.axes.size(), 2U);

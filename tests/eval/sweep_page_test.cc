@@ -226,6 +226,33 @@ TEST_F(SweepPage, LogarithmicAxesAreLabelledWhereTheyAreShort) {
   EXPECT_EQ(ticks("[110, 120, 120, 130], 109, 131"), "110,120,130");
 }
 
+// Nothing random: one measurement, made four times, has no interval.
+TEST_F(SweepPage, SeedsThatRepeatOneAnotherCountOnce) {
+  std::vector<PlannedRun> plan;
+  for (const char* gain : {"0", "1"}) {
+    for (const char* seed : {"1", "2", "3", "4"}) {
+      const int run = static_cast<int>(plan.size());
+      plan.push_back({run, run / 4, {gain, seed}});
+    }
+  }
+  std::filesystem::create_directory(Path("sweep"));
+  SweepDatabase database = SweepDatabase::Create(
+      Path("sweep"), {{"title", "exact"}, {"experiment", "scene: living_room\n"}},
+      {"mapper.fusion.gain", "seed"}, plan);
+  for (const PlannedRun& run : plan) {
+    database.Record({run.run, "", {{"trajectory.est.mean_euclidean_m", 0.1 + run.point}}, {}});
+  }
+  Succeed("report sweep");
+  browser_->Open(Path("sweep/report.html"));
+  EXPECT_THAT(browser_->problems(), IsEmpty());
+  EXPECT_EQ(browser_->Evaluate("metric.low.concat(metric.high).filter(isNumber).length"), 0);
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('plot-note').textContent.trim()"),
+            "Dots: mean over one seed. A seed that gave in every score what another one gave, as "
+            "where nothing is random, counts once: 6 of 8 runs are such repeats.");
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody').textContent"),
+            "all0––10one seed tells nothing–1");
+}
+
 // What is held at first is a value at which there is something to see.
 TEST_F(SweepPage, OfASweepWhoseFirstValueFails) {
   std::vector<PlannedRun> plan;
