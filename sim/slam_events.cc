@@ -41,4 +41,23 @@ std::vector<RunEvent> FindEvents(const SlamRun& run) {
   return events;
 }
 
+std::vector<SlamRun> BetweenCorrections(const SlamRun& run) {
+  std::vector<SlamRun> stretches;
+  std::size_t begin = 0;
+  const auto add_until = [&](std::size_t end) {
+    const auto part = [&](const Trajectory& whole) {
+      return Trajectory(whole.begin() + static_cast<std::ptrdiff_t>(begin),
+                        whole.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    stretches.push_back({part(run.truth), part(run.estimate)});
+  };
+  for (const RunEvent& event : FindEvents(run)) {
+    if (!event.correction) continue;
+    add_until(event.from + 1);
+    begin = event.to;
+  }
+  add_until(run.truth.size());
+  return stretches;
+}
+
 }  // namespace depthgrid

@@ -20,4 +20,7 @@ struct RunEvent {
 // than 0.2 s apart are one, as the estimate swings before it settles.
 std::vector<RunEvent> FindEvents(const SlamRun& run);
 
+// The stretches of the run that no correction lies in.
+std::vector<SlamRun> BetweenCorrections(const SlamRun& run);
+
 }  // namespace depthgrid

@@ -83,23 +83,23 @@ struct Tracks {
 
 // The errors of all motions summed up, each in the axes the surrogate draws it in (turns about the
 // world's, shifts along the camera's), so that jitter, bias, walk and drift stay apart from what
-// turning does to a path. Jumps count with the motion they end in; a loss or a correction begins a
-// new track.
+// turning does to a path. A jump is there with all its swings: what of them is not left at its end
+// is noise. A loss or a correction begins a new track.
 Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   Tracks tracks;
   for (const RunEvents& run : runs) {
-    std::vector<const RunEvent*> event_at(run.in_event.size(), nullptr);
-    for (const RunEvent& event : run.events) event_at[event.to] = &event;
+    std::vector<bool> is_left_out(run.in_event.size(), false);
+    for (const RunEvent& event : run.events) {
+      if (!event.correction && event.lost_s == 0.0) continue;
+      for (std::size_t to = event.from + 1; to <= event.to; ++to) is_left_out[to] = true;
+    }
     tracks.Begin();
     for (std::size_t to = 1; to < run.in_event.size(); ++to) {
-      const Pose3& pose = run.run->truth[to].world_from_camera;
-      const RunEvent* event = event_at[to];
-      if (event && (event->correction || event->lost_s > 0.0)) {
+      if (is_left_out[to]) {
         tracks.Begin();
-      } else if (event) {
-        tracks.Add(event->error, pose, pivot_m);
       } else {
-        tracks.Add(run.in_event[to] ? Pose3{} : MotionError(*run.run, to - 1, to), pose, pivot_m);
+        tracks.Add(MotionError(*run.run, to - 1, to), run.run->truth[to].world_from_camera,
+                   pivot_m);
       }
     }
   }

@@ -59,21 +59,19 @@ SlamOptions PlanarSlamMh() {
 SlamOptions OrbSlam2Measured() {
   SlamOptions options;
   options.pivot_m = 1.89;
-  options.tilt_share = 0.453;
-  options.jitter_translation_m = 0.000372;
-  options.jitter_rotation_deg = 0.0633;
-  options.bias_translation_m = 0.00504;
-  options.bias_rotation_deg = 0.147;
-  options.bias_time_s = 1.0;
-  options.drift_turn_dps = 0.0872;
-  options.drift_time_s = 20.0;
+  options.tilt_share = 0.398;
+  options.jitter_translation_m = 0.000409;
+  options.jitter_rotation_deg = 0.102;
+  options.bias_translation_m = 0.0053;
+  options.bias_rotation_deg = 0.319;
+  options.bias_time_s = 0.5;
   options.jump_rate_hz = 0.359;
-  options.jump_translation_m = 0.0143;
-  options.jump_rotation_deg = 1.25;
+  options.jump_translation_m = 0.015;
+  options.jump_rotation_deg = 1.28;
   options.lost_rate_hz = 0.0359;
   options.lost_mean_s = 2.13;
   options.relocalisation_translation_m = 0.0254;
-  options.relocalisation_rotation_deg = 6.41;
+  options.relocalisation_rotation_deg = 6.64;
   options.loops = WithScenario({}, LoopScenario::kTrue);
   return options;
 }
@@ -83,16 +81,16 @@ SlamOptions OrbSlam2Measured() {
 SlamOptions PlanarSlamMeasured() {
   SlamOptions options;
   options.pivot_m = 1.91;
-  options.tilt_share = 0.358;
-  options.jitter_translation_m = 0.000415;
-  options.jitter_rotation_deg = 0.0547;
+  options.tilt_share = 0.359;
+  options.jitter_translation_m = 0.000418;
+  options.jitter_rotation_deg = 0.0592;
   options.bias_rotation_deg = 0.205;
   options.bias_time_s = 1.0;
-  options.drift_speed_mps = 0.000928;
+  options.drift_speed_mps = 0.000917;
   options.drift_time_s = 5.0;
   options.jump_rate_hz = 0.167;
   options.jump_translation_m = 0.00941;
-  options.jump_rotation_deg = 0.326;
+  options.jump_rotation_deg = 0.325;
   options.loops = WithScenario({}, LoopScenario::kTrue);
   return options;
 }

@@ -9,6 +9,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/trajectory_file.h"
+#include "sim/slam_events.h"
 #include "sim/slam_surrogate.h"
 
 namespace depthgrid::cli {
@@ -35,9 +36,9 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
   return run;
 }
 
-// What the fitted surrogate, of the settings that are printed, makes of the same true paths, over
-// several seeds.
-std::vector<SlamRun> Imitated(const std::vector<SlamRun>& runs, const SlamOptions& options) {
+// What the fitted surrogate, less its loops, makes of the same true paths, over several seeds.
+std::vector<SlamRun> Imitated(const std::vector<SlamRun>& runs, SlamOptions options) {
+  options.loops = WithScenario(options.loops, LoopScenario::kNone);
   std::vector<SlamRun> imitated;
   for (const SlamRun& run : runs) {
     for (std::uint64_t seed = 1; seed <= kCheckSeeds; ++seed) {
@@ -62,6 +63,16 @@ void PrintComments(const std::string& text) {
     if (end == std::string::npos) return;
     start = end + 1;
   }
+}
+
+// What was fitted: a correction takes away at once what errors have added up, by the surrogate's
+// loops as by the system's own, and hides how they grow.
+std::vector<SlamRun> AllBetweenCorrections(const std::vector<SlamRun>& runs) {
+  std::vector<SlamRun> all;
+  for (const SlamRun& run : runs) {
+    for (SlamRun& stretch : BetweenCorrections(run)) all.push_back(std::move(stretch));
+  }
+  return all;
 }
 
 std::string LagTable(const std::vector<LagError>& measured, const std::vector<LagError>& imitated) {
@@ -90,15 +101,15 @@ void FitSlam(const SlamFitArguments& arguments) {
   SlamLoopOptions& loops = fit.options.loops;
   if (fit.corrections > 0) loops = WithScenario(loops, LoopScenario::kTrue);
   PrintComments(fmt::format(
-      "{:.1f} s of tracking: {}, lost {}, {} (left out of the fit)\n"
+      "{:.1f} s of tracking: {}, lost {}, {} (left out of the fit and of the table)\n"
       "turning about the pivot explains {:.0f} % of the sideways error from frame to frame\n"
-      "surrogate: the settings below, {} seeds; loops are not fitted: {}\n",
+      "surrogate: the settings below without loops, {} seeds; loops are not fitted: {}\n",
       fit.tracked_s, Counted(fit.jumps, "jump"), Counted(fit.lost_bursts, "time"),
       Counted(fit.corrections, "correction"), 100.0 * fit.pivot_explains, kCheckSeeds,
       fit.corrections > 0 ? "every revisit is closed, as there are corrections"
                           : "none is closed, as there is no correction"));
-  PrintComments(
-      LagTable(ErrorOverLag(runs, Lags()), ErrorOverLag(Imitated(runs, fit.options), Lags())));
+  PrintComments(LagTable(ErrorOverLag(AllBetweenCorrections(runs), Lags()),
+                         ErrorOverLag(Imitated(runs, fit.options), Lags())));
   fmt::print("{}", ToYaml(SlamSettings{fit.options}));
 }
 

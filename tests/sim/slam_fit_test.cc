@@ -145,6 +145,51 @@ TEST(FitSlamErrors, LeavesCorrectionsOut) {
   for (const RunEvent& event : events) corrections += event.correction ? 1 : 0;
   EXPECT_EQ(corrections, 1);
   EXPECT_EQ(FitSlamErrors({run}).corrections, 1);
+  // The motion that brings the estimate back is in neither stretch.
+  const std::vector<SlamRun> stretches = BetweenCorrections(run);
+  ASSERT_EQ(stretches.size(), 2U);
+  const SlamRun& before = stretches[0];
+  const SlamRun& after = stretches[1];
+  EXPECT_EQ(before.truth.size() + after.truth.size(), run.truth.size());
+  EXPECT_EQ(before.estimate.back().stamp_s, before.truth.back().stamp_s);
+  const std::size_t to = before.truth.size();
+  EXPECT_EQ(after.truth.front().stamp_s, run.truth[to].stamp_s);
+  const std::vector<double> frame_s = {1.0 / 30.0};
+  const double step_m = MotionError(run, to - 1, to).translation.norm();
+  const double whole_m = ErrorOverLag({run}, frame_s)[0].translation_m;
+  const LagError apart = ErrorOverLag(stretches, frame_s)[0];
+  EXPECT_NEAR(whole_m * whole_m * (apart.pairs + 1),
+              apart.translation_m * apart.translation_m * apart.pairs + step_m * step_m, 1e-9);
+}
+
+TEST(BetweenCorrections, AreAllOfARunWithoutAny) {
+  const Trajectory truth = RoundADesk(2.0);
+  const std::vector<SlamRun> stretches = BetweenCorrections({truth, truth});
+  ASSERT_EQ(stretches.size(), 1U);
+  EXPECT_EQ(stretches[0].truth.size(), truth.size());
+}
+
+// Every two seconds the estimate is 4 cm beside itself for three frames: nothing of it is left when
+// the jump is over, and it is most of the error from frame to frame.
+TEST(FitSlamErrors, SwingsOfAJumpAreNoise) {
+  SlamOptions calm;
+  calm.jitter_translation_m = 0.0006;
+  calm.jitter_rotation_deg = 0.02;
+  SlamRun run = Disturbed(RoundADesk(60.0), calm, 1);
+  for (std::size_t i = 30; i < run.estimate.size(); ++i) {
+    if (i % 60 >= 3) continue;
+    Pose3& pose = run.estimate[i].world_from_camera;
+    pose.translation += pose.rotation * Eigen::Vector3d(0.04, 0.0, 0.0);
+  }
+  const SlamFit fit = FitSlamErrors({run});
+  EXPECT_EQ(fit.jumps, 30);
+  const std::vector<double> lags_s = {1.0 / 30.0, 0.1, 1.0};
+  const auto of_run = ErrorOverLag({run}, lags_s);
+  const auto of_fit = ErrorOverLag(Runs(fit.options, 5, 60.0), lags_s);
+  for (std::size_t i = 0; i < lags_s.size(); ++i) {
+    EXPECT_NEAR(std::log(of_fit[i].translation_m / of_run[i].translation_m), 0.0, std::log(1.3))
+        << lags_s[i];
+  }
 }
 
 TEST(FitSlamErrors, RefusesTooLittle) {
