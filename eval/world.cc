@@ -51,6 +51,10 @@ Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
   return bounds;
 }
 
+CameraSpace SpaceOf(const Scene& scene) {
+  return {BoundsOfMesh(scene.mesh), !scene.ceiling_z_m.has_value()};
+}
+
 Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentOptions& options) {
   const std::string& name = NamedTrajectory(scene, options);
   const TrajectoryOptions& path = scene.trajectories.at(name);
@@ -63,7 +67,7 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
   };
   // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
   constexpr double kFloatSlackM = 1e-5;
-  CheckInside(trajectory, BoundsOfMesh(scene.mesh), path.place);
+  CheckInside(trajectory, SpaceOf(scene), path.place);
   CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
   return trajectory;
 }
@@ -127,17 +131,17 @@ Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d&
 // A camera's own housing keeps its middle this far from everything.
 constexpr double kLeastClearanceM = 0.05;
 
-std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const TriangleMesh& mesh,
+std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Scene& scene,
                                        const RayScene& rays, const ExperimentOptions& options) {
   constexpr float kFarM = 10.0F;
-  const PathScene scene = {BoundsOfMesh(mesh),
-                           [&](const Eigen::Vector3d& point) -> double {
-                             return rays.DistanceToSurface(point.cast<float>(), kFarM);
-                           },
-                           [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-                             return rays.Occluded(from.cast<float>(), to.cast<float>());
-                           }};
-  const auto doubt = DoubtOfPath(trajectory, scene, kLeastClearanceM);
+  const PathScene around = {SpaceOf(scene),
+                            [&](const Eigen::Vector3d& point) -> double {
+                              return rays.DistanceToSurface(point.cast<float>(), kFarM);
+                            },
+                            [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+                              return rays.Occluded(from.cast<float>(), to.cast<float>());
+                            }};
+  const auto doubt = DoubtOfPath(trajectory, around, kLeastClearanceM);
   if (!doubt) return {};
   return options.trajectory + ": " + *doubt;
 }
@@ -190,7 +194,7 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Trajectory trajectory;
   if (IsFile(options.trajectory)) {
     trajectory = FromFile(options, BoundsOfMesh(scene.mesh), doubts);
-    const auto doubt = DoubtOfFile(trajectory, scene.mesh, rays, options);
+    const auto doubt = DoubtOfFile(trajectory, scene, rays, options);
     if (doubt) doubts.push_back(*doubt);
   } else {
     trajectory = FromScene(scene, rays, options);

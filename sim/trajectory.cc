@@ -137,6 +137,11 @@ std::string OutsideText(int frame, const Eigen::Vector3d& position_m,
 
 }  // namespace
 
+bool CameraSpace::Contains(Eigen::Vector3d position_m) const {
+  if (open_above) position_m.z() = std::min(position_m.z(), bounds.max().z());
+  return bounds.contains(position_m);
+}
+
 std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
                                        double clearance_m) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -149,19 +154,18 @@ std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathS
       return near + ", behind a surface as seen from the frame before: the path goes through it";
     }
     if (distance < clearance_m) return near + ", nearer than a camera can be";
-    Eigen::Vector3d in_plane = position_m;
-    in_plane.z() = scene.bounds.min().z();  // a camera may look over walls
-    if (!scene.bounds.contains(in_plane)) return OutsideText(frame, position_m, scene.bounds);
+    if (!scene.space.Contains(position_m)) {
+      return OutsideText(frame, position_m, scene.space.bounds);
+    }
   }
   return {};
 }
 
-void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
-                 const std::string& place) {
+void CheckInside(const Trajectory& trajectory, const CameraSpace& space, const std::string& place) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
-    if (bounds.contains(position_m)) continue;
-    throw InputError(place, OutsideText(static_cast<int>(i), position_m, bounds));
+    if (space.Contains(position_m)) continue;
+    throw InputError(place, OutsideText(static_cast<int>(i), position_m, space.bounds));
   }
 }
 

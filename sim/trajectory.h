@@ -60,8 +60,17 @@ void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);
 
-struct PathScene {
+// Where a camera may be: within the bounds, and above them where nothing is overhead, as it may
+// look over walls.
+struct CameraSpace {
   Eigen::AlignedBox3d bounds;
+  bool open_above = false;
+
+  bool Contains(Eigen::Vector3d position_m) const;
+};
+
+struct PathScene {
+  CameraSpace space;
   std::function<double(const Eigen::Vector3d&)> distance_m;
   std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)> occluded;
 };
@@ -71,8 +80,7 @@ struct PathScene {
 std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
                                        double clearance_m);
 
-// Throws InputError naming the first frame outside the scene's bounds.
-void CheckInside(const Trajectory& trajectory, const Eigen::AlignedBox3d& bounds,
-                 const std::string& place);
+// Throws InputError naming the first frame outside the scene.
+void CheckInside(const Trajectory& trajectory, const CameraSpace& space, const std::string& place);
 
 }  // namespace depthgrid

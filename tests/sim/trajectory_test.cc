@@ -275,7 +275,7 @@ TEST(DoubtOfPath, IsOfTheFirstFrameAtOrBehindASurface) {
     return (from.x() < 3.25) != (to.x() < 3.25);
   };
   const auto doubt = [&](std::initializer_list<double> xs) {
-    return DoubtOfPath(Line(xs), {room, to_wall, occluded}, 0.1).value_or("");
+    return DoubtOfPath(Line(xs), {{room, true}, to_wall, occluded}, 0.1).value_or("");
   };
   EXPECT_EQ(doubt({0.0, 2.0, 3.0}), "");
   EXPECT_EQ(doubt({5.0, 5.5, 6.0, 6.5}),
@@ -288,8 +288,19 @@ TEST(DoubtOfPath, IsOfTheFirstFrameAtOrBehindASurface) {
             "the frame before: the path goes through it");
 }
 
+TEST(CameraSpace, EndsAtTheFloorAndAtACeiling) {
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(2, 5, 0.4));
+  const CameraSpace room{bounds, false}, arena{bounds, true};
+  const auto at = [](double z_m) { return Eigen::Vector3d(1, 1, z_m); };
+  EXPECT_TRUE(room.Contains(at(0.3)) && arena.Contains(at(0.3)));
+  EXPECT_FALSE(room.Contains(at(0.6)));
+  EXPECT_TRUE(arena.Contains(at(0.6)));
+  EXPECT_FALSE(room.Contains(at(-0.1)) || arena.Contains(at(-0.1)));
+  EXPECT_FALSE(arena.Contains({2.5, 1, 0.6}));
+}
+
 TEST(CheckInside, NamesThePlace) {
-  const Eigen::AlignedBox3d room(Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(2, 5, 2));
+  const CameraSpace room{{Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(2, 5, 2)}, false};
   CheckInside(Line({0.0, 2.0}), room, "path");
   try {
     CheckInside(Line({0.0, 2.5}), room, "path");
