@@ -11,6 +11,22 @@ double OnGrid(double cells, double tolerance_cells) {
   return SnappedTo(cells, std::round(cells), tolerance_cells);
 }
 
+// No ray meets a triangle without area, which meshes have where three corners lie on a line. Of
+// corners rounded to single precision the line is met within this, at 50 m from the origin.
+constexpr double kThinnestM = 5e-6;
+
+bool HasArea(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+    return mesh.vertices[triangle[k % 3]].cast<double>();
+  };
+  double longest_m = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    longest_m = std::max(longest_m, (corner(k + 1) - corner(k)).norm());
+  }
+  const double twice_area_m2 = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+  return twice_area_m2 > kThinnestM * longest_m;
+}
+
 }  // namespace
 
 BandPolygon BandPolygon::Cut(std::size_t axis, double bound, double sign) const {
@@ -56,6 +72,7 @@ BandPolygon InBand(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>&
                  SnappedTo(SnappedTo(vertex.z(), band.low_z_m, kSnapM), band.high_z_m, kSnapM)});
   }
   if (polygon.Max(2) < band.low_z_m || polygon.Min(2) > band.high_z_m) return {};
+  if (!HasArea(mesh, triangle)) return {};
   return polygon.Cut(2, band.low_z_m, -1.0).Cut(2, band.high_z_m, 1.0);
 }
 

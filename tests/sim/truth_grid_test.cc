@@ -78,6 +78,15 @@ TEST(SurfaceCells, OfASlantedWallByHand) {
   EXPECT_EQ(OccupiedBy(Wall(0.01F, 0.09F, 0.09F, 0.01F)), (CellPairs{{0, 1}, {1, 1}, {1, 0}}));
 }
 
+TEST(SurfaceCells, NotOfTrianglesWithoutArea) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0.01F, 1}, {0.3F, 0.11F, 1}, {0.9F, 0.31F, 1}, {0.9F, 0.312F, 1}};
+  mesh.triangles = {{0, 1, 2}};  // on a line but for rounding
+  EXPECT_TRUE(OccupiedBy(mesh).empty());
+  mesh.triangles = {{0, 2, 3}};  // 2 mm wide, 0.95 m long
+  EXPECT_GE(OccupiedBy(mesh).size(), 18U);
+}
+
 TEST(SurfaceCells, OnlyInsideTheBand) {
   EXPECT_TRUE(OccupiedBy(Wall(0.1F, 0.01F, 0.1F, 0.02F, 0.0F, 0.09F)).empty());
   EXPECT_TRUE(OccupiedBy(Wall(0.1F, 0.01F, 0.1F, 0.02F, 1.81F, 2.5F)).empty());
