@@ -18,11 +18,20 @@ void RequireSaneMesh(const TriangleMesh& mesh, const std::string& path) {
   for (const auto& vertex : mesh.vertices) {
     if (!vertex.allFinite()) throw InputError(path, "a vertex of the scene is not finite");
   }
-  const double extent_m = BoundsOf(mesh).sizes().maxCoeff();
+  const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
+  const double extent_m = bounds.sizes().maxCoeff();
   if (extent_m > kMaxSceneExtentM) {
     throw InputError(path, fmt::format("the scene is {:.6g} m across, at most {} m; in other units "
-                                       "than metres?",
+                                       "than metres? A shape's scale changes them",
                                        extent_m, kMaxSceneExtentM));
+  }
+  const double away_m =
+      std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
+  if (away_m > kMaxSceneCoordinateM) {
+    throw InputError(path, fmt::format("the scene has a coordinate of {:.0f} m, at most {} m: "
+                                       "single precision is coarser than a millimetre beyond; move "
+                                       "the mesh to the origin",
+                                       away_m, kMaxSceneCoordinateM));
   }
 }
 

@@ -234,7 +234,8 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
 
 TEST_F(SceneFiles, ScenesOfInsaneSizeAreRefused) {
   EXPECT_EQ(ErrorOf("shapes:\n" + kFloor + "  - {shape: box, at: [2000, 0, 0], scale: 10}\n"),
-            "~/s.yaml: the scene is 2007 m across, at most 2000 m; in other units than metres?");
+            "~/s.yaml: the scene is 2007 m across, at most 2000 m; in other units than metres? A "
+            "shape's scale changes them");
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: sphere, segments: 512, count: 10000}\n"),
             "~/s.yaml:2: more than 20000000 triangles");
   // Ten levels of ten: ten thousand million boxes.
@@ -267,6 +268,18 @@ TEST(Files, OfOtherKindsAreNotScenes) {
   EXPECT_THROW(LoadScene("scene.txt"), InputError);
   EXPECT_THROW(LoadScene(std::string(kSourceFolder) + "/scenes/"), InputError);
 }
+TEST_F(SceneFiles, FarFromTheOriginAreRefused) {
+  const auto plate_at = [&](const std::string& x0, const std::string& x1) {
+    Write("plate.obj", "v " + x0 + " 0 0\nv " + x1 + " 0 0\nv " + x1 + " 4 0\nf 1 2 3\n");
+    return ErrorOf("shapes: [{shape: mesh, file: plate.obj}]\n");
+  };
+  EXPECT_EQ(plate_at("9990", "9995"), "no error");
+  EXPECT_EQ(
+      plate_at("500000", "500005"),
+      "~/s.yaml: the scene has a coordinate of 500005 m, at most 10000 m: single precision is "
+      "coarser than a millimetre beyond; move the mesh to the origin");
+}
+
 
 TriangleMesh Plate(double width, double depth, double z, bool facing_up) {
   TriangleMesh mesh;
