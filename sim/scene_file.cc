@@ -139,7 +139,7 @@ class SceneReader {
     Config config = Config::FromFile(path);
     RequireKnownKeys(config);
     scene_.materials.push_back(MaterialOptions().Make("default"));
-    if (config.Has("include")) ReadInclude(config.Text("include"));
+    if (config.Has("include")) ReadInclude(config);
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
     ReadLighting(config.Take("lighting"));
@@ -171,16 +171,26 @@ class SceneReader {
   }
 
   // A file of furniture: materials and groups, nothing else.
-  void ReadInclude(const std::string& file) {
-    struct NothingElse {
-      void Visit(OptionsVisitor&) {}
-    };
-    const auto path = std::filesystem::path(path_).parent_path() / file;
-    Config config = Config::FromFile(path.string());
+  void ReadInclude(const Config& scene) {
+    const std::string path = ExistingFile(scene, "include");
+    Config config = Config::FromFile(path);
+    for (const ConfigEntry& entry : config.Entries()) {
+      if (entry.key == "materials" || entry.key == "groups") continue;
+      throw InputError(entry.place, fmt::format("unknown key '{}': an included file holds only "
+                                                "materials and groups",
+                                                entry.key));
+    }
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
-    NothingElse nothing_else;
-    config.Read(nothing_else);
+  }
+
+  // The path of a file that a key names relative to the scene's.
+  std::string ExistingFile(const Config& config, const std::string& key) const {
+    const std::string name = config.Text(key);
+    const auto path = std::filesystem::path(path_).parent_path() / name;
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) return path.string();
+    throw InputError(config.PlaceOfKey(key), fmt::format("{} is '{}': no such file", key, name));
   }
 
   void ReadMaterials(Config materials) {
@@ -319,13 +329,7 @@ class SceneReader {
     MeshOptions options;
     config.Read(options);
     if (options.file.empty()) throw InputError(config.Place(), "'file' is missing");
-    const auto file = std::filesystem::path(path_).parent_path() / options.file;
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) {
-      throw InputError(config.PlaceOfKey("file"),
-                       fmt::format("file is '{}': no such file", options.file));
-    }
-    MeshFile read = ReadMeshFile(file.string(), 1.0, options.up);
+    MeshFile read = ReadMeshFile(ExistingFile(config, "file"), 1.0, options.up);
     if (!options.item.material.empty()) {
       const std::uint16_t material = MaterialIndex(options.item.material, config.Place());
       std::fill(read.mesh.material_of_triangle.begin(), read.mesh.material_of_triangle.end(),

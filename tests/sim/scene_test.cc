@@ -213,11 +213,13 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
   EXPECT_EQ(ErrorOf("groups: {a: [{shape: use, group: b}], b: [{shape: use, group: a}]}\n"
                     "shapes: [{shape: use, group: a}]\n"),
             "~/s.yaml:1: group 'a' uses itself");
-  EXPECT_EQ(ErrorOf("include: parts.yaml\nshapes: []\n"), "~/parts.yaml: no such file");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\nshapes: []\n"),
+            "~/s.yaml:1: include is 'parts.yaml': no such file");
   Write("parts.yaml", "shapes: []\n");
-  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:1: unknown key 'shapes'");
+  const std::string rule = "unknown key 'shapes': an included file holds only materials and groups";
+  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:1: " + rule);
   Write("parts.yaml", materials + "shapes:\n  - {shape: box}\n");
-  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:2: unknown key 'shapes'");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\n"), "~/parts.yaml:2: " + rule);
   Write("parts.yaml", materials);
   EXPECT_EQ(ErrorOf("include: parts.yaml\n" + materials),
             "~/s.yaml:2: material 'oak' is given twice");
