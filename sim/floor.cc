@@ -100,6 +100,8 @@ std::optional<double> FindFloor(const TriangleMesh& mesh) {
 }
 
 bool HasFloorAt(const TriangleMesh& mesh, double z_m) {
+  const auto found = FindFloor(mesh);
+  if (found && std::abs(*found - z_m) <= kFloorToleranceM) return true;  // also of one inside out
   double area_m2 = 0.0;
   for (const LevelPatch& patch : LevelPatches(mesh, Facing::kUp)) {
     if (std::abs(patch.z_m - z_m) <= kFloorToleranceM) area_m2 += patch.area_m2;

@@ -255,6 +255,9 @@ TEST_F(SceneFiles, AFloorIsStatedOrFound) {
   EXPECT_EQ(ErrorOf("floor_z_m: 0.3\nshapes:\n" + kFloor),
             "~/s.yaml: floor_z_m is '0.3', but no level surface facing up covers a quarter of "
             "the scene there (x -2.00 to 2.00, y -2.00 to 2.00, z -0.50 to 0.00 m)");
+  // A mesh whose floor faces down has the one it is found to have.
+  Write("down.obj", "v 0 0 0\nv 0 4 0\nv 4 0 0\nf 1 2 3\n");
+  EXPECT_EQ(Load("floor_z_m: 0\nshapes: [{shape: mesh, file: down.obj}]\n").floor_z_m, 0.0);
   // A room that is the inside of a box.
   EXPECT_EQ(Load("shapes: [{shape: box, size: [5, 4, 2.5], at: [0, 0, 0.5]}]\n").floor_z_m, 0.5);
   // Thick walls and a roof, but nothing to stand on.
