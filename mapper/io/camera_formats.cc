@@ -131,16 +131,25 @@ CameraDescription FromRos(const Config& config, const std::string& place) {
   return camera;
 }
 
+// ORB-SLAM3 names the projection; its fisheye has coefficients of the same names.
+void RequirePinhole(std::string_view type, const std::string& place) {
+  while (type.starts_with('"')) type.remove_prefix(1);
+  while (type.ends_with('"')) type.remove_suffix(1);
+  if (type == "PinHole" || type == "Pinhole" || type == "Rectified") return;
+  throw InputError(place, fmt::format("Camera.type is {}, must be PinHole or Rectified", type));
+}
+
 // The numbers of ORB-SLAM2's settings ("Camera.fx") or ORB-SLAM3's ("Camera1.fx") by ORB-SLAM2's
 // names; dots are part of them.
 using OrbSlamNumbers = std::map<std::string, double, std::less<>>;
 
-OrbSlamNumbers OrbSlamNumbersOf(const std::string& text) {
+OrbSlamNumbers OrbSlamNumbersOf(const std::string& text, const std::string& place) {
   OrbSlamNumbers numbers;
   for (const TextRow& row : SplitRows(text)) {
     if (row.fields.size() < 2 || !row.fields[0].ends_with(':')) continue;
     std::string key(row.fields[0].substr(0, row.fields[0].size() - 1));
     if (key.starts_with("Camera1.")) key.replace(0, 8, "Camera.");
+    if (key == "Camera.type") RequirePinhole(row.fields[1], PlaceOfLine(place, row.line));
     if (const auto number = ParseNumber(row.fields[1])) numbers.emplace(key, *number);
   }
   return numbers;
@@ -149,7 +158,7 @@ OrbSlamNumbers OrbSlamNumbersOf(const std::string& text) {
 CameraDescription FromOrbSlam(const std::string& text, const std::string& place) {
   CameraDescription camera;
   camera.kind = "ORB-SLAM settings";
-  const OrbSlamNumbers numbers = OrbSlamNumbersOf(text);
+  const OrbSlamNumbers numbers = OrbSlamNumbersOf(text, place);
   const auto find = [&](std::string_view key) -> std::optional<double> {
     const auto found = numbers.find(key);
     return found == numbers.end() ? std::nullopt : std::optional(found->second);

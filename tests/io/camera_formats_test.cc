@@ -61,6 +61,16 @@ TEST(CameraFormats, OrbSlamSettings) {
   EXPECT_EQ(third.file.depth_scale_per_m, 1000.0);
 }
 
+TEST(CameraFormats, OfOrbSlam3sProjectionsOnlyThePinhole) {
+  const std::string rest =
+      "Camera1.fx: 500\nCamera1.fy: 501\nCamera1.cx: 320\nCamera1.cy: 240\nCamera1.k1: 0.003\n";
+  for (const char* type : {"\"PinHole\"", "PinHole", "\"Rectified\""}) {
+    EXPECT_EQ(DescriptionRefusal("Camera.type: " + std::string(type) + "\n" + rest), "no error");
+  }
+  EXPECT_EQ(DescriptionRefusal("%YAML:1.0\nCamera.type: \"KannalaBrandt8\"\n" + rest),
+            "c:2: Camera.type is KannalaBrandt8, must be PinHole or Rectified");
+}
+
 TEST(CameraFormats, AScaleTheOtherWayRoundIsRefused) {
   const std::string own = "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: ";
   EXPECT_EQ(ParseCameraDescription(own + "1\n", "c").file.depth_scale_per_m, 1.0);
