@@ -86,6 +86,30 @@ std::optional<std::string> DoubtOfCamera(const ExperimentOptions& options) {
       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
 }
 
+// What of the overrides and of a file of the user's is idle.
+void AddIdle(const std::string& name, const std::vector<std::string>& set,
+             const IdleSettingList& idle, std::vector<std::string>& doubts) {
+  const auto add = [&](const std::vector<std::string>& more) {
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  };
+  add(DoubtsOfOverrides(set, idle, [&](const std::vector<std::string>& some) {
+    return ToYaml(ExperimentOrScene(name, some));
+  }));
+  // The shipped ones are right, whatever --set makes of them.
+  if (!IsFileName(name) || !IsExperiment(name)) return;
+  Config overrides;
+  for (const std::string& assignment : set) overrides.Set(assignment);
+  const Config file = ExperimentFile(name);
+  add(DoubtsOfFile(
+      file, idle,
+      [&file] {
+        ExperimentOptions alone;
+        file.Read(alone);
+        return alone;
+      },
+      [&overrides](const std::string& key) { return overrides.Has(key); }));
+}
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfRecord(const std::string& name,
@@ -105,26 +129,19 @@ std::vector<std::string> DoubtsOfSettings(const std::string& name,
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
   const ExperimentOptions options = ExperimentNamed(name, set);
   if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
-  const IdleSettingList idle = IdleSettings(options);
-  const auto add = [&](const std::vector<std::string>& more) {
-    doubts.insert(doubts.end(), more.begin(), more.end());
-  };
-  add(DoubtsOfOverrides(set, idle, [&](const std::vector<std::string>& some) {
-    return ToYaml(ExperimentNamed(name, some));
-  }));
-  // The shipped ones are right, whatever --set makes of them.
-  if (!IsFileName(name)) return doubts;
-  Config overrides;
-  for (const std::string& assignment : set) overrides.Set(assignment);
-  const Config file = ExperimentFile(name);
-  add(DoubtsOfFile(
-      file, idle,
-      [&file] {
-        ExperimentOptions alone;
-        file.Read(alone);
-        return alone;
-      },
-      [&overrides](const std::string& key) { return overrides.Has(key); }));
+  AddIdle(name, set, IdleSettings(options), doubts);
+  return doubts;
+}
+
+std::vector<std::string> DoubtsOfImages(const std::string& name,
+                                        const std::vector<std::string>& set) {
+  std::vector<std::string> doubts = DoubtsOfRecord(name, set);
+  const ExperimentOptions options = ExperimentOrScene(name, set);
+  if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
+  IdleSettingList idle = IdleSettings(options);
+  std::erase_if(idle,
+                [](const IdleSetting& setting) { return !setting.key.starts_with("sensor."); });
+  AddIdle(name, set, idle, doubts);
   return doubts;
 }
 

@@ -21,6 +21,10 @@ Config ExperimentFile(const std::string& path);
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 
+// Of these what concerns the images, also where `name` is that of a scene or a mesh.
+std::vector<std::string> DoubtsOfImages(const std::string& name,
+                                        const std::vector<std::string>& set);
+
 // Of these the last alone; nothing of a scene or a mesh.
 std::vector<std::string> DoubtsOfRecord(const std::string& name,
                                         const std::vector<std::string>& set);

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -17,22 +20,36 @@
 namespace depthgrid::cli {
 namespace {
 
-struct Written {};  // a frame that is in the folder: nothing is left to hand on
+// A frame that is in the folder.
+struct Written {
+  bool shows = false;  // a depth somewhere
+};
 
 // Images of one frame to the folder. A colour camera has a thread's context, so each thread makes
 // its own.
-void WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFolderWriter& writer,
-                bool with_colour, int frame) {
+Written WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFolderWriter& writer,
+                   bool with_colour, int frame) {
   const StampedPose& pose = world.trajectory[static_cast<std::size_t>(frame)];
   const DepthImage depth = sensor.Image(frame);
+  const Written written = {
+      std::any_of(depth.z_m.begin(), depth.z_m.end(), [](float z_m) { return z_m > 0.0F; })};
   if (!with_colour) {
     writer.WriteFrame(pose.stamp_s, depth, nullptr);
-    return;
+    return written;
   }
   thread_local std::unique_ptr<ColourCamera> camera;
   if (!camera) camera = std::make_unique<ColourCamera>(world.scene, world.camera);
   const RgbImage rgb = camera->Render(pose.world_from_camera).rgb;
   writer.WriteFrame(pose.stamp_s, depth, &rgb);
+  return written;
+}
+
+std::string NothingShown(const DepthRange& range) {
+  const std::string range_text =
+      std::isfinite(range.max_m)
+          ? fmt::format(" that is {:g} to {:g} m away", range.min_m, range.max_m)
+          : "";
+  return "no depth image shows anything: the camera sees no surface" + range_text;
 }
 
 void RenderNamed(const RenderArguments& arguments) {
@@ -43,21 +60,26 @@ void RenderNamed(const RenderArguments& arguments) {
   const std::string cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);
   const World world = LoadWorld(given, threads);
-  Warn(DoubtsOfRecord(arguments.scene, arguments.common.set));
+  Warn(DoubtsOfImages(arguments.scene, arguments.common.set));
   Warn(world.path_doubts);
   const ExperimentOptions options = Completed(given, world.scene);
   // Whatever it refuses, now and not at the end.
   const TruthRecord truth = MakeTruth(world, options.mapper, threads);
   const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
+  bool any_shows = false;
   {
     ProgressBar bar("rendering");
     OrderedFrames<Written> frames(sensor.FrameCount(), threads, [&](int frame) {
-      WriteFrame(world, sensor, writer, !arguments.no_colour, frame);
-      return Written{};
+      return WriteFrame(world, sensor, writer, !arguments.no_colour, frame);
     });
-    for (int done = 1; frames.Next(); ++done) bar.Show(done, sensor.FrameCount());
+    int done = 0;
+    while (const auto written = frames.Next()) {
+      any_shows = any_shows || written->shows;
+      bar.Show(++done, sensor.FrameCount());
+    }
   }
+  if (!any_shows) Warn({NothingShown(world.depth_range)});
   std::vector<double> stamps_s;
   for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
   writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);

@@ -147,11 +147,37 @@ TEST_F(ProgramOutput, APrincipalPointBesideTheImageIsWarnedOf) {
   const auto said = [&](const std::string& set) {
     return Program("run ./small.yaml -o out --force --set frames=2" + set).err;
   };
-  EXPECT_THAT(said(" --set sensor.cx=319.5"),
-              testing::StartsWith("depthgrid: warning: the camera's principal point, sensor.cx "
-                                  "319.5 and cy 29.5, lies outside its image of 80 x 60 pixels: "
-                                  "are they of another size?\n"));
+  const std::string warning =
+      "depthgrid: warning: the camera's principal point, sensor.cx 319.5 and cy 29.5, lies outside "
+      "its image of 80 x 60 pixels: are they of another size?\n";
+  EXPECT_THAT(said(" --set sensor.cx=319.5"), testing::StartsWith(warning));
   EXPECT_EQ(said(" --set sensor.cx=79.5"), "");
+  EXPECT_EQ(Program("render ./small.yaml --no-colour -o seq --set sensor.cx=319.5").err, warning);
+}
+
+// Of the settings that images have; the others may be meant for what comes after.
+TEST_F(ProgramOutput, RenderSaysWhatHasNoEffectOnImages) {
+  const auto said = [&](const std::string& arguments) {
+    return Program("render " + arguments + " --no-colour -o seq --force --set frames=2").err;
+  };
+  EXPECT_EQ(said("./room.yaml --set sensor.noise_scale=2 --set mapper.fusion.gain=1"),
+            "depthgrid: warning: --set sensor.noise_scale=2: has no effect because sensor.noise is "
+            "none\n");
+  EXPECT_EQ(said("./room.yaml --set sensor.noise_scale=2 --set sensor.noise=d435"), "");
+  Write("idle.yaml", "scene: room.yaml\nsensor: {grazing_limit_deg: 60}\n");
+  EXPECT_EQ(said("./idle.yaml"),
+            "depthgrid: warning: ./idle.yaml:2: sensor.grazing_limit_deg has no effect because "
+            "sensor.noise is none\n");
+}
+
+TEST_F(ProgramOutput, RenderSaysThatNoImageShowsAnything) {
+  const auto said = [&](const std::string& range_m) {
+    return Program("render ./room.yaml --no-colour -o seq --force --set frames=2" + range_m).err;
+  };
+  EXPECT_EQ(said(" --set sensor.min_range_m=20 --set sensor.max_range_m=30"),
+            "depthgrid: warning: no depth image shows anything: the camera sees no surface that is "
+            "20 to 30 m away\n");
+  EXPECT_EQ(said(""), "");
 }
 
 }  // namespace

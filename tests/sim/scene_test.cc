@@ -268,11 +268,6 @@ TEST_F(SceneFiles, AFloorIsStatedOrFound) {
       AllOf(HasSubstr("has no floor"), HasSubstr("z 0.00 to 2.60 m); in a scene file a box")));
 }
 
-TEST(Files, OfOtherKindsAreNotScenes) {
-  EXPECT_THROW(LoadScene("nowhere.yaml"), InputError);
-  EXPECT_THROW(LoadScene("scene.txt"), InputError);
-  EXPECT_THROW(LoadScene(std::string(kSourceFolder) + "/scenes/"), InputError);
-}
 TEST_F(SceneFiles, FarFromTheOriginAreRefused) {
   const auto plate_at = [&](const std::string& x0, const std::string& x1) {
     Write("plate.obj", "v " + x0 + " 0 0\nv " + x1 + " 0 0\nv " + x1 + " 4 0\nf 1 2 3\n");
@@ -285,6 +280,11 @@ TEST_F(SceneFiles, FarFromTheOriginAreRefused) {
       "coarser than a millimetre beyond; move the mesh to the origin");
 }
 
+TEST(Files, OfOtherKindsAreNotScenes) {
+  EXPECT_THROW(LoadScene("nowhere.yaml"), InputError);
+  EXPECT_THROW(LoadScene("scene.txt"), InputError);
+  EXPECT_THROW(LoadScene(std::string(kSourceFolder) + "/scenes/"), InputError);
+}
 
 TriangleMesh Plate(double width, double depth, double z, bool facing_up) {
   TriangleMesh mesh;
