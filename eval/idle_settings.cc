@@ -102,8 +102,15 @@ void AddSlam(const SlamOptions& slam, IdleSettingList& idle) {
   }
 }
 
+bool HasFocalLengths(const SensorOptions& sensor) {
+  return sensor.fx_px > 0.0 && sensor.fy_px > 0.0;
+}
+
 // Without a model only the pixels at edges and in shadow change.
 void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
+  if (HasFocalLengths(sensor)) {
+    idle.push_back({"sensor.hfov_deg", "sensor.fx and sensor.fy are set"});
+  }
   if (sensor.noise != DepthNoiseModel::kNone) return;
   for (const char* key :
        {"noise_scale", "noise_correlation_px", "grazing_limit_deg", "grazing_softness_deg"}) {
@@ -112,8 +119,9 @@ void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
 }
 
 SensorOptions WithoutIdleSettings(SensorOptions sensor) {
-  if (sensor.noise != DepthNoiseModel::kNone) return sensor;
   const SensorOptions usual;
+  if (HasFocalLengths(sensor)) sensor.hfov_deg = usual.hfov_deg;
+  if (sensor.noise != DepthNoiseModel::kNone) return sensor;
   sensor.noise_scale = usual.noise_scale;
   sensor.noise_correlation_px = usual.noise_correlation_px;
   sensor.grazing_limit_deg = usual.grazing_limit_deg;

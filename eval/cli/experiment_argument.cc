@@ -86,6 +86,20 @@ std::optional<std::string> DoubtOfCamera(const ExperimentOptions& options) {
       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
 }
 
+// As where only one side of the image was set, which scales only one of the preset's focal lengths.
+std::optional<std::string> DoubtOfPixels(const ExperimentOptions& options) {
+  constexpr double kMostRatio = 1.05;  // the presets have 1.007
+  const SensorOptions& sensor = options.sensor;
+  const PinholeCamera camera = SensorCamera(sensor);
+  const auto [least_px, most_px] = std::minmax(camera.fx_px, camera.fy_px);
+  const bool is_stated = sensor.fx_px > 0.0 || sensor.fy_px > 0.0;
+  if (is_stated || most_px <= kMostRatio * least_px) return {};
+  return fmt::format(
+      "sensor.width {} and height {} scale the camera's focal lengths to {:g} and {:g} pixels: "
+      "scale both by one factor, or set sensor.hfov_deg, which makes square pixels",
+      camera.width_px, camera.height_px, camera.fx_px, camera.fy_px);
+}
+
 // What of the overrides and of a file of the user's is idle.
 void AddIdle(const std::string& name, const std::vector<std::string>& set,
              const IdleSettingList& idle, std::vector<std::string>& doubts) {
@@ -129,6 +143,7 @@ std::vector<std::string> DoubtsOfSettings(const std::string& name,
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
   const ExperimentOptions options = ExperimentNamed(name, set);
   if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
+  if (const auto doubt = DoubtOfPixels(options)) doubts.push_back(*doubt);
   AddIdle(name, set, IdleSettings(options), doubts);
   return doubts;
 }
@@ -138,6 +153,7 @@ std::vector<std::string> DoubtsOfImages(const std::string& name,
   std::vector<std::string> doubts = DoubtsOfRecord(name, set);
   const ExperimentOptions options = ExperimentOrScene(name, set);
   if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
+  if (const auto doubt = DoubtOfPixels(options)) doubts.push_back(*doubt);
   IdleSettingList idle = IdleSettings(options);
   std::erase_if(idle,
                 [](const IdleSetting& setting) { return !setting.key.starts_with("sensor."); });

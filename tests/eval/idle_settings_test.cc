@@ -37,6 +37,7 @@ TEST(IdleSettings, AreThoseThatNothingReads) {
       {"slam.relocalisation_translation_m", "slam: {jump_rate_hz: 1}", "slam: {lost_rate_hz: 1}"},
       {"sensor.noise_correlation_px", "sensor: {flying_pixels: 0.1}", "sensor: {noise: handa}"},
       {"sensor.grazing_limit_deg", "sensor: {noise: none}", "sensor: {noise: nguyen}"},
+      {"sensor.hfov_deg", "sensor: {fx: 300, fy: 300, noise: handa}", "sensor: {fx: 300}"},
       {"mapper.fusion.slam_noise.jitter_m", "mapper: {fusion: {slam_noise: {source: profile}}}",
        "mapper: {fusion: {mode: kalman}}"},
       {"mapper.scan.band_rows", "mapper: {scan: {mode: centre_row}}",
@@ -57,6 +58,8 @@ TEST(IdleSettings, AreLeftOutOfWhatMakesARun) {
   };
   EXPECT_EQ(plain("slam: {jump_translation_m: 0.1, lost_mean_s: 4}"), plain("{}"));
   EXPECT_EQ(plain("sensor: {noise_correlation_px: 3, grazing_softness_deg: 2}"), plain("{}"));
+  EXPECT_EQ(plain("sensor: {noise: handa, fx: 300, fy: 300, hfov_deg: 60}"),
+            plain("sensor: {noise: handa, fx: 300, fy: 300}"));
   EXPECT_EQ(plain("mapper: {scan: {band_rows: 3}}"), plain("{}"));
   const std::string source = "mapper: {fusion: {slam_noise: {source: profile";
   EXPECT_EQ(plain(source + ", jitter_m: 1}}}"), plain(source + "}}}"));

@@ -155,6 +155,19 @@ TEST_F(ProgramOutput, APrincipalPointBesideTheImageIsWarnedOf) {
   EXPECT_EQ(Program("render ./small.yaml --no-colour -o seq --set sensor.cx=319.5").err, warning);
 }
 
+TEST_F(ProgramOutput, AnImageOfAnotherShapeThanItsCamerasIsWarnedOf) {
+  const auto said = [&](const std::string& set) {
+    return Program("render ./room.yaml --no-colour -o seq --force --set frames=2" + set).err;
+  };
+  EXPECT_EQ(
+      said(" --set sensor.width=160"),
+      "depthgrid: warning: sensor.width 160 and height 480 scale the camera's focal lengths "
+      "to 120.3 and 480 pixels: scale both by one factor, or set sensor.hfov_deg, which makes "
+      "square pixels\n");
+  EXPECT_EQ(said(" --set sensor.width=160 --set sensor.height=120"), "");
+  EXPECT_EQ(said(" --set sensor.width=160 --set sensor.hfov_deg=60"), "");
+}
+
 // Of the settings that images have; the others may be meant for what comes after.
 TEST_F(ProgramOutput, RenderSaysWhatHasNoEffectOnImages) {
   const auto said = [&](const std::string& arguments) {
