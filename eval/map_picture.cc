@@ -9,6 +9,7 @@ namespace {
 constexpr Colour kUnknownCell = {205, 205, 205};  // as Nav2's tools show it
 constexpr Colour kFreeCell = {254, 254, 254};
 constexpr Colour kOccupiedCell = {0, 0, 0};
+constexpr Colour kLatticeLine = {170, 190, 215};
 constexpr Colour kInk = {30, 30, 30};
 constexpr Colour kPaper = {255, 255, 255};
 
@@ -170,6 +171,39 @@ void DrawPath(const Path& path, PathDot dot, const Eigen::Vector2d& origin_m, do
   canvas.Disc(dot == PathDot::kStart ? points.front() : points.back(), kDotRadiusPx, path.colour);
 }
 
+// 1, 2 or 5 times a power of ten, from 1 m: the least step whose lines stand well apart.
+double LatticeSpacingM(double px_per_m) {
+  constexpr double kLeastPx = 60.0;
+  for (double decade_m = 1.0;; decade_m *= 10.0) {
+    for (const double step_m : {decade_m, 2.0 * decade_m, 5.0 * decade_m}) {
+      if (step_m * px_per_m >= kLeastPx) return step_m;
+    }
+  }
+}
+
+void DrawLattice(const GridGeometry& geometry, double px_per_m, Canvas& canvas) {
+  const double step_m = LatticeSpacingM(px_per_m);
+  const Eigen::Vector2d origin_m = geometry.OriginM();
+  const Eigen::Vector2d size_px = px_per_m * geometry.resolution_m *
+                                  Eigen::Vector2d(geometry.width_cells, geometry.height_cells);
+  const auto first = [&](double from_m) { return std::ceil(from_m / step_m) * step_m; };
+  const auto number = [](double at_m) { return std::to_string(std::lround(at_m)); };
+  constexpr int kGapPx = 3;
+  for (double x_m = first(origin_m.x());; x_m += step_m) {
+    const double u_px = (x_m - origin_m.x()) * px_per_m - 0.5;
+    if (u_px >= size_px.x()) break;
+    canvas.Line({u_px, 0.0}, {u_px, size_px.y() - 1.0}, 1.0, kLatticeLine);
+    canvas.Text(static_cast<int>(u_px) + kGapPx, kGapPx, number(x_m), kTextScale, kInk);
+  }
+  for (double y_m = first(origin_m.y());; y_m += step_m) {
+    const double v_px = size_px.y() - (y_m - origin_m.y()) * px_per_m - 0.5;
+    if (v_px < 0.0) break;
+    canvas.Line({0.0, v_px}, {size_px.x() - 1.0, v_px}, 1.0, kLatticeLine);
+    const int top_px = static_cast<int>(v_px) - Canvas::TextHeight(kTextScale) - kGapPx;
+    canvas.Text(kGapPx, top_px, number(y_m), kTextScale, kInk);
+  }
+}
+
 }  // namespace
 
 RgbImage PictureOf(const OccupancyMap& map, const GridGeometry& geometry) {
@@ -200,7 +234,7 @@ RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
 }
 
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
-                      const std::vector<Path>& paths, PathDot dot) {
+                      const std::vector<Path>& paths, PathDot dot, Lattice lattice) {
   const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
   const double px_per_m = factor / geometry.resolution_m;
@@ -212,6 +246,7 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
     std::copy_n(large.At(0, row), 3 * large.width_px, image.At(0, row));
   }
   canvas = Canvas(std::move(image));
+  if (lattice == Lattice::kMetres) DrawLattice(geometry, px_per_m, canvas);
   for (const Path& path : paths) {
     DrawPath(path, dot, geometry.OriginM(), px_per_m, large.height_px, canvas);
   }

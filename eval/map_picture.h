@@ -35,9 +35,14 @@ struct Path {
 // Which end of each path has a dot.
 enum class PathDot { kStart, kNow };
 
+// Lines at whole metres of the map's frame (of a large map at whole tens and so on), numbered along
+// the top and the left edge.
+enum class Lattice { kNone, kMetres };
+
 // The picture (one pixel a cell) enlarged, with paths, a legend and a scale bar below it.
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
-                      const std::vector<Path>& paths, PathDot dot = PathDot::kStart);
+                      const std::vector<Path>& paths, PathDot dot = PathDot::kStart,
+                      Lattice lattice = Lattice::kNone);
 
 // The part of the map that holds anything but unknown cells, with a margin; empty if nothing does.
 GridGeometry KnownPart(const StateMap& map, int margin_cells);

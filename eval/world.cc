@@ -62,13 +62,7 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
   Trajectory trajectory =
       MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.trajectory_seed);
   if (options.frames > 0) trajectory.resize(static_cast<std::size_t>(options.frames));
-  const auto distance_m = [&](const Eigen::Vector3d& point) -> double {
-    return rays.DistanceToSurface(point.cast<float>(), static_cast<float>(path.clearance_m));
-  };
-  // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
-  constexpr double kFloatSlackM = 1e-5;
-  CheckInside(trajectory, SpaceOf(scene), path.place);
-  CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
+  CheckPath(trajectory, path, scene, rays);
   return trajectory;
 }
 
@@ -184,6 +178,17 @@ std::string WorldHash(const ExperimentOptions& options) {
   hash.Text(HashOf(scene));
   AddPath(scene, options, hash);
   return hash.Hex();
+}
+
+void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
+               const RayScene& rays) {
+  const auto distance_m = [&](const Eigen::Vector3d& point) -> double {
+    return rays.DistanceToSurface(point.cast<float>(), static_cast<float>(path.clearance_m));
+  };
+  // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
+  constexpr double kFloatSlackM = 1e-5;
+  CheckInside(trajectory, SpaceOf(scene), path.place);
+  CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
 }
 
 World LoadWorld(const ExperimentOptions& options, int build_threads) {

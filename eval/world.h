@@ -35,6 +35,11 @@ WorldHashes HashesOf(const ExperimentOptions& options);
 std::string HashOfPathFile(const ExperimentOptions& options);  // of a path from a file, alone
 std::string WorldHash(const ExperimentOptions& options);       // both as one
 
+// That this path, which the scene's options gave, lies within the scene and keeps its clearance.
+// Throws InputError.
+void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
+               const RayScene& rays);
+
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
 // path that comes too near to geometry, and for one of a file that leads out of all reach.
 World LoadWorld(const ExperimentOptions& options, int build_threads);

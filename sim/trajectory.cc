@@ -104,6 +104,19 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
   return trajectory;
 }
 
+double PathLengthM(const TrajectoryOptions& options) {
+  TrajectoryOptions still = options;
+  still.shake_m = 0.0;
+  still.shake_deg = 0.0;
+  const Trajectory poses = MakeTrajectory(still, MinimumFrames(still), kFrameRateHz, 0);
+  double path_m = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    path_m += (poses[i].world_from_camera.translation - poses[i - 1].world_from_camera.translation)
+                  .norm();
+  }
+  return path_m;
+}
+
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place) {

@@ -54,6 +54,9 @@ int MinimumFrames(const TrajectoryOptions& options, double rate_hz = kFrameRateH
 Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
                           std::uint64_t seed);
 
+// The way along it, without the hand's shake.
+double PathLengthM(const TrajectoryOptions& options);
+
 // Throws InputError naming `place`, the first frame nearer to geometry than clearance_m, its
 // position and its distance, and how many stretches of the path are too near.
 void CheckClearance(const Trajectory& trajectory,

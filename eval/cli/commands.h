@@ -21,7 +21,9 @@ struct CommonArguments {
 };
 
 struct ScenesArguments {
-  bool quick = false;
+  std::string scene;  // empty: all that is shipped
+  std::string plan;   // a picture of the scene from above; empty: none
+  bool force = false;
 };
 void ListScenes(const ScenesArguments& arguments);
 

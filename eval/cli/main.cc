@@ -49,8 +49,16 @@ struct Program {
 
 void AddScenes(Program& program) {
   const auto [app, arguments] = program.Add<ScenesArguments>(
-      program.app, "scenes", "List the shipped scenes, experiments and sweeps", "depthgrid scenes",
+      program.app, "scenes", "List what is shipped; or say what a scene holds, and draw its plan",
+      "depthgrid scenes\n"
+      "  depthgrid scenes ./mine.yaml --plan plan.png         # its floor, its paths and what is "
+      "wrong "
+      "with them",
       &ListScenes);
+  app->add_option("scene", arguments->scene, "Shipped scene, or a scene or mesh file");
+  app->add_option("--plan", arguments->plan,
+                  "Picture (PNG) to draw: the scene from above, its paths, lines at whole metres");
+  app->add_flag("--force", arguments->force, "Replace a picture");
 }
 
 void AddRender(Program& program) {

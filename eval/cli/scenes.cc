@@ -4,10 +4,12 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/scene_facts.h"
 #include "eval/experiment_options.h"
 #include "eval/shipped.h"
 #include "eval/study.h"
 #include "eval/sweep/sweep_plan.h"
+#include "mapper/core/error.h"
 #include "sim/scene.h"
 #include "sim/trajectory.h"
 
@@ -19,16 +21,6 @@ std::string SizeText(const TriangleMesh& mesh) {
   return fmt::format("{:.1f} x {:.1f} x {:.1f} m", size_m.x(), size_m.y(), size_m.z());
 }
 
-double PathLength(const Trajectory& trajectory) {
-  double path_m = 0.0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    path_m += (trajectory[i].world_from_camera.translation -
-               trajectory[i - 1].world_from_camera.translation)
-                  .norm();
-  }
-  return path_m;
-}
-
 void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>& rows) {
   const Scene scene = LoadScene(ResolveName(name, ShippedKind::kScene));
   std::string first_of_scene = name;
@@ -36,12 +28,8 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
   std::string triangles = fmt::format("{}", scene.mesh.triangles.size());
   for (const auto& [path_name, path] : scene.trajectories) {
     const int frames = MinimumFrames(path);
-    TrajectoryOptions still = path;  // the hand's shake is no way travelled
-    still.shake_m = 0.0;
-    still.shake_deg = 0.0;
-    const double path_m = PathLength(MakeTrajectory(still, frames, kFrameRateHz, 0));
-    rows.push_back({first_of_scene, size, triangles, path_name, fmt::format("{:.1f} m", path_m),
-                    fmt::format("{}", frames)});
+    rows.push_back({first_of_scene, size, triangles, path_name,
+                    fmt::format("{:.1f} m", PathLengthM(path)), fmt::format("{}", frames)});
     first_of_scene = size = triangles = "";
   }
   if (scene.trajectories.empty()) rows.push_back({name, size, triangles, "none", "", ""});
@@ -49,7 +37,9 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
 
 }  // namespace
 
-void ListScenes(const ScenesArguments&) {
+void ListScenes(const ScenesArguments& arguments) {
+  if (!arguments.scene.empty()) return ShowScene(arguments);
+  if (!arguments.plan.empty()) throw InputError("--plan", "draws one scene, which must be given");
   std::vector<std::vector<std::string>> scenes = {
       {"scene", "size", "triangles", "trajectory", "path", "frames"}};
   for (const std::string& name : ShippedNames(ShippedKind::kScene)) AddSceneRows(name, scenes);

@@ -88,6 +88,27 @@ TEST(MapPicture, PathsLieWhereTheirCellsAre) {
   EXPECT_EQ(At(image, 10 * factor, 9 * factor + factor / 2), (Colour{255, 0, 0}));
 }
 
+TEST(MapPicture, LatticeLinesLieAtWholeMetres) {
+  const GridGeometry geometry{0.05, {-30, -10}, 60, 40};  // x -1.5 to 1.5, y -0.5 to 1.5 m
+  const StateMap map(geometry);
+  const RgbImage plain = AnnotatedMap(PictureOf(map, geometry), geometry, {});
+  const RgbImage lined =
+      AnnotatedMap(PictureOf(map, geometry), geometry, {}, PathDot::kStart, Lattice::kMetres);
+  const int factor = plain.width_px / geometry.width_cells;
+  const int free_row = 20 * factor;  // y = 0.5 m
+  std::vector<int> lines;
+  for (int u = 0; u < plain.width_px; ++u) {
+    if (At(lined, u, free_row) != At(plain, u, free_row)) lines.push_back(u);
+  }
+  // A line one pixel wide between two pixels colours both.
+  EXPECT_EQ(lines, (std::vector<int>{10 * factor - 1, 10 * factor, 30 * factor - 1, 30 * factor,
+                                     50 * factor - 1, 50 * factor}));
+  const int free_column = 20 * factor;  // x = -0.5 m
+  EXPECT_NE(At(lined, free_column, 30 * factor), At(plain, free_column, 30 * factor));  // y = 0
+  EXPECT_NE(At(lined, free_column, 10 * factor), At(plain, free_column, 10 * factor));  // y = 1 m
+  EXPECT_EQ(At(lined, free_column, 15 * factor), At(plain, free_column, 15 * factor));
+}
+
 TEST(MapPicture, ATruthBeneathAnEstimateIsSeenOnBothSides) {
   const GridGeometry geometry{0.05, {-10, -10}, 20, 20};
   Path truth{"truth", {255, 0, 0}, {}, PathStyle::kBeneath};

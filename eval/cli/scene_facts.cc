@@ -1,0 +1,98 @@
+#include "eval/cli/scene_facts.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "eval/cli/console.h"
+#include "eval/kept_inputs.h"
+#include "eval/output_file.h"
+#include "eval/scene_plan.h"
+#include "eval/shipped.h"
+#include "eval/world.h"
+#include "mapper/core/error.h"
+#include "mapper/io/png.h"
+
+namespace depthgrid::cli {
+namespace {
+
+struct ScenePath {
+  std::string name;
+  TrajectoryOptions options;
+  Trajectory poses;     // empty: it cannot be made
+  std::string refusal;  // empty: it can be taken
+};
+
+std::vector<ScenePath> PathsOf(const Scene& scene) {
+  const RayScene rays(scene.mesh);
+  std::vector<ScenePath> paths;
+  for (const auto& [name, options] : scene.trajectories) {
+    ScenePath path = {name, options, {}, ""};
+    try {
+      path.poses = MakeTrajectory(options, MinimumFrames(options), kFrameRateHz,
+                                  ExperimentOptions{}.trajectory_seed);
+      CheckPath(path.poses, options, scene, rays);
+    } catch (const InputError& error) {
+      path.refusal = error.what();
+    }
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+std::string Facts(const Scene& scene) {
+  const Eigen::AlignedBox3f bounds = BoundsOf(scene.mesh);
+  const Eigen::Vector3f &low = bounds.min(), &high = bounds.max();
+  const std::string ceiling =
+      scene.ceiling_z_m ? fmt::format("ceiling at {:.2f}", *scene.ceiling_z_m) : "no ceiling";
+  return fmt::format(
+      "{}: {} triangles, x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m\n"
+      "floor at z = {:.2f} m, {}\n",
+      scene.name, scene.mesh.triangles.size(), low.x(), high.x(), low.y(), high.y(), low.z(),
+      high.z(), scene.floor_z_m, ceiling);
+}
+
+std::string PathTable(const std::vector<ScenePath>& paths) {
+  std::vector<std::vector<std::string>> rows = {{"trajectory", "kind", "path", "frames"}};
+  for (const ScenePath& path : paths) {
+    const bool is_made = !path.poses.empty();
+    rows.push_back({path.name, path.options.kind == TrajectoryKind::kPlanar ? "planar" : "handheld",
+                    is_made ? fmt::format("{:.1f} m", PathLengthM(path.options)) : "-",
+                    is_made ? fmt::format("{}", path.poses.size()) : "-"});
+  }
+  return Table(rows);
+}
+
+void WritePlan(const std::string& file, const Scene& scene, const std::vector<ScenePath>& paths) {
+  constexpr std::array kColours = {palette::kEstimate, palette::kSlam, palette::kTruth,
+                                   palette::kMissed, palette::kInvented};
+  std::vector<Path> drawn;
+  for (const ScenePath& path : paths) {
+    if (path.poses.empty()) continue;
+    drawn.push_back({path.name, kColours[drawn.size() % kColours.size()], path.poses});
+  }
+  WriteRgbPng(file, PlanOf(scene, drawn));
+}
+
+}  // namespace
+
+void ShowScene(const ScenesArguments& arguments) {
+  if (!arguments.plan.empty()) {
+    std::vector<std::string> inputs;
+    if (IsFileName(arguments.scene)) inputs.push_back(arguments.scene);
+    RequireInputsKept(arguments.plan, "--plan", inputs);
+    RequireNewFile(arguments.plan, arguments.force);
+  }
+  const Scene scene = LoadScene(ResolveName(arguments.scene, ShippedKind::kScene));
+  const std::vector<ScenePath> paths = PathsOf(scene);
+  fmt::print("{}", Facts(scene));
+  if (!paths.empty()) fmt::print("\n{}", PathTable(paths));
+  for (const ScenePath& path : paths) {
+    if (!path.refusal.empty()) fmt::print("refused: {}\n", path.refusal);
+  }
+  if (arguments.plan.empty()) return;
+  WritePlan(arguments.plan, scene, paths);
+  fmt::print("look at {}\n", arguments.plan);
+}
+
+}  // namespace depthgrid::cli
