@@ -193,14 +193,17 @@ void DrawLattice(const GridGeometry& geometry, double px_per_m, Canvas& canvas) 
     const double u_px = (x_m - origin_m.x()) * px_per_m - 0.5;
     if (u_px >= size_px.x()) break;
     canvas.Line({u_px, 0.0}, {u_px, size_px.y() - 1.0}, 1.0, kLatticeLine);
-    canvas.Text(static_cast<int>(u_px) + kGapPx, kGapPx, number(x_m), kTextScale, kInk);
+    const int left_px = static_cast<int>(u_px) + kGapPx;
+    const bool fits = left_px + Canvas::TextWidth(number(x_m), kTextScale) < size_px.x();
+    if (fits) canvas.Text(left_px, kGapPx, number(x_m), kTextScale, kInk);
   }
   for (double y_m = first(origin_m.y());; y_m += step_m) {
     const double v_px = size_px.y() - (y_m - origin_m.y()) * px_per_m - 0.5;
     if (v_px < 0.0) break;
     canvas.Line({0.0, v_px}, {size_px.x() - 1.0, v_px}, 1.0, kLatticeLine);
     const int top_px = static_cast<int>(v_px) - Canvas::TextHeight(kTextScale) - kGapPx;
-    canvas.Text(kGapPx, top_px, number(y_m), kTextScale, kInk);
+    const bool below_other_axis = top_px > Canvas::TextHeight(kTextScale) + 2 * kGapPx;
+    if (below_other_axis) canvas.Text(kGapPx, top_px, number(y_m), kTextScale, kInk);
   }
 }
 

@@ -57,7 +57,8 @@ void AddScenes(Program& program) {
       &ListScenes);
   app->add_option("scene", arguments->scene, "Shipped scene, or a scene or mesh file");
   app->add_option("--plan", arguments->plan,
-                  "Picture (PNG) to draw: the scene from above, its paths, lines at whole metres");
+                  "Picture (PNG) to draw: the scene from above, its paths, lines at whole metres")
+      ->type_name("FILE");
   app->add_flag("--force", arguments->force, "Replace a picture");
 }
 

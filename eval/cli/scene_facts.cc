@@ -44,12 +44,11 @@ std::string Facts(const Scene& scene) {
   const Eigen::AlignedBox3f bounds = BoundsOf(scene.mesh);
   const Eigen::Vector3f &low = bounds.min(), &high = bounds.max();
   const std::string ceiling =
-      scene.ceiling_z_m ? fmt::format("ceiling at {:.2f}", *scene.ceiling_z_m) : "no ceiling";
-  return fmt::format(
-      "{}: {} triangles, x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m\n"
-      "floor at z = {:.2f} m, {}\n",
-      scene.name, scene.mesh.triangles.size(), low.x(), high.x(), low.y(), high.y(), low.z(),
-      high.z(), scene.floor_z_m, ceiling);
+      scene.ceiling_z_m ? "ceiling at " + Number(scene.ceiling_z_m, 2) : "no ceiling";
+  const auto span = [](float from, float to) { return Number(from, 2) + " to " + Number(to, 2); };
+  return fmt::format("{}: {} triangles, x {}, y {}, z {} m\nfloor at z = {} m, {}\n", scene.name,
+                     scene.mesh.triangles.size(), span(low.x(), high.x()), span(low.y(), high.y()),
+                     span(low.z(), high.z()), Number(scene.floor_z_m, 2), ceiling);
 }
 
 std::string PathTable(const std::vector<ScenePath>& paths) {

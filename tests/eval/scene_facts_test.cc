@@ -13,7 +13,7 @@ class SceneFacts : public ProgramTest {
     ProgramTest::SetUp();
     Write("hall.yaml",
           "shapes:\n"
-          "  - {shape: box, size: [6, 4, 0.1], at: [3, 2, -0.1]}\n"
+          "  - {shape: box, size: [6, 4, 0.1], at: [3, 2, -0.101]}\n"
           "  - {shape: box, size: [0.2, 4, 1], at: [4, 2, 0]}\n"
           "trajectories:\n"
           "  short: {kind: planar, waypoints: [{at: [1, 1]}, {at: [2, 3]}]}\n"
