@@ -160,7 +160,8 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 
 void RequireSweepNamesFree(const std::string& folder) {
   RequireNoOtherResult(folder, ResultKind::kSweep);
-  std::vector<std::string> names = {"results.csv", "report.html", "progress.txt", "cache"};
+  std::vector<std::string> names = {"results.csv", "report.html", "experiment.yaml", "progress.txt",
+                                    "cache"};
   // A sweep that Slurm does has these two, and its lock, before it has a database.
   if (!fs::exists(folder + kLockName)) names.insert(names.end(), {"slurm", "shards"});
   for (const std::string& name : names) {
