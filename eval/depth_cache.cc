@@ -1,10 +1,12 @@
 #include "eval/depth_cache.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <set>
+#include <string_view>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -23,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kFormat = 1;
 constexpr std::uint32_t kMagic = 0x43474444;  // "DDGC"
 constexpr const char* kExtension = ".depth";
+constexpr std::string_view kWithIncidence = "-incidence";
 
 struct Header {
   std::uint32_t magic = kMagic;
@@ -68,13 +71,27 @@ struct Entry {
   std::uint64_t bytes = 0;
 };
 
+bool IsEntry(const fs::path& path) {
+  if (path.extension() != kExtension) return false;
+  std::string name = path.stem().string();
+  if (name.ends_with(kWithIncidence)) name.resize(name.size() - kWithIncidence.size());
+  return ContentHash::IsHex(name);
+}
+
+// The user chose the folder, and may keep files of this ending in it as well (ICL-NUIM's are called
+// so): none but those that a cache wrote may ever be removed.
 std::vector<Entry> EntriesIn(const fs::path& root) {
   std::vector<Entry> entries;
   std::error_code error;
   for (auto it = fs::recursive_directory_iterator(root, error);
        !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     std::error_code vanished;  // another program may be cleaning up
-    if (it->path().extension() != kExtension) continue;
+    if (it.depth() == 0) {
+      if (!ContentHash::IsHex(it->path().filename().string())) it.disable_recursion_pending();
+      continue;
+    }
+    it.disable_recursion_pending();
+    if (!IsEntry(it->path())) continue;
     Entry entry{it->path(), it->last_write_time(vanished), it->file_size(vanished)};
     if (!vanished) entries.push_back(entry);
   }
@@ -106,7 +123,8 @@ fs::path DepthCache::EntryOf(const Pose3& world_from_camera, bool with_incidence
   ContentHash hash;
   for (const double v : world_from_camera.rotation.coeffs()) hash.Value(v);
   for (const double v : world_from_camera.translation) hash.Value(v);
-  return folder_ / (hash.Hex() + (with_incidence ? "-incidence" : "") + kExtension);
+  return folder_ /
+         fmt::format("{}{}{}", hash.Hex(), with_incidence ? kWithIncidence : "", kExtension);
 }
 
 void DepthCache::MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence) {

@@ -38,6 +38,8 @@ class ContentHash {
 
   std::uint64_t value() const { return state_; }
   std::string Hex() const;
+  // Whether a text may be some Hex().
+  static bool IsHex(std::string_view text);
 
  private:
   // FNV's prime, and a fold of the high half: plain FNV over words never moves high bits down.

@@ -153,6 +153,7 @@ void ScanCache::MakeRoom(std::uint64_t bytes) const {
        it.increment(error)) {
     std::error_code vanished;  // another program may be cleaning up
     if (it->path().extension() != kScansExtension) continue;
+    if (!ContentHash::IsHex(it->path().stem().string())) continue;  // the user's own
     Entry entry{it->last_write_time(vanished), it->path(), it->file_size(vanished)};
     if (vanished) continue;
     total += entry.bytes;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/level.h"
+#include "mapper/io/file.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -54,6 +55,24 @@ TEST_F(DepthCacheTest, OldEntriesMakeRoomOthersFirst) {
   EXPECT_EQ(Run("a", Path(2, 5), 8), 1);  // one is there
   EXPECT_EQ(Run("a", Path(0, 7), 8), 7);
   EXPECT_EQ(Run("b", Path(0, 3), 8), 1);
+}
+
+TEST_F(DepthCacheTest, FilesOfTheUsersAreNoEntries) {
+  EXPECT_EQ(Run("a", Path(0, 1), 8), 0);
+  const std::string frames =
+      std::filesystem::directory_iterator(folder_)->path().filename().string();
+  // An ICL-NUIM sequence beside and below, and one laid among the cache's own by mistake.
+  const std::vector<std::string> own = {
+      "scene_00_0000.depth", "0123456789abcdef.depth", "living_room/scene_00_0000.depth",
+      "living_room/0123456789abcdef/0123456789abcdef.depth", frames + "/scene_00_0000.depth"};
+  for (const std::string& name : own) {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    WriteFile((folder_ / name).string(), std::string(2 * kEntryBytes, '1'));
+  }
+  EXPECT_EQ(Run("b", Path(0, 2), 2), 0);
+  EXPECT_EQ(Run("b", Path(0, 2), 2), 2);  // nor do they take any room
+  EXPECT_EQ(Run("a", Path(0, 1), 2), 0);  // whose entry had to go
+  for (const std::string& name : own) EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
 }
 
 }  // namespace
