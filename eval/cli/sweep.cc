@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -46,8 +47,8 @@ Shard ShardOf(const std::string& text) {
   return shard;
 }
 
-// A folder made for the sweep is taken away again when nothing could be started in it: neither runs
-// here nor jobs of Slurm, which go on by themselves.
+// The folder of a sweep, which nobody else works in. One made for it is taken away again when
+// nothing could be started in it: neither runs here nor jobs of Slurm, which go on by themselves.
 class SweepFolder {
  public:
   SweepFolder(const std::string& path, bool force) : path_(path) {
@@ -60,8 +61,11 @@ class SweepFolder {
     }
     if (!SweepDatabase::Exists(path)) RequireSweepNamesFree(path);
     std::error_code error;
-    created_ = fs::create_directories(path, error);
+    const bool created = fs::create_directories(path, error);
     if (error) throw InputError(path, "cannot be created: " + error.message());
+    // Whoever has the lock, although this program made the folder: it is no longer its own.
+    lock_.emplace(path);
+    created_ = created;
   }
   SweepFolder(const SweepFolder&) = delete;
   SweepFolder& operator=(const SweepFolder&) = delete;
@@ -72,6 +76,7 @@ class SweepFolder {
 
   std::string path_;
   bool created_ = false;
+  std::optional<SweepLock> lock_;
   EndTask clean_{[this] {
     std::error_code ignored;
     if (created_ && !SweepDatabase::Exists(path_) && !HasSlurmJobs(path_)) {
@@ -132,7 +137,6 @@ void Merge(const SweepArguments& arguments) {
   }
   const std::string& output = arguments.common.output;
   const SweepFolder folder(output, arguments.common.force);
-  const SweepLock lock(output);
   if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
   MergeSweeps(arguments.merge, output);
   Summarise(ReadSweep(output));
@@ -185,7 +189,6 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   // Rendered depth and scans outlive a kill beside the results when nobody named another place.
   const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
   if (own_cache) context.cache_folder = output + "/cache";
-  const SweepLock lock(output);
   const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
   ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
   if (own_cache) fs::remove_all(context.cache_folder);
@@ -248,7 +251,6 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
   if (!arguments.shard.empty()) throw InputError("--shard", "is what --executor slurm decides");
   const std::string output = fs::absolute(arguments.common.output).lexically_normal().string();
   const SweepFolder folder(output, arguments.common.force);
-  const SweepLock lock(output);
   SweepContext context;
   context.cache_folder = CacheFolder(arguments.common);
   SlurmJob job;

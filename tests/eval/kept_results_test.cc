@@ -38,5 +38,30 @@ TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
   EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr("mp4"))));
 }
 
+// The one that is too late must not take away what the other has begun.
+TEST_F(KeptResults, OfTwoSweepsAtOnceOneIsDone) {
+  Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1, 2]}\n");
+  const std::string sweep = std::string("'") + kProgramFile + "' sweep ./s.yaml -o ";
+  for (const std::string out : {"a", "b", "c", "d", "e", "f", "g", "h"}) {
+    std::string others;  // their exit codes go to files
+    for (const std::string who : {"1", "2", "3", "4"}) {
+      others += "(" + sweep + out + " >/dev/null 2>err" + who + "; echo $? >code" + who + ") & ";
+    }
+    Program("--version", "{ " + others + "wait; }; ");
+    int done = 0;
+    for (const std::string who : {"1", "2", "3", "4"}) {
+      if (ReadFile(Path("code" + who)) == "0\n") {
+        ++done;
+      } else {
+        EXPECT_EQ(ReadFile(Path("code" + who)), "2\n");
+        EXPECT_EQ(ReadFile(Path("err" + who)),
+                  "depthgrid: " + out + ": another program is working on this sweep\n");
+      }
+    }
+    EXPECT_GE(done, 1);
+    EXPECT_TRUE(fs::exists(Path(out + "/results.csv")));
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
