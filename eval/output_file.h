@@ -5,9 +5,9 @@
 
 namespace depthgrid {
 
-// Throws InputError when `path` is a folder or lies in none that can be written, and when there is
-// such a file already, unless `force`: it may be somebody's only copy. `remedy`: what the user can
-// do then.
+// Throws InputError when `path` is a folder, a device or a link, or lies in no folder that can be
+// written, and when there is such a file already, unless `force`: it may be somebody's only copy.
+// `remedy`: what the user can do then.
 void RequireNewFile(const std::string& path, bool force,
                     const std::string& remedy = "choose another name, or --force to replace it");
 

@@ -1,6 +1,7 @@
 // What --force may write, replace and remove: neither what the command reads nor what no earlier
 // command of its kind wrote.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 
@@ -115,6 +116,13 @@ TEST_F(KeptFiles, ASingleFileIsNoInputEither) {
     ExpectRefusal("eval trajectory gt.txt gt.txt --force --errors " + file,
                   std::string("gt.txt") + kIsRead + "--errors " + file +
                       " would overwrite it; choose another name");
+  }
+  // Neither is a device, such as /dev/stdout, nor where a link points to.
+  ASSERT_EQ(::mkfifo(Path("pipe").c_str(), 0600), 0);
+  fs::create_symlink("nowhere.csv", Path("dangling.csv"));
+  for (const std::string file : {"pipe", "dangling.csv"}) {
+    ExpectRefusal("eval trajectory gt.txt gt.txt --force --errors " + file,
+                  file + ": is no regular file, and would be replaced by one; choose another name");
   }
   Write("log.mp4", ReadFile(Path("one.log")));
   ExpectRefusal("map log.mp4 --video log.mp4 -o out --force",
