@@ -200,16 +200,4 @@ std::string CacheFolder(const CommonArguments& arguments) {
   return folder != nullptr ? folder : "";
 }
 
-void KeepShadersInCache(const CommonArguments& arguments) {
-  constexpr const char* kFolder = "MESA_SHADER_CACHE_DIR";
-  constexpr const char* kDisable = "MESA_SHADER_CACHE_DISABLE";
-  if (std::getenv(kFolder) != nullptr || std::getenv(kDisable) != nullptr) return;
-  const std::string cache_folder = CacheFolder(arguments);
-  if (cache_folder.empty()) {
-    ::setenv(kDisable, "true", 0);
-  } else {
-    ::setenv(kFolder, cache_folder.c_str(), 0);
-  }
-}
-
 }  // namespace depthgrid::cli

@@ -45,9 +45,4 @@ std::vector<std::string> InputsOf(const std::string& name,
 // Where rendered depth is kept: --cache, or else $DEPTHGRID_CACHE, unless --no-cache.
 std::string CacheFolder(const CommonArguments& arguments);
 
-// Mesa keeps compiled shaders, in the user's home unless it is told where: in the cache folder, and
-// not at all without one. What the user told Mesa stands. Before anything is drawn in colour, and
-// before other threads begin.
-void KeepShadersInCache(const CommonArguments& arguments);
-
 }  // namespace depthgrid::cli

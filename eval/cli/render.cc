@@ -7,6 +7,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/cli/shader_cache.h"
 #include "eval/experiment.h"
 #include "eval/run_folder.h"
 #include "eval/shell_word.h"

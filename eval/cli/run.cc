@@ -8,6 +8,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/cli/shader_cache.h"
 #include "eval/cli/video_output.h"
 #include "eval/experiment.h"
 #include "eval/idle_settings.h"

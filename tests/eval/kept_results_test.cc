@@ -1,5 +1,6 @@
 // A result that is finished is kept, whatever fails after it.
 #include <gmock/gmock.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
 
 #include "tests/eval/program.h"
@@ -61,6 +62,18 @@ TEST_F(KeptResults, OfTwoSweepsAtOnceOneIsDone) {
     EXPECT_GE(done, 1);
     EXPECT_TRUE(fs::exists(Path(out + "/results.csv")));
   }
+}
+
+TEST_F(KeptResults, ACacheOnAFullDiskCostsNothingButTime) {
+  fs::create_directory(Path("full"));
+  if (::mount("tmpfs", Path("full").c_str(), "tmpfs", 0, "size=200k") != 0) {
+    GTEST_SKIP() << "only root may mount";
+  }
+  const Outcome cached = Program("run ./small.yaml -o out --cache full/cache");
+  ::umount2(Path("full").c_str(), MNT_DETACH);
+  EXPECT_EQ(cached.exit_code, 0) << cached.err;
+  Succeed("run ./small.yaml -o out2");
+  ExpectSameBytes("out", "out2");
 }
 
 }  // namespace
