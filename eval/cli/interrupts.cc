@@ -77,6 +77,8 @@ void CatchInterrupts() {
     std::thread(EndWhenSignalled).detach();
   } catch (const std::system_error&) {  // no thread to be had: progress reports remain
   }
+  // A file that grows beyond `ulimit -f` is told by write(), as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // What the caller had ignored (nohup, a shell's background jobs) stays ignored.
     if (std::signal(signal, &Remember) == SIG_IGN) std::signal(signal, SIG_IGN);

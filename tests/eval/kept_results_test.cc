@@ -76,5 +76,14 @@ TEST_F(KeptResults, ACacheOnAFullDiskCostsNothingButTime) {
   ExpectSameBytes("out", "out2");
 }
 
+// As a full disk is: by one line, and nothing half-written stays.
+TEST_F(KeptResults, AFileBeyondTheLimitOfTheShellIsSaid) {
+  const Outcome outcome = Program("run ./small.yaml --set frames=3 -o out", "ulimit -f 20 && ");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be written: File too large\n"));
+  EXPECT_FALSE(fs::exists(Path("out")));
+  EXPECT_FALSE(fs::exists(Path(".out.partial")));
+}
+
 }  // namespace
 }  // namespace depthgrid
