@@ -44,7 +44,8 @@ std::vector<std::string> CommandFor(const std::string& path, int width_px, int h
       "-threads 1 -fflags +bitexact -flags:v +bitexact -movflags +faststart -f mp4",
       width_px, height_px, frames_per_s, kQuality));
   std::vector<std::string> command(std::istream_iterator<std::string>(words), {});
-  command.push_back(path);
+  // Whatever it begins with: "-", or what ffmpeg takes for a protocol.
+  command.push_back("file:" + path);
   return command;
 }
 

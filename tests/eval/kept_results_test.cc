@@ -85,5 +85,19 @@ TEST_F(KeptResults, AFileBeyondTheLimitOfTheShellIsSaid) {
   EXPECT_FALSE(fs::exists(Path(".out.partial")));
 }
 
+// "-" begins an option and "file:" a protocol of ffmpeg's.
+TEST_F(KeptResults, AVideoHasTheNameItWasGiven) {
+  Write("ffmpeg",
+        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho video >\"${last#file:}\"\n");
+  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  for (const std::string name : {"-x.mp4", "file:y.mp4"}) {
+    const Outcome outcome =
+        Program("map one.log --force -o out --video=" + name, "PATH=\"$PWD:$PATH\" ");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(ReadFile(Path(name)), "video\n");
+  }
+  EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr(".tmp"))));
+}
+
 }  // namespace
 }  // namespace depthgrid
