@@ -16,6 +16,7 @@ constexpr int kSmoothingSteps = 20;      // half-width of the timing's smoothing
 constexpr double kTableMargin = 1.01;    // of the bounds, for peaks between the table's samples
 constexpr double kFastestTiming = 0.25;  // no stretch is run through faster than 4 times nominal
 constexpr double kSteepestPitchRad = RadFromDeg(80.0);  // above, yaw has no meaning
+constexpr double kLongestS = 1e6 / kFrameRateHz;        // as many frames as an experiment can have
 constexpr double kTurnOnTheSpotRad = RadFromDeg(30.0);  // of a planar path within one table step
 // Influence of a natural spline's ends falls by 2 + sqrt(3) a knot: 6 knots leave less than 1e-3.
 constexpr int kClosedPadding = 6;
@@ -71,6 +72,12 @@ class Stations {
       if (time_s < 1e-6) {
         throw InputError(options_.place,
                          "two waypoints in a row are the same, at " + Shown(pose.position_m));
+      }
+      if (u_.back() + time_s > kLongestS) {
+        throw InputError(options_.place,
+                         fmt::format("the path takes more than {:.0f} s to the waypoint at {}: it "
+                                     "is too far off, or the bounds are too low",
+                                     kLongestS, Shown(pose.position_m)));
       }
       u_.push_back(u_.back() + time_s);
     }

@@ -240,6 +240,11 @@ TEST(Trajectory, RefusesWhatItCannotDo) {
       TrajectoryRefusal("waypoints: [{at: [0, 0, 1], look_at: [0, 0, 0]}, {at: [1, 0, 1], look_at: "
                         "[5, 0, 1]}]"),
       HasSubstr("must look less than 80 degrees"));
+  for (const char* far : {"65536", "1e300"}) {
+    EXPECT_THAT(TrajectoryRefusal(std::string("kind: planar\nwaypoints: [{at: [0, 0]}, {at: [2, ") +
+                                  far + "]}]"),
+                HasSubstr("the path takes more than 33333 s to the waypoint at (2.00, "));
+  }
   EXPECT_THAT(TrajectoryRefusal("speed_mp: 3\nwaypoints: []"),
               HasSubstr("did you mean 'speed_mps'?"));
 }
