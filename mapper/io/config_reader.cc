@@ -229,12 +229,35 @@ std::string FlowText(const YAML::Node& node) {
   return emitter.c_str();
 }
 
+namespace {
+
+// Of a key without a value yaml-cpp gives the mark of what follows: the key's own then.
+YAML::Mark MarkOf(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node) {
+  YAML::Node group = tree.root;
+  std::size_t begin = 0;
+  while (node.IsNull() && group.IsMap()) {
+    const std::size_t end = key_path.find('.', begin);
+    const std::string key = key_path.substr(begin, end - begin);
+    for (const auto& entry : group) {
+      if (entry.first.Scalar() != key) continue;
+      if (end == std::string::npos) return MarkOfKey(entry.first, entry.second);
+      group.reset(entry.second);
+      break;
+    }
+    if (end == std::string::npos) break;
+    begin = end + 1;
+  }
+  return node.Mark();
+}
+
+}  // namespace
+
 void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node,
                const std::string& rule) {
   constexpr std::size_t kMostLetters = 200;  // enough to know the place by
   std::string text = FlowText(node);
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
-  throw InputError(tree.PlaceOfKey(key_path, node.Mark()),
+  throw InputError(tree.PlaceOfKey(key_path, MarkOf(tree, key_path, node)),
                    fmt::format("{} is '{}', must be {}", key_path, text, rule));
 }
 
