@@ -97,6 +97,32 @@ void WarnOfIdle(const Config& shared, const std::vector<Config>& cases, const Co
   add(shared, everywhere, alone.experiments.front(), is_overridden);
 }
 
+// `config` is what is left of the file without its notes and cases, which know their lines; a copy
+// of them would not.
+StudyOutline OutlineOf(const Config& config, const std::vector<Config>& notes,
+                       const std::vector<Config>& cases) {
+  StudyOutline outline;
+  StudyHead head;
+  config.Only(kHeadKeys).Read(head);
+  outline.title = head.title;
+  for (const Config& entry : notes) {
+    NoteText text;
+    entry.Read(text);
+    outline.notes.push_back(text.note);
+  }
+  for (const Config& entry : cases) {
+    const StudyCase next = CaseOf(entry);
+    for (const StudyCase& other : outline.cases) {
+      if (other.name == next.name) {
+        throw InputError(entry.Place(), "name '" + next.name + "' is given twice");
+      }
+    }
+    outline.cases.push_back(next);
+  }
+  if (outline.cases.empty()) throw InputError(config.Place(), "'cases' must name at least one");
+  return outline;
+}
+
 }  // namespace
 
 IdleSettingList IdleInEveryCase(const Study& study) {
@@ -111,33 +137,16 @@ IdleSettingList IdleInEveryCase(const Study& study) {
 bool IsStudy(const Config& config) { return config.Has("cases"); }
 
 StudyOutline ReadStudyOutline(Config config) {
-  StudyOutline outline;
-  StudyHead head;
-  config.Only(kHeadKeys).Read(head);
-  outline.title = head.title;
-  for (const Config& entry : config.TakeMaps("notes")) {
-    NoteText text;
-    entry.Read(text);
-    outline.notes.push_back(text.note);
-  }
-  for (const Config& entry : config.TakeMaps("cases")) {
-    const StudyCase next = CaseOf(entry);
-    for (const StudyCase& other : outline.cases) {
-      if (other.name == next.name) {
-        throw InputError(entry.Place(), "name '" + next.name + "' is given twice");
-      }
-    }
-    outline.cases.push_back(next);
-  }
-  if (outline.cases.empty()) throw InputError(config.Place(), "'cases' must name at least one");
-  return outline;
+  const std::vector<Config> notes = config.TakeMaps("notes");
+  const std::vector<Config> cases = config.TakeMaps("cases");
+  return OutlineOf(config, notes, cases);
 }
 
 Study ReadStudy(Config config, const Config& overrides, const std::string& base_folder) {
   Study study;
-  study.outline = ReadStudyOutline(config);
-  config.TakeMaps("notes");
+  const std::vector<Config> notes = config.TakeMaps("notes");
   const std::vector<Config> cases = config.TakeMaps("cases");
+  study.outline = OutlineOf(config, notes, cases);
   const Config shared = Without(config, kHeadKeys);
   for (const Config& entry : cases) {
     const Config own = Without(entry, kCaseHeadKeys);

@@ -141,8 +141,8 @@ TEST_F(StudyRun, RefusesWhatMakesNoSense) {
     EXPECT_FALSE(std::filesystem::exists(Path("out")));
   };
   refused("profile: ground_truth", "profile: ground_trth", "wrong.yaml:9");
-  refused("name: truth", "name: orb", "'orb' is given twice");
-  refused("name: truth", "name: ../truth", "'../truth'");
+  refused("name: truth", "name: orb", "wrong.yaml:9: name 'orb' is given twice");
+  refused("name: truth", "name: ../truth", "wrong.yaml:9: name of a case is '../truth'");
   refused("name: truth, ", "", "must be of letters");
   refused("frames: 6", "framse: 6", "'framse'");
   refused("text: are", "txet: are", "'txet'");
