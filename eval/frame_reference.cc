@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "mapper/core/error.h"
+#include "mapper/core/frame.h"
 #include "mapper/grid/scan_rasterizer.h"
 
 namespace depthgrid {
@@ -21,7 +22,9 @@ std::optional<std::size_t> RowOf(const CsvTable& frames, int frame) {
 std::optional<Pose2> PoseAt(const CsvTable& frames, std::size_t row) {
   const Pose2 pose = {frames.Column("map_x_m")[row], frames.Column("map_y_m")[row],
                       frames.Column("map_yaw_rad")[row]};
-  if (!std::isfinite(pose.x_m)) return std::nullopt;
+  // Nothing, or damage: no run is anywhere else.
+  if (!IsWithinReach({pose.x_m, pose.y_m, 0.0}) || !std::isfinite(pose.yaw_rad))
+    return std::nullopt;
   return pose;
 }
 

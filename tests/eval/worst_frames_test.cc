@@ -165,6 +165,10 @@ TEST(ReferenceOf, HoldsOnlyTheSurroundings) {
   const OccupancyMap third = ReferenceOf(run, 2, {}, {});
   EXPECT_GT(third.At({20, 0}), 0.5F);
   EXPECT_LT(third.geometry.width_cells, 1000);
+  // Where no run is there is no pose.
+  run.frames.columns["map_x_m"] = {0.0, 1e20, 0.0};
+  EXPECT_EQ(ReferenceOf(run, 1, {}, {}).geometry.size(), 0U);
+  EXPECT_GT(ReferenceOf(run, 2, {}, {}).At({20, 0}), 0.5F);
   // The scans far away still count: a submap of two scans is over after them.
   run.frames.columns["map_x_m"] = {0.0, 1e5, 0.0};
   EXPECT_GT(ReferenceOf(run, 2, {}, {.scans = 2}).At({20, 0}), 0.5F);
