@@ -62,6 +62,9 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
   if (IsFileName(name)) {
     const fs::path path = fs::path(base_folder) / name;  // an absolute name replaces the base
     if (!fs::exists(path)) throw InputError(path.string(), "no such file");
+    if (kind == ShippedKind::kScene && fs::is_directory(path)) {
+      throw InputError(path.string(), "is a folder, must be a scene or mesh file");
+    }
     return path.string();
   }
   const std::vector<std::string> names = ShippedNames(kind);

@@ -37,8 +37,11 @@ void RequireReadableFile(const std::string& path) {
   }
 }
 
-// Assimp's messages may span lines; errors here are one.
+// Assimp's messages may span lines, and quote all that is left of the file; errors here are one
+// line.
 std::string OneLine(std::string text) {
+  constexpr std::size_t kMostLetters = 200;
+  if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   while (!text.empty() && text.back() == ' ') text.pop_back();

@@ -213,7 +213,7 @@ void FitEvents(const std::vector<RunEvents>& runs, const ErrorGrowth& growth, Sl
 
 }  // namespace
 
-SlamFit FitSlamErrors(const std::vector<SlamRun>& runs) {
+SlamFit FitSlamErrors(const std::vector<SlamRun>& runs, const std::string& place) {
   std::vector<RunEvents> found;
   std::size_t poses = 0;
   SlamFit fit;
@@ -230,8 +230,9 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs) {
     }
   }
   if (poses < kFewestPoses) {
-    throw InputError("", fmt::format("{} poses have both truth and estimate, must be at least {}",
-                                     poses, kFewestPoses));
+    throw InputError(
+        place, fmt::format("{} poses have both truth and estimate, must be at least {}", poses,
+                           kFewestPoses));
   }
   FitPivot(found, fit);
   const ErrorGrowth growth = GrowthOf(found, fit.options.pivot_m, least_step_s);

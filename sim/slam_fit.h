@@ -2,6 +2,7 @@
 // ones (docs/slam_surrogate.md, "Fit").
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sim/slam_options.h"
@@ -18,7 +19,7 @@ struct SlamFit {
   int corrections = 0;  // events that bring the estimate back: SLAM's own, and left out of the fit
 };
 
-// Throws InputError when there are fewer than 100 poses.
-SlamFit FitSlamErrors(const std::vector<SlamRun>& runs);
+// Throws InputError when there are fewer than 100 poses. `place`: where they came from, for that.
+SlamFit FitSlamErrors(const std::vector<SlamRun>& runs, const std::string& place = "");
 
 }  // namespace depthgrid

@@ -97,7 +97,10 @@ void FitSlam(const SlamFitArguments& arguments) {
   }
   std::vector<SlamRun> runs;
   for (std::size_t i = 0; i < files.size(); i += 2) runs.push_back(ReadRun(files[i], files[i + 1]));
-  SlamFit fit = FitSlamErrors(runs);
+  const std::string place = files.size() == 2 ? files[1]
+                                              : fmt::format("{}, the last of {}", files.back(),
+                                                            Counted(runs.size(), "run"));
+  SlamFit fit = FitSlamErrors(runs, place);
   SlamLoopOptions& loops = fit.options.loops;
   if (fit.corrections > 0) loops = WithScenario(loops, LoopScenario::kTrue);
   PrintComments(fmt::format(

@@ -55,8 +55,10 @@ std::string TemporaryName(const std::string& path) {
 }  // namespace
 
 void RequireFile(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // Such as in a folder that may not be entered.
+  if (!fs::status_known(status)) throw InputError(path, "cannot be read: " + error.message());
   if (!fs::exists(status)) throw InputError(path, "no such file");
   if (fs::is_directory(status)) throw InputError(path, "is a folder, must be a file");
   if (!fs::is_regular_file(status)) throw InputError(path, "is not a regular file");

@@ -176,7 +176,9 @@ CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& 
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options) {
   Recording recording;
   recording.name = folder;
-  StampedFileList depth = ReadFileList(Joined(folder, "depth.txt"));
+  const std::string path = Joined(folder, "depth.txt");
+  StampedFileList depth = ReadFileList(path);
+  if (depth.files.empty()) throw InputError(path, "lists no depth image");
   recording.warnings = std::move(depth.warnings);
   for (const StampedFile& file : depth.files) {
     recording.images.push_back({file.stamp_s, Joined(folder, file.path), file.number});

@@ -57,6 +57,8 @@ TEST_F(ProgramErrors, ASceneOrATrajectoryThatIsNotThereIsNamedByItsLine) {
   Write("no_room.yaml", "frames: 3\nscene: living_rom\n");
   ExpectRefusal("run ./no_room.yaml -o out", {"no_room.yaml:2: ", "'living_room'"});
   ExpectRefusal("run ./small.yaml --set scene=office_rom -o out", {"--set scene=office_rom: "});
+  Write("folder.yaml", "frames: 3\nscene: ./\n");
+  ExpectRefusal("run ./folder.yaml -o out", {"folder.yaml:2: ", "is a folder, must be a scene"});
   Write("no_path.yaml", "scene: living_room\nframes: 3\ntrajectory: handhel\n");
   ExpectRefusal("run ./no_path.yaml -o out",
                 {"no_path.yaml:3: trajectory is 'handhel'", "'handheld'"});

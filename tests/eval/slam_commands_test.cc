@@ -161,6 +161,9 @@ TEST_F(SlamCommands, FitOfCorrectedPosesClosesLoops) {
 TEST_F(SlamCommands, FitRefusesBadInput) {
   WriteSequence("seq", 30);
   ExpectRefusal("slam-fit seq/groundtruth.txt", "--help");
+  Write("short.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
+  ExpectRefusal("slam-fit short.txt short.txt",
+                "short.txt: 2 poses have both truth and estimate, must be at least 100");
   ExpectRefusal("slam-fit seq/groundtruth.txt nothing.txt", "nothing.txt");
   ExpectRefusal("slam-fit seq/groundtruth.txt seq/groundtruth.txt seq/groundtruth.txt", "pairs");
   Write("later.txt", "1000 0 0 0 0 0 0 1\n");

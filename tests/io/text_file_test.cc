@@ -9,6 +9,7 @@
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -59,6 +60,13 @@ TEST_F(TextFileTest, KnowsWhatElseCompresses) {
     WriteFile(Path("text"), text);
     EXPECT_EQ(ReadTextFile(Path("text")), text);
   }
+}
+
+TEST_F(TextFileTest, WhyAFileCannotBeReadIsSaid) {
+  EXPECT_EQ(Short(RefusalOf([&] { ReadFile(Path("nix.txt")); })), "~/nix.txt: no such file");
+  std::filesystem::create_symlink("loop.txt", Path("loop.txt"));
+  EXPECT_EQ(Short(RefusalOf([&] { ReadFile(Path("loop.txt")); })),
+            "~/loop.txt: cannot be read: Too many levels of symbolic links");
 }
 
 }  // namespace

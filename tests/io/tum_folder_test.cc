@@ -312,7 +312,7 @@ TEST_F(TumFolderTest, OneClearLineForEachFault) {
   Write("depth.txt", "0.1\n");
   EXPECT_EQ(OpenError(truth), "~/depth.txt:1: must be a stamp and a file name");
   Write("depth.txt", "# nothing\n");
-  EXPECT_EQ(OpenError(truth), "~: holds no depth image");
+  EXPECT_EQ(OpenError(truth), "~/depth.txt: lists no depth image");
 }
 
 }  // namespace

@@ -290,5 +290,17 @@ TEST_F(MeshFiles, AMeshFileIsASceneWhenItHasAFloor) {
               HasSubstr("4000 m across, at most 2000"));
 }
 
+// Assimp quotes all that is left of the file.
+TEST_F(MeshFiles, AMessageStaysShort) {
+  std::string text = kStl;
+  text.replace(text.find("vertex 0 0 0"), 12, "vertex x 0 0");
+  for (int i = 0; i < 3; ++i) text += text;
+  Write("long.stl", text);
+  const std::string refusal =
+      RefusalOf([&] { ReadMeshFile(Path("long.stl"), 1.0, UpAxis::kAuto); });
+  EXPECT_THAT(Short(refusal), StartsWith("~/long.stl: is not a readable mesh: "));
+  EXPECT_LT(Short(refusal).size(), 300U);
+}
+
 }  // namespace
 }  // namespace depthgrid
