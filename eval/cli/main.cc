@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
+#include <new>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/common_options.h"
@@ -368,6 +369,9 @@ int ComplainOf(const std::exception& error) {
   if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
   if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
+  }
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    return Complain("out of memory", kFailed);
   }
   const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
   return Complain(error.what(), bad_input ? kBadInput : kFailed);
