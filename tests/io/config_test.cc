@@ -230,7 +230,7 @@ TEST(Config, AKeyWithoutAValueIsNamedByItsOwnLine) {
   EXPECT_EQ(ConfigRefusal("frames:\nstep_m: 0.5"),
             "run.yaml:1: frames is '~', must be a whole number");
   EXPECT_EQ(ConfigRefusal("step_m: 0.5\nfusion:\n  gain:\n\n\nframes: 2"),
-            "run.yaml:3: fusion.gain is '~', must be a number");
+            "run.yaml:3: fusion.gain is '~', must be one number or [forward, left, yaw]");
 }
 
 TEST(Config, ListsOfMapsKeepTheirLines) {
