@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
+#include "eval/one_grid.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
@@ -19,6 +21,18 @@ std::size_t PriorScansOf(const RunFiles& run) {
   if (run.only_placed) return run.scans.size();
   const auto is_prior = [](const StoredScan& scan) { return scan.frame < 0; };
   return static_cast<std::size_t>(std::count_if(run.scans.begin(), run.scans.end(), is_prior));
+}
+
+// The page shows both on each other. A map may be another one by now that a user has put there.
+void RequireOneGrid(const std::string& map_path, const StateMap& map, const std::string& other_path,
+                    const std::optional<StateMap>& other) {
+  if (!other) return;
+  if (other->geometry.resolution_m != map.geometry.resolution_m) {
+    throw InputError(
+        map_path, fmt::format("resolution is {:g}, must be the {:g} of {}",
+                              map.geometry.resolution_m, other->geometry.resolution_m, other_path));
+  }
+  OneGridAround(other->geometry, other_path, map.geometry, map_path);
 }
 
 }  // namespace
@@ -43,6 +57,8 @@ RunFiles ReadRunFolder(const std::string& folder) {
   run.map = ReadStates(path("map.yaml"));
   if (exists("input_map.yaml")) run.input_map = ReadStates(path("input_map.yaml"));
   if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));
+  RequireOneGrid(path("map.yaml"), run.map, path("input_map.yaml"), run.input_map);
+  RequireOneGrid(path("map.yaml"), run.map, path("truth_map.yaml"), run.truth_map);
   if (exists("observable.yaml")) run.observable = ReadFreeCells(path("observable.yaml"));
   if (exists("trajectory_truth.txt")) run.truth = ReadTrajectory(path("trajectory_truth.txt"));
   run.slam = ReadTrajectoryFile(path("trajectory_slam.txt")).poses;

@@ -11,6 +11,7 @@
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics_json.h"
+#include "eval/one_grid.h"
 #include "eval/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/map_file.h"
@@ -233,28 +234,6 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
-// Scores are of one rectangle around all maps. Where they are far apart most of it belongs to none
-// of them, and scoring that takes minutes.
-bool IsScorable(const GridGeometry& both, std::size_t cells_of_maps) {
-  constexpr std::size_t kSoon = std::size_t{1} << 24;  // scored in seconds whatever they are
-  constexpr std::size_t kMostSpread = 16;
-  return both.size() <= kSoon ||
-         (both.size() <= kMaxMapCells && both.size() <= kMostSpread * cells_of_maps);
-}
-
-// Throws InputError for maps that lie too far from each other.
-GridGeometry Around(const GridGeometry& known, const std::string& known_path,
-                    const GridGeometry& other, const std::string& other_path) {
-  const GridGeometry both = Union(known, other);
-  if (IsScorable(both, known.size() + other.size())) return both;
-  const Eigen::Vector2d from = known.OriginM(), to = other.OriginM();
-  throw InputError(
-      other_path, fmt::format("its lower left corner ({:g}, {:g}) lies {:.0f} m from ({:g}, {:g}), "
-                              "that of {}: one grid around both would have {} x {} cells",
-                              to.x(), to.y(), (to - from).norm(), from.x(), from.y(), known_path,
-                              both.width_cells, both.height_cells));
-}
-
 void PrintTable(const MapScore& score) {
   std::vector<Row> cells = {
       {"cells", "precision", "recall", "F1", "IoU", "free precision", "recall", "F1", "IoU"}};
@@ -280,7 +259,7 @@ void EvalMap(const EvalMapArguments& arguments) {
   const auto [truth, estimate, note] =
       InOneSize(std::move(reference), AlignedMap(ReadMap(arguments.estimate)), arguments);
   const GridGeometry both =
-      Around(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
+      OneGridAround(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;
   const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
   if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
@@ -289,7 +268,7 @@ void EvalMap(const EvalMapArguments& arguments) {
     const double cell_m = truth.geometry.resolution_m;
     observable = ReadObservable(observable_path, cell_m,
                                 note.empty() ? arguments.reference : "the larger cells compared");
-    Around(both, arguments.reference, observable->geometry, observable_path);
+    OneGridAround(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
   score.quality = ScoreMapQuality(truth, estimate, observable, {});

@@ -57,6 +57,21 @@ TEST_F(ReportPage, OfARun) {
   ExpectFits();
 }
 
+// Such as another one that regrid drew.
+TEST_F(ReportPage, OfAMapThatIsAnotherByNowIsRefused) {
+  Succeed("run ./small.yaml --set frames=3 -o made");
+  const std::string map = ReadFile(Path("made/map.yaml"));
+  const auto with = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = map.find(key);
+    return map.substr(0, at) + key + value + map.substr(map.find('\n', at));
+  };
+  Write("made/map.yaml", with("resolution: ", "0.1"));
+  ExpectRefusal("report made",
+                {"made/map.yaml: resolution is 0.1, must be the 0.05 of made/truth_map"});
+  Write("made/map.yaml", with("origin: ", "[1e6, 0, 0]"));
+  ExpectRefusal("report made", {"made/map.yaml: its lower left corner (1e+06, 0) lies 10000"});
+}
+
 // What another frame saw is not shown for one whose place nobody knows.
 TEST_F(ReportPage, OfFramesThatSlamLostNoScanIsShown) {
   Succeed(
