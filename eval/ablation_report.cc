@@ -6,6 +6,7 @@
 
 #include "eval/ablation.h"
 #include "eval/changed_settings.h"
+#include "eval/json_text_impl.h"
 #include "eval/report_json_impl.h"
 #include "eval/run_files.h"
 #include "eval/web_assets.h"
@@ -48,9 +49,9 @@ void WriteAblationReport(const std::string& folder, const ReportPlace& place) {
   const std::string scene = SettingOf(config, "scene");
   try {
     const Json json = PageJson(Json::parse(ReadFile(path)), settings, config);
-    WriteFile(
-        place.into + "/report.html",
-        FillPage("ablation.html", "Ablation of " + fs::path(scene).stem().string(), json.dump()));
+    WriteFile(place.into + "/report.html",
+              FillPage("ablation.html", "Ablation of " + fs::path(scene).stem().string(),
+                       JsonText(json)));
   } catch (const Json::exception&) {
     throw InputError(path, "is no ablation's result");
   }

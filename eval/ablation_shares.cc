@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/ablation.h"
+#include "eval/json_text_impl.h"
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
@@ -155,7 +156,7 @@ std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t see
       cell["p_holm"] = stage.p_holm;
     }
   }
-  return json.dump(2) + "\n";
+  return JsonText(json, 2) + "\n";
 }
 
 }  // namespace depthgrid

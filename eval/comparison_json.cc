@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "eval/comparison.h"
+#include "eval/json_text_impl.h"
 #include "eval/statistics/metric_direction.h"
 
 namespace depthgrid {
@@ -75,7 +76,7 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
   for (const MetricComparison& compared : comparison.metrics) {
     json["metrics"][compared.metric] = ToJson(compared);
   }
-  return json.dump(2) + "\n";
+  return JsonText(json, 2) + "\n";
 }
 
 }  // namespace depthgrid

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "eval/changed_settings.h"
+#include "eval/json_text_impl.h"
 #include "eval/map_picture.h"
 #include "eval/placed_path.h"
 #include "eval/prior_run.h"
@@ -243,7 +244,7 @@ void WriteTimesScript(const std::string& folder, const std::string& into) {
   for (const auto& [name, values] : ReadCsv(folder + "/timing.csv").columns) {
     if (name != "frame") json[name] = RoundedAll(values, 1);
   }
-  WriteFile(into + "/timing.js", "window.RUN_TIMES = " + json.dump() + ";\n");
+  WriteFile(into + "/timing.js", "window.RUN_TIMES = " + JsonText(json) + ";\n");
 }
 
 }  // namespace
@@ -258,9 +259,7 @@ void WriteRunReport(const std::string& folder, const ReportPlace& place) {
     throw InputError(folder + "/metrics.json", "is not valid JSON");
   }
   WriteTimesScript(folder, place.into);
-  // A warning may quote a file that is no UTF-8.
-  const std::string data = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  WriteFile(place.into + "/report.html", FillPage("run.html", TitleOf(settings), data));
+  WriteFile(place.into + "/report.html", FillPage("run.html", TitleOf(settings), JsonText(json)));
 }
 
 }  // namespace depthgrid

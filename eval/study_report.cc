@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "eval/json_text_impl.h"
 #include "eval/map_picture.h"
 #include "eval/report_json_impl.h"
 #include "eval/run_files.h"
@@ -160,9 +161,7 @@ void WriteStudyReport(const std::string& folder, const ReportPlace& place) {
     const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
     Json json = StudyJson(outline, OverridesIn(folder), cases, metrics);
     json["back"] = place.back;
-    WriteFile(place.into + "/report.html",
-              FillPage("study.html", outline.title,
-                       json.dump(-1, ' ', false, Json::error_handler_t::replace)));
+    WriteFile(place.into + "/report.html", FillPage("study.html", outline.title, JsonText(json)));
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "does not hold the study's scores");
   }

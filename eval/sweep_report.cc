@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 
+#include "eval/json_text_impl.h"
 #include "eval/metric_columns.h"
 #include "eval/metrics/statistics.h"
 #include "eval/report_json_impl.h"
@@ -288,7 +289,7 @@ void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   Json json = SweepJson(results, GridOf(results));
   json["back"] = place.back;
   WriteFile(place.into + "/report.html",
-            FillPage("sweep.html", title.empty() ? "Sweep" : title, json.dump()));
+            FillPage("sweep.html", title.empty() ? "Sweep" : title, JsonText(json)));
 }
 
 }  // namespace depthgrid

@@ -39,6 +39,20 @@ TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
   EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr("mp4"))));
 }
 
+// A folder of an old disk, say, in Latin-1.
+TEST_F(KeptResults, NamesNeedNotBeUtf8) {
+  fs::create_directory(Path("Z\xFCrich"));
+  for (const char* file : {"room.yaml", "small.yaml"}) {
+    fs::copy_file(Path(file), Path(std::string("Z\xFCrich/") + file));
+  }
+  Write("Z\xFCrich/s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1, 2]}\n");
+  Succeed("sweep Z\xFCrich/s.yaml -o Z\xFCrich/swept");
+  Succeed("ablate Z\xFCrich/small.yaml --set frames=3 --seeds 1 --json -o ablated");
+  Succeed("compare Z\xFCrich/swept Z\xFCrich/swept --json");
+  EXPECT_THAT(FilesIn("Z\xFCrich/swept"), Contains("report.html"));
+  EXPECT_THAT(FilesIn("ablated"), Contains("report.html"));
+}
+
 // The one that is too late must not take away what the other has begun.
 TEST_F(KeptResults, OfTwoSweepsAtOnceOneIsDone) {
   Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1, 2]}\n");
