@@ -1,25 +1,19 @@
 // The `depthgrid` program: arguments in, exit code out. CLI11 is slow to compile and is included
 // here, in usage and in common_options only.
-#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <exception>
 #include <functional>
-#include <new>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/common_options.h"
+#include "eval/cli/complaint.h"
 #include "eval/cli/console.h"
 #include "eval/cli/interrupts.h"
 #include "eval/cli/usage.h"
-#include "mapper/core/error.h"
 
 namespace depthgrid::cli {
 namespace {
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kBadInput = 2;
 
 constexpr const char* kFirstSteps =
     "First steps:\n"
@@ -52,9 +46,7 @@ void AddScenes(Program& program) {
   const auto [app, arguments] = program.Add<ScenesArguments>(
       program.app, "scenes", "List what is shipped; or say what a scene holds, and draw its plan",
       "depthgrid scenes\n"
-      "  depthgrid scenes ./mine.yaml --plan plan.png         # its floor, its paths and what is "
-      "wrong "
-      "with them",
+      "  depthgrid scenes ./mine.yaml --plan plan.png   # its floor, its paths, what is wrong",
       &ListScenes);
   app->add_option("scene", arguments->scene, "Shipped scene, or a scene or mesh file");
   app->add_option("--plan", arguments->plan,
@@ -341,17 +333,6 @@ void AddCommands(Program& program) {
   AddReport(program);
 }
 
-// One line, whatever the message holds.
-int Complain(const std::string& message, int exit_code) {
-  std::string line = message;
-  for (char& c : line) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  SayAside(fmt::format("depthgrid: {}\n", Printable(line)));
-  return exit_code;
-}
-
 // No file, folder or shipped thing is called nothing: a shell's variable is not set, most likely.
 void RequireNames(CLI::App& app) {
   const auto is_empty = [](const std::string& name) {
@@ -361,20 +342,6 @@ void RequireNames(CLI::App& app) {
     if (option->get_positional()) option->check(CLI::Validator(is_empty, ""));
   }
   for (CLI::App* command : app.get_subcommands({})) RequireNames(*command);
-}
-
-// Of what a command threw.
-int ComplainOf(const std::exception& error) {
-  // Whatever came of being stopped, that is what happened.
-  if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
-  if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
-    return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
-  }
-  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
-    return Complain("out of memory", kFailed);
-  }
-  const bool bad_input = dynamic_cast<const InputError*>(&error) != nullptr;
-  return Complain(error.what(), bad_input ? kBadInput : kFailed);
 }
 
 int Main(int argc, char** argv) {
