@@ -13,6 +13,7 @@ constexpr double kLevelLimitDeg = 5.0;           // ramps are steeper, uneven gr
 constexpr double kSlabM = 0.05;                  // surfaces this near in height count as one
 constexpr double kFloorShareOfFootprint = 0.25;  // more than a rug, less than an L
 constexpr double kFloorShareOfLargest = 0.25;    // below that it is a pit, not the floor
+constexpr double kCeilingShareOfFootprint = 0.25;
 constexpr double kStandingRoomM = 1.5;
 constexpr double kFloorToleranceM = 0.02;
 
@@ -107,6 +108,17 @@ bool HasFloorAt(const TriangleMesh& mesh, double z_m) {
     if (std::abs(patch.z_m - z_m) <= kFloorToleranceM) area_m2 += patch.area_m2;
   }
   return area_m2 > 0.0 && area_m2 >= kFloorShareOfFootprint * FootprintM2(mesh);
+}
+
+std::optional<double> FindCeiling(const TriangleMesh& mesh, double floor_z_m) {
+  const std::vector<LevelPatch> patches = LevelPatches(mesh, Facing::kDown);
+  const std::vector<double> slabs_m2 = SlabAreas(patches);
+  const double least_m2 = kCeilingShareOfFootprint * FootprintM2(mesh);
+  for (std::size_t i = patches.size(); i-- > 0;) {
+    if (patches[i].z_m < floor_z_m + kStandingRoomM) break;
+    if (slabs_m2[i] >= least_m2) return MedianHeight(patches, i, slabs_m2[i]);
+  }
+  return {};
 }
 
 }  // namespace depthgrid

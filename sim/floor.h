@@ -1,4 +1,4 @@
-// Finding the floor of a mesh whose file does not say where it is.
+// Finding the floor and the ceiling of a mesh whose file does not say where they are.
 #pragma once
 
 #include <optional>
@@ -14,5 +14,9 @@ std::optional<double> FindFloor(const TriangleMesh& mesh);
 
 // Whether level surface facing up covers a quarter of the footprint at this height (within 2 cm).
 bool HasFloorAt(const TriangleMesh& mesh, double z_m);
+
+// The height of the highest level surface facing down that covers a quarter of the footprint and
+// leaves room to stand under it; nothing for open worlds.
+std::optional<double> FindCeiling(const TriangleMesh& mesh, double floor_z_m);
 
 }  // namespace depthgrid

@@ -92,6 +92,7 @@ Scene LoadScene(const std::string& path) {
   Scene scene = std::move(file.scene);
   RequireSaneMesh(scene.mesh, path);
   scene.floor_z_m = FloorOf(scene.mesh, file.floor_z_m, path);
+  scene.ceiling_z_m = FindCeiling(scene.mesh, scene.floor_z_m);
   if (scene.lighting.lights.empty()) scene.lighting.lights.push_back(DefaultLight(scene));
   return scene;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct Scene {
   TriangleMesh mesh;
   std::vector<Material> materials;
   double floor_z_m = 0.0;
+  std::optional<double> ceiling_z_m;  // empty when there is none
   Lighting lighting;
   std::map<std::string, TrajectoryOptions> trajectories;
 };

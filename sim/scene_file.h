@@ -1,14 +1,13 @@
 // Scene files: YAML that lists materials, groups of shapes, shapes, lights and trajectories.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "sim/scene.h"
 
 namespace depthgrid {
 
-// Everything the file says, unchecked as a whole: the floor is not looked for yet.
+// Everything the file says, unchecked as a whole: floor and ceiling are not looked for yet.
 struct SceneFile {
   Scene scene;
   std::optional<double> floor_z_m;  // as stated

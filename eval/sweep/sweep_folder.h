@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "eval/sweep/sweep_database.h"
+#include "eval/sweep/sweep_plan.h"
+
 namespace depthgrid {
 
 // Held while a program works in a sweep's folder; another one is refused with an InputError.

@@ -51,6 +51,8 @@ TEST(ShippedScenes, AreFurnishedAndHaveRoomForTheirPaths) {
     const Scene scene = LoadScene(ShippedSceneFile(name));
     EXPECT_EQ(scene.name, name);
     EXPECT_EQ(scene.floor_z_m, 0.0);
+    ASSERT_TRUE(scene.ceiling_z_m.has_value());
+    EXPECT_NEAR(*scene.ceiling_z_m, size_m.z(), 1e-6);
     EXPECT_GE(scene.mesh.triangles.size(), least_triangles);
     // Walls stand outside the room, a few tenths of a metre thick at most.
     const Eigen::Vector3f outside_m = BoundsOf(scene.mesh).sizes() - size_m;
@@ -303,8 +305,10 @@ TEST(Floors, TheLowestLargeSurfaceFacingUpIsTheFloor) {
   Append(room, Plate(3, 3, -2.2, true));          // a table
   Append(room, Plate(10, 10, -0.2, true));        // the roof
   EXPECT_EQ(FindFloor(room), -3.0);
+  EXPECT_NEAR(FindCeiling(room, -3.0).value(), -0.4, 1e-7);
   EXPECT_TRUE(HasFloorAt(room, -3.0));
   EXPECT_FALSE(HasFloorAt(room, -2.5));
+  EXPECT_FALSE(FindCeiling(Plate(10, 10, 0, true), 0.0).has_value());
   EXPECT_EQ(FindFloor(Plate(5, 5, 0.25, false)), 0.25);  // the wrong way round, and all there is
 }
 
