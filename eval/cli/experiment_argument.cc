@@ -86,14 +86,19 @@ std::optional<std::string> DoubtOfCamera(const ExperimentOptions& options) {
       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
 }
 
-// As where only one side of the image was set, which scales only one of the preset's focal lengths.
+// As where only one side of the image was set, which scales only one of the preset's focal lengths,
+// or only one of these.
 std::optional<std::string> DoubtOfPixels(const ExperimentOptions& options) {
   constexpr double kMostRatio = 1.05;  // the presets have 1.007
   const SensorOptions& sensor = options.sensor;
   const PinholeCamera camera = SensorCamera(sensor);
   const auto [least_px, most_px] = std::minmax(camera.fx_px, camera.fy_px);
-  const bool is_stated = sensor.fx_px > 0.0 || sensor.fy_px > 0.0;
-  if (is_stated || most_px <= kMostRatio * least_px) return {};
+  const bool has_fx = sensor.fx_px > 0.0, has_fy = sensor.fy_px > 0.0;
+  if ((has_fx && has_fy) || most_px <= kMostRatio * least_px) return {};
+  if (has_fx || has_fy) {
+    return fmt::format("sensor.fx is {:g} and fy {:g}, of which only {} was set: set both",
+                       camera.fx_px, camera.fy_px, has_fx ? "fx" : "fy");
+  }
   return fmt::format(
       "sensor.width {} and height {} scale the camera's focal lengths to {:g} and {:g} pixels: "
       "scale both by one factor, or set sensor.hfov_deg, which makes square pixels",

@@ -166,6 +166,10 @@ TEST_F(ProgramOutput, AnImageOfAnotherShapeThanItsCamerasIsWarnedOf) {
       "square pixels\n");
   EXPECT_EQ(said(" --set sensor.width=160 --set sensor.height=120"), "");
   EXPECT_EQ(said(" --set sensor.width=160 --set sensor.hfov_deg=60"), "");
+  EXPECT_EQ(
+      said(" --set sensor.fx=300"),
+      "depthgrid: warning: sensor.fx is 300 and fy 480, of which only fx was set: set both\n");
+  EXPECT_EQ(said(" --set sensor.fx=300 --set sensor.fy=480"), "");
 }
 
 // Of the settings that images have; the others may be meant for what comes after.
