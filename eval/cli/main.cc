@@ -339,7 +339,9 @@ void RequireNames(CLI::App& app) {
     return name.empty() ? std::string("is empty") : std::string();
   };
   for (CLI::Option* option : app.get_options()) {
-    if (option->get_positional()) option->check(CLI::Validator(is_empty, ""));
+    const std::string type = option->get_type_name();
+    const bool is_name = option->get_positional() || type == "FILE" || type == "DIR";
+    if (is_name) option->check(CLI::Validator(is_empty, ""));
   }
   for (CLI::App* command : app.get_subcommands({})) RequireNames(*command);
 }

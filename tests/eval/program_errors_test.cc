@@ -49,6 +49,9 @@ TEST_F(ProgramErrors, MissingAndEmptyFiles) {
   ExpectRefusal("map nowhere --poses x -o out", {"nowhere"});
   ExpectRefusal("map '' -o out", {"input: is empty"});
   ExpectRefusal("eval map '' map.yaml", {"is empty"});
+  for (const std::string option : {"--poses", "--map", "--video"}) {
+    ExpectRefusal("map . -o out " + option + " ''", {option + ": is empty"});
+  }
   ExpectRefusal("report nowhere", {"nowhere"});
   ExpectRefusal("regrid . --resolution 0.05", {"run.yaml"});
 }
