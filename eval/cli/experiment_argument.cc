@@ -46,6 +46,15 @@ Config ExperimentFile(const std::string& path) {
   return config;
 }
 
+bool IsExperiment(const std::string& name) {
+  const auto shipped =
+      IsFileName(name) ? std::vector<std::string>{} : ShippedNames(ShippedKind::kExperiment);
+  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) return true;
+  const std::string path = ResolveName(name, ShippedKind::kScene);
+  const bool is_yaml = path.ends_with(".yaml") || path.ends_with(".yml");
+  return is_yaml && Config::FromFile(path).Has("scene");
+}
+
 namespace {
 
 std::optional<std::string> DoubtOfProfile(const std::string& name,
@@ -59,16 +68,6 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
   if (kept.empty()) return {};
   return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
                      fmt::join(kept, ", "), profile);
-}
-
-// Of a name that may be that of a scene or a mesh: whether it is that of an experiment.
-bool IsExperiment(const std::string& name) {
-  const auto shipped =
-      IsFileName(name) ? std::vector<std::string>{} : ShippedNames(ShippedKind::kExperiment);
-  if (std::find(shipped.begin(), shipped.end(), name) != shipped.end()) return true;
-  const std::string path = ResolveName(name, ShippedKind::kScene);
-  const bool is_yaml = path.ends_with(".yaml") || path.ends_with(".yml");
-  return is_yaml && Config::FromFile(path).Has("scene");
 }
 
 // As where the intrinsics are those of images of another size.

@@ -14,10 +14,14 @@ namespace depthgrid::cli {
 // for a sweep.
 Config ExperimentFile(const std::string& path);
 
+// Of a name that may be that of a scene or a mesh: whether it is that of an experiment.
+bool IsExperiment(const std::string& name);
+
 // What is likely not meant, a line each: what an experiment sets beside slam.profile, such as the
 // drift calibrated for it, when `set` chooses another profile; what of `set` and of a file of the
-// user's has no effect, such as a gain where it is learnt; and that a scene or path has changed
-// since a run.yaml was written.
+// user's has no effect, such as a gain where it is learnt; a camera whose principal point lies
+// beside its images, or whose pixels are not square; and that a scene or path has changed since a
+// run.yaml was written.
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 

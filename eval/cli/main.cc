@@ -52,7 +52,7 @@ void AddScenes(Program& program) {
   app->add_option("--plan", arguments->plan,
                   "Picture (PNG) to draw: the scene from above, its paths, lines at whole metres")
       ->type_name("FILE");
-  app->add_flag("--force", arguments->force, "Replace a picture");
+  app->add_flag("--force", arguments->force, "Replace a picture of that name");
 }
 
 void AddRender(Program& program) {

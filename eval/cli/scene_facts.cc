@@ -5,7 +5,7 @@
 #include <array>
 
 #include "eval/cli/console.h"
-#include "eval/kept_inputs.h"
+#include "eval/cli/experiment_argument.h"
 #include "eval/output_file.h"
 #include "eval/scene_plan.h"
 #include "eval/shipped.h"
@@ -43,8 +43,9 @@ std::vector<ScenePath> PathsOf(const Scene& scene) {
 std::string Facts(const Scene& scene) {
   const Eigen::AlignedBox3f bounds = BoundsOf(scene.mesh);
   const Eigen::Vector3f &low = bounds.min(), &high = bounds.max();
-  const std::string ceiling =
-      scene.ceiling_z_m ? "ceiling at " + Number(scene.ceiling_z_m, 2) : "no ceiling";
+  const std::string ceiling = scene.ceiling_z_m
+                                  ? fmt::format("ceiling at z = {} m", Number(scene.ceiling_z_m, 2))
+                                  : "no ceiling";
   const auto span = [](float from, float to) { return Number(from, 2) + " to " + Number(to, 2); };
   return fmt::format("{}: {} triangles, x {}, y {}, z {} m\nfloor at z = {} m, {}\n", scene.name,
                      scene.mesh.triangles.size(), span(low.x(), high.x()), span(low.y(), high.y()),
@@ -73,14 +74,18 @@ void WritePlan(const std::string& file, const Scene& scene, const std::vector<Sc
   WriteRgbPng(file, PlanOf(scene, drawn));
 }
 
+// No scene, nor what it includes or takes its meshes from, is called so: none is overwritten.
+void RequirePlanFile(const std::string& file, bool force) {
+  if (!file.ends_with(".png")) throw InputError(file, "must end in .png");
+  RequireNewFile(file, force);
+}
+
 }  // namespace
 
 void ShowScene(const ScenesArguments& arguments) {
-  if (!arguments.plan.empty()) {
-    std::vector<std::string> inputs;
-    if (IsFileName(arguments.scene)) inputs.push_back(arguments.scene);
-    RequireInputsKept(arguments.plan, "--plan", inputs);
-    RequireNewFile(arguments.plan, arguments.force);
+  if (!arguments.plan.empty()) RequirePlanFile(arguments.plan, arguments.force);
+  if (IsFileName(arguments.scene) && IsExperiment(arguments.scene)) {
+    throw InputError(arguments.scene, "is an experiment, must be a scene or mesh file");
   }
   const Scene scene = LoadScene(ResolveName(arguments.scene, ShippedKind::kScene));
   const std::vector<ScenePath> paths = PathsOf(scene);

@@ -45,9 +45,14 @@ TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   EXPECT_GT(black, 5 * 70 * 7 * 7);
   ExpectRefusal("scenes ./hall.yaml --plan plan.png", {"plan.png: is there already"});
   Succeed("scenes ./hall.yaml --plan plan.png --force");
-  ExpectRefusal("scenes ./hall.yaml --plan hall.yaml --force", {"--plan"});
+  // Neither the scene nor a mesh in it is overwritten.
+  ExpectRefusal("scenes ./hall.yaml --plan hall.yaml --force", {"hall.yaml: must end in .png"});
+  ExpectRefusal("scenes ./hall.yaml --plan hall.obj --force", {"hall.obj: must end in .png"});
+  ExpectRefusal("scenes ./hall.yaml --plan ''", {"--plan: is empty"});
   ExpectRefusal("scenes --plan other.png", {"depthgrid: --plan: draws one scene"});
   ExpectRefusal("scenes ./nowhere.yaml", {"nowhere.yaml: no such file"});
+  Write("takes_hall.yaml", "scene: ./hall.yaml\n");
+  ExpectRefusal("scenes ./takes_hall.yaml", {"takes_hall.yaml: is an experiment, must be a scene"});
 }
 
 }  // namespace
