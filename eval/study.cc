@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
 
+#include "eval/camera_doubts.h"
 #include "eval/idle_settings.h"
 #include "mapper/core/error.h"
 
@@ -72,6 +74,16 @@ void WarnOfRepeats(Study& study) {
         known.emplace(ToYaml(WithoutIdleSettings(study.experiments[i])), name);
     if (is_new) continue;
     study.warnings.push_back(fmt::format("case {}: is the same as case {}", name, entry->second));
+  }
+}
+
+void WarnOfCameras(Study& study) {
+  std::set<std::string> known;  // mostly all cases have one camera
+  for (std::size_t i = 0; i < study.experiments.size(); ++i) {
+    for (const std::string& doubt : DoubtsOfCamera(study.experiments[i].sensor)) {
+      if (!known.insert(doubt).second) continue;
+      study.warnings.push_back(fmt::format("case {}: {}", study.outline.cases[i].name, doubt));
+    }
   }
 }
 
@@ -155,6 +167,7 @@ Study ReadStudy(Config config, const Config& overrides, const std::string& base_
   }
   WarnOfIdle(shared, cases, overrides, study);
   WarnOfRepeats(study);
+  WarnOfCameras(study);
   return study;
 }
 

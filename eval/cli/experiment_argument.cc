@@ -6,12 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "eval/camera_doubts.h"
 #include "eval/idle_settings.h"
 #include "eval/record_check.h"
 #include "eval/shipped.h"
 #include "mapper/core/error.h"
 #include "sim/mesh_file.h"
-#include "sim/sensor_options.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -70,40 +70,6 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
                      fmt::join(kept, ", "), profile);
 }
 
-// As where the intrinsics are those of images of another size.
-std::optional<std::string> DoubtOfCamera(const ExperimentOptions& options) {
-  const PinholeCamera camera = SensorCamera(options.sensor);
-  const auto is_inside = [](double centre_px, int size_px) {
-    return centre_px >= -0.5 && centre_px <= size_px - 0.5;
-  };
-  if (is_inside(camera.cx_px, camera.width_px) && is_inside(camera.cy_px, camera.height_px)) {
-    return {};
-  }
-  return fmt::format(
-      "the camera's principal point, sensor.cx {:g} and cy {:g}, lies outside its image of {} x {} "
-      "pixels: are they of another size?",
-      camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
-}
-
-// As where only one side of the image was set, which scales only one of the preset's focal lengths,
-// or only one of these.
-std::optional<std::string> DoubtOfPixels(const ExperimentOptions& options) {
-  constexpr double kMostRatio = 1.05;  // the presets have 1.007
-  const SensorOptions& sensor = options.sensor;
-  const PinholeCamera camera = SensorCamera(sensor);
-  const auto [least_px, most_px] = std::minmax(camera.fx_px, camera.fy_px);
-  const bool has_fx = sensor.fx_px > 0.0, has_fy = sensor.fy_px > 0.0;
-  if ((has_fx && has_fy) || most_px <= kMostRatio * least_px) return {};
-  if (has_fx || has_fy) {
-    return fmt::format("sensor.fx is {:g} and fy {:g}, of which only {} was set: set both",
-                       camera.fx_px, camera.fy_px, has_fx ? "fx" : "fy");
-  }
-  return fmt::format(
-      "sensor.width {} and height {} scale the camera's focal lengths to {:g} and {:g} pixels: "
-      "scale both by one factor, or set sensor.hfov_deg, which makes square pixels",
-      camera.width_px, camera.height_px, camera.fx_px, camera.fy_px);
-}
-
 // What of the overrides and of a file of the user's is idle.
 void AddIdle(const std::string& name, const std::vector<std::string>& set,
              const IdleSettingList& idle, std::vector<std::string>& doubts) {
@@ -146,8 +112,8 @@ std::vector<std::string> DoubtsOfSettings(const std::string& name,
   std::vector<std::string> doubts = DoubtsOfRecord(name, set);
   if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
   const ExperimentOptions options = ExperimentNamed(name, set);
-  if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
-  if (const auto doubt = DoubtOfPixels(options)) doubts.push_back(*doubt);
+  const std::vector<std::string> of_camera = DoubtsOfCamera(options.sensor);
+  doubts.insert(doubts.end(), of_camera.begin(), of_camera.end());
   AddIdle(name, set, IdleSettings(options), doubts);
   return doubts;
 }
@@ -156,8 +122,8 @@ std::vector<std::string> DoubtsOfImages(const std::string& name,
                                         const std::vector<std::string>& set) {
   std::vector<std::string> doubts = DoubtsOfRecord(name, set);
   const ExperimentOptions options = ExperimentOrScene(name, set);
-  if (const auto doubt = DoubtOfCamera(options)) doubts.push_back(*doubt);
-  if (const auto doubt = DoubtOfPixels(options)) doubts.push_back(*doubt);
+  const std::vector<std::string> of_camera = DoubtsOfCamera(options.sensor);
+  doubts.insert(doubts.end(), of_camera.begin(), of_camera.end());
   IdleSettingList idle = IdleSettings(options);
   std::erase_if(idle,
                 [](const IdleSetting& setting) { return !setting.key.starts_with("sensor."); });

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
+#include "eval/camera_doubts.h"
 #include "eval/idle_settings.h"
 #include "mapper/core/counted.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
@@ -80,6 +83,23 @@ std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
                                             idle_keys.size() == 1 ? "has" : "have");
   return fmt::format("{}: {} of {} {} another: {}", plan.title, repeats, Counted(count, "run"),
                      repeats == 1 ? "repeats" : "repeat", why);
+}
+
+std::optional<std::string> DoubtOfCameras(const SweepPlan& plan) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < std::min(kMostRuns, plan.runs.size()); ++i) {
+    try {
+      for (std::string& doubt : DoubtsOfCamera(plan.OptionsOf(plan.runs[i]).sensor)) {
+        const bool is_new = std::find(found.begin(), found.end(), doubt) == found.end();
+        if (is_new) found.push_back(std::move(doubt));
+      }
+    } catch (const InputError&) {  // no camera: the run fails and says why
+    }
+  }
+  if (found.empty()) return {};
+  const std::string more =
+      found.size() == 1 ? "" : fmt::format(" (the first of {} such warnings)", found.size());
+  return fmt::format("{}: {}{}", plan.title, found.front(), more);
 }
 
 std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,

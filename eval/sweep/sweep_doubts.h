@@ -19,6 +19,9 @@ std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
 std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,
                                           const std::vector<std::string>& set);
 
+// Cameras of runs that are likely not meant: the first, and how many there are.
+std::optional<std::string> DoubtOfCameras(const SweepPlan& plan);
+
 // Where a sweep's settings come from, the later before the earlier.
 struct SweepLayers {
   const Config& experiment;  // the file

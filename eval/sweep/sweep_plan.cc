@@ -290,7 +290,7 @@ std::vector<std::string> DoubtsOf(const SweepPlan& plan, const std::string& expe
   const ChosenAnew anew = {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)};
   std::vector<std::string> warnings;
   for (const auto& doubt : {DoubtOfProfiles(experiment_name, experiment.config, changes, plan.axes),
-                            DoubtOfRepeats(plan)}) {
+                            DoubtOfRepeats(plan), DoubtOfCameras(plan)}) {
     if (doubt) warnings.push_back(*doubt);
   }
   const ExperimentOptions base = ReadExperiment(plan.base, plan.base_folder);

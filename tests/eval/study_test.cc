@@ -120,6 +120,13 @@ TEST_F(StudyRun, CasesThatBecameTheSameAreSaid) {
             "depthgrid: warning: case truth: is the same as case orb\n");
 }
 
+TEST_F(StudyRun, ACameraThatIsHardlyMeantIsSaidOnce) {
+  EXPECT_EQ(
+      Program("run ./study.yaml -o out --set sensor.fx=70").err,
+      "depthgrid: warning: case orb: sensor.fx is 70 and fy 60, of which only fx was set: set "
+      "both\n");
+}
+
 TEST_F(StudyRun, ReportWritesTheSamePageAgain) {
   Succeed("run ./study.yaml -o out");
   const std::string page = ReadFile(Path("out/report.html"));

@@ -211,6 +211,19 @@ TEST_F(SweepPlanTest, PointsDrawnAgainAreSaid) {
               ElementsAre("sweep: 8 of 10 runs repeat another: the same values are drawn again"));
 }
 
+TEST_F(SweepPlanTest, CamerasThatAreHardlyMeantAreSaid) {
+  const auto doubts = [&](const std::string& axes) { return PlanOf(axes).warnings; };
+  EXPECT_THAT(doubts("axes: {sensor.width: [640, 320]}\n"),
+              ElementsAre("sweep: sensor.width 320 and height 480 scale the camera's focal lengths "
+                          "to 240.6 and 480 pixels: scale both by one factor, or set "
+                          "sensor.hfov_deg, which makes square pixels"));
+  EXPECT_THAT(doubts("axes: {sensor.fx: [100, 200, 480]}\n"),
+              ElementsAre("sweep: sensor.fx is 100 and fy 480, of which only fx was set: set both "
+                          "(the first of 2 such warnings)"));
+  EXPECT_THAT(doubts("axes: {\"sensor.width, sensor.height\": [[640, 480], [320, 240]]}\n"),
+              ElementsAre());
+}
+
 // The axis decides in every run.
 TEST_F(SweepPlanTest, WhatIsSetOfAnAxisIsSaid) {
   Write("small.yaml", "scene: living_room\n");
