@@ -224,7 +224,7 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   }
   if (!score.observable) return doubts;
   if (score.observable->scored_cells == 0) {
-    doubts.push_back(observable_path + ": holds no cell that could be seen, as free cells say");
+    doubts.push_back(observable_path + ": has no free cell, which are those that could be seen");
   } else if (const double share = UnknownShare(*score.observable); share > kMostUnknown) {
     doubts.push_back(
         fmt::format("{}: of the cells that could be seen, {} does not know {:.0f} %: of "

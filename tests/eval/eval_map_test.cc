@@ -87,8 +87,8 @@ TEST_F(EvalMap, WallsThatLieElsewhereAreSaid) {
 TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
   WriteCells("nothing", 0.1, "P2 3 2 255\n205 205 205\n205 205 205\n");
   EXPECT_EQ(Program("eval map coarse.yaml coarse.yaml --observable nothing.yaml").err,
-            "depthgrid: warning: nothing.yaml: holds no cell that could be seen, as free cells "
-            "say\n");
+            "depthgrid: warning: nothing.yaml: has no free cell, which are those that could be "
+            "seen\n");
 }
 
 TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
