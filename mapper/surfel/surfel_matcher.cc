@@ -20,6 +20,9 @@ constexpr int kStepsBeforeJudging = 2;
 // Surfels drawn in the mean by the last so many frames, a third of a second, may be of something
 // that moves (5, 7 and 20 do the same or less: docs/tried.md, "What moves").
 constexpr double kYoungFrames = 10.0;
+// Not among a run's first frames: all is young, nothing has shown how SLAM errs, and where one wall
+// is seen it decided alone what moves along it (docs/tried.md, "What moves").
+constexpr double kFirstFrames = 60.0;
 // It does where they lie so far, as a mean chi-square, from where the others have them.
 constexpr double kMovingChi2 = 6.0;
 // As long as these and the prediction know every direction by such a share of what all know.
@@ -172,7 +175,7 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
   match.map_from_base = prediction.map_from_base;
   match.iterations = solution.iterations;
   if (!solution.found) return match;
-  if (options_.judge_moving) {
+  if (options_.judge_moving && map.newest_frame() >= kFirstFrames) {
     LeaveOutMoving(map.newest_frame() - kYoungFrames, prior, solution);
   }
   if (parts != nullptr) pairs_.PartsOf(Gates(), solution.map_from_base, *parts);
