@@ -86,6 +86,7 @@ Eigen::VectorXd SparsePoseMatrix::Solve(Eigen::VectorXd b) const {
 }
 
 Eigen::MatrixXd SparsePoseMatrix::SolveAll(const Eigen::MatrixXd& b) const {
+  if (b.cols() == 0) return b;  // Eigen's dense solver asks for a first column
   if (factored_->is_dense) return factored_->dense.solve(b);
   return factored_->sparse.solve(b);
 }

@@ -69,6 +69,7 @@ TEST(PoseMatrix, BothSolveWhatTheDenseMatrixSays) {
       ASSERT_TRUE(matrix->Factor());
       EXPECT_LT((dense * matrix->Solve(b) - b).norm(), 1e-10);
       EXPECT_LT((dense * matrix->SolveAll(several) - several).norm(), 1e-10);
+      EXPECT_EQ(matrix->SolveAll(Eigen::MatrixXd(3 * poses, 0)).cols(), 0);
     }
   }
 }
