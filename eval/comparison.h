@@ -45,9 +45,16 @@ struct MetricComparison {
   std::optional<int> seeds_needed;
 };
 
+struct DifferentSetting {
+  std::string key;
+  std::string a;  // the only value of either side
+  std::string b;
+};
+
 struct Comparison {
-  std::vector<std::string> paired_by;  // the axes whose values make a pair
-  int pairs = 0;                       // that count
+  std::vector<std::string> paired_by;       // the axes whose values make a pair
+  std::vector<DifferentSetting> different;  // axes of both that are not among them
+  int pairs = 0;                            // that count
   int units = 0;  // what the tests count: pairs of one seed are averaged, and count as one
   std::vector<std::string> crossed_seeds;  // of which the units are as many as one has (SeedUnits)
   int runs_a = 0;                          // that meet the conditions and did not fail

@@ -59,6 +59,7 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
   Json json = {{"a", a},
                {"b", b},
                {"paired_by", comparison.paired_by},
+               {"different", Json::object()},
                {"pairs", comparison.pairs},
                {"units", comparison.units},
                {"crossed_seeds", comparison.crossed_seeds},
@@ -73,6 +74,9 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                {"without_direction", comparison.without_direction},
                {"all_equal", comparison.all_equal},
                {"metrics", Json::object()}};
+  for (const DifferentSetting& setting : comparison.different) {
+    json["different"][setting.key] = {setting.a, setting.b};
+  }
   for (const MetricComparison& compared : comparison.metrics) {
     json["metrics"][compared.metric] = ToJson(compared);
   }

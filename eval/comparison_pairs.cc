@@ -94,6 +94,40 @@ std::string WhatDiffers(const SweepResults& table, std::size_t row, std::size_t 
   return "";
 }
 
+// The value that all of the rows have, or "".
+std::string OnlyValue(const SweepResults& table, const std::string& key,
+                      const std::vector<std::size_t>& rows) {
+  const SweepParameter& parameter = table.Parameter(key);
+  const std::string first = rows.empty() ? "" : ValueAt(parameter, rows.front());
+  const bool is_only = std::all_of(
+      rows.begin(), rows.end(), [&](std::size_t row) { return ValueAt(parameter, row) == first; });
+  return is_only ? first : "";
+}
+
+// What is seen: runs that differ there make no pair.
+bool MakesPairs(const std::string& key) {
+  return IsSeedKey(key) || key == "scene" || key == "trajectory" || key == "frames";
+}
+
+// Takes the settings out of `keys` of which either side has one value, another than the other
+// side's, as keys that change together with one that a condition chooses.
+std::vector<DifferentSetting> TakeDifferent(const SweepResults& a,
+                                            const std::vector<std::size_t>& rows_a,
+                                            const SweepResults& b,
+                                            const std::vector<std::size_t>& rows_b,
+                                            std::vector<std::string>& keys) {
+  std::vector<DifferentSetting> different;
+  std::erase_if(keys, [&](const std::string& key) {
+    if (MakesPairs(key)) return false;
+    const std::string in_a = OnlyValue(a, key, rows_a);
+    const std::string in_b = OnlyValue(b, key, rows_b);
+    if (in_a.empty() || in_b.empty() || in_a == in_b) return false;
+    different.push_back({key, in_a, in_b});
+    return true;
+  });
+  return different;
+}
+
 std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
                                      const std::vector<std::size_t>& rows,
                                      const std::vector<std::string>& shared) {
@@ -175,9 +209,12 @@ std::vector<Pair> JoinRows(const std::map<Key, std::size_t>& rows_a,
 
 RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
                  Comparison& comparison) {
+  const std::vector<std::size_t> chosen_a = RowsThatMeet(a, options.where_a);
+  const std::vector<std::size_t> chosen_b = RowsThatMeet(b, options.where_b);
   comparison.paired_by = SharedAxes(a, b, options);
-  const auto rows_a = RowsByKey(a, RowsThatMeet(a, options.where_a), comparison.paired_by);
-  const auto rows_b = RowsByKey(b, RowsThatMeet(b, options.where_b), comparison.paired_by);
+  comparison.different = TakeDifferent(a, chosen_a, b, chosen_b, comparison.paired_by);
+  const auto rows_a = RowsByKey(a, chosen_a, comparison.paired_by);
+  const auto rows_b = RowsByKey(b, chosen_b, comparison.paired_by);
   const std::vector<std::size_t> seed_axes = SeedAxes(comparison.paired_by);
   std::vector<Pair> found = JoinRows(rows_a, rows_b, seed_axes);
   comparison.runs_a = static_cast<int>(rows_a.size());
@@ -201,8 +238,9 @@ RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOpti
   comparison.pairs = static_cast<int>(pairs.a.size());
   comparison.units = static_cast<int>(pairs.units.count());
   if (pairs.a.empty()) {
-    throw InputError(b.folder, fmt::format("shares no run with {} (by {})", a.folder,
-                                           fmt::join(comparison.paired_by, ", ")));
+    throw InputError(b.folder, fmt::format("shares no run with {} (by {}): choose what differs on "
+                                           "purpose with --where-a KEY=VALUE and --where-b",
+                                           a.folder, fmt::join(comparison.paired_by, ", ")));
   }
   return pairs;
 }

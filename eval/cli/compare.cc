@@ -117,6 +117,9 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
   if (!comparison.paired_by.empty()) {
     fmt::print(", paired by {}", fmt::join(comparison.paired_by, ", "));
   }
+  for (const DifferentSetting& setting : comparison.different) {
+    fmt::print("; {} is {} in A, {} in B", setting.key, setting.a, setting.b);
+  }
   if (!comparison.crossed_seeds.empty()) {
     fmt::print("; {} are crossed: as sure as {}", fmt::join(comparison.crossed_seeds, " and "),
                Counted(comparison.units, "seed"));
