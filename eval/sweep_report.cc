@@ -285,6 +285,8 @@ void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
   const std::string experiment = ExperimentYaml(results);
   if (!experiment.empty()) WriteFile(place.into + "/experiment.yaml", experiment);
+  const std::string again = TextOf(results, "again");
+  if (!again.empty()) WriteFile(place.into + "/sweep_again.yaml", again);
   const std::string title = TextOf(results, "title");
   Json json = SweepJson(results, GridOf(results));
   json["back"] = place.back;

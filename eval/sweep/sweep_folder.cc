@@ -42,6 +42,7 @@ std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.in
 Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
   Environment environment = {{"title", plan.title},
                              {"sweep", plan.sweep_text},
+                             {"again", plan.again_text},
                              {"experiment", plan.experiment_yaml},
                              {"given", plan.given_text},
                              {"version", DEPTHGRID_VERSION},
@@ -160,8 +161,8 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
 
 void RequireSweepNamesFree(const std::string& folder) {
   RequireNoOtherResult(folder, ResultKind::kSweep);
-  std::vector<std::string> names = {"results.csv", "report.html", "experiment.yaml", "progress.txt",
-                                    "cache"};
+  std::vector<std::string> names = {"results.csv",      "report.html",  "experiment.yaml",
+                                    "sweep_again.yaml", "progress.txt", "cache"};
   // A sweep that Slurm does has these two, and its lock, before it has a database.
   if (!fs::exists(folder + kLockName)) names.insert(names.end(), {"slurm", "shards"});
   for (const std::string& name : names) {

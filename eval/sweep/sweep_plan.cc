@@ -9,6 +9,7 @@
 
 #include "eval/record_check.h"
 #include "eval/shipped.h"
+#include "eval/sweep/sweep_again.h"
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/counted.h"
@@ -351,6 +352,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   plan.stop = file.stop;
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);
+  plan.again_text = SweepAgainText(plan, file.mode, file.samples, file.sample_seed);
   return plan;
 }
 

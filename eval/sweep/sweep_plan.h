@@ -38,6 +38,7 @@ struct Shard {
 struct SweepPlan {
   std::string title;
   std::string sweep_text;       // what decides the runs, axes written out; the same for the same
+  std::string again_text;       // a sweep's file for the same runs (SweepAgainText)
   std::string experiment_yaml;  // every effective key of the experiment
   // Of these the ones that a file or --set gives, a line each with its whole path: they stay when
   // an axis chooses another preset (slam.profile), which sets all others.

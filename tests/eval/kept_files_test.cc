@@ -216,8 +216,8 @@ TEST_F(KeptFiles, ARenderKeepsTheImagesOfNoRender) {
 
 TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
   Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1]}\n");
-  for (const std::string name :
-       {"results.csv", "report.html", "experiment.yaml", "progress.txt", "cache", "slurm"}) {
+  for (const std::string name : {"results.csv", "report.html", "experiment.yaml",
+                                 "sweep_again.yaml", "progress.txt", "cache", "slurm"}) {
     MakeFolder(name + "_", {name});
     ExpectRefusal("sweep ./s.yaml -o " + name + "_ --force",
                   name + "_/" + name + ": is there already and no sweep's; choose another folder");

@@ -44,6 +44,36 @@ class SweepRepeat : public ProgramTest {
       ExpectScoresOfRow(folder, results, row);
     }
   }
+  // The two files of its folder, taken elsewhere, make the sweep again: no other place, no other
+  // sweep. Names of files on an axis are whole then.
+  void ExpectSweepCanBeRepeated(const std::string& sweep) const {
+    const std::string elsewhere = "taken_from_" + sweep;
+    std::filesystem::create_directory(Path(elsewhere));
+    for (const std::string file : {"/experiment.yaml", "/sweep_again.yaml"}) {
+      std::filesystem::copy_file(Path(sweep + file), Path(elsewhere + file));
+    }
+    Succeed("sweep " + elsewhere + "/sweep_again.yaml -o " + elsewhere + "/out");
+    const SweepResults there = ReadSweep(Path(sweep));
+    const SweepResults here = ReadSweep(Path(elsewhere + "/out"));
+    ASSERT_EQ(here.rows(), there.rows());
+    EXPECT_EQ(here.environment.at("experiment"), there.environment.at("experiment"));
+    EXPECT_EQ(here.environment.at("given"), there.environment.at("given"));
+    for (std::size_t axis = 0; axis < there.parameters.size(); ++axis) {
+      EXPECT_EQ(here.parameters[axis].key, there.parameters[axis].key);
+      if (IsFileKey(there.parameters[axis].key)) continue;
+      EXPECT_EQ(here.parameters[axis].texts, there.parameters[axis].texts);
+    }
+    ASSERT_EQ(here.metrics.size(), there.metrics.size());
+    for (std::size_t metric = 0; metric < there.metrics.size(); ++metric) {
+      for (std::size_t row = 0; row < there.rows(); ++row) {
+        EXPECT_THAT(here.metrics[metric].values[row],
+                    ::testing::NanSensitiveDoubleEq(there.metrics[metric].values[row]))
+            << there.metrics[metric].name;
+      }
+    }
+    EXPECT_EQ(ReadFile(Path(elsewhere + "/out/sweep_again.yaml")),
+              ReadFile(Path(sweep + "/sweep_again.yaml")));
+  }
 };
 
 // The experiment beside the sweep's file, in the working folder.
@@ -52,6 +82,7 @@ TEST_F(SweepRepeat, WithFilesOnAnAxisAndNamesWithoutAFolder) {
   Write("room2.yaml", kRoom);
   Succeed("sweep rooms.yaml -o out");
   EXPECT_EQ(ReadSweep(Path("out")).environment.at("files_from") + "/", Path(""));
+  ExpectSweepCanBeRepeated("out");
 }
 
 // What a profile or a scenario presets is not to be held by what the sweep's base had of it.
@@ -64,6 +95,7 @@ axes:
 )");
   Succeed("sweep ./profiles.yaml -o out");
   ExpectEachRunCanBeRepeated("out");
+  ExpectSweepCanBeRepeated("out");
   Write("scenarios.yaml", R"(
 experiment: ./small.yaml
 set: {slam.loops.max_distance_m: 2, slam.loops.max_angle_deg: 90, slam.loops.min_gap_s: 0.1}
@@ -72,6 +104,32 @@ axes:
 )");
   Succeed("sweep ./scenarios.yaml -o loops");
   ExpectEachRunCanBeRepeated("loops");
+}
+
+TEST_F(SweepRepeat, OfEveryKindOfAxis) {
+  Write("zip.yaml", R"(
+experiment: ./small.yaml
+mode: zip
+axes:
+  "slam.profile, slam.drift_scale": [[orb_slam2, 48.4], [planar_slam, 37.5]]
+  mapper.fusion.gain: [[1, 0.5, 0], 0.25]
+  seed: {seeds: 2, first: 7}
+)");
+  Succeed("sweep ./zip.yaml -o zip");
+  ExpectSweepCanBeRepeated("zip");
+  Write("random.yaml", R"(
+experiment: ./small.yaml
+mode: random
+samples: 3
+sample_seed: 5
+stop: {metric: trajectory.est.mean_euclidean_m, width: 9, min_seeds: 2}
+axes:
+  slam.drift_scale: {from: 0.1, to: 10, scale: log}
+  mapper.fusion.gain: {from: 0, to: 1}
+  seed: {seeds: 3}
+)");
+  Succeed("sweep ./random.yaml -o random");
+  ExpectSweepCanBeRepeated("random");
 }
 
 // A key that has the preset's value makes another sweep where the preset is on an axis.
