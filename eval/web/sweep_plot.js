@@ -34,8 +34,12 @@ function plotSeries(free) {
   const position = (i) => (axis.numeric ? axis.numbers[POINTS[i].values[along.axis]] : POINTS[i].values[along.axis]);
   // Several points at one place, as where an axis is left open: a cloud, no line.
   const crowded = new Set(chosen.map((i) => `${position(i)} ${along.by < 0 ? "" : POINTS[i].values[along.by]}`)).size < chosen.length;
-  // So are points that differ in more than what is drawn, as those of a random sweep.
-  const scattered = along.by < 0 && AXES.some((other, i) => i !== along.axis && other.numeric && !monotone(chosen, along.axis, i));
+  // So are points that differ in more than what is drawn, as those of a random sweep or of named variants.
+  const isAlike = (points, i) => (AXES[i].numeric ? monotone(points, along.axis, i) : new Set(points.map((point) => POINTS[point].values[i])).size < 2);
+  const isScattered = (value) => {
+    const points = chosen.filter((i) => value === null || POINTS[i].values[along.by] === value);
+    return AXES.some((other, i) => i !== along.axis && i !== along.by && !isAlike(points, i));
+  };
   const order = [...chosen].sort((a, b) => position(a) - position(b));
   const x = crowded ? order.map(position) : [...new Set(order.map(position))];
   const series = lines.map((value, k) => {
@@ -47,7 +51,7 @@ function plotSeries(free) {
     const pick = (values) => slots.map((i) => (i === null ? null : values[i]));
     return {
       label: value === null ? "mean" : `${shortKey(AXES[along.by].key)} ${AXES[along.by].labels[value]}`, values: pick(metric.mean), low: pick(metric.low), high: pick(metric.high),
-      colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || scattered || !axis.numeric, spanGaps: true,
+      colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || !axis.numeric || isScattered(value), spanGaps: true,
     };
   });
   return { x, series };
@@ -74,8 +78,9 @@ function drawAlong() {
   if (positiveValues) checkbox("plot-log-values", "logY", "logarithmic values");
   keepFocus(byId("plot-controls"), controls);
   const { x, series } = plotSeries(free);
+  const held = free.filter((i) => along.held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[along.held[i]]}`);
   drawPlot(byId("plot"), {
-    title: `${metric.label} along ${axis.key}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
+    title: `${metric.label} along ${axis.key}${held.length ? `, at ${held.join(", ")}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
   const seeds = Math.max(...POINTS.map((p) => p.counting));

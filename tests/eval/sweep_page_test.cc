@@ -56,6 +56,7 @@ TEST_F(SweepPage, OfASweep) {
   ExpectEveryPlotIsDrawn();
   EXPECT_GT(ColoursOf("#heat canvas"), 20);
   EXPECT_EQ(browser_->Evaluate("metric.name"), "trajectory.est.mean_euclidean_m");
+  EXPECT_EQ(browser_->Evaluate("plotSeries([]).series.filter((s) => s.onlyPoints).length"), 0);
   // 60 runs, one failed; at half the noise no gain is best, at twice the noise all of it.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#best tbody tr').length"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody tr:last-child td:nth-child(2)')"
@@ -191,6 +192,8 @@ TEST_F(SweepPage, OfASweepWithKeysThatChangeTogether) {
   EXPECT_EQ(browser_->Evaluate("[along.axis, along.by, heat.y, heat.x].map((i) => "
                                "shortKey(AXES[i].key)).join()"),
             "drift_scale,mode,drift_scale,mode");
+  // No line joins systems that differ in more than their drift.
+  EXPECT_EQ(browser_->Evaluate("plotSeries([]).series.filter((s) => s.onlyPoints).length"), 2);
   EXPECT_EQ(browser_->Evaluate("heatCells([]).flat().filter((cell) => cell).length"), 6);
 }
 
@@ -280,6 +283,8 @@ TEST_F(SweepPage, OfASweepWhoseFirstValueFails) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
   ExpectEveryPlotIsDrawn();
   EXPECT_GT(ColoursOf("#heat canvas"), 3);
+  EXPECT_THAT(browser_->Evaluate("document.querySelector('#plot h3').firstChild.data"),
+              ::testing::EndsWith(" along mapper.fusion.gain, at max_range_m 6"));
   // One reason, one line, with the setting that all six have.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#failures tbody tr').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#failures tbody').textContent"),
