@@ -4,13 +4,6 @@ const ABLATION = JSON.parse(byId("data").textContent);
 const [BAR_WIDTH, BAR_HEIGHT] = [240, 22];
 const nameOf = (word) => word.replaceAll("_", " ");
 
-function svg(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
-
 // Shares of one score, on one scale.
 function scaleOf(score) {
   const shares = Object.values(score.truth_for).flatMap((stage) => [stage.share, ...intervalOf(score, stage)]);

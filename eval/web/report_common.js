@@ -13,6 +13,13 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
 // As many digits as tell something: 4 significant ones, no trailing zeros.
@@ -95,18 +102,21 @@ function viridis(share) {
 }
 const rgb = (parts) => `rgb(${parts.join(",")})`;
 
-// A canvas of that many CSS pixels; paint(context, width, height) is called now and whenever the
-// theme changes.
+// A canvas of that many CSS pixels, `scale` of its own for each.
+function canvasPainted(canvas, scale, width, height, paint) {
+  canvas.width = Math.round(width * scale);
+  canvas.height = Math.round(height * scale);
+  const context = canvas.getContext("2d");
+  context.scale(scale, scale);
+  context.font = "11px system-ui, sans-serif";
+  paint(context, width, height);
+  return canvas;
+}
+
+// paint(context, width, height) is called now and whenever the theme changes.
 function paintedCanvas(width, height, label, paint) {
   const canvas = make("canvas", { role: "img", "aria-label": label });
-  const redraw = () => {
-    canvas.width = Math.round(width * devicePixelRatio);
-    canvas.height = Math.round(height * devicePixelRatio);
-    const context = canvas.getContext("2d");
-    context.scale(devicePixelRatio, devicePixelRatio);
-    context.font = "11px system-ui, sans-serif";
-    paint(context, width, height);
-  };
+  const redraw = () => canvasPainted(canvas, devicePixelRatio, width, height, paint);
   canvas.style.width = `${width}px`;
   canvas.style.maxWidth = "100%";
   themeListeners.push(redraw);
@@ -239,7 +249,8 @@ function logTicks(x, low, high) {
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
 function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
-  const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title));
+  const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
+  const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
   container.append(box);
   let plot = null;
   let quiet = false;  // the cursor moves because somebody else moved it
@@ -251,10 +262,10 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
     const room = (high - low) * 0.02 || Math.abs(high) * 0.1 || 1;
     return [low - room, high + room];
   };
-  const options = () => {
+  const options = (size = { width: width(), height }) => {
     const axis = { stroke: colour("muted"), grid: { stroke: colour("grid"), width: 1 }, ticks: { stroke: colour("grid"), size: 5 } };
     return {
-      width: width(), height,
+      ...size,
       cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
       scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : {}) } },
       axes: [

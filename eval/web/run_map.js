@@ -72,12 +72,17 @@ function drawScan(context, scan, path, fill) {
   }
 }
 
-function drawScaleBar(context) {
+// A round length that takes up to a quarter of the width.
+function scaleBar() {
   const pixelsPerMetre = cellSize() / RUN.map.resolution;
   const wanted = canvas.width / 4 / pixelsPerMetre;
   const power = 10 ** Math.floor(Math.log10(wanted));
   const length = [5, 2, 1].map((f) => f * power).find((l) => l <= wanted) ?? power;
-  const pixels = length * pixelsPerMetre;
+  return { pixels: length * pixelsPerMetre, text: length >= 1 ? `${length} m` : `${Math.round(length * 100)} cm` };
+}
+
+function drawScaleBar(context) {
+  const { pixels, text } = scaleBar();
   const d = devicePixelRatio;
   const left = 12 * d;
   const bottom = canvas.height - 14 * d;
@@ -86,7 +91,7 @@ function drawScaleBar(context) {
   context.fillStyle = "#111";
   context.fillRect(left, bottom, pixels, 3 * d);
   context.font = `${13 * d}px system-ui, sans-serif`;
-  context.fillText(length >= 1 ? `${length} m` : `${Math.round(length * 100)} cm`, left, bottom - 6 * d);
+  context.fillText(text, left, bottom - 6 * d);
 }
 
 let drawPending = false;
@@ -108,6 +113,30 @@ function drawMap() {
   if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame, scanned), scanned, MAP_COLOURS.scan);
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
   drawScaleBar(context);
+}
+
+// The part of the map and the trajectories that are shown, without what belongs to the chosen frame.
+function mapSvg() {
+  const size = cellSize();
+  const height = Math.round((FIGURE_WIDTH * canvas.height) / canvas.width);
+  const pixel = canvas.width / FIGURE_WIDTH;  // of the figure, in the canvas' own
+  const at = (x, y) => toCanvas(x, y).map((v) => (v / pixel).toFixed(2)).join();
+  const pathOf = (path) => {
+    const known = [...path.x.keys()].filter((i) => path.x[i] !== null);
+    return known.map((i, k) => `${k && known[k - 1] === i - 1 ? "L" : "M"}${at(path.x[i], path.y[i])}`).join("");
+  };
+  const shown = PATHS.filter(([name]) => shownPaths.has(name));
+  const pen = (name, tone) => ({ stroke: MAP_COLOURS[tone], width: name === "truth" ? 6 : 1.6, opacity: name === "truth" ? 0.5 : 1 });
+  const lines = shown.map(([name, , tone]) => {
+    const { stroke, width, opacity } = pen(name, tone);
+    return svg("path", { d: pathOf(RUN.paths[name]), fill: "none", stroke, "stroke-width": width, "stroke-opacity": opacity, "stroke-linejoin": "round" });
+  });
+  const legend = legendOf(shown.map(([name, label, tone]) => ({ label, ...pen(name, tone) })), height + 4);
+  const { pixels, text } = scaleBar();
+  const image = svg("image", { href: RUN.map.layers[currentLayer], x: view.x / pixel, y: view.y / pixel, width: (RUN.map.width * size) / pixel, height: (RUN.map.height * size) / pixel, style: "image-rendering: pixelated" });
+  return figureSvg(height + 4 + legend.height, svg("svg", { width: FIGURE_WIDTH, height }, svg("rect", { width: FIGURE_WIDTH, height, fill: "#cdcdcd" }), image, ...lines,
+    svg("rect", { x: 6, y: height - 34, width: pixels / pixel + 12, height: 28, fill: "#fff", "fill-opacity": 0.85 }), svg("rect", { x: 12, y: height - 14, width: pixels / pixel, height: 3, fill: "#111" }),
+    svg("text", { x: 12, y: height - 20, fill: "#111" }, text)), ...legend.elements);
 }
 
 function resizeMap() {
@@ -206,7 +235,7 @@ function initMap() {
   const zoomButtons = make("div", { class: "no-print map-buttons" },
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1.4) }, "Zoom in"), " ",
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4) }, "Zoom out"), " ",
-    make("button", { type: "button", onclick: resetView }, "Whole map"), make("span", { id: "map-position", class: "muted" }));
+    make("button", { type: "button", onclick: resetView }, "Whole map"), saveButtons("map", pictureKinds(mapSvg)), make("span", { id: "map-position", class: "muted" }));
   byId("map-note").before(zoomButtons);
   byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. ${RUN.scans.length ? "Red dots: the scan of the chosen frame at its final pose; arrowheads" : "Arrowheads"}: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
   selectLayer(currentLayer);

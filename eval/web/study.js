@@ -39,14 +39,8 @@ function initTable() {
   table.tHead.replaceWith(tableHead());
   for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, i) => cell.classList.toggle("room", i % 5 === 1));
   byId("table").append(table);
+  byId("table-title").append(saveButtons("Table 1 errors", { CSV: () => csvOfTable(table, "m") }));
   byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
-}
-
-function svg(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
 }
 
 // A strip of its own, so that the scale bar hides no wall; metres, from y down.
@@ -70,10 +64,11 @@ function initMaps() {
     const cases = casesIn(room);
     const f1 = (map) => `F1 ${fixed(seen(map)?.occupied.f1, 3)}`;
     const row = (first, figures) => make("div", { class: "figure-row" }, first, ...figures);
-    byId("maps").append(make("h3", {}, nameOf(room.scene)),
+    const rows = [
       row(figure(room.truth, `${room.scene}: true map`, "Truth, in the scale of all", barPicture(room)),
         cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${sourceOf(c)}, input: ${f1(c.metrics.input_map)}`))),
-      row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${sourceOf(c)}, output`), `: ${f1(c.metrics.map)}`)))));
+      row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${sourceOf(c)}, output`), `: ${f1(c.metrics.map)}`))))];
+    byId("maps").append(headWithSave("maps", room, rows), ...rows);
   }
 }
 
@@ -94,11 +89,53 @@ function pathPicture(room, c) {
   return picture;
 }
 
+// The figures of rows that lie beneath each other, each with what is said of it.
+function rowsSvg(rows, names) {
+  const [GAP, LINE] = [6, 13];
+  const size = (one) => (one.naturalWidth ? [one.naturalWidth, one.naturalHeight] : (one.getAttribute("viewBox")?.split(" ") ?? [0, 0, 1, 1]).slice(2).map(Number));
+  let y = 0;
+  const parts = [];
+  for (const row of rows) {
+    const figures = [...row.children];
+    const width = (FIGURE_WIDTH - GAP * (figures.length - 1)) / figures.length;
+    const ends = figures.map((figure, k) => {
+      let below = y;
+      for (const one of figure.querySelectorAll(":scope > img, :scope > svg")) {
+        const [w, h] = size(one);
+        const place = { x: k * (width + GAP), y: below, width, height: (width * h) / w };
+        parts.push(one.naturalWidth ? svg("image", { href: one.src, ...place, style: "image-rendering: pixelated" }) : inlined(one, place));
+        below += place.height;
+      }
+      for (const line of wrapped(figure.querySelector("figcaption")?.textContent ?? "", width / 5)) {
+        below += LINE;
+        parts.push(svg("text", { x: k * (width + GAP), y: below - 2, "font-size": 9, fill: INK }, line));
+      }
+      return below;
+    });
+    y = Math.max(...ends) + GAP;
+  }
+  const legend = legendOf(names.map((name) => ({ label: name, stroke: PATH_COLOURS[name], ...(name === "truth" ? { width: 8, opacity: 0.5 } : {}) })), y);
+  return figureSvg(y + (names.length ? legend.height : 0), ...parts, ...legend.elements);
+}
+
+// A picture of the page with what its style sheet says of it.
+function inlined(picture, place) {
+  const copy = picture.cloneNode(true);
+  const styled = [...picture.querySelectorAll("*")];
+  [...copy.querySelectorAll("*")].forEach((element, i) => {
+    const style = getComputedStyle(styled[i]);
+    for (const name of ["fill", "stroke", "stroke-width", "stroke-opacity", "font-size", "image-rendering"]) element.style.setProperty(name, style.getPropertyValue(name));
+  });
+  for (const [name, value] of Object.entries(place)) copy.setAttribute(name, value);
+  return copy;
+}
+const headWithSave = (what, room, rows, names = []) => make("h3", {}, nameOf(room.scene), saveButtons(`${what} ${room.scene}`, pictureKinds(() => rowsSvg(rows, names))));
+
 function initPaths() {
   for (const key of document.querySelectorAll(".paths-legend i")) key.style.background = PATH_COLOURS[key.dataset.path];
   for (const room of STUDY.rooms) {
-    byId("paths").append(make("h3", {}, nameOf(room.scene)), make("div", { class: "figure-row four" },
-      ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, sourceOf(c))))));
+    const row = make("div", { class: "figure-row four" }, ...casesIn(room).map((c) => make("figure", {}, pathPicture(room, c), make("figcaption", {}, sourceOf(c)))));
+    byId("paths").append(headWithSave("trajectories", room, [row], Object.keys(PATH_COLOURS)), row);
   }
 }
 
@@ -107,9 +144,11 @@ function initMapTable() {
     const s = seen(map);
     return s ? [s.occupied.precision, s.occupied.recall, s.occupied.f1].map((v) => fixed(v, 3)).concat(millimetres(s.chamfer_m)) : ["–", "–", "–", "–"];
   };
-  byId("map-table").append(tableOf(
-    ["Case", "Input map: precision", "recall", "F1", "chamfer (mm)", "Output map: precision", "recall", "F1", "chamfer (mm)"],
-    STUDY.cases.map((c) => [linkTo(c, `${nameOf(c.scene)}, ${sourceOf(c)}`), ...values(c.metrics.input_map), ...values(c.metrics.map)])));
+  const table = tableOf(
+    ["Case", ...["input", "output"].flatMap((map) => ["precision", "recall", "F1", "chamfer (mm)"].map((score) => `${map} ${score}`))],
+    STUDY.cases.map((c) => [linkTo(c, `${nameOf(c.scene)}, ${sourceOf(c)}`), ...values(c.metrics.input_map), ...values(c.metrics.map)]));
+  byId("map-table").append(table);
+  byId("map-table-title").append(saveButtons("Scores of the maps", { CSV: () => csvOfTable(table) }));
 }
 
 // What the command line changed: published figures and notes are of the file as it stands.

@@ -66,7 +66,8 @@ function bestOfColumns(cells) {
 // The better the yellower; of what has no better side, the more.
 const heatColour = (share) => (metric.better === "lower" ? 1 - share : share);
 
-function heatPicture(cells, best, width) {
+// `scale`: of a file's picture, in which no cell is chosen.
+function heatPicture(cells, best, width, scale) {
   const [columns, rows] = [cells.length, cells[0].length];
   const longest = Math.max(...HEAT_AXES[heat.y].labels.map((t) => t.length));
   const means = cells.flat().filter(Boolean).map((c) => c.mean);
@@ -104,7 +105,7 @@ function heatPicture(cells, best, width) {
     }));
     context.strokeStyle = colour("ink");
     context.lineWidth = 2;
-    context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
+    if (!scale) context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
     context.fillStyle = colour("muted");
     context.textAlign = "center";
     // Of numbers so many are left out that they fit; names are shortened.
@@ -123,6 +124,10 @@ function heatPicture(cells, best, width) {
     drawHeatKey(context, ...key, keyTexts);
     if (cells.flat().includes(null)) sayCrossedOut(context, key[0], key[1] + key[2] + 14);
   };
+  if (scale) {
+    const onPaper = (context) => { context.fillStyle = "#fff"; context.fillRect(0, 0, width, height); paint(context); };
+    return canvasPainted(make("canvas"), scale, width, height, onPaper);
+  }
   const canvas = paintedCanvas(width, height, `${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
   canvas.cellAt = (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)];
   return canvas;
@@ -208,6 +213,14 @@ function sayCell(cells, best) {
   byId("heat-note").textContent = `${place}${value}.${line}${best.some(Boolean) ? ` Red: the best ${AXES[heat.y].key} of each column${best.some((b) => b && isNumber(b.low) && b.low !== b.high) ? ", the bar its 95 % interval" : ""}.` : ""} Colours by rank, yellow is ${metric.better === "neither" ? "more" : "better"}.`;
 }
 
+function heatButtons(cells, best) {
+  const rows = () => HEAT_AXES[heat.y].labels.map((label, r) => [label, ...cells.map((column) => column[r]?.mean)]);
+  return saveButtons(`${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}`, {
+    PNG: () => pngOfCanvas(inLight(() => heatPicture(cells, best, FIGURE_WIDTH, PNG_SCALE))),
+    CSV: () => csvText([[`${metricLabel()}: ${AXES[heat.y].key} down, ${AXES[heat.x].key} across`, ...HEAT_AXES[heat.x].labels], ...rows()]),
+  });
+}
+
 function drawHeat() {
   const axes = heatAxes();
   const free = freeAxes([heat.x, heat.y]);
@@ -241,6 +254,7 @@ function drawHeat() {
     choose(heat.cell[0] + step[0], heat.cell[1] + step[1]);
   });
   byId("heat").replaceChildren(canvas);
+  byId("heat-controls").append(heatButtons(cells, best));
   if (hadFocus) canvas.focus();
   sayCell(cells, best);
 }

@@ -158,6 +158,7 @@ function drawBest() {
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
   table.id = "best";
   byId("best").replaceWith(table);
+  byId("best-note").append(saveButtons(`best ${axis.key} for ${metric.label}`, { CSV: () => csvOfTable(table) }));
   const longest = Math.max(...lines.map((line) => line.points.length + line.left_out.length));
   if (longest < 3) return;
   const shown = lines.filter((line) => line.points.length + line.left_out.length === longest);

@@ -83,10 +83,13 @@ function drawRows(columns, body) {
     const text = () => column.text?.(row) ?? (column.numeric ? compact(value) : String(value ?? "–"));
     return make("td", {}, column.link ? linkCell(row, value) : text());
   }))));
+  const heads = columns.map((column) => `${column.title}${column.unit ? ` (${column.unit})` : ""}`);
+  const written = () => csvText([heads, ...rows.map((row) => columns.map((column) => (column.link ? commandOf(row) : column.numeric ? column.at(row) : column.text?.(row) ?? column.at(row))))]);
   const more = rows.length > table.most;
   const note = byId("table-note");
   note.replaceChildren(`${rows.length} ${rows.length === 1 ? "row" : "rows"}${more ? `, the first ${table.most} shown. ` : ". "}`);
   if (more) note.append(make("button", { type: "button", class: "no-print", onclick: () => { table.most *= 10; drawRows(columns, body); } }, "Show more"));
+  note.append(saveButtons(`${SWEEP.environment.title ?? "sweep"} ${table.what}`, { CSV: written }));
   if (table.what === "runs") {
     note.append(make("br"), "Runs without a folder can be made again: start the command in this sweep's folder, then “open” it after ", make("code", {}, "depthgrid report ."), ".",
       make("br"), make("span", { id: "table-copied" }), make("code", { id: "table-command" }));
