@@ -8,6 +8,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/seed_range.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -42,15 +43,6 @@ void PrintLegend(std::size_t seeds) {
   }
 }
 
-// Each run has a seed of its own.
-void RequireNoSeed(const std::vector<std::string>& set) {
-  for (const std::string& assignment : set) {
-    Config config;
-    config.Set(assignment);
-    if (config.Has("seed")) throw InputError(config.PlaceOfKey("seed"), "give --first-seed N");
-  }
-}
-
 void WarnOfRepeatedSeeds(std::size_t counted, std::size_t seeds) {
   if (counted == seeds) return;
   Warn(
@@ -60,9 +52,10 @@ void WarnOfRepeatedSeeds(std::size_t counted, std::size_t seeds) {
 }
 
 AblationPlan PlanOf(const AblateArguments& arguments) {
-  RequireNoSeed(arguments.common.set);
+  RequireNotSet(arguments.common.set, "seed", "give --first-seed N");
   AblationPlan plan;
   plan.experiment = ExperimentNamed(arguments.experiment, arguments.common.set);
+  RequireSeeds("--first-seed", arguments.first_seed, arguments.seeds);
   plan.seeds.resize(static_cast<std::size_t>(arguments.seeds));
   std::iota(plan.seeds.begin(), plan.seeds.end(), arguments.first_seed);
   return plan;

@@ -163,6 +163,15 @@ std::vector<std::string> InputsOf(const std::string& name,
   return names;
 }
 
+void RequireNotSet(const std::vector<std::string>& set, const std::string& key,
+                   const std::string& instead) {
+  for (const std::string& assignment : set) {
+    Config config;
+    config.Set(assignment);
+    if (config.Has(key)) throw InputError(config.PlaceOfKey(key), instead);
+  }
+}
+
 std::string CacheFolder(const CommonArguments& arguments) {
   if (arguments.no_cache) return "";
   if (!arguments.cache.empty()) return arguments.cache;

@@ -46,6 +46,10 @@ ExperimentOptions ExperimentOrScene(const std::string& name, const std::vector<s
 std::vector<std::string> InputsOf(const std::string& name,
                                   const std::vector<ExperimentOptions>& experiments);
 
+// Throws InputError, which says `instead`, when one of the assignments sets the key.
+void RequireNotSet(const std::vector<std::string>& set, const std::string& key,
+                   const std::string& instead);
+
 // Where rendered depth is kept: --cache, or else $DEPTHGRID_CACHE, unless --no-cache.
 std::string CacheFolder(const CommonArguments& arguments);
 

@@ -3,6 +3,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/seed_range.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
 #include "sim/slam_calibration.h"
@@ -10,6 +11,11 @@
 namespace depthgrid::cli {
 
 void SlamCalibrate(const SlamCalibrateArguments& arguments) {
+  for (const char* key : {"seed", "slam_seed"}) {
+    RequireNotSet(arguments.common.set, key, "give --first-seed N");
+  }
+  RequireNotSet(arguments.common.set, "slam.drift_scale", "is what this command finds");
+  RequireSeeds("--first-seed", arguments.first_seed, arguments.seeds);
   const ExperimentOptions options = ExperimentOrScene(arguments.experiment, arguments.common.set);
   const World world = LoadWorld(options, ThreadsOr(arguments.common.threads));
   Warn(DoubtsOfRecord(arguments.experiment, arguments.common.set));

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "eval/experiment_options.h"
+#include "eval/seed_range.h"
 #include "eval/sweep/sweep_results.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -53,6 +54,7 @@ std::vector<std::string> KeysOf(const std::string& names) {
 void ReadSeeds(const Config& map, SweepAxis& axis) {
   SeedOptions seeds;
   map.Read(seeds);
+  RequireSeeds(axis.place, seeds.first, seeds.seeds);
   for (int i = 0; i < seeds.seeds; ++i) {
     axis.values.push_back({fmt::format("{}", seeds.first + static_cast<std::uint64_t>(i))});
   }

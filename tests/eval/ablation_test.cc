@@ -184,6 +184,9 @@ TEST_F(ProgramAblate, Refusals) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(Path("out")));
   }
+  EXPECT_EQ(Program("ablate ./small.yaml --seeds 2 --first-seed 18446744073709551615 -o out").err,
+            "depthgrid: --first-seed: 2 seeds from 18446744073709551615 on go beyond "
+            "18446744073709551615, the largest there is\n");
   // Each run has its own.
   EXPECT_EQ(Program("ablate ./small.yaml --set seed=4 -o out").err,
             "depthgrid: --set seed=4: give --first-seed N\n");

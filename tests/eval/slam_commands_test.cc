@@ -1,4 +1,5 @@
 // `slam`, `slam-fit` and `slam-calibrate` as a user types them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "mapper/io/trajectory_file.h"
@@ -187,6 +188,14 @@ TEST_F(SlamCommands, CalibrateRefusesBadInput) {
   ExpectRefusal("slam-calibrate ./small.yaml --target=-1", "--target");
   ExpectRefusal("slam-calibrate ./nothing.yaml --target 1", "nothing.yaml");
   ExpectRefusal("slam-calibrate ./small.yaml --target 0.1 --seeds 0", "--seeds");
+  ExpectRefusal("slam-calibrate ./small.yaml --target 0.1 --first-seed 18446744073709551615",
+                "--first-seed: 400 seeds from 18446744073709551615 on go beyond");
+  for (const char* key : {"seed", "slam_seed"}) {
+    ExpectRefusal(fmt::format("slam-calibrate ./small.yaml --target 0.1 --set {}=3", key),
+                  fmt::format("--set {}=3: give --first-seed N", key));
+  }
+  ExpectRefusal("slam-calibrate ./small.yaml --target 0.1 --set slam.drift_scale=3",
+                "--set slam.drift_scale=3: is what this command finds");
   // Nothing to scale.
   ExpectRefusal("slam-calibrate ./small.yaml --set slam.profile=ground_truth --target 0.1",
                 "--target");
