@@ -17,9 +17,10 @@ namespace {
 
 constexpr std::size_t kMaxConfigBytes = 16U << 20U;
 
+// "a." has an empty part too, which is the name of no key.
 std::vector<std::string> SplitPath(const std::string& path) {
   std::vector<std::string> parts;
-  std::stringstream stream(path);
+  std::stringstream stream(path + ".");
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
   return parts;
 }
@@ -34,6 +35,11 @@ YAML::Node Find(const YAML::Node& root, const std::string& key_path) {
     node.reset(child);
   }
   return node;
+}
+
+// As it stands: a name that a user gave (a path's, a material's) may have dots in it.
+YAML::Node FindTopLevel(const YAML::Node& root, const std::string& key) {
+  return root.IsMap() ? root[key] : YAML::Node(YAML::NodeType::Undefined);
 }
 
 }  // namespace
@@ -105,7 +111,7 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
 Config Config::Take(const std::string& key) {
   auto taken = std::make_unique<Tree>();
   taken->place = tree_->place;
-  const YAML::Node node = Find(tree_->root, key);
+  const YAML::Node node = FindTopLevel(tree_->root, key);
   if (node.IsDefined()) {
     if (!node.IsMap())
       throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a map of keys");
@@ -120,7 +126,7 @@ void Config::NameSubject(const std::string& subject) { tree_->subject = subject;
 
 std::vector<Config> Config::TakeMaps(const std::string& key) {
   std::vector<Config> maps;
-  const YAML::Node node = Find(tree_->root, key);
+  const YAML::Node node = FindTopLevel(tree_->root, key);
   if (!node.IsDefined()) return maps;
   if (!node.IsSequence()) {
     throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a list");

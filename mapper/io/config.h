@@ -68,10 +68,10 @@ class Config {
   // assignment when empty.
   void Set(const std::string& key_path, const std::string& yaml_value,
            const std::string& place = "");
-  // Removes a top-level key and returns its subtree; an empty tree if absent.
+  // Removes a top-level key, dots and all, and returns its subtree; an empty tree if absent.
   Config Take(const std::string& key);
-  // Removes a top-level key whose value is a list of maps and returns them in order; none if
-  // absent.
+  // Removes a top-level key, dots and all, whose value is a list of maps and returns them in order;
+  // none if absent.
   std::vector<Config> TakeMaps(const std::string& key);
   // What this tree is about, "trajectory 'tour'": errors name it behind file and line.
   void NameSubject(const std::string& subject);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -186,11 +187,28 @@ class YamlReader final : public OptionsVisitor {
   // A group is known by its own name before the keys in it are; a key may be of another group.
   std::string Hint(const std::string& prefix, const std::string& key, const YAML::Node& value,
                    const std::vector<std::string>& siblings) const {
+    const std::vector<std::string> paths = all_keys_();
+    if (IsPathIn(paths, prefix + key)) return ", write it as " + Nested(key);
     const std::string path = prefix + key + FirstPathIn(value);
     const std::string near_sibling = DidYouMean(key, siblings, prefix);
-    const std::string same = DidYouMeanKey(path, all_keys_(), false);
+    const std::string same = DidYouMeanKey(path, paths, false);
     if (!same.empty() && (near_sibling.empty() || !value.IsMap())) return same;
-    return near_sibling.empty() ? DidYouMeanKey(path, all_keys_(), true) : near_sibling;
+    return near_sibling.empty() ? DidYouMeanKey(path, paths, true) : near_sibling;
+  }
+  // Of a key or of a group of keys.
+  static bool IsPathIn(const std::vector<std::string>& paths, const std::string& path) {
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& known) {
+      return known == path || known.starts_with(path + ".");
+    });
+  }
+  // "slam: {loops: {recall: ...}}" of "slam.loops.recall".
+  static std::string Nested(const std::string& path) {
+    std::string opened, closed;
+    for (const char letter : path) {
+      if (letter == '.') closed += '}';
+      opened += letter == '.' ? ": {" : std::string(1, letter);
+    }
+    return opened + ": ..." + closed;
   }
   static std::string FirstPathIn(YAML::Node node) {
     std::string path;

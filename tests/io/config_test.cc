@@ -1,5 +1,6 @@
 #include "mapper/io/config.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -123,6 +124,38 @@ TEST(Config, AnUnknownKeyIsLookedForInEveryGroup) {
   EXPECT_EQ(ErrorAfterSet("fuson.gain=1"),
             "--set fuson.gain=1: unknown key 'fuson', did you mean 'fusion'?");
   EXPECT_EQ(ErrorAfterSet("map={}"), "--set map={}: unknown key 'map'");
+}
+
+TEST(Config, APathWrittenAsAKeyIsToBeNested) {
+  EXPECT_EQ(ConfigRefusal("frames: 3\nfusion.gain: 0.5\n"),
+            "run.yaml:2: unknown key 'fusion.gain', write it as fusion: {gain: ...}");
+  EXPECT_EQ(ConfigRefusal("fusion.gian: 0.5\n"),
+            "run.yaml:1: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
+}
+
+TEST(Config, ADotThatNothingFollowsIsNoKey) {
+  const auto refusal = [](const std::string& assignment) {
+    Config config;
+    return RefusalOf([&] { config.Set(assignment); });
+  };
+  for (const char* key : {"frames.", "fusion.gain.", ".frames", "fusion..gain", "."}) {
+    EXPECT_EQ(refusal(std::string(key) + "=1"),
+              fmt::format("--set {}=1: must have the form key.path=value", key));
+  }
+}
+
+// A name that a user gave; elsewhere dots part the names of groups.
+TEST(Config, ATopLevelKeyIsTakenDotsAndAll) {
+  Config config =
+      Config::FromText("a: {b: {gain: 0.1}}\na.b: {gain: 0.2}\na.c: [{gain: 0.3}]\n", "x");
+  Inner inner;
+  config.Take("a.b").Read(inner);
+  EXPECT_EQ(inner.gain[0], 0.2);
+  const auto maps = config.TakeMaps("a.c");
+  ASSERT_EQ(maps.size(), 1U);
+  maps[0].Read(inner);
+  EXPECT_EQ(inner.gain[0], 0.3);
+  EXPECT_THAT(config.Keys(), ::testing::ElementsAre("a"));
 }
 
 TEST(Config, SeveralKeysOfOneWordAreAllNamed) {

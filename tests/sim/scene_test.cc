@@ -168,6 +168,19 @@ TEST_F(SceneFiles, ColoursLightsAndPathsAreRead) {
   EXPECT_EQ(scene.trajectories.size(), 2U);
 }
 
+TEST_F(SceneFiles, NamesMayHoldDots) {
+  const Scene scene = Load(
+      "materials: {oak.dark: {colour: [255, 0, 0]}}\n"
+      "groups: {stool.small: [{shape: box, material: oak.dark}]}\n"
+      "trajectories:\n  tour.1: {kind: planar, waypoints: [{at: [0, 0]}, {at: [1, 0]}]}\n"
+      "shapes:\n" +
+      kFloor + "  - {shape: use, group: stool.small}\n");
+  EXPECT_EQ(scene.materials.at(1).name, "oak.dark");
+  EXPECT_EQ(scene.materials.at(1).colour, Eigen::Vector3f(1, 0, 0));
+  EXPECT_EQ(scene.mesh.triangles.size(), 24U);  // the floor's and the stool's
+  EXPECT_EQ(scene.trajectories.count("tour.1"), 1U);
+}
+
 TEST_F(SceneFiles, ErrorsAreOneLineWithPlaceAndRule) {
   EXPECT_EQ(ErrorOf(""), "~/s.yaml: is empty");
   EXPECT_EQ(ErrorOf("name: x\n"), "~/s.yaml: the scene has no triangles");
