@@ -69,14 +69,16 @@ fs::path FirstMissing(const fs::path& parent) {
   return missing;
 }
 
-// Before anything is moved or removed: a file takes no folder's name, nor a folder a file's.
+// Before anything is moved or removed: a file takes no folder's name, nor a folder a file's, nor
+// that of a link, behind which lies what is no part of the output.
 void RequireSameKinds(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path destination = to / entry.path().filename();
     const fs::file_status there = fs::symlink_status(destination);
     if (!fs::exists(there)) continue;
-    if (entry.is_directory() && !fs::is_directory(destination)) {
-      throw std::runtime_error(destination.string() + ": is a file, must be a folder");
+    if (entry.is_directory() && !fs::is_directory(there)) {
+      throw std::runtime_error(fmt::format("{}: is a {}, must be a folder", destination.string(),
+                                           fs::is_symlink(there) ? "link" : "file"));
     }
     if (!entry.is_directory() && fs::is_directory(there)) {
       throw std::runtime_error(destination.string() + ": is a folder, must be a file");
@@ -88,7 +90,7 @@ void RequireSameKinds(const fs::path& from, const fs::path& to) {
 void MoveInto(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path destination = to / entry.path().filename();
-    if (entry.is_directory() && fs::is_directory(destination)) {
+    if (entry.is_directory() && fs::is_directory(fs::symlink_status(destination))) {
       MoveInto(entry.path(), destination);
     } else {
       fs::rename(entry.path(), destination);

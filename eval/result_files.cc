@@ -164,26 +164,30 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
   };
 }
 
-void RequireNamesFree(const std::string& folder, ResultKind kind) {
+void RequireNamesFree(const std::string& folder, ResultKind kind,
+                      const std::vector<std::string>& cases) {
   if (!fs::is_directory(folder)) return;
   constexpr int kDeepestFile = 2;  // a study's CASE/frames/NAME
   const FileRule is_file = FilesOf(kind);
-  const Names folders = FoldersOf(kind);
+  Names folders = FoldersOf(kind);
+  for (const std::string& name : cases) folders.insert({name, name + "/frames"});
   const auto options = fs::directory_options::skip_permission_denied;
   for (auto entry = fs::recursive_directory_iterator(folder, options);
        entry != fs::recursive_directory_iterator(); ++entry) {
     if (entry.depth() == kDeepestFile) entry.disable_recursion_pending();
     const fs::path relative = entry->path().lexically_relative(folder);
-    const bool is_folder = entry->is_directory();
-    if (is_folder && !entry->is_symlink() && is_file(relative)) {
+    const bool is_link = entry->is_symlink();
+    const bool is_folder = entry->is_directory() && !is_link;
+    if (is_folder && is_file(relative)) {
       throw InputError(entry->path().string(),
                        "is a folder, and a file of that name is to be written; choose another "
                        "output folder");
     }
     if (!is_folder && folders.contains(relative.string())) {
       throw InputError(entry->path().string(),
-                       "is a file, and a folder of that name is to be written; choose another "
-                       "output folder");
+                       fmt::format("is a {}, and a folder of that name is to be written; choose "
+                                   "another output folder",
+                                   is_link ? "link" : "file"));
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace depthgrid {
 
@@ -23,8 +24,10 @@ FileRule FilesOf(ResultKind kind);
 FileRule FilesLeftBy(ResultKind kind, const std::string& folder);
 
 // Throws InputError when what lies there cannot be replaced by such a result: a folder where one of
-// its files goes, or the other way round.
-void RequireNamesFree(const std::string& folder, ResultKind kind);
+// its files goes, or the other way round, or a link where a folder goes: what it links to is no
+// part of the output. `cases`: of a study.
+void RequireNamesFree(const std::string& folder, ResultKind kind,
+                      const std::vector<std::string>& cases = {});
 
 // Throws InputError when the folder holds a result of another kind with a report.html of its own:
 // one of the two pages would take the other's place. Only a run is let in beside images and poses.

@@ -5,12 +5,13 @@
 namespace depthgrid::cli {
 
 OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
-                        const std::vector<std::string>& inputs) {
+                        const std::vector<std::string>& inputs,
+                        const std::vector<std::string>& cases) {
   const std::string& folder = arguments.output;
   RequireReachable(folder);
   RequireNotCurrent(folder);
   RequireNoOtherResult(folder, kind);
-  RequireNamesFree(folder, kind);
+  RequireNamesFree(folder, kind, cases);
   const FileRule written = FilesOf(kind);
   const FileRule removed = FilesLeftBy(kind, folder);
   RequireInputsKept(

@@ -140,8 +140,10 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
         return ToYaml(ReadStudy(Config::FromFile(path), some, base_folder).experiments.front());
       });
   warnings.insert(warnings.end(), idle.begin(), idle.end());
+  std::vector<std::string> cases;
+  for (const StudyCase& one : study.outline.cases) cases.push_back(one.name);
   OutputFolder folder =
-      OpenOutput(arguments.common, ResultKind::kStudy, InputsOf(path, study.experiments));
+      OpenOutput(arguments.common, ResultKind::kStudy, InputsOf(path, study.experiments), cases);
   ProgressBar bar("mapping");
   const auto results =
       RunStudy(study, ReadFile(path), arguments.output.map_mode, folder, ContextOf(arguments, bar));

@@ -170,6 +170,31 @@ TEST_F(KeptFiles, AFolderInTheWayOfAFileIsSaidBeforeTheWork) {
   ExpectRefusal("run ./small.yaml -o r --force", "r/frames: is a file, and a folder of that name");
 }
 
+// What a link leads to is no part of the output.
+TEST_F(KeptFiles, NothingIsWrittenThroughALinkedFolder) {
+  MakeFolder("elsewhere", {"000000_colour.png", "run.yaml", "depth.png"});
+  const auto linked = [&](const std::string& link) {
+    fs::create_directories(Path(link).substr(0, Path(link).rfind('/')));
+    fs::create_directory_symlink(Path("elsewhere"), Path(link));
+    return link + ": is a link, and a folder of that name is to be written; choose another";
+  };
+  Succeed("render ./small.yaml --set frames=2 -o seq");
+  fs::rename(Path("seq/rgb"), Path("elsewhere/rgb"));
+  fs::create_directory_symlink(Path("elsewhere/rgb"), Path("seq/rgb"));
+  ExpectRefusal("render ./small.yaml --set frames=2 -o seq --force", "seq/rgb: is a link, and a");
+  ExpectRefusal("run ./small.yaml -o r --force", linked("r/frames"));
+  ExpectRefusal("map one.log -o m --force", linked("m/frames"));
+  Write("cases.yaml", "cases: [{name: a, scene: ./room.yaml, frames: 3}]\n");
+  ExpectRefusal("run ./cases.yaml -o study --force", linked("study/a"));
+  ExpectRefusal("run ./cases.yaml -o deep --force", linked("deep/a/frames"));
+  // Of another name it stays, and the folder itself may be one.
+  linked("mine/album");
+  Succeed("map one.log -o mine --force");
+  EXPECT_TRUE(fs::is_symlink(Path("mine/album")));
+  fs::create_directory_symlink(Path("mine"), Path("link"));
+  Succeed("map one.log -o link --force");
+}
+
 TEST_F(KeptFiles, AStudyGoesOnInItsOwnFolder) {
   const std::string head = "frames: 3\ncases:\n  - {name: a, scene: ./room.yaml}\n";
   Write("one.yaml", head);

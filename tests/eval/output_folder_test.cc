@@ -126,6 +126,19 @@ TEST_F(OutputFolderTest, WhatCannotTakeItsPlaceIsKept) {
   EXPECT_EQ(ReadFile(Path(".out.partial/rgb/0.png")), "new");
 }
 
+TEST_F(OutputFolderTest, NothingIsWrittenThroughALink) {
+  fs::create_directory(Path("elsewhere"));
+  WriteFile(Path("elsewhere/0.png"), "precious");
+  fs::create_directory(Path("out"));
+  fs::create_directory_symlink(Path("elsewhere"), Path("out/rgb"));
+  OutputFolder folder(Path("out"), true, [](const fs::path&) { return true; });
+  fs::create_directory(folder.work() / "rgb");
+  WriteFile(folder.File("rgb/0.png"), "new");
+  EXPECT_THROW(folder.Commit(), std::runtime_error);
+  EXPECT_EQ(ReadFile(Path("elsewhere/0.png")), "precious");
+  EXPECT_TRUE(fs::is_symlink(Path("out/rgb")));
+}
+
 TEST_F(OutputFolderTest, AFolderGoesWithTheLastOfItsSupersededFiles) {
   fs::create_directories(Path("out/frames"));
   fs::create_directories(Path("out/kept"));
