@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/path_drawing.h"
+
 namespace depthgrid {
 namespace {
 
@@ -10,7 +12,6 @@ constexpr Colour kUnknownCell = {205, 205, 205};  // as Nav2's tools show it
 constexpr Colour kFreeCell = {254, 254, 254};
 constexpr Colour kOccupiedCell = {0, 0, 0};
 constexpr Colour kLatticeLine = {170, 190, 215};
-constexpr Colour kInk = {30, 30, 30};
 constexpr Colour kPaper = {255, 255, 255};
 
 template <typename ColourOf>
@@ -36,11 +37,6 @@ Colour ColourOf(CellState state) {
       break;
   }
   return kUnknownCell;
-}
-
-Colour Paler(Colour colour) {
-  const auto half = [](std::uint8_t c) { return static_cast<std::uint8_t>((c + 255) / 2); };
-  return {half(colour.red), half(colour.green), half(colour.blue)};
 }
 
 Colour DifferenceOf(CellState truth, CellState estimate) {
@@ -69,106 +65,6 @@ int Enlargement(const RgbImage& cells) {
   const int width = std::max(cells.width_px, 1);
   const int wanted = (kLeastWidthPx + width - 1) / width;
   return std::max(1, std::min(wanted, kMostHeightPx / std::max(cells.height_px, 1)));
-}
-
-// 1, 2 or 5 times a power of ten: the largest such length below a third of the width.
-double ScaleBarLength(double width_m) {
-  double length_m = std::pow(10.0, std::floor(std::log10(width_m / 3.0)));
-  if (length_m * 5.0 <= width_m / 3.0) return length_m * 5.0;
-  if (length_m * 2.0 <= width_m / 3.0) return length_m * 2.0;
-  return length_m;
-}
-
-std::string LengthText(double length_m) {
-  if (length_m >= 1.0) return std::to_string(std::lround(length_m)) + " m";
-  return std::to_string(std::lround(length_m * 100.0)) + " cm";
-}
-
-constexpr int kMarginPx = 12;
-constexpr int kTextScale = 2;
-constexpr double kPathWidthPx = 2.5;
-constexpr double kBeneathWidthPx = 7.0;
-constexpr double kDotRadiusPx = 5.0;
-constexpr double kDotStepPx = 12.0;  // in the legend, from one to the next
-
-double WidthOf(const Path& path) {
-  return path.style == PathStyle::kBeneath ? kBeneathWidthPx : kPathWidthPx;
-}
-
-Colour ShownColour(const Path& path) {
-  return path.style == PathStyle::kBeneath ? Paler(path.colour) : path.colour;
-}
-
-// A scale bar, the paths' names and what their dots are, in one line.
-class Legend {
- public:
-  Legend(double width_m, double px_per_m, const std::vector<Path>& paths, PathDot dot)
-      : dot_text_(dot == PathDot::kStart ? "start" : "now"),
-        bar_text_(LengthText(ScaleBarLength(width_m))),
-        bar_px_(static_cast<int>(std::lround(ScaleBarLength(width_m) * px_per_m))),
-        paths_(paths) {}
-
-  int WidthPx() const {
-    int width_px = 4 * kMarginPx + bar_px_ + Canvas::TextWidth(bar_text_, kTextScale);
-    for (const Path& path : paths_) {
-      width_px += 5 * kMarginPx + Canvas::TextWidth(path.name, kTextScale);
-    }
-    if (!paths_.empty()) {
-      width_px += DotsPx() + 2 * kMarginPx + Canvas::TextWidth(dot_text_, kTextScale);
-    }
-    return width_px;
-  }
-  static int HeightPx() { return Canvas::TextHeight(kTextScale) + 2 * kMarginPx; }
-
-  // Below this row.
-  void Draw(int row_px, Canvas& canvas) const {
-    const int text_top = row_px + kMarginPx;
-    const int middle = text_top + Canvas::TextHeight(kTextScale) / 2;
-    canvas.Fill(kMarginPx, middle - 1, bar_px_, 3, kInk);
-    canvas.Fill(kMarginPx, middle - 6, 2, 13, kInk);
-    canvas.Fill(kMarginPx + bar_px_ - 2, middle - 6, 2, 13, kInk);
-    int left = kMarginPx + bar_px_ + kMarginPx;
-    canvas.Text(left, text_top, bar_text_, kTextScale, kInk);
-    left += Canvas::TextWidth(bar_text_, kTextScale) + 2 * kMarginPx;
-    for (const Path& path : paths_) {
-      const int half_px = path.style == PathStyle::kBeneath ? 4 : 2;
-      canvas.Fill(left, middle - half_px, 2 * kMarginPx, 2 * half_px, ShownColour(path));
-      left += 3 * kMarginPx;
-      canvas.Text(left, text_top, path.name, kTextScale, kInk);
-      left += Canvas::TextWidth(path.name, kTextScale) + 2 * kMarginPx;
-    }
-    if (paths_.empty()) return;
-    for (std::size_t i = 0; i < paths_.size(); ++i) {
-      const double centre = left + kDotRadiusPx + static_cast<double>(i) * kDotStepPx;
-      canvas.Disc({centre, middle}, kDotRadiusPx, paths_[i].colour);
-    }
-    canvas.Text(left + DotsPx(), text_top, dot_text_, kTextScale, kInk);
-  }
-
- private:
-  // Every path's own, and a gap behind them.
-  int DotsPx() const {
-    return static_cast<int>(kDotStepPx * static_cast<double>(paths_.size())) + kMarginPx;
-  }
-
-  std::string dot_text_;
-  std::string bar_text_;
-  int bar_px_;
-  const std::vector<Path>& paths_;
-};
-
-// Over a picture of so many rows, whose lower left corner is the origin. The centre of cell (i,
-// j)'s picture is that of its enlarged square.
-void DrawPath(const Path& path, PathDot dot, const Eigen::Vector2d& origin_m, double px_per_m,
-              int rows_px, Canvas& canvas) {
-  std::vector<Eigen::Vector2d> points;
-  for (const StampedPose& pose : path.poses) {
-    const Eigen::Vector2d offset_m = pose.world_from_camera.translation.head<2>() - origin_m;
-    points.emplace_back(offset_m.x() * px_per_m - 0.5, rows_px - offset_m.y() * px_per_m - 0.5);
-  }
-  canvas.Polyline(points, WidthOf(path), ShownColour(path));
-  if (points.empty()) return;
-  canvas.Disc(dot == PathDot::kStart ? points.front() : points.back(), kDotRadiusPx, path.colour);
 }
 
 // 1, 2 or 5 times a power of ten, from 1 m: the least step whose lines stand well apart.
@@ -241,8 +137,10 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
   const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
   const double px_per_m = factor / geometry.resolution_m;
-  const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths, dot);
-  Canvas canvas(std::max(large.width_px, legend.WidthPx()), large.height_px + Legend::HeightPx(),
+  constexpr int kLeastLinePx = 1200;  // of the legend, before it takes another
+  const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths, dot,
+                      std::max(large.width_px, kLeastLinePx));
+  Canvas canvas(std::max(large.width_px, legend.WidthPx()), large.height_px + legend.HeightPx(),
                 kPaper);
   RgbImage image = canvas.image();
   for (int row = 0; row < large.height_px; ++row) {

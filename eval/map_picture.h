@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "eval/canvas.h"
+#include "eval/path_drawing.h"
 #include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
-#include "mapper/core/trajectory.h"
 
 namespace depthgrid {
 
@@ -22,24 +21,12 @@ RgbImage PictureOf(const CellSet& cells, const GridGeometry& geometry);
 RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
                            const std::optional<CellSet>& observable, const GridGeometry& geometry);
 
-// A path that another one may lie upon is wide and pale, so that it is seen on both sides of it.
-enum class PathStyle { kLine, kBeneath };
-
-struct Path {
-  std::string name;
-  Colour colour;
-  Trajectory poses;
-  PathStyle style = PathStyle::kLine;
-};
-
-// Which end of each path has a dot.
-enum class PathDot { kStart, kNow };
-
 // Lines at whole metres of the map's frame (of a large map at whole tens and so on), numbered along
 // the top and the left edge.
 enum class Lattice { kNone, kMetres };
 
-// The picture (one pixel a cell) enlarged, with paths, a legend and a scale bar below it.
+// The picture (one pixel a cell) enlarged, with paths, and below it a scale bar and a legend of as
+// many lines as it takes.
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
                       const std::vector<Path>& paths, PathDot dot = PathDot::kStart,
                       Lattice lattice = Lattice::kNone);

@@ -166,6 +166,9 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
 void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   RequireInputsKept(arguments.errors, "--errors", {arguments.reference, arguments.estimate});
   if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
+  if (arguments.force && arguments.errors.empty()) {
+    Warn({"--force: has no effect without --errors"});
+  }
   const TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
   Warn(files.warnings);
   const double limit_s = LimitOf(arguments);

@@ -71,6 +71,9 @@ void Report(const ReportArguments& arguments) {
   }
   std::error_code not_there;
   if (arguments.output.empty() || fs::equivalent(arguments.folder, arguments.output, not_there)) {
+    if (arguments.force) {
+      Warn({"--force: has no effect because the page goes into the result's own folder"});
+    }
     WriteInPlace(arguments.folder);
   } else {
     WriteElsewhere(arguments);

@@ -64,12 +64,15 @@ std::string PathTable(const std::vector<ScenePath>& paths) {
 }
 
 void WritePlan(const std::string& file, const Scene& scene, const std::vector<ScenePath>& paths) {
+  // Those of a second round are dashed, of a third with a dot behind each dash, and so on.
   constexpr std::array kColours = {palette::kEstimate, palette::kSlam, palette::kTruth,
                                    palette::kMissed, palette::kInvented};
   std::vector<Path> drawn;
   for (const ScenePath& path : paths) {
     if (path.poses.empty()) continue;
-    drawn.push_back({path.name, kColours[drawn.size() % kColours.size()], path.poses});
+    const std::size_t round = drawn.size() / kColours.size();
+    drawn.push_back({path.name, kColours[drawn.size() % kColours.size()], path.poses,
+                     PathStyle::kLine, static_cast<int>(round) - 1});
   }
   WriteRgbPng(file, PlanOf(scene, drawn));
 }

@@ -38,6 +38,9 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
 }  // namespace
 
 void ListScenes(const ScenesArguments& arguments) {
+  if (arguments.force && arguments.plan.empty()) {
+    Warn({"--force: has no effect without --plan"});
+  }
   if (!arguments.scene.empty()) return ShowScene(arguments);
   if (!arguments.plan.empty()) throw InputError("--plan", "draws one scene, which must be given");
   std::vector<std::vector<std::string>> scenes = {

@@ -189,7 +189,7 @@ std::vector<const PlannedRun*> Unfinished(const SweepPlan& plan, const SweepData
 }
 
 // What the seeds of each point count as, in the order of its runs.
-SeedUnits UnitsOfPlan(const SweepPlan& plan, std::size_t runs_of_point) {
+SeedUnits SeedUnitsOf(const SweepPlan& plan, std::size_t runs_of_point) {
   std::vector<std::vector<std::string>> seeds(runs_of_point);
   for (std::size_t k = 0; k < plan.parameter_keys.size(); ++k) {
     if (!IsSeedKey(plan.parameter_keys[k])) continue;
@@ -218,7 +218,7 @@ bool IsSure(const StopOptions& stop, const SeedUnits& units, std::size_t runs_of
 void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine,
                   const std::vector<int>& groups) {
   const auto seeds = static_cast<int>(plan.runs.size()) / plan.point_count;
-  const SeedUnits units = UnitsOfPlan(plan, static_cast<std::size_t>(seeds));
+  const SeedUnits units = SeedUnitsOf(plan, static_cast<std::size_t>(seeds));
   const std::vector<int> planned = database.PlannedRuns();
   std::map<int, std::vector<int>> seeds_of_point;  // the runs of each, in order
   for (const int run : planned) seeds_of_point[run / seeds].push_back(run);

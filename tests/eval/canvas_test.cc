@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -188,6 +191,59 @@ TEST(MapPicture, TheLegendIsNotCut) {
     ++pictures;
   }
   EXPECT_EQ(pictures, 4);
+}
+
+// One that does not fit goes on below, and nothing of it is cut.
+TEST(MapPicture, TheLegendOfManyPathsHasSeveralLines) {
+  const GridGeometry geometry{0.05, {0, 0}, 300, 20};
+  const auto picture_of = [&](int paths) {
+    std::vector<Path> many;
+    for (int i = 0; i < paths; ++i) {
+      many.push_back({"a path of some name", {0, 0, static_cast<std::uint8_t>(200 + i)}, {}});
+    }
+    return AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, many);
+  };
+  const int line_px = Canvas::TextHeight(2) + 12;
+  const RgbImage one = picture_of(1), many = picture_of(12);
+  EXPECT_EQ(many.width_px, 1200);
+  EXPECT_GE(many.height_px, one.height_px + 3 * line_px);
+  EXPECT_EQ((many.height_px - one.height_px) % line_px, 0);
+  // Each has a sample of its colour, in a line of the legend.
+  std::set<int> blues;
+  for (int v = one.height_px - line_px; v < many.height_px; ++v) {
+    for (int u = 0; u < many.width_px; ++u) {
+      const Colour colour = At(many, u, v);
+      if (colour.red == 0 && colour.green == 0) blues.insert(colour.blue);
+    }
+  }
+  for (int i = 0; i < 12; ++i) EXPECT_TRUE(blues.contains(200 + i)) << i;
+}
+
+// By their dots, paths of one colour are told apart.
+TEST(MapPicture, ADashedPathHasGaps) {
+  const GridGeometry geometry{0.05, {-10, -10}, 20, 20};
+  Path path{"p", {255, 0, 0}, {}};
+  for (int i = 0; i <= 90; ++i) {
+    path.poses.push_back({0.1 * i, {Eigen::Quaterniond::Identity(), {-0.45 + 0.01 * i, 0.0, 1.0}}});
+  }
+  const auto strokes_of = [&](int dots) {
+    path.dots = dots;
+    const RgbImage image = AnnotatedMap(PictureOf(StateMap(geometry), geometry), geometry, {path});
+    const int row = image.width_px / geometry.width_cells * 10;
+    int strokes = 0;
+    bool was_on = false;
+    for (int u = 0; u < image.width_px; ++u) {
+      const bool is_on = At(image, u, row).green < 100;
+      strokes += is_on && !was_on ? 1 : 0;
+      was_on = is_on;
+    }
+    return strokes;
+  };
+  const double length_px = 0.9 / 0.05 * 45;  // 45 pixels a cell
+  EXPECT_EQ(strokes_of(-1), 1);
+  EXPECT_EQ(strokes_of(0), static_cast<int>(std::ceil(length_px / 22.0)));
+  EXPECT_NEAR(strokes_of(1), 2.0 * length_px / 31.0, 1.0);
+  EXPECT_NEAR(strokes_of(2), 3.0 * length_px / 40.0, 2.0);
 }
 
 TEST(MapPicture, KnownPartHasAMargin) {

@@ -55,5 +55,45 @@ TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   ExpectRefusal("scenes ./takes_hall.yaml", {"takes_hall.yaml: is an experiment, must be a scene"});
 }
 
+// The sixth has the first one's colour, in dashes.
+TEST_F(SceneFacts, ThePlanTellsManyPathsApart) {
+  const std::string text =
+      "shapes: [{shape: box, size: [6, 4, 0.1], at: [3, 2, -0.101]}]\ntrajectories:\n";
+  const auto plan_of = [&](int paths) {
+    std::string scene = text;
+    for (int i = 0; i < paths; ++i) {
+      scene += "  path_" + std::to_string(i) + ": {kind: planar, waypoints: [{at: [1, " +
+               std::to_string(0.5 + 0.5 * i) + "]}, {at: [5, " + std::to_string(0.5 + 0.5 * i) +
+               "]}]}\n";
+    }
+    Write("many.yaml", scene);
+    Succeed("scenes ./many.yaml --plan many.png --force");
+    return DecodeRgbPng(ReadFile(Path("many.png")), "many.png");
+  };
+  const RgbImage six = plan_of(6), one = plan_of(1);
+  const auto pixels_of = [](const RgbImage& image, int from_row, int to_row) {
+    int pixels = 0;
+    for (int v = from_row; v < to_row; ++v) {
+      for (int u = 0; u < image.width_px; ++u) {
+        const std::uint8_t* p = image.At(u, v);
+        pixels += p[0] == 0 && p[1] == 114 && p[2] == 178 ? 1 : 0;
+      }
+    }
+    return pixels;
+  };
+  // Above the legend.
+  const int whole = pixels_of(one, 0, 600);
+  ASSERT_GT(whole, 0);
+  EXPECT_GT(pixels_of(six, 0, 600), 3 * whole / 2);
+  EXPECT_LT(pixels_of(six, 0, 600), 9 * whole / 5);
+}
+
+TEST_F(SceneFacts, ForceWithoutAPictureIsSaid) {
+  const std::string idle = "depthgrid: warning: --force: has no effect without --plan\n";
+  EXPECT_EQ(Program("scenes --force").err, idle);
+  EXPECT_EQ(Program("scenes ./hall.yaml --force").err, idle);
+  EXPECT_EQ(Program("scenes ./hall.yaml --force --plan hall.png").err, "");
+}
+
 }  // namespace
 }  // namespace depthgrid
