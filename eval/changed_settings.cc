@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "eval/experiment_options.h"
+#include "eval/idle_settings.h"
 #include "eval/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
+#include "sim/slam_options.h"
 
 namespace depthgrid {
 namespace {
@@ -85,14 +87,30 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
   return changed;
 }
 
+std::string PoseSourceOf(const Config& run_yaml) {
+  const std::string profile = SettingOf(run_yaml, "slam.profile");
+  const SlamOptions exact = ProfileOptions(SlamProfile::kGroundTruth);
+  ExperimentOptions options;
+  if (profile != ValueOf(exact, "profile")) return profile;
+  try {
+    run_yaml.Only({"slam"}).Read(options);
+  } catch (const InputError&) {  // of another version
+    return profile;
+  }
+  options = WithoutIdleSettings(options);
+  return ToYaml(options.slam) == ToYaml(exact) ? profile : "own settings over " + profile;
+}
+
 std::string MainSettings(const Config& run_yaml) {
   std::string text;
-  const auto add = [&](const char* name, const char* key) {
-    const std::string value = SettingOf(run_yaml, key);
+  const auto add_value = [&](const char* name, const std::string& value) {
     if (!value.empty()) text += fmt::format(", {} {}", name, value);
   };
+  const auto add = [&](const char* name, const char* key) {
+    add_value(name, SettingOf(run_yaml, key));
+  };
   add("trajectory", "trajectory");
-  add("SLAM", "slam.profile");
+  add_value("SLAM", PoseSourceOf(run_yaml));
   add("depth noise", "sensor.noise");
   add("seed", "seed");
   add("mapper", "mapper.method");

@@ -14,6 +14,10 @@ namespace depthgrid {
 // those of its profile. Keys of other versions are no matter.
 std::vector<std::string> ChangedSettings(const Config& run_yaml);
 
+// The name of SLAM's profile; "own settings over ground_truth" where others make true poses err, as
+// fitted ones do (slam-fit). Empty for recorded poses.
+std::string PoseSourceOf(const Config& run_yaml);
+
 // What a page's first line says: ", trajectory handheld, SLAM orb_slam2, ...", of what there is.
 std::string MainSettings(const Config& run_yaml);
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "eval/changed_settings.h"
 #include "eval/json_text_impl.h"
 #include "eval/map_picture.h"
 #include "eval/report_json_impl.h"
@@ -36,7 +37,7 @@ CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
   CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", ""};
   const Config settings = Config::FromText(files.run.settings, head.name + "/run.yaml");
   files.scene = SettingOf(settings, "scene");
-  files.pose_source = SettingOf(settings, "slam.profile");
+  files.pose_source = PoseSourceOf(settings);
   return files;
 }
 

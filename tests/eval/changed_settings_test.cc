@@ -40,6 +40,24 @@ TEST(ChangedSettings, KeysOfOtherVersionsAreNoMatter) {
               ElementsAre("sensor.width 5"));
 }
 
+std::string PoseSourceWith(const std::vector<std::string>& assignments) {
+  Config config;
+  for (const std::string& assignment : assignments) config.Set(assignment);
+  ExperimentOptions options;
+  config.Read(options);
+  return PoseSourceOf(Config::FromText(ToYaml(options), "run.yaml"));
+}
+
+// Fitted settings are those of true poses, and errors.
+TEST(PoseSource, IsNotTheTruthWhereItErrs) {
+  EXPECT_EQ(PoseSourceWith({}), "ground_truth");
+  EXPECT_EQ(PoseSourceWith({"slam.profile=orb_slam2", "slam.drift_scale=3"}), "orb_slam2");
+  EXPECT_EQ(PoseSourceWith({"slam.jitter_rotation_deg=0.1"}), "own settings over ground_truth");
+  EXPECT_EQ(PoseSourceWith({"slam.jump_translation_m=1"}), "ground_truth");  // never jumps
+  EXPECT_EQ(PoseSourceOf(Config::FromText("mapper: {method: paper}\n", "run.yaml")), "");
+  EXPECT_EQ(PoseSourceOf(Config::FromText("slam: {profile: gone}\n", "run.yaml")), "gone");
+}
+
 class ProgramChanged : public ProgramTest {};
 
 TEST_F(ProgramChanged, ARunsPageSaysWhatWasSet) {
@@ -47,6 +65,11 @@ TEST_F(ProgramChanged, ARunsPageSaysWhatWasSet) {
   EXPECT_THAT(
       ReadFile(Path("out/report.html")),
       HasSubstr("\"changed\":\"sensor.width 80, sensor.height 60, mapper.grid.resolution_m 0.1\""));
+  Succeed(
+      "run ./small.yaml --set slam.profile=ground_truth --set slam.walk_translation_m=0.01 "
+      "-o fitted");
+  EXPECT_THAT(ReadFile(Path("fitted/report.html")),
+              HasSubstr(", SLAM own settings over ground_truth, "));
   Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
   Succeed("map one.log --set sequence.laser.max_range_m=20 -o mapped");
   EXPECT_THAT(ReadFile(Path("mapped/report.html")),
