@@ -183,8 +183,12 @@ std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
            " m/s: are the poses in metres, and the stamps in seconds?";
   }
   if (2 * jumps.size() <= speeds_mps.size()) return {};
-  return std::to_string(jumps.size()) + " of " + std::to_string(speeds_mps.size()) +
-         " steps are jumps: are the poses in metres, and those of this recording?";
+  const std::string share =
+      std::to_string(jumps.size()) + " of " + std::to_string(speeds_mps.size()) + " steps ";
+  const std::string question = "are the poses in metres, and those of this recording?";
+  if (StampUnitS(live) == 1.0) return share + "are jumps: " + question;
+  return share + "would be jumps if the stamps, all whole, count images at 30 Hz: " + question +
+         " If they are seconds, nothing is amiss: over such steps no jump is told from motion";
 }
 
 void StartEpochs(const std::vector<int>& jumps, std::vector<SlamPose>& live) {

@@ -61,6 +61,22 @@ TEST(SlamJumps, PosesThatHardlyDoAnythingElseAreDoubted) {
   EXPECT_EQ(DoubtOf(live, FindJumps(live, {})), std::nullopt);
 }
 
+// As of a recording with a frame a second: whether it is one, the stamps do not tell.
+TEST(SlamJumps, OfWholeStampsAreDoubtedWithBothTheirMeanings) {
+  std::vector<SlamPose> live;
+  for (int i = 0; i < 30; ++i) {
+    const double x_m = i % 2 == 0 ? 0.0 : 0.8;
+    live.push_back({static_cast<double>(i), Pose3{Eigen::Quaterniond::Identity(), {x_m, 0, 0}}, 0});
+  }
+  const auto whole = DoubtOf(live, FindJumps(live, {}));
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_THAT(*whole, testing::StartsWith("29 of 29 steps would be jumps if the stamps, all whole, "
+                                          "count images at 30 Hz: are the poses in metres"));
+  EXPECT_THAT(*whole, testing::HasSubstr("If they are seconds, nothing is amiss"));
+  live.back().stamp_s += 0.25;  // they are seconds
+  EXPECT_EQ(DoubtOf(live, FindJumps(live, {})), std::nullopt);
+}
+
 TEST(SlamJumps, AreSeenWithAndWithoutARevisedTrajectory) {
   EXPECT_THAT(FindJumps(Drifting(), Revised()), ElementsAre(kJumpAt));
   EXPECT_THAT(FindJumps(Drifting(), {}), ElementsAre(kJumpAt));
