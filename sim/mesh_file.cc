@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "mapper/core/error.h"
+#include "sim/dae_counts.h"
 #include "sim/ply_file.h"
 #include "sim/scene_limits.h"
 
@@ -158,6 +159,7 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   const bool is_dae = LowerCaseExtension(path) == ".dae";
+  if (is_dae) RequireSoundCounts(path);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kAuto);
   const aiScene* scene = importer.ReadFile(
       path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);

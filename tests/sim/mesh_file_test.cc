@@ -1,5 +1,6 @@
 #include "sim/mesh_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -260,6 +261,33 @@ TEST_F(MeshFiles, PlyErrorsSayWhatIsWrong) {
   EXPECT_EQ(ErrorOf("a.ply", edited("ascii", "utf8")),
             "2: the format must be ascii, binary_little_endian or binary_big_endian");
   EXPECT_EQ(ErrorOf("a.ply", edited("float z", "flaot z")), "6: names an unknown number type");
+}
+
+// Assimp would take all memory for some of these and read beyond its own for others.
+TEST_F(MeshFiles, CountsThatADaeCannotHoldAreRefused) {
+  const std::string sound = Dae("Z_UP", "1");
+  const auto edited = [&](const std::string& from, const std::string& to) {
+    std::string text = sound;
+    return ErrorOf("a.dae", text.replace(text.find(from), from.size(), to));
+  };
+  const std::string rule = fmt::format(
+      "', must be a whole number, and at most {}: the file has no more bytes", sound.size() + 8);
+  EXPECT_EQ(edited("count=\"12\"", "count=\"4000000000\""),
+            "1: count of float_array is '4000000000" + rule);
+  EXPECT_EQ(edited("count=\"4\">", "count=\"400000000\">"),
+            "1: count of triangles is '400000000" + rule);
+  EXPECT_EQ(edited("offset=\"0\"", "offset=\"400000000\""),
+            "1: offset of input is '400000000" + rule);
+  EXPECT_EQ(edited("stride=\"3\"", "stride = '300000000'"),
+            "1: stride of accessor is '300000000', must be a whole number, and at most " +
+                std::to_string(sound.size() + 10) + ": the file has no more bytes");
+  EXPECT_THAT(edited("count=\"4\">", "count=\"-4\">"), StartsWith("1: count of triangles is '-4'"));
+  EXPECT_EQ(edited("stride=\"3\"", "stride=\"90\""),
+            "1: accessor uses value 270 of a, which has 12");
+  EXPECT_EQ(edited("<technique_common><accessor source=\"#a\" count=\"4\"",
+                   "\n\n<technique_common><accessor source=\"#a\" count=\"6\""),
+            "3: accessor uses value 15 of a, which has 12");
+  EXPECT_EQ(ErrorOf("a.dae", sound), "no error");
 }
 
 // Cut off anywhere, a file of any format is refused or gives what is whole, and never hangs.
