@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -150,6 +151,11 @@ void CompareRuns(const CompareArguments& arguments) {
   options.metrics = arguments.metrics;
   options.where_a = ConditionsOf(arguments.where, arguments.where_a);
   options.where_b = ConditionsOf(arguments.where, arguments.where_b);
+  std::error_code missing;
+  if (options.where_a == options.where_b &&
+      std::filesystem::equivalent(arguments.a, arguments.b, missing)) {
+    Warn({"A and B are the same runs; --where-a and --where-b choose among those of one sweep"});
+  }
   const SweepResults a = ReadRuns(arguments.a);
   const SweepResults b = ReadRuns(arguments.b);
   const Comparison comparison = Compare(a, b, options);

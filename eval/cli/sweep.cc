@@ -130,11 +130,23 @@ void Summarise(const SweepResults& results) {
   Warn({message});
 }
 
-void Merge(const SweepArguments& arguments) {
+// What it joins is there already, with all its settings.
+void RequireMergeAlone(const SweepArguments& arguments) {
   if (!arguments.sweep.empty()) {
     throw InputError("--merge", "takes the sweep from the parts, '" + arguments.sweep +
                                     "' is one argument too many");
   }
+  const auto refuse_if = [](bool given, const std::string& option) {
+    if (given) throw InputError(option, "has no meaning with --merge, which runs nothing");
+  };
+  refuse_if(arguments.dry_run, "--dry-run");
+  refuse_if(!arguments.shard.empty(), "--shard");
+  refuse_if(!arguments.common.set.empty(), "--set");
+  refuse_if(arguments.executor == "slurm", "--executor");
+}
+
+void Merge(const SweepArguments& arguments) {
+  RequireMergeAlone(arguments);
   const std::string& output = arguments.common.output;
   const SweepFolder folder(output, arguments.common.force);
   if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");

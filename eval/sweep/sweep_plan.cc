@@ -187,6 +187,17 @@ void CheckValues(const SweepPlan& plan) {
   }
 }
 
+// What would change nothing, without a word.
+void RequireEffect(const Config& config, const SweepFileOptions& file) {
+  if (config.Has("stop") && (!file.stop.Enabled() || file.stop.width <= 0.0)) {
+    throw InputError(config.PlaceOfKey("stop"), "stop needs a 'metric' and a 'width' above 0");
+  }
+  for (const char* key : {"samples", "sample_seed"}) {
+    if (file.mode == SweepMode::kRandom || !config.Has(key)) continue;
+    throw InputError(config.PlaceOfKey(key), fmt::format("'{}' is for mode random alone", key));
+  }
+}
+
 void CheckStop(const StopOptions& stop, const std::string& place) {
   if (!stop.Enabled()) return;
   const std::vector<std::string> names = SweepMetricNames();
@@ -332,6 +343,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   const std::string place = config.PlaceOfKey("experiment");
   SweepFileOptions file;
   config.Read(file);
+  RequireEffect(config, file);
   RequireFewEnough(file, plan.axes, path);
   const ExperimentFile experiment =
       ReadExperimentFile(file.experiment, place, fs::path(path).parent_path().string());

@@ -347,6 +347,7 @@ TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
               HasSubstr("A better by ranks, not by the mean\n"));
   const Outcome same = Program("compare a a --metric all");
   EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.err, HasSubstr("A and B are the same runs"));
   EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
                                   "trajectory.est.mean_euclidean_m\n"));
   EXPECT_THAT(same.out, Not(HasSubstr("want of a partner")));

@@ -10,6 +10,7 @@
 #include "mapper/core/error.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/paths.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -93,6 +94,37 @@ TEST_F(SweepPlanTest, SeedsRepeatPointsWhereverTheyStand) {
   EXPECT_THAT(ValuesOf(plan, "mapper.fusion.gain"),
               ElementsAre("0", "0", "0", "0", "1", "1", "1", "1"));
   EXPECT_EQ(plan.OptionsOf(plan.runs[2]).seed, 8U);
+}
+
+TEST_F(SweepPlanTest, SeedsEndAtTheLargest) {
+  EXPECT_THAT(ValuesOf(PlanOf("axes: {seed: {seeds: 2, first: 18446744073709551614}}\n"), "seed"),
+              ElementsAre("18446744073709551614", "18446744073709551615"));
+  EXPECT_THAT(RefusalOf([&] {
+                PlanOf(
+                    "axes:\n  frames: [5, 6]\n"
+                    "  seed: {seeds: 3, first: 18446744073709551614}\n");
+              }),
+              testing::EndsWith("sweep.yaml:4: 3 seeds from 18446744073709551614 on go beyond "
+                                "18446744073709551615, the largest there is"));
+}
+
+TEST_F(SweepPlanTest, KeysWithoutEffectAreRefused) {
+  const auto refusal = [&](const std::string& line) {
+    return RefusalOf([&] { PlanOf("axes: {seed: {seeds: 9}}\n" + line + "\n"); });
+  };
+  const std::string stop = "sweep.yaml:3: stop needs a 'metric' and a 'width' above 0";
+  EXPECT_THAT(refusal("stop: {metric: map.coverage}"), testing::EndsWith(stop));
+  EXPECT_THAT(refusal("stop: {width: 0.1}"), testing::EndsWith(stop));
+  EXPECT_THAT(refusal("samples: 5"),
+              testing::EndsWith("yaml:3: 'samples' is for mode random alone"));
+  EXPECT_THAT(refusal("sample_seed: 5"),
+              testing::EndsWith("'sample_seed' is for mode random alone"));
+  EXPECT_EQ(refusal("stop: {metric: map.coverage, width: 0.1}"), "no error");
+}
+
+// It would be an axis of a name of its own that sets the seed all the same.
+TEST_F(SweepPlanTest, AnAxisIsAKey) {
+  EXPECT_THAT(RefusalOf([&] { PlanOf("axes: {seed.: [1, 2]}\n"); }), testing::HasSubstr("seed."));
 }
 
 TEST_F(SweepPlanTest, ZipTakesValuesTogetherAndStillCrossesSeeds) {

@@ -198,5 +198,18 @@ TEST_F(SweepRepeat, PartsAreJoinedByOneProgramAtATime) {
             "depthgrid: joined: holds a sweep already\n");
 }
 
+TEST_F(SweepRepeat, JoiningTakesNoOptionsOfARun) {
+  Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  Succeed("sweep ./gains.yaml --shard 1/1 -o part");
+  for (const std::string option :
+       {"--dry-run", "--shard 1/2", "--set frames=3", "--executor slurm"}) {
+    const Outcome refused = Program("sweep --merge part -o joined " + option);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_EQ(refused.err, "depthgrid: " + option.substr(0, option.find(' ')) +
+                               ": has no meaning with --merge, which runs nothing\n");
+    EXPECT_FALSE(std::filesystem::exists(Path("joined")));
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
