@@ -92,7 +92,9 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
   }
   YAML::Node node = tree_->root;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].empty()) throw InputError(place, "must have the form key.path=value");
+    if (parts[i].empty()) {
+      throw InputError(place, fmt::format("'{}' is no key: a name in it is empty", key_path));
+    }
     if (i + 1 == parts.size()) {
       node[parts[i]] = value;
       tree_->overrides.push_back({key_path, place});

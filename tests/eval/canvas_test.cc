@@ -205,7 +205,7 @@ TEST(MapPicture, TheLegendOfManyPathsHasSeveralLines) {
   };
   const int line_px = Canvas::TextHeight(2) + 12;
   const RgbImage one = picture_of(1), many = picture_of(12);
-  EXPECT_EQ(many.width_px, 1200);
+  EXPECT_LE(many.width_px, 1200);
   EXPECT_GE(many.height_px, one.height_px + 3 * line_px);
   EXPECT_EQ((many.height_px - one.height_px) % line_px, 0);
   // Each has a sample of its colour, in a line of the legend.

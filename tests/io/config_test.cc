@@ -129,8 +129,6 @@ TEST(Config, AnUnknownKeyIsLookedForInEveryGroup) {
 TEST(Config, APathWrittenAsAKeyIsToBeNested) {
   EXPECT_EQ(ConfigRefusal("frames: 3\nfusion.gain: 0.5\n"),
             "run.yaml:2: unknown key 'fusion.gain', write it as fusion: {gain: ...}");
-  EXPECT_EQ(ConfigRefusal("fusion.gian: 0.5\n"),
-            "run.yaml:1: unknown key 'fusion.gian', did you mean 'fusion.gain'?");
 }
 
 TEST(Config, ADotThatNothingFollowsIsNoKey) {
@@ -140,7 +138,7 @@ TEST(Config, ADotThatNothingFollowsIsNoKey) {
   };
   for (const char* key : {"frames.", "fusion.gain.", ".frames", "fusion..gain", "."}) {
     EXPECT_EQ(refusal(std::string(key) + "=1"),
-              fmt::format("--set {}=1: must have the form key.path=value", key));
+              fmt::format("--set {0}=1: '{0}' is no key: a name in it is empty", key));
   }
 }
 

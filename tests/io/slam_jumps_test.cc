@@ -65,8 +65,10 @@ TEST(SlamJumps, PosesThatHardlyDoAnythingElseAreDoubted) {
 TEST(SlamJumps, OfWholeStampsAreDoubtedWithBothTheirMeanings) {
   std::vector<SlamPose> live;
   for (int i = 0; i < 30; ++i) {
-    const double x_m = i % 2 == 0 ? 0.0 : 0.8;
-    live.push_back({static_cast<double>(i), Pose3{Eigen::Quaterniond::Identity(), {x_m, 0, 0}}, 0});
+    const double x_m = i % 4 == 1 || i % 4 == 2 ? 0.8 : 0.0;  // round a square
+    const double y_m = i % 4 >= 2 ? 0.8 : 0.0;
+    live.push_back(
+        {static_cast<double>(i), Pose3{Eigen::Quaterniond::Identity(), {x_m, y_m, 0}}, 0});
   }
   const auto whole = DoubtOf(live, FindJumps(live, {}));
   ASSERT_TRUE(whole.has_value());

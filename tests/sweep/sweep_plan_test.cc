@@ -124,7 +124,8 @@ TEST_F(SweepPlanTest, KeysWithoutEffectAreRefused) {
 
 // It would be an axis of a name of its own that sets the seed all the same.
 TEST_F(SweepPlanTest, AnAxisIsAKey) {
-  EXPECT_THAT(RefusalOf([&] { PlanOf("axes: {seed.: [1, 2]}\n"); }), testing::HasSubstr("seed."));
+  EXPECT_THAT(RefusalOf([&] { PlanOf("axes: {seed.: [1, 2]}\n"); }),
+              testing::EndsWith("sweep.yaml:2: 'seed.' is no key: a name in it is empty"));
 }
 
 TEST_F(SweepPlanTest, ZipTakesValuesTogetherAndStillCrossesSeeds) {
