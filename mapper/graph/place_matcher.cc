@@ -131,11 +131,13 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
     if (!may_agree(loop.first_from_second, steps)) return false;
   }
   if (match.explained < options_.min_explained) return false;
-  // A direction that nothing is seen of has an infinite one.
-  const Eigen::Matrix3d information = match.information / kOverconfidence;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  if (eigen.eigenvalues()[0] <= 0.0) return false;
-  const Eigen::Matrix3d covariance = information.inverse();
+  // A direction that nothing is seen of has an infinite one, or of rounding alone a huge one: from
+  // the eigenvalues, since an inverse may then be negative.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> known(match.information / kOverconfidence);
+  if (known.eigenvalues()[0] <= 0.0) return false;
+  const Eigen::Matrix3d covariance = known.eigenvectors() *
+                                     known.eigenvalues().cwiseInverse().asDiagonal() *
+                                     known.eigenvectors().transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar;
   planar.computeDirect(covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   const double sigma_m = std::sqrt(planar.eigenvalues()[1]);

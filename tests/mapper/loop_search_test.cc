@@ -57,6 +57,28 @@ TEST(PlaceMatcher, RefusesACorridor) {
   EXPECT_FALSE(matcher.LoopBetween(frames, 15, 45, 1.0, RadFromDeg(10)));
 }
 
+// One scan sees nothing at all along it, and what is left there is rounding.
+TEST(PlaceMatcher, RefusesACorridorSeenByOneScan) {
+  int tried = 0;
+  for (int heading = 0; heading < 40; ++heading) {
+    for (int k = 0; k < 3; ++k, ++tried) {
+      const Pose2 map_from_corridor{0.0, 0.0, 0.17 * heading - 3.0};
+      PlanarWorld corridor;
+      for (const Wall& wall : StraightCorridor()) {
+        corridor.push_back({map_from_corridor * wall.from, map_from_corridor * wall.to});
+      }
+      const Pose2 off{0.2 + 0.1 * k, 0.1 * k, 0.0};
+      const auto frames = TwoVisits(corridor, map_from_corridor, map_from_corridor * off, {});
+      PlanarLoop loop;
+      loop.first = 15;
+      loop.second = 45;
+      loop.first_from_second = off * Pose2{-0.1, 0.0, 0.0};
+      EXPECT_FALSE(PlaceMatcher({}, {}).Confirmed(frames, {0, 5, 10, 15, 20, 25}, {45}, loop, 0.9));
+    }
+  }
+  EXPECT_EQ(tried, 120);
+}
+
 // A room of the same outline whose furniture stands elsewhere.
 TEST(PlaceMatcher, RefusesARoomThatLooksAlike) {
   PlanarWorld rooms = RectangleWorld(0, 0, 5, 4);
