@@ -1,5 +1,6 @@
 #include "mapper/loop_closing.h"
 
+#include <optional>
 #include <utility>
 
 #include "mapper/mapped_frames.h"
@@ -33,7 +34,7 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     std::optional<PlanarLoop> loop = ProjectLoop(event, history, newest_mapped);
     if (!loop) continue;
     loop = BetweenKept(*loop, frames);
-    if (loop->first == loop->second) continue;
+    if (!loop) continue;
     if (options_.verify && !Agrees(OverlapOf(frames, *loop, options_.overlap), options_.overlap)) {
       continue;
     }
@@ -57,9 +58,14 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
                                     std::span<const int> asked) {
   const std::vector<PlanarLoop> known = loops_;
   for (const PlanarLoop& loop : found) {
-    loops_.push_back(BetweenKept(loop, frames));
+    const std::optional<PlanarLoop> kept = BetweenKept(loop, frames);
+    if (!kept) continue;
+    loops_.push_back(*kept);
     loops_.back().on_trial = true;
   }
+  Outcome outcome;
+  outcome.rejected = static_cast<int>(found.size());
+  if (loops_.size() == known.size()) return outcome;
   const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames), asked);
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];
@@ -71,17 +77,16 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
     believed = believed && adjustment.loop_accepted[i] &&
                Agrees(OverlapOf(frames, adjusted, options_.overlap), options_.overlap);
   }
-  Outcome outcome;
-  if (believed) {
-    outcome.adjusted = true;
-    outcome.map_from_base = adjustment.map_from_base;
-    outcome.covariance = adjustment.covariance;
-    outcome.accepted = static_cast<int>(found.size());
-    for (PlanarLoop& loop : loops_) loop.on_trial = false;
-  } else {
+  if (!believed) {
     loops_ = known;
-    outcome.rejected = static_cast<int>(found.size());
+    return outcome;
   }
+  outcome.adjusted = true;
+  outcome.map_from_base = adjustment.map_from_base;
+  outcome.covariance = adjustment.covariance;
+  outcome.accepted = static_cast<int>(loops_.size() - known.size());
+  outcome.rejected -= outcome.accepted;
+  for (PlanarLoop& loop : loops_) loop.on_trial = false;
   return outcome;
 }
 

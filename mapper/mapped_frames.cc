@@ -86,7 +86,8 @@ std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
   return kept;
 }
 
-PlanarLoop BetweenKept(const PlanarLoop& loop, const std::vector<MappedFrame>& frames) {
+std::optional<PlanarLoop> BetweenKept(const PlanarLoop& loop,
+                                      const std::vector<MappedFrame>& frames) {
   const auto at = [&](int i) -> const MappedFrame& { return FrameAt(frames, i); };
   PlanarLoop moved = loop;
   if (const MappedFrame& first = at(loop.first); !first.kept()) {
@@ -99,7 +100,7 @@ PlanarLoop BetweenKept(const PlanarLoop& loop, const std::vector<MappedFrame>& f
     moved.first_from_second =
         moved.first_from_second * Between(second.map_from_base, at(second.tied_to).map_from_base);
   }
-  return moved;
+  return moved.first == moved.second ? std::nullopt : std::optional(moved);
 }
 
 std::vector<PlanarLoop> AmongKept(std::vector<PlanarLoop> loops,

@@ -55,7 +55,9 @@ std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
                                     const std::vector<Pose2>& map_from_base);
 
 // A loop between frames whose scans are kept: ends that are tied move to what they are tied to.
-PlanarLoop BetweenKept(const PlanarLoop& loop, const std::vector<MappedFrame>& frames);
+// Empty where that is one frame: both move with it, and no loop can change how they lie.
+std::optional<PlanarLoop> BetweenKept(const PlanarLoop& loop,
+                                      const std::vector<MappedFrame>& frames);
 
 // The same loops between positions among the kept frames. Their ends are kept.
 std::vector<PlanarLoop> AmongKept(std::vector<PlanarLoop> loops,

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/loop_closing.h"
+#include "mapper/paper_reference.h"
 #include "mapper/surfel/surfel_map.h"
 #include "tests/mapper/match_world.h"
 
@@ -87,6 +88,38 @@ TEST(LoopEffort, BendingLaysTheEndsOverEachOtherAndSpreadsTheRest) {
       round.map.Adjust(round.frames, {round.TrueLoop()}, AdjustEffort::kCloseLoops, {});
   EXPECT_LT(ErrorAtM(adjusted.map_from_base, round.truth, kLoopFrames / 2),
             ErrorAtM(bent.map_from_base, round.truth, kLoopFrames / 2));
+}
+
+// A frame whose place was well seen moves with one of the first round: a loop to that one asks for
+// nothing that could be done, and says nothing of the other loops.
+template <typename Map>
+void ExpectLoopsOfTiedFramesLeftOut(DriftingRound& round, Map& map) {
+  constexpr int kTied = kLoopFrames - 5, kTiedTo = 5;
+  round.frames[kTied].tied_to = kTiedTo;
+  PlanarLoop asks_nothing;
+  asks_nothing.first = kTiedTo;
+  asks_nothing.second = kTied;
+  asks_nothing.first_from_second = Between(round.truth[kTiedTo], round.truth[kTied]);
+  LoopCloser closer({});
+  const LoopCloser::Outcome none = closer.Add({asks_nothing}, round.frames, map, {});
+  EXPECT_FALSE(none.adjusted);
+  EXPECT_EQ(none.rejected, 1);
+  const LoopCloser::Outcome one =
+      closer.Add({asks_nothing, round.TrueLoop()}, round.frames, map, {});
+  EXPECT_TRUE(one.adjusted);
+  EXPECT_EQ(one.accepted, 1);
+  EXPECT_EQ(one.rejected, 1);
+  EXPECT_EQ(closer.loops().size(), 1U);
+}
+
+TEST(LoopEffort, LoopsOfFramesThatMoveAsOneAreLeftOut) {
+  DriftingRound round;
+  ExpectLoopsOfTiedFramesLeftOut(round, round.map);
+  PaperReference paper({}, {}, {}, {});
+  for (const MappedFrame& frame : round.frames) {
+    paper.Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base, {});
+  }
+  ExpectLoopsOfTiedFramesLeftOut(round, paper);
 }
 
 TEST(LoopEffort, ALongRunIsBent) {

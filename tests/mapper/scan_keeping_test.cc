@@ -132,7 +132,9 @@ TEST(KeptFrames, LoopsMoveToThemAndStayTheSameLoop) {
   frames[1].tied_to = 0;
   frames[4].tied_to = 3;
   const PlanarLoop loop{1, 4, {0.5, 0.2, 0.3}};
-  const PlanarLoop moved = BetweenKept(loop, frames);
+  const std::optional<PlanarLoop> between = BetweenKept(loop, frames);
+  ASSERT_TRUE(between);
+  const PlanarLoop& moved = *between;
   EXPECT_EQ(moved.first, 0);
   EXPECT_EQ(moved.second, 3);
   const Pose2 was = frames[1].map_from_base * loop.first_from_second *
@@ -140,6 +142,7 @@ TEST(KeptFrames, LoopsMoveToThemAndStayTheSameLoop) {
   const Pose2 is = frames[0].map_from_base * moved.first_from_second;
   EXPECT_NEAR((was.vector() - is.vector()).norm(), 0.0, 1e-12);
   EXPECT_EQ(AmongKept({moved}, frames)[0].second, 2);
+  EXPECT_FALSE(BetweenKept({0, 1, {0.3, 0.0, 0.0}}, frames));  // they move as one
 }
 
 constexpr int kRoundFrames = 200;
