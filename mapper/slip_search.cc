@@ -29,7 +29,7 @@ constexpr double kInPlaceM = 0.015;
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
 // Headings tried, and how far a match may go from one.
-constexpr double kHeadingStepRad = RadFromDeg(1.0);
+constexpr double kHeadingStepDeg = 1.0;
 const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
 
 bool IsSlip(const Pose2& motion) {
@@ -52,11 +52,12 @@ std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
   const int before = std::max(0, mapped_frames - kDrawnLatelyFrames);
   const double lasting_share = reference.ShareSeenBefore(last_scan_, map_from_last, before);
   const Eigen::Matrix3d covariance = prediction.covariance + Squared(kHeadingSigma);
-  const int most = static_cast<int>(RadFromDeg(slip_deg_) / kHeadingStepRad);
+  const int most = static_cast<int>(slip_deg_ / kHeadingStepDeg);
   std::optional<Pose2> found;
   double best = kMendedShare * last_share_;
   for (int i = -most; i <= most; ++i) {
-    const Pose2 turned = prediction.map_from_base * Pose2{0.0, 0.0, i * kHeadingStepRad};
+    const Pose2 turned =
+        prediction.map_from_base * Pose2{0.0, 0.0, i * RadFromDeg(kHeadingStepDeg)};
     const MatchResult match = reference.Match(scan, {turned, covariance});
     if (!match.found || match.score <= best) continue;
     if (!IsSlip(Between(prediction.map_from_base, match.map_from_base))) continue;

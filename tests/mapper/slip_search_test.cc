@@ -97,6 +97,27 @@ class FakeMap : public ReferenceMap {
   std::shared_ptr<const Scan> last_;
 };
 
+// How many headings were tried.
+class CountingMap : public FakeMap {
+ public:
+  CountingMap() : FakeMap({}, {}, nullptr) {}
+  MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
+    ++matches;
+    return {};
+  }
+  int matches = 0;
+};
+
+TEST(SlipSearch, EveryDegreeToEitherSideIsTried) {
+  for (const int slip_deg : {1, 12, 15, 30, 60, 122}) {
+    SlipSearch slips(slip_deg);
+    slips.Placed(FrameAt(1.0), std::make_shared<const Scan>(), 0.9);
+    CountingMap map;
+    slips.Find(std::make_shared<const Scan>(), {}, {}, 100, map);
+    EXPECT_EQ(map.matches, 2 * slip_deg + 1);
+  }
+}
+
 bool IsFound(const Pose2& slip, const FakeMap::Lasting& lasting) {
   const auto last = std::make_shared<const Scan>();
   SlipSearch slips(12.0);
