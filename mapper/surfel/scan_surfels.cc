@@ -5,6 +5,20 @@
 #include <utility>
 
 namespace depthgrid {
+namespace {
+
+// A fit so steep that it leaves the field of view, or goes on to where nothing is seen, is no
+// surface that was seen; nor is one that goes half round the sensor, as of a few beams all round.
+bool WasSeen(const ScanLine& line, const ScanReturns& returns) {
+  const ScanReturn& first = returns[line.span.begin];
+  const ScanReturn& last = returns[line.span.end - 1];
+  const auto within_sight = [&](const ScanReturn& r) {  // false for NaN
+    return line.coefficients.dot(r.direction) * kFarthestSeenM >= 1.0;
+  };
+  return within_sight(first) && within_sight(last) && last.bearing_rad - first.bearing_rad < kPi;
+}
+
+}  // namespace
 
 void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("beams", beams, {1, 1000}, "beams of a surfel, at most");
@@ -28,11 +42,7 @@ std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& no
   surfels.clear();
   returns_.Read(scan, noise, stride);
   for (const ScanLine& line : lines_.Find(returns_)) {
-    // A fit so steep that it leaves the field of view is no surface that was seen.
-    if (line.coefficients.dot(returns_[line.span.begin].direction) <= 0.0 ||
-        line.coefficients.dot(returns_[line.span.end - 1].direction) <= 0.0) {
-      continue;
-    }
+    if (!WasSeen(line, returns_)) continue;
     for (int begin = line.span.begin; begin < line.span.end;) {
       const int end = begin + BeamsAt(line, begin);
       surfels.push_back(SurfelOf(line, {begin, end}));

@@ -111,5 +111,38 @@ TEST(ScanSurfels, OfWhatIsNoLineAreBelievedLess) {
   EXPECT_LT(UpperMedian(on_wall), 1.2);
 }
 
+// A ring of so few beams that one line is laid through the walls all round.
+TEST(ScanSurfels, NoWallGoesHalfRoundTheSensor) {
+  for (const int beams : {4, 5, 6, 7}) {
+    for (const double max_range_m : {0.0, 8.0, 2.05}) {
+      Scan ring;
+      ring.max_range_m = max_range_m;
+      for (int i = 0; i < beams; ++i) {
+        const double bearing_rad = 2.0 * kPi * i / beams - kPi;
+        ring.beams.push_back({static_cast<float>(bearing_rad), 2.0F, 0.0F, 2.0F, true});
+      }
+      EXPECT_TRUE(ScanSurfelMaker({}).Make(ring, RangeNoise()).empty()) << beams;
+    }
+  }
+}
+
+// Lines through ranges that are on none may run along the last of their beams.
+TEST(ScanSurfels, NoWallGoesOnBeyondAllSight) {
+  int made = 0;
+  for (std::uint32_t frame = 0; frame < 5000; ++frame) {
+    RandomStream random(1, RandomStage::kTest, frame);
+    Scan ring;
+    for (int i = 0; i < 8; ++i) {
+      const auto range_m = static_cast<float>(random.Uniform(0.5, 5.0));
+      ring.beams.push_back({static_cast<float>(0.25 * kPi * i - kPi), range_m, 0.0F, 0.0F, true});
+    }
+    for (const Surfel& surfel : ScanSurfelMaker({}).Make(ring, RangeNoise())) {
+      EXPECT_LT(surfel.point_m.norm(), kFarthestSeenM) << frame;
+      ++made;
+    }
+  }
+  EXPECT_GT(made, 1000);
+}
+
 }  // namespace
 }  // namespace depthgrid
