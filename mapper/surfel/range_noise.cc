@@ -65,6 +65,7 @@ void RangeNoise::Add(const Scan& scan) {
          AreAlike(chosen_)) {
     ++chosen_;
   }
+  if (!ShowNoise(chosen_)) chosen_ = 0;
 }
 
 void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
@@ -112,7 +113,8 @@ void RangeNoise::Differences::Refresh() {
     const double low = ValueBinLow(static_cast<int>(bin));
     const double high = ValueBinLow(static_cast<int>(bin) + 1);
     const double median = low + (high - low) * (half - below) / histogram[r][bin];
-    relative_sigma[r] = std::max(kSigmaOfMedianDifference * median, kMinRelativeSigma);
+    shown_sigma[r] = kSigmaOfMedianDifference * median;
+    relative_sigma[r] = std::max(shown_sigma[r], kMinRelativeSigma);
   }
   if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;
   for (int r = 0; r < kRangeBins; ++r) {  // unknown bins take the nearest known one's, nearer first
@@ -133,11 +135,24 @@ bool RangeNoise::AreAlike(std::size_t power) const {
   double seen = 0.0, samples = 0.0;
   for (std::size_t r = 0; r < kRangeBins; ++r) {
     if (!near.Knows(r) || !far.Knows(r)) continue;
-    const double ratio = near.relative_sigma[r] / far.relative_sigma[r];
+    const double ratio = near.shown_sigma[r] / far.shown_sigma[r];
     seen += far.count[r] * ratio * ratio;
     samples += far.count[r];
   }
   return seen < kAlikeShare * samples;
+}
+
+// Whether beams this stride apart differ by more than the best sensor's would, over most of what
+// was seen: what is smaller, such as rounding, tells nothing of a sensor.
+bool RangeNoise::ShowNoise(std::size_t power) const {
+  const Differences& differences = by_stride_[power];
+  double noisy = 0.0, samples = 0.0;
+  for (std::size_t r = 0; r < kRangeBins; ++r) {
+    if (!differences.Knows(r)) continue;
+    samples += differences.count[r];
+    noisy += differences.shown_sigma[r] > kMinRelativeSigma ? differences.count[r] : 0.0;
+  }
+  return 2.0 * noisy > samples;
 }
 
 double RangeNoise::RelativeSigma(double range_m, int stride) const {

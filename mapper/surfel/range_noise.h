@@ -21,7 +21,7 @@ class RangeNoise {
   void Add(const Scan& scan);
   // sigma(r) / r, as it shows between beams so many apart: 1, or stride().
   double RelativeSigma(double range_m, int stride) const;
-  // Beams err by themselves if so many apart: 1, 2, 4, 8 or 16.
+  // Beams err by themselves if so many apart: 1, 2, 4, 8, 16 or 32.
   int stride() const { return 1 << chosen_; }
 
  private:
@@ -33,13 +33,15 @@ class RangeNoise {
   struct Differences {
     std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram{};
     std::array<std::uint32_t, kRangeBins> count{};
-    std::array<double, kRangeBins> relative_sigma{};
+    std::array<double, kRangeBins> shown_sigma{};  // of known bins: relative, as the median tells
+    std::array<double, kRangeBins> relative_sigma{};  // no less than that of the best sensor
 
     void Add(const Scan& scan, std::size_t stride);
     void Refresh();
     bool Knows(std::size_t range_bin) const;
   };
   bool AreAlike(std::size_t power) const;
+  bool ShowNoise(std::size_t power) const;
 
   std::array<Differences, kStrides> by_stride_{};  // by its power of two
   std::size_t chosen_ = 0;                         // power of two

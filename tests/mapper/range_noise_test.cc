@@ -20,7 +20,7 @@ constexpr double kWallM = 3.0;
 constexpr double kSigma = 0.01;  // of the range
 
 // A wall across the view; errors are correlated by exp(-(d / length)^2 / 2), 0: not.
-Scan WallWithNoise(RandomStream& random, double length) {
+Scan WallWithNoise(RandomStream& random, double length, double sigma = kSigma) {
   constexpr int kReach = 40;
   std::vector<double> white(kBeams + 2 * kReach);
   for (double& value : white) value = random.Normal();
@@ -36,7 +36,7 @@ Scan WallWithNoise(RandomStream& random, double length) {
     }
     const double bearing_rad = (i - 0.5 * (kBeams - 1)) * kStepRad;
     const double range_m =
-        kWallM / std::cos(bearing_rad) * (1.0 + kSigma * sum / std::sqrt(squares));
+        kWallM / std::cos(bearing_rad) * (1.0 + sigma * sum / std::sqrt(squares));
     Beam beam;
     beam.bearing_rad = static_cast<float>(bearing_rad);
     beam.range_m = static_cast<float>(range_m);
@@ -85,6 +85,25 @@ TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
     EXPECT_NEAR(noise.RelativeSigma(kWallM, stride), kSigma, 0.4 * kSigma) << length;
     EXPECT_LT(noise.RelativeSigma(kWallM, 1), 0.4 * kSigma) << length;
   }
+}
+
+// Between neighbours less shows then than any sensor is believed to err by.
+TEST(RangeNoise, OfBeamsThatErrVerySmoothlyFewCount) {
+  for (const auto& [length, sigma] : {std::pair{12.0, 0.01}, {6.0, 0.003}, {10.0, 0.003}}) {
+    RandomStream random(4, RandomStage::kTest);
+    RangeNoise noise;
+    for (int i = 0; i < 40; ++i) noise.Add(WallWithNoise(random, length, sigma));
+    EXPECT_EQ(noise.stride(), length > 6.0 ? 16 : 8) << length;
+    EXPECT_GT(noise.RelativeSigma(kWallM, noise.stride()), 0.2 * sigma) << length;
+  }
+}
+
+// What differs by less than any sensor errs by is no noise, however smooth it is.
+TEST(RangeNoise, OfExactRangesAllCount) {
+  RandomStream random(5, RandomStage::kTest);
+  RangeNoise noise;
+  for (int i = 0; i < 40; ++i) noise.Add(WallWithNoise(random, 6.0, 1e-5));
+  EXPECT_EQ(noise.stride(), 1);
 }
 
 // How far off normals of a wall's lines are, over what is claimed: the median.
