@@ -22,7 +22,10 @@ constexpr double kQuantile = 0.8;
 // That quantile of |N(0, 1)| times sqrt(1 + 4 + 1).
 constexpr double kQuantileSigmas = 1.2816 * 2.4495;
 
-constexpr std::size_t kMinSamples = 20;
+constexpr int kMinSamples = 20;
+// As wide as those of noise, and up to what no depth camera measures: what drivers write where
+// nothing came back lies beyond.
+constexpr int kClassesOfReach = 64;
 // Until something is measured: Kinect v1 (Nguyen 2012) has 0.0012 to 0.0019 a metre.
 constexpr double kDefaultInverseSigma = 0.002;
 
@@ -56,6 +59,7 @@ NoiseWindow::NoiseWindow() { inverse_sigma_.fill(kDefaultInverseSigma); }
 
 NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   for (std::vector<float>& of_class : differences) of_class.clear();
+  std::array<int, kClassesOfReach> measured_at{};
   const auto row_of = [&](int k) { return image.Row((2 * k + 1) * image.height_px / (2 * kRows)); };
   for (int k = 0; k < kRows; ++k) {
     const float* row = row_of(k);
@@ -66,8 +70,10 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
       if (!(left > 0.0F && here > 0.0F && right > 0.0F)) continue;
       // Anything may be written in a pixel that was not measured, also more than there are numbers.
       const float position = here / static_cast<float>(kClassM);
-      if (position >= static_cast<float>(kClasses)) continue;
+      if (position >= static_cast<float>(kClassesOfReach)) continue;
       const auto depth_class = static_cast<std::size_t>(position);
+      ++measured_at[depth_class];
+      if (depth_class >= kClasses) continue;
       const float difference = 1.0F / left - 2.0F / here + 1.0F / right;
       differences[depth_class].push_back(std::abs(difference));
     }
@@ -75,12 +81,12 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   double last = kDefaultInverseSigma;
   std::array<bool, kClasses> measured{};
   for (std::size_t k = 0; k < kClasses; ++k) {
-    measured[k] = differences[k].size() >= kMinSamples;
-    if (measured[k]) {
-      last = InverseSigmaOf(differences[k]);
-      farthest_m_ = static_cast<double>(k) * kClassM;
-    }
+    measured[k] = measured_at[k] >= kMinSamples;
+    if (measured[k]) last = InverseSigmaOf(differences[k]);
     inverse_sigma_[k] = last;
+  }
+  for (std::size_t k = 0; k < kClassesOfReach; ++k) {
+    if (measured_at[k] >= kMinSamples) farthest_m_ = static_cast<double>(k) * kClassM;
   }
   // Classes nearer than the first measured one take its value.
   const auto first = std::find(measured.begin(), measured.end(), true) - measured.begin();

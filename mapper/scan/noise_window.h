@@ -51,8 +51,8 @@ class NoiseWindow {
   static bool IsNarrow(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
   static int MeansOf(float width_m) { return IsNarrow(width_m) ? kMeansOfNarrow : 1; }
 
-  // Something was measured this far away or up to half a metre farther, and little beyond; 0 if
-  // nothing was.
+  // Something was measured this far away or up to half a metre farther, and little beyond (but for
+  // what is 32 m away and more, which no depth camera measures); 0 if nothing was.
   double farthest_m() const { return farthest_m_; }
 
   // Standard deviation of depth as estimated for a class of depth.

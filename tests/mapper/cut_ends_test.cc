@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "mapper/core/rng.h"
@@ -43,6 +44,24 @@ Scan SliceOf(const DepthImage& image, const PinholeCamera& camera, const Pose3& 
   frame.depth = std::make_shared<const DepthImage>(image);
   frame.slam_from_camera = pose;
   return *scanner.ScansOf(frame).matched;
+}
+
+// Two walls across the view, at these depths.
+DepthImage TwoWalls(float left_m, float right_m) {
+  DepthImage image;
+  image.width_px = 640;
+  image.height_px = 480;
+  image.z_m.assign(640 * 480, right_m);
+  for (int v = 0; v < image.height_px; ++v) std::fill_n(image.Row(v), 320, left_m);
+  return image;
+}
+
+// The end of what is nearer than that is no end of the camera's reach.
+TEST(NoiseWindow, TellsHowFarACameraSees) {
+  EXPECT_EQ(NoiseWindow(TwoWalls(2.2F, 4.3F)).farthest_m(), 4.0);
+  EXPECT_EQ(NoiseWindow(TwoWalls(9.2F, 14.3F)).farthest_m(), 14.0);
+  EXPECT_EQ(NoiseWindow(TwoWalls(2.2F, 65.535F)).farthest_m(), 2.0);
+  EXPECT_EQ(NoiseWindow(TwoWalls(0.0F, std::numeric_limits<float>::infinity())).farthest_m(), 0.0);
 }
 
 // How far before the wall the last four hits towards the reach lie in the mean.
