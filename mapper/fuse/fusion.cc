@@ -11,6 +11,8 @@ namespace {
 
 // As the threshold of Debiased() (surfel/debias.h), for the same reason.
 constexpr double kFeigned = 3.0;
+// SLAM's error goes on growing for no longer, whatever the stamps say: a day.
+constexpr double kLongestS = 86400.0;
 
 }  // namespace
 
@@ -151,7 +153,7 @@ Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& moti
 Eigen::Matrix3d SlamStepCovariance(const SlamNoiseOptions& noise, const Pose2& motion,
                                    double duration_s) {
   const auto square = [](double value) { return value * value; };
-  const double time_s = std::max(duration_s, 0.0);
+  const double time_s = std::clamp(duration_s, 0.0, kLongestS);
   const double position_m2 = square(noise.jitter_m) + square(noise.walk_m_per_sqrt_s) * time_s +
                              square(noise.path_share * motion.translation().norm());
   const double yaw_rad2 = square(noise.jitter_rad) + square(noise.walk_rad_per_sqrt_s) * time_s +

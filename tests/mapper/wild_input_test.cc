@@ -46,8 +46,8 @@ struct WildRun {
   MapperResult result;
 };
 
-WildRun RunWith(const std::function<void(Frame&)>& spoil) {
-  IncrementalMapper mapper({}, std::nullopt);
+WildRun RunWith(const std::function<void(Frame&)>& spoil, const MapperOptions& options = {}) {
+  IncrementalMapper mapper(options, std::nullopt);
   WildRun run;
   const auto error_m = [](const Pose3& pose, int i) {
     return Between(WildTruthAt(i), BaseOf(pose)).translation().norm();
@@ -57,6 +57,7 @@ WildRun RunWith(const std::function<void(Frame&)>& spoil) {
     spoil(frame);
     const FrameReport report = mapper.AddFrame(frame);
     if (i == kWild) continue;
+    EXPECT_TRUE(IsOnAMap(BaseOf(*report.map_from_camera))) << i;
     run.worst_online_m = std::max(run.worst_online_m, error_m(*report.map_from_camera, i));
   }
   run.result = mapper.Finish();
@@ -142,6 +143,23 @@ TEST(WildInput, ACorrectionThatSlamDoesNotTellBendsNothing) {
     EXPECT_LT(untold.worst_m, 0.01);
     EXPECT_EQ(untold.worst_online_m, told.worst_online_m);
     EXPECT_EQ(untold.worst_m, told.worst_m);
+  }
+}
+
+TEST(WildInput, NoStampIsFartherAwayThanADay) {
+  for (const FusionMode mode : {FusionMode::kKalman, FusionMode::kFixed, FusionMode::kAdaptive}) {
+    MapperOptions options;
+    options.fusion.mode = mode;
+    const auto run_with = [&](double stamp_s) {
+      const auto spoil = [&](Frame& frame) {
+        if (frame.index == kWild) frame.stamp_s = stamp_s;
+      };
+      return RunWith(spoil, options);
+    };
+    const WildRun days = run_with(1e6), ever = run_with(1e300);
+    EXPECT_EQ(ever.worst_online_m, days.worst_online_m);
+    EXPECT_EQ(ever.worst_m, days.worst_m);
+    EXPECT_LT(ever.worst_m, 0.02);
   }
 }
 
