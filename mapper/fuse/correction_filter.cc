@@ -120,7 +120,10 @@ void CorrectionFilter::Place(const Pose2& slam_from_base, double stamp_s,
 
 void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
                               const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
-  Place(slam_from_base, stamp_s, map_from_base, covariance);
+  // With an absolute prior nothing of what was fused here is in the next prediction.
+  const bool relative = options_.prior == PriorMode::kRelative;
+  Place(slam_from_base, stamp_s, map_from_base,
+        relative ? covariance : Predict(slam_from_base, stamp_s).covariance);
   if (Learns()) tracker_.Commit(slam_from_base, map_from_base, covariance, last_match_);
   last_match_ = MatchResult{};
 }

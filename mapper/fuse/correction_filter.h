@@ -68,7 +68,8 @@ class CorrectionFilter {
 
   FusionOptions options_;
   Pose2 map_from_slam_;
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();  // of the last pose, its base axes
+  // Of the last pose in its base axes; with an absolute prior that of SLAM's.
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
   std::optional<Last> last_;
   // `learned`
   DriftTracker tracker_;

@@ -226,6 +226,29 @@ TEST(CorrectionFilter, RelativeCarriesTheCorrectionOnAndAbsoluteDoesNot) {
   }
 }
 
+// SLAM drifts 1 cm a frame. What is taken of a match is not in the next frame's prediction, which
+// is known the worse the longer SLAM went: all is taken in the end.
+TEST(CorrectionFilter, AnAbsolutePriorIsKnownWorseAndWorse) {
+  for (const bool matched : {false, true}) {
+    FusionOptions options;
+    options.mode = FusionMode::kKalman;
+    options.prior = PriorMode::kAbsolute;
+    options.slam_noise.jitter_m = 0.01;
+    CorrectionFilter filter(options);
+    constexpr int kFrames = 400;
+    for (int i = 0; i <= kFrames; ++i) {
+      const Pose2 slam{0.01 * i, 0.0, 0.0};
+      const Prediction prediction = filter.Predict(slam, 0.0);
+      EXPECT_NEAR(prediction.covariance(0, 0), 1e-4 * i, 1e-9) << i;
+      MatchResult match = MatchAt({}, 1e4 * Eigen::Matrix3d::Identity());
+      match.found = matched;
+      const FusedPose fused = filter.Fuse(slam, prediction, match, Eigen::Vector3d::Zero());
+      filter.Commit(slam, 0.0, fused.map_from_base, fused.covariance);
+      if (i == kFrames && matched) EXPECT_GT(fused.gain(0, 0), 0.99);
+    }
+  }
+}
+
 TEST(CorrectionFilter, StaysTheIdentityWhenNothingIsTaken) {
   FusionOptions options;
   options.mode = FusionMode::kFixed;
