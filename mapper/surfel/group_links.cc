@@ -35,7 +35,11 @@ void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, Po
   const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
   const Eigen::Matrix3d first_block = by_first.transpose() * weighted;
   h.AddBlock(link.first, link.first, first_block);
-  h.AddBlock(link.second, link.first, weighted);
+  if (link.first < link.second) {
+    h.AddBlock(link.second, link.first, weighted);
+  } else {
+    h.AddBlock(link.first, link.second, weighted.transpose());
+  }
   h.AddBlock(link.second, link.second, weight.asDiagonal().toDenseMatrix());
   g.segment<3>(3 * link.first) -= weighted.transpose() * error;
   g.segment<3>(3 * link.second) -= weight.cwiseProduct(error);

@@ -10,7 +10,7 @@
 namespace depthgrid {
 
 struct GroupLink {
-  int first = 0;  // < second
+  int first = 0;  // another than `second`, before or after it
   int second = 0;
   Pose2 first_from_second;                          // measured
   Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // of its error, in axes of `second`

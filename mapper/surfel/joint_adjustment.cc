@@ -45,8 +45,9 @@ std::vector<int> ChainEnvelope(std::size_t groups, int predecessors,
     first[g] = std::max(static_cast<int>(g) - predecessors, 0);
   }
   for (const GroupLink& link : links) {
-    int& place = first[static_cast<std::size_t>(link.second)];
-    place = std::min(place, link.first);
+    const auto [earlier, later] = std::minmax(link.first, link.second);
+    int& place = first[static_cast<std::size_t>(later)];
+    place = std::min(place, earlier);
   }
   return first;
 }
@@ -247,15 +248,6 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   return result;
 }
 
-// A link runs forward in time and is robust.
-GroupLink AsLoop(GroupLink link, double huber_sigmas) {
-  link.huber_sigmas = huber_sigmas;
-  if (link.first <= link.second) return link;
-  std::swap(link.first, link.second);
-  link.first_from_second = Inverse(link.first_from_second);
-  return link;
-}
-
 }  // namespace
 
 void JointOptions::Visit(OptionsVisitor& v) {
@@ -299,7 +291,9 @@ JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
     std::vector<GroupLink> used;
     for (std::size_t i = 0; i < loops.size(); ++i) {
       const bool joins_two = loops[i].first != loops[i].second;
-      if (accepted[i] && joins_two) used.push_back(AsLoop(loops[i], options.loop_huber_sigmas));
+      if (!accepted[i] || !joins_two) continue;
+      used.push_back(loops[i]);
+      used.back().huber_sigmas = options.loop_huber_sigmas;
     }
     JointResult result = Adjust(problem, used);
     // The worst false loop is taken out first: it may be what made true ones look wrong.

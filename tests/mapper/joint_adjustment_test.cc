@@ -124,6 +124,27 @@ TEST(JointAdjustment, OneLoopClosesAWideGap) {
 }
 
 // Two loops that contradict what was seen along the way; each alone is taken out.
+// Seen from the later group the earlier one, 5 m behind, lies 0.2 m to the left: that is how well
+// its place is known, wherever the later group looks. So this one turns, which is cheaper than to
+// go aside.
+TEST(JointAdjustment, ALoopMayRunBackInTime) {
+  std::vector<SurfelGroup> groups(2);
+  groups[1].map_from_group = {5.0, 0.0, 0.0};
+  GroupLink loop;
+  loop.first = 1;
+  loop.second = 0;
+  loop.first_from_second = {-5.0, 0.2, 0.0};
+  loop.sigma = {0.01, 0.01, 10.0};
+  JointOptions options;
+  options.rounds = 0;
+  // Across the gap they lie to 0.1 m and 0.05 rad: the least of y^2 / 0.1^2 + yaw^2 / 0.05^2 with
+  // 5 yaw - y = 0.2.
+  const JointResult result = AdjustJointly(groups, std::vector<GroupMotion>(2), {loop}, options);
+  EXPECT_EQ(result.loop_accepted, std::vector<bool>{true});
+  EXPECT_NEAR(result.map_from_group[1].yaw_rad, 0.0345, 0.001);
+  EXPECT_NEAR(result.map_from_group[1].y_m, -0.0276, 0.003);
+}
+
 TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
   const Corridor corridor = WalkWithAJump(0.001);
   const auto sideways = [](int first, double by_m, bool on_trial) {
