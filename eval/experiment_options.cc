@@ -24,6 +24,7 @@ void ExperimentOptions::Visit(OptionsVisitor& v) {
   constexpr double kMaxFrames = 1e6;
   v.Text("scene", scene, "a shipped scene, a scene file or a mesh file");
   v.Text("trajectory", trajectory, "one the scene names, or a TUM file; empty is the first");
+  v.Text("movers", movers, "which of the scene's are there: none, all, or names joined by +");
   v.Number("frames", frames, {0, kMaxFrames}, "0 is as many as the path needs");
   v.Seed("seed", seed, "of the depth noise and SLAM's errors");
   v.Seed("depth_seed", depth_seed, "of the depth noise alone; 0 is seed");

@@ -9,6 +9,7 @@
 #include "eval/metrics/map_quality.h"
 #include "mapper/io/config.h"
 #include "mapper/mapper_options.h"
+#include "sim/mover.h"
 #include "sim/sensor_options.h"
 #include "sim/slam_options.h"
 
@@ -18,6 +19,8 @@ struct ExperimentOptions {
   std::string scene;  // a shipped scene, a scene file or a mesh file
   // One the scene names, or a TUM file. Empty is the scene's only one, or its first by name.
   std::string trajectory;
+  // Which of the scene's movers are there: `none`, `all`, or names joined by a plus sign.
+  std::string movers = kNoMovers;
   // 0: as many as the path needs within its speed bounds, or all of the file. Fewer walk only the
   // path's beginning, more walk it slower.
   int frames = 0;

@@ -13,7 +13,8 @@ std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& r
   const bool is_same_path = !anew.trajectory && (is_file || !anew.scene);
   if (!record.Has("scene_hash") || (anew.scene && !is_same_path)) return {};
   // Of a room that is chosen anew nothing need be known, not even whether it can be read.
-  const WorldHashes now = anew.scene ? WorldHashes{"", HashOfPathFile(options)} : HashesOf(options);
+  const WorldHashes now =
+      anew.scene ? WorldHashes{"", "", HashOfPathFile(options)} : HashesOf(options);
   std::vector<std::string> doubts;
   const auto compare = [&](const std::string& key, const std::string& hash,
                            const std::string& what) {

@@ -136,8 +136,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);
   WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
-  const Scene* scene = record.world != nullptr ? &record.world->scene : nullptr;
-  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, scene, truth);
+  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.world);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));

@@ -39,17 +39,19 @@ RgbImage PictureOf(const SampleFrame& sample, const MappingRun& run, const ScanO
 }  // namespace
 
 void WriteSamplePictures(const std::string& folder, const MappingRun& run,
-                         const ScanOptions& options, const Scene* scene, const Trajectory* truth) {
+                         const ScanOptions& options, const World* world) {
   if (run.samples.empty()) return;
   std::filesystem::create_directory(folder + "/frames");
   std::optional<ColourCamera> camera;
-  if (scene != nullptr && run.camera) camera.emplace(*scene, *run.camera);
+  if (world != nullptr && run.camera) camera.emplace(world->scene, *run.camera);
   for (const SampleFrame& sample : run.samples) {
     const std::string stem = fmt::format("{}/frames/{:06}", folder, sample.frame);
     WriteRgbPng(stem + "_depth.png", PictureOf(sample, run, options));
-    if (!camera || truth == nullptr) continue;
-    const Pose3& pose = (*truth)[static_cast<std::size_t>(sample.frame)].world_from_camera;
-    WriteRgbPng(stem + "_colour.png", camera->Render(pose).rgb);
+    if (!camera) continue;
+    const auto frame = static_cast<std::size_t>(sample.frame);
+    const Pose3& pose = world->trajectory[frame].world_from_camera;
+    const auto movers = world->movers.At(world->trajectory, frame);
+    WriteRgbPng(stem + "_colour.png", camera->Render(pose, movers).rgb);
   }
 }
 

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "eval/mapping_run.h"
+#include "eval/world.h"
 #include "mapper/scan/scan_options.h"
-#include "sim/scene.h"
 
 namespace depthgrid {
 
-// `scene` and `truth` may be null: recorded data has no colour to render.
+// `world` may be null: recorded data has no colour to render.
 void WriteSamplePictures(const std::string& folder, const MappingRun& run,
-                         const ScanOptions& options, const Scene* scene, const Trajectory* truth);
+                         const ScanOptions& options, const World* world);
 
 }  // namespace depthgrid

@@ -8,16 +8,24 @@ namespace depthgrid {
 SyntheticSensor::SyntheticSensor(const World& world, const ExperimentOptions& options,
                                  const std::string& cache_folder)
     : camera_(world.rays, world.camera),
+      movers_(world.movers),
+      mover_camera_(world.movers, world.camera),
       noise_(options.sensor),
       seed_(options.DepthSeed()),
       trajectory_(world.trajectory) {
   if (cache_folder.empty()) return;
-  cache_.emplace(cache_folder, world.hashes.scene, world.camera, world.rays.isa());
+  cache_.emplace(cache_folder, world.hashes.room, world.camera, world.rays.isa());
   cache_->MakeRoomFor(trajectory_, noise_.NeedsIncidence());
 }
 
-DepthFrame SyntheticSensor::Clean(int frame) const {
-  const Pose3& world_from_camera = trajectory_[static_cast<std::size_t>(frame)].world_from_camera;
+DepthFrame SyntheticSensor::Clean(std::size_t frame) const {
+  const Pose3& world_from_camera = trajectory_[frame].world_from_camera;
+  DepthFrame clean = Room(world_from_camera);
+  mover_camera_.DrawOver(world_from_camera, movers_.At(trajectory_, frame), clean);
+  return clean;
+}
+
+DepthFrame SyntheticSensor::Room(const Pose3& world_from_camera) const {
   const bool with_incidence = noise_.NeedsIncidence();
   if (cache_) {
     auto cached = cache_->Load(world_from_camera, with_incidence);
@@ -34,7 +42,8 @@ DepthFrame SyntheticSensor::Clean(int frame) const {
 }
 
 DepthImage SyntheticSensor::Image(int frame) const {
-  return QuantiseDepth(noise_.Apply(Clean(frame), seed_, static_cast<std::uint32_t>(frame)));
+  return QuantiseDepth(noise_.Apply(Clean(static_cast<std::size_t>(frame)), seed_,
+                                    static_cast<std::uint32_t>(frame)));
 }
 
 SyntheticSource::SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam, int threads)

@@ -16,13 +16,14 @@
 #include "mapper/core/slam_output.h"
 #include "sim/depth_camera.h"
 #include "sim/depth_noise.h"
+#include "sim/mover_scene.h"
 
 namespace depthgrid {
 
 // Frame i of the sensor: a pure function of the world, the options and i.
 class SyntheticSensor {
  public:
-  // Clean depth comes from the cache where it can; the folder "" is none.
+  // Clean depth of what stands comes from the cache where it can; the folder "" is none.
   SyntheticSensor(const World& world, const ExperimentOptions& options,
                   const std::string& cache_folder);
 
@@ -31,9 +32,12 @@ class SyntheticSensor {
   const PinholeCamera& camera() const { return camera_.camera(); }
 
  private:
-  DepthFrame Clean(int frame) const;
+  DepthFrame Clean(std::size_t frame) const;
+  DepthFrame Room(const Pose3& world_from_camera) const;
 
   DepthCamera camera_;
+  MoverScene movers_;
+  MoverCamera mover_camera_;
   DepthNoise noise_;
   std::uint64_t seed_;
   Trajectory trajectory_;

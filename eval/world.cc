@@ -29,6 +29,29 @@ std::string HashOf(const Scene& scene) {
   return hash.Hex();
 }
 
+// That of the room where nothing moves.
+std::string HashWithMovers(const Scene& scene) {
+  std::string room = HashOf(scene);
+  if (scene.movers.empty()) return room;
+  ContentHash hash;
+  hash.Text(room);
+  for (const Mover& mover : scene.movers) {
+    for (const Eigen::Vector3f& v : mover.mesh.vertices) hash.Bytes(v.data(), sizeof(float) * 3);
+    for (const auto& t : mover.mesh.triangles) hash.Bytes(t.data(), sizeof t);
+    hash.Value(mover.options.ahead_m);
+    hash.Text(ToYaml(mover.options));
+    for (const MoverWaypoint& waypoint : mover.options.waypoints) hash.Text(ToYaml(waypoint));
+  }
+  return hash.Hex();
+}
+
+// The scene as the experiment has it.
+Scene SceneOf(const ExperimentOptions& options) {
+  Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  KeepMovers(options.movers, scene.movers);
+  return scene;
+}
+
 const std::string& NamedTrajectory(const Scene& scene, const ExperimentOptions& options) {
   const std::string& name = options.trajectory;
   const std::string& place =
@@ -55,7 +78,8 @@ CameraSpace SpaceOf(const Scene& scene) {
   return {BoundsOfMesh(scene.mesh), !scene.ceiling_z_m.has_value()};
 }
 
-Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentOptions& options) {
+Trajectory FromScene(const Scene& scene, const RayScene& rays, const MoverScene& movers,
+                     const ExperimentOptions& options) {
   const std::string& name = NamedTrajectory(scene, options);
   const TrajectoryOptions& path = scene.trajectories.at(name);
   const int whole = MinimumFrames(path);
@@ -63,6 +87,7 @@ Trajectory FromScene(const Scene& scene, const RayScene& rays, const ExperimentO
       MakeTrajectory(path, std::max(options.frames, whole), kFrameRateHz, options.trajectory_seed);
   if (options.frames > 0) trajectory.resize(static_cast<std::size_t>(options.frames));
   CheckPath(trajectory, path, scene, rays);
+  CheckMovers(trajectory, path, scene, movers);
   return trajectory;
 }
 
@@ -157,13 +182,13 @@ void AddPath(const Scene& scene, const ExperimentOptions& options, ContentHash& 
 WorldHashes HashesOf(const Scene& scene, const ExperimentOptions& options) {
   ContentHash path;
   AddPath(scene, options, path);
-  return {HashOf(scene), path.Hex()};
+  return {HashOf(scene), HashWithMovers(scene), path.Hex()};
 }
 
 }  // namespace
 
 WorldHashes HashesOf(const ExperimentOptions& options) {
-  return HashesOf(LoadScene(ResolveName(options.scene, ShippedKind::kScene)), options);
+  return HashesOf(SceneOf(options), options);
 }
 
 std::string HashOfPathFile(const ExperimentOptions& options) {
@@ -173,27 +198,35 @@ std::string HashOfPathFile(const ExperimentOptions& options) {
 }
 
 std::string WorldHash(const ExperimentOptions& options) {
-  const Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  const Scene scene = SceneOf(options);
   ContentHash hash;
-  hash.Text(HashOf(scene));
+  hash.Text(HashWithMovers(scene));
   AddPath(scene, options, hash);
   return hash.Hex();
 }
+
+// DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
+constexpr double kFloatSlackM = 1e-5;
 
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
                const RayScene& rays) {
   const auto distance_m = [&](const Eigen::Vector3d& point) -> double {
     return rays.DistanceToSurface(point.cast<float>(), static_cast<float>(path.clearance_m));
   };
-  // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
-  constexpr double kFloatSlackM = 1e-5;
   CheckInside(trajectory, SpaceOf(scene), path.place);
   CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
 }
 
+void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
+                 const MoverScene& movers) {
+  const auto near = NearMoverText(trajectory, scene, movers, path.clearance_m - kFloatSlackM);
+  if (near) throw InputError(path.place, *near);
+}
+
 World LoadWorld(const ExperimentOptions& options, int build_threads) {
-  Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  Scene scene = SceneOf(options);
   RayScene rays(scene.mesh, options.sensor.isa, build_threads);
+  MoverScene movers(scene, options.sensor.isa);
   const PinholeCamera camera = SensorCamera(options.sensor);
   std::vector<std::string> doubts;
   Trajectory trajectory;
@@ -201,13 +234,14 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
     trajectory = FromFile(options, BoundsOfMesh(scene.mesh), doubts);
     const auto doubt = DoubtOfFile(trajectory, scene, rays, options);
     if (doubt) doubts.push_back(*doubt);
+    const auto near = NearMoverText(trajectory, scene, movers, kLeastClearanceM);
+    if (near) doubts.push_back(options.trajectory + ": " + *near);
   } else {
-    trajectory = FromScene(scene, rays, options);
+    trajectory = FromScene(scene, rays, movers, options);
   }
   WorldHashes hashes = HashesOf(scene, options);
-  return {std::move(scene), std::move(hashes),           std::move(rays),
-          camera,           SensorRange(options.sensor), std::move(trajectory),
-          std::move(doubts)};
+  return {std::move(scene), std::move(hashes),           std::move(rays),       std::move(movers),
+          camera,           SensorRange(options.sensor), std::move(trajectory), std::move(doubts)};
 }
 
 }  // namespace depthgrid

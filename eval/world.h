@@ -7,6 +7,7 @@
 #include "eval/experiment_options.h"
 #include "mapper/core/camera.h"
 #include "mapper/core/trajectory.h"
+#include "sim/mover_scene.h"
 #include "sim/ray_scene.h"
 #include "sim/scene.h"
 
@@ -14,14 +15,16 @@ namespace depthgrid {
 
 // Others when any of the files was changed.
 struct WorldHashes {
-  std::string scene;       // of triangles, floor and ceiling: what the depth camera can see
+  std::string room;        // of triangles, floor and ceiling: what stands
+  std::string scene;       // and of the movers that are there: what the depth camera can see
   std::string trajectory;  // of the path as the scene or its file gives it, whatever is cut off it
 };
 
 struct World {
-  Scene scene;
+  Scene scene;  // with those movers alone that the experiment names
   WorldHashes hashes;
-  RayScene rays;
+  RayScene rays;  // of what stands
+  MoverScene movers;
   PinholeCamera camera;
   DepthRange depth_range;
   Trajectory trajectory;
@@ -39,6 +42,10 @@ std::string WorldHash(const ExperimentOptions& options);       // both as one
 // Throws InputError.
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
                const RayScene& rays);
+
+// That none of the scene's movers comes nearer to it than its clearance. Throws InputError.
+void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
+                 const MoverScene& movers);
 
 // Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
 // path that comes too near to geometry, and for one of a file that leads out of all reach.

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
+#include <utility>
 
 #include "mapper/core/error.h"
 #include "sim/colour_shaders.h"
@@ -30,6 +32,7 @@ constexpr GLint kAmbient = 3;
 constexpr GLint kLightCount = 4;
 constexpr GLint kLightAt = 5;
 constexpr GLint kLightIntensity = kLightAt + kMaxLights;
+constexpr GLint kWorldFromMover = kLightIntensity + kMaxLights;
 constexpr GLuint kMaterialBinding = 0;
 
 struct GpuMaterial {
@@ -53,11 +56,10 @@ Eigen::Matrix4f ClipFromCamera(const PinholeCamera& camera) {
   return clip.cast<float>();
 }
 
-Eigen::Matrix4f CameraFromWorld(const Pose3& world_from_camera) {
-  const Pose3 camera_from_world = Inverse(world_from_camera);
+Eigen::Matrix4f MatrixOf(const Pose3& a_from_b) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  matrix.topLeftCorner<3, 3>() = camera_from_world.rotation.toRotationMatrix();
-  matrix.topRightCorner<3, 1>() = camera_from_world.translation;
+  matrix.topLeftCorner<3, 3>() = a_from_b.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = a_from_b.translation;
   return matrix.cast<float>();
 }
 
@@ -99,6 +101,14 @@ class RenderTarget {
   std::array<GLuint, 2> buffers_{};
 };
 
+// Triangles on GL's side, with a program for each texture among them. Named for all, as above.
+struct DrawnMesh {
+  GLuint array = 0;
+  GLsizei corner_count = 0;
+  std::vector<TextureBatch> batches;
+  std::vector<GLuint> colour_programs;  // one a batch
+};
+
 // GL's objects die with the context, which is the first member and goes last.
 struct ColourCamera::Renderer {
   Renderer(const Scene& scene, const PinholeCamera& pinhole)
@@ -112,31 +122,57 @@ struct ColourCamera::Renderer {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    UploadCorners(scene);
     UploadMaterials(scene);
-    depth_program = CompileProgram(VertexShader(), DepthFragmentShader());
-    for (const auto& batch : batches) {
-      const GLuint program = CompileProgram(VertexShader(), ColourFragmentShader(batch.texture));
-      colour_programs.push_back(program);
-      SetLights(program, scene.lighting);
+    depth_program = NewProgram(DepthFragmentShader(), Drawn::kStanding);
+    room = Upload(scene.mesh, Drawn::kStanding, scene);
+    for (const Mover& mover : scene.movers) {
+      movers.push_back(Upload(mover.mesh, Drawn::kMoving, scene));
     }
-    SetProjection();
+    if (!movers.empty()) {
+      moving_depth_program = NewProgram(DepthFragmentShader(), Drawn::kMoving);
+    }
     RequireNoGlError("setting up the colour camera");
   }
 
-  void UploadCorners(const Scene& scene) {
-    const ShadingMesh shading = MakeShadingMesh(scene);
-    batches = shading.batches;
-    corner_count = static_cast<GLsizei>(shading.corners.size());
+  // With the camera's projection.
+  GLuint NewProgram(const std::string& fragment_shader, Drawn drawn) {
+    const GLuint program = CompileProgram(VertexShader(drawn), fragment_shader);
+    const Eigen::Matrix4f clip = ClipFromCamera(camera);
+    glProgramUniformMatrix4fv(program, kClipFromCamera, 1, GL_FALSE, clip.data());
+    programs.push_back(program);
+    return program;
+  }
+
+  GLuint ColourProgram(TextureKind texture, Drawn drawn, const Lighting& lighting) {
+    const auto [known, is_new] = colour_programs.try_emplace({drawn, texture}, 0);
+    if (is_new) {
+      known->second = NewProgram(ColourFragmentShader(texture, drawn), drawn);
+      SetLights(known->second, lighting);
+    }
+    return known->second;
+  }
+
+  DrawnMesh Upload(const TriangleMesh& mesh, Drawn drawn, const Scene& scene) {
+    const ShadingMesh shading = MakeShadingMesh(mesh, scene.materials);
+    DrawnMesh uploaded;
+    uploaded.array = UploadCorners(shading.corners);
+    uploaded.corner_count = static_cast<GLsizei>(shading.corners.size());
+    uploaded.batches = shading.batches;
+    for (const TextureBatch& batch : shading.batches) {
+      uploaded.colour_programs.push_back(ColourProgram(batch.texture, drawn, scene.lighting));
+    }
+    return uploaded;
+  }
+
+  static GLuint UploadCorners(const std::vector<ShadingCorner>& corners) {
     GLuint array = 0;
     GLuint buffer = 0;
     glGenVertexArrays(1, &array);
     glBindVertexArray(array);
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(shading.corners.size() * sizeof(ShadingCorner)),
-                 shading.corners.data(), GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(ShadingCorner)),
+                 corners.data(), GL_STATIC_DRAW);
     const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
     constexpr GLsizei kStride = sizeof(ShadingCorner);
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride,
@@ -146,6 +182,7 @@ struct ColourCamera::Renderer {
     glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, kStride,
                            offset(offsetof(ShadingCorner, material)));
     for (GLuint i = 0; i < 3; ++i) glEnableVertexAttribArray(i);
+    return array;
   }
 
   void UploadMaterials(const Scene& scene) {
@@ -174,42 +211,47 @@ struct ColourCamera::Renderer {
     }
   }
 
-  template <typename Function>
-  void ForEachProgram(Function function) const {
-    function(depth_program);
-    for (const GLuint program : colour_programs) function(program);
-  }
-
-  void SetProjection() const {
-    const Eigen::Matrix4f clip = ClipFromCamera(camera);
-    ForEachProgram([&](GLuint program) {
-      glProgramUniformMatrix4fv(program, kClipFromCamera, 1, GL_FALSE, clip.data());
-    });
-  }
-
   void SetPose(const Pose3& world_from_camera) const {
-    const Eigen::Matrix4f pose = CameraFromWorld(world_from_camera);
+    const Eigen::Matrix4f pose = MatrixOf(Inverse(world_from_camera));
     const Eigen::Vector3f eye = world_from_camera.translation.cast<float>();
-    ForEachProgram([&](GLuint program) {
+    for (const GLuint program : programs) {
       glProgramUniformMatrix4fv(program, kCameraFromWorld, 1, GL_FALSE, pose.data());
-    });
-    for (const GLuint program : colour_programs) glProgramUniform3fv(program, kEye, 1, eye.data());
+    }
+    for (const auto& [kind, program] : colour_programs) {
+      glProgramUniform3fv(program, kEye, 1, eye.data());
+    }
   }
 
-  DepthImage DrawDepth() const {
+  static void SetPlace(GLuint program, const MoverPlace& place) {
+    const Eigen::Matrix4f pose = MatrixOf(place.world_from_mover);
+    glProgramUniformMatrix4fv(program, kWorldFromMover, 1, GL_FALSE, pose.data());
+  }
+
+  DepthImage DrawDepth(const std::vector<MoverPlace>& places) const {
     depth_target.BindAndClear({kInvalidDepth, 0, 0, 0});
-    glUseProgram(depth_program);
-    glDrawArrays(GL_TRIANGLES, 0, corner_count);
+    DrawDepthOf(room, depth_program);
+    for (const MoverPlace& place : places) {
+      SetPlace(moving_depth_program, place);
+      DrawDepthOf(movers[place.mover], moving_depth_program);
+    }
     DepthImage depth(camera.width_px, camera.height_px);
     glReadPixels(0, 0, camera.width_px, camera.height_px, GL_RED, GL_FLOAT, depth.z_m.data());
     return depth;
   }
 
-  RgbImage DrawColour() const {
+  static void DrawDepthOf(const DrawnMesh& mesh, GLuint program) {
+    glBindVertexArray(mesh.array);
+    glUseProgram(program);
+    glDrawArrays(GL_TRIANGLES, 0, mesh.corner_count);
+  }
+
+  RgbImage DrawColour(const std::vector<MoverPlace>& places) const {
     sampled_target.BindAndClear({sky.x(), sky.y(), sky.z(), 1.0F});
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-      glUseProgram(colour_programs[i]);
-      glDrawArrays(GL_TRIANGLES, batches[i].first_corner, batches[i].corner_count);
+    DrawColourOf(room);
+    for (const MoverPlace& place : places) {
+      const DrawnMesh& mover = movers[place.mover];
+      for (const GLuint program : mover.colour_programs) SetPlace(program, place);
+      DrawColourOf(mover);
     }
     const int width = camera.width_px;
     const int height = camera.height_px;
@@ -222,16 +264,26 @@ struct ColourCamera::Renderer {
     return image;
   }
 
+  static void DrawColourOf(const DrawnMesh& mesh) {
+    glBindVertexArray(mesh.array);
+    for (std::size_t i = 0; i < mesh.batches.size(); ++i) {
+      glUseProgram(mesh.colour_programs[i]);
+      glDrawArrays(GL_TRIANGLES, mesh.batches[i].first_corner, mesh.batches[i].corner_count);
+    }
+  }
+
   GlContext context;
   PinholeCamera camera;
   RenderTarget depth_target;
   RenderTarget sampled_target;
   RenderTarget colour_target;
   Eigen::Vector3f sky;
-  std::vector<TextureBatch> batches;
-  GLsizei corner_count = 0;
+  std::vector<GLuint> programs;  // all of them
+  std::map<std::pair<Drawn, TextureKind>, GLuint> colour_programs;
   GLuint depth_program = 0;
-  std::vector<GLuint> colour_programs;  // one a batch
+  GLuint moving_depth_program = 0;
+  DrawnMesh room;
+  std::vector<DrawnMesh> movers;
 };
 
 ColourCamera::ColourCamera(const Scene& scene, const PinholeCamera& camera) {
@@ -248,12 +300,13 @@ ColourCamera::ColourCamera(ColourCamera&&) noexcept = default;
 ColourCamera& ColourCamera::operator=(ColourCamera&&) noexcept = default;
 ColourCamera::~ColourCamera() = default;
 
-ColourFrame ColourCamera::Render(const Pose3& world_from_camera) {
+ColourFrame ColourCamera::Render(const Pose3& world_from_camera,
+                                 const std::vector<MoverPlace>& movers) {
   renderer_->context.MakeCurrent();
   renderer_->SetPose(world_from_camera);
   ColourFrame frame;
-  frame.depth = renderer_->DrawDepth();
-  frame.rgb = renderer_->DrawColour();
+  frame.depth = renderer_->DrawDepth(movers);
+  frame.rgb = renderer_->DrawColour(movers);
   RequireNoGlError("drawing a frame");
   return frame;
 }

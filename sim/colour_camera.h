@@ -7,6 +7,7 @@
 #include "mapper/core/depth_image.h"
 #include "mapper/core/pose3.h"
 #include "mapper/core/rgb_image.h"
+#include "sim/mover_scene.h"
 #include "sim/scene.h"
 
 namespace depthgrid {
@@ -27,7 +28,8 @@ class ColourCamera {
   ColourCamera& operator=(ColourCamera&&) noexcept;
   ~ColourCamera();
 
-  ColourFrame Render(const Pose3& world_from_camera);
+  // The room, with those of the scene's movers that are there.
+  ColourFrame Render(const Pose3& world_from_camera, const std::vector<MoverPlace>& movers = {});
 
  private:
   struct Renderer;

@@ -6,8 +6,8 @@
 
 namespace depthgrid {
 
-// Patterns are functions of the point in world axes (solid textures), so nothing needs texture
-// coordinates. sim/colour_shaders.cc draws them.
+// Patterns are functions of the point in world axes, a mover's in its own (solid textures), so
+// nothing needs texture coordinates. sim/colour_shaders.cc draws them.
 enum class TextureKind {
   kPlain = 0,
   kWood = 1,       // grain along `grain`

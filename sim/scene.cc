@@ -13,25 +13,28 @@
 namespace depthgrid {
 namespace {
 
-void RequireSaneMesh(const TriangleMesh& mesh, const std::string& path) {
-  if (mesh.triangles.empty()) throw InputError(path, "the scene has no triangles");
+// `what` the mesh is of: "scene", "mover".
+void RequireSaneMesh(const TriangleMesh& mesh, const std::string& what, const std::string& path) {
+  if (mesh.triangles.empty()) throw InputError(path, fmt::format("the {} has no triangles", what));
   for (const auto& vertex : mesh.vertices) {
-    if (!vertex.allFinite()) throw InputError(path, "a vertex of the scene is not finite");
+    if (!vertex.allFinite()) {
+      throw InputError(path, fmt::format("a vertex of the {} is not finite", what));
+    }
   }
   const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
   const double extent_m = bounds.sizes().maxCoeff();
   if (extent_m > kMaxSceneExtentM) {
-    throw InputError(path, fmt::format("the scene is {:.6g} m across, at most {} m; in other units "
+    throw InputError(path, fmt::format("the {} is {:.6g} m across, at most {} m; in other units "
                                        "than metres? A shape's scale changes them",
-                                       extent_m, kMaxSceneExtentM));
+                                       what, extent_m, kMaxSceneExtentM));
   }
   const double away_m =
       std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
   if (away_m > kMaxSceneCoordinateM) {
-    throw InputError(path, fmt::format("the scene has a coordinate of {:.0f} m, at most {} m: "
+    throw InputError(path, fmt::format("the {} has a coordinate of {:.0f} m, at most {} m: "
                                        "single precision is coarser than a millimetre beyond; move "
                                        "the mesh to the origin",
-                                       away_m, kMaxSceneCoordinateM));
+                                       what, away_m, kMaxSceneCoordinateM));
   }
 }
 
@@ -90,7 +93,8 @@ SceneFile ReadAsFile(const std::string& path) {
 Scene LoadScene(const std::string& path) {
   SceneFile file = ReadAsFile(path);
   Scene scene = std::move(file.scene);
-  RequireSaneMesh(scene.mesh, path);
+  RequireSaneMesh(scene.mesh, "scene", path);
+  for (const Mover& mover : scene.movers) RequireSaneMesh(mover.mesh, "mover", mover.options.place);
   scene.floor_z_m = FloorOf(scene.mesh, file.floor_z_m, path);
   scene.ceiling_z_m = FindCeiling(scene.mesh, scene.floor_z_m);
   if (scene.lighting.lights.empty()) scene.lighting.lights.push_back(DefaultLight(scene));

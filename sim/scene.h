@@ -1,4 +1,5 @@
-// A furnished world: geometry, materials, lights and the camera paths its file names.
+// A furnished world: geometry, materials, lights, what moves in it and the camera paths its file
+// names.
 #pragma once
 
 #include <map>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "sim/material.h"
+#include "sim/mover.h"
 #include "sim/trajectory.h"
 #include "sim/triangle_mesh.h"
 
@@ -27,12 +29,13 @@ constexpr int kMaxLights = 32;
 
 struct Scene {
   std::string name;
-  TriangleMesh mesh;
+  TriangleMesh mesh;  // of what stands
   std::vector<Material> materials;
   double floor_z_m = 0.0;
   std::optional<double> ceiling_z_m;  // empty when there is none
   Lighting lighting;
   std::map<std::string, TrajectoryOptions> trajectories;
+  std::vector<Mover> movers;  // in the order of the file
 };
 
 // Reads a scene file (.yaml, docs/scenes.md) or a mesh file (.obj .ply .stl .gltf .glb .dae).

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "mapper/core/error.h"
+#include "sim/material_options.h"
 #include "sim/mesh_file.h"
 #include "sim/scene_limits.h"
 #include "sim/shapes.h"
@@ -17,59 +18,6 @@ constexpr int kMaxGroupDepth = 16;
 // The material of triangles that take the one of the `use` around them.
 constexpr std::uint16_t kInherited = 0xFFFF;
 constexpr std::size_t kMaxMaterials = 0xFFFF;
-
-// Colours are written as colour pickers show them, 0..255.
-Eigen::Vector3f LinearFrom255(const std::array<double, 3>& srgb) {
-  return LinearFromSrgb(Eigen::Vector3d(srgb[0], srgb[1], srgb[2]).cast<float>() / 255.0F);
-}
-
-struct MaterialOptions {
-  std::array<double, 3> colour = {200, 200, 200};
-  std::array<double, 3> second_colour = {-1, -1, -1};
-  TextureKind texture = TextureKind::kPlain;
-  double scale_m = 0.1;
-  Axis grain = Axis::kX;
-  double gloss = 0.0;
-  double glow = 0.0;
-
-  void Visit(OptionsVisitor& v) {
-    v.Tuple("colour", colour, {0, 255}, "sRGB, 0 to 255");
-    v.Tuple("second_colour", second_colour, {0, 255}, "of the pattern; default: colour, darker");
-    v.Choice("texture", texture,
-             {{TextureKind::kPlain, "plain"},
-              {TextureKind::kWood, "wood"},
-              {TextureKind::kChecker, "checker"},
-              {TextureKind::kStripes, "stripes"},
-              {TextureKind::kFabric, "fabric"},
-              {TextureKind::kPlaster, "plaster"},
-              {TextureKind::kTiles, "tiles"},
-              {TextureKind::kPlanks, "planks"},
-              {TextureKind::kCarpet, "carpet"},
-              {TextureKind::kPaper, "paper"},
-              {TextureKind::kPainting, "painting"},
-              {TextureKind::kStone, "stone"}},
-             "pattern");
-    v.Number("scale_m", scale_m, {1e-4, 100.0}, "period of the pattern");
-    v.Choice("grain", grain, {{Axis::kX, "x"}, {Axis::kY, "y"}, {Axis::kZ, "z"}},
-             "world axis of wood, planks and stripes");
-    v.Number("gloss", gloss, {0.0, 1.0}, "share of a highlight");
-    v.Number("glow", glow, {0.0, 100.0}, "light given off, times the colour");
-  }
-  Material Make(const std::string& name) const {
-    constexpr float kDarker = 0.6F;  // of the pattern's second colour when none is given
-    Material m;
-    m.name = name;
-    m.colour = LinearFrom255(colour);
-    m.second_colour =
-        second_colour[0] < 0 ? Eigen::Vector3f(kDarker * m.colour) : LinearFrom255(second_colour);
-    m.texture = texture;
-    m.scale_m = static_cast<float>(scale_m);
-    m.grain = grain;
-    m.gloss = static_cast<float>(gloss);
-    m.glow = static_cast<float>(glow);
-    return m;
-  }
-};
 
 struct LightOptions {
   std::array<double, 3> at = {0, 0, 0};
@@ -93,11 +41,9 @@ struct LightingOptions {
 
 struct FileOptions {
   std::string name;
-  std::string include;
   double floor_z_m = 0.0;
   void Visit(OptionsVisitor& v) {
     v.Text("name", name, "shown in lists; default: the file's name");
-    v.Text("include", include, "a file with more materials and groups, relative to this one");
     v.Number("floor_z_m", floor_z_m, {-kMaxSceneExtentM, kMaxSceneExtentM},
              "height of the floor; default: found");
   }
@@ -139,19 +85,17 @@ class SceneReader {
     Config config = Config::FromFile(path);
     RequireKnownKeys(config);
     scene_.materials.push_back(MaterialOptions().Make("default"));
-    if (config.Has("include")) ReadInclude(config);
+    ReadIncludes(config);
     ReadMaterials(config.Take("materials"));
     ReadGroups(config.Take("groups"));
     ReadLighting(config.Take("lighting"));
     ReadTrajectories(config.Take("trajectories"));
-    scene_.mesh = BuildItems(config.TakeMaps("shapes"), 0);
-    for (auto& material : scene_.mesh.material_of_triangle) {
-      if (material == kInherited) material = 0;
-    }
+    scene_.mesh = BuildWhole(config.TakeMaps("shapes"));
+    ReadMovers(config.Take("movers"));
     const bool has_floor = config.Has("floor_z_m");
     FileOptions options;
     options.name = std::filesystem::path(path).stem().string();
-    config.Read(options);
+    config.Only({"name", "floor_z_m"}).Read(options);  // of the others nothing is left
     scene_.name = options.name;
     SceneFile file{std::move(scene_), {}};
     if (has_floor) file.floor_z_m = options.floor_z_m;
@@ -161,8 +105,9 @@ class SceneReader {
  private:
   // Here and not by the reader, which only sees the keys that are left and cannot name the nearest.
   static void RequireKnownKeys(const Config& config) {
-    const std::vector<std::string> known = {"name",   "include", "floor_z_m", "materials",
-                                            "groups", "shapes",  "lighting",  "trajectories"};
+    const std::vector<std::string> known = {"name",      "include",      "floor_z_m",
+                                            "materials", "groups",       "shapes",
+                                            "lighting",  "trajectories", "movers"};
     for (const ConfigEntry& entry : config.Entries()) {
       if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
       throw InputError(entry.place,
@@ -170,9 +115,22 @@ class SceneReader {
     }
   }
 
+  // One file, or a list of them.
+  void ReadIncludes(const Config& scene) {
+    if (!scene.HasList("include")) {
+      if (scene.Has("include")) ReadInclude(ExistingFile(scene, "include"));
+      return;
+    }
+    const std::string place = scene.PlaceOfKey("include");
+    const std::vector<std::string> names = scene.List("include");
+    if (names.empty()) throw InputError(place, "include is '[]', must be a file or a list of them");
+    for (const std::string& name : names) {
+      ReadInclude(ExistingFile(Config::FromText("include: " + name, place), "include"));
+    }
+  }
+
   // A file of furniture: materials and groups, nothing else.
-  void ReadInclude(const Config& scene) {
-    const std::string path = ExistingFile(scene, "include");
+  void ReadInclude(const std::string& path) {
     Config config = Config::FromFile(path);
     for (const ConfigEntry& entry : config.Entries()) {
       if (entry.key == "materials" || entry.key == "groups") continue;
@@ -250,6 +208,33 @@ class SceneReader {
       spec.NameSubject(fmt::format("trajectory '{}'", name));
       scene_.trajectories.emplace(name, ReadTrajectoryOptions(std::move(spec)));
     }
+  }
+
+  void ReadMovers(Config movers) {
+    for (const auto& name : movers.Keys()) {
+      Config spec = movers.Take(name);
+      spec.NameSubject(fmt::format("mover '{}'", name));
+      RequireMoverName(name, spec.Place());
+      TriangleMesh mesh = BuildWhole(spec.TakeMaps("shapes"));
+      if (mesh.triangles.empty()) throw InputError(spec.Place(), "has no shapes");
+      scene_.movers.push_back({name, std::move(mesh), ReadMoverOptions(std::move(spec))});
+    }
+  }
+
+  // Experiments name movers, several of them joined by +.
+  static void RequireMoverName(const std::string& name, const std::string& place) {
+    if (name != kAllMovers && name != kNoMovers && name.find('+') == std::string::npos) return;
+    throw InputError(place, fmt::format("must be called otherwise: '{}' and '{}' are all movers "
+                                        "and none, + joins names",
+                                        kAllMovers, kNoMovers));
+  }
+
+  // With a material everywhere.
+  TriangleMesh BuildWhole(std::vector<Config> items) {
+    TriangleMesh mesh = BuildItems(std::move(items), 0);
+    std::replace(mesh.material_of_triangle.begin(), mesh.material_of_triangle.end(), kInherited,
+                 std::uint16_t{0});
+    return mesh;
   }
 
   TriangleMesh BuildItems(std::vector<Config> items, int depth) {

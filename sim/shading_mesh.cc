@@ -44,10 +44,9 @@ Eigen::Vector3f CornerNormal(const Fans& fans, const std::vector<Eigen::Vector3d
 
 }  // namespace
 
-ShadingMesh MakeShadingMesh(const Scene& scene) {
-  const TriangleMesh& mesh = scene.mesh;
+ShadingMesh MakeShadingMesh(const TriangleMesh& mesh, const std::vector<Material>& materials) {
   const auto texture_of = [&](std::uint32_t triangle) {
-    return scene.materials[mesh.material_of_triangle[triangle]].texture;
+    return materials[mesh.material_of_triangle[triangle]].texture;
   };
   std::vector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0U);

@@ -1,11 +1,12 @@
-// A scene's triangles as the colour camera draws them: three corners each, with normals that are
+// Triangles as the colour camera draws them: three corners each, with normals that are
 // smooth over curved surfaces and sharp at edges, grouped by texture.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "sim/scene.h"
+#include "sim/material.h"
+#include "sim/triangle_mesh.h"
 
 namespace depthgrid {
 
@@ -29,6 +30,6 @@ struct ShadingMesh {
 // Triangles that share a vertex and meet at less than this are one curved surface.
 constexpr double kCreaseDeg = 40.0;
 
-ShadingMesh MakeShadingMesh(const Scene& scene);
+ShadingMesh MakeShadingMesh(const TriangleMesh& mesh, const std::vector<Material>& materials);
 
 }  // namespace depthgrid

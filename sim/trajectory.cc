@@ -104,38 +104,52 @@ Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double r
   return trajectory;
 }
 
+double LengthM(const Trajectory& trajectory) {
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    length_m += (trajectory[i].world_from_camera.translation -
+                 trajectory[i - 1].world_from_camera.translation)
+                    .norm();
+  }
+  return length_m;
+}
+
 double PathLengthM(const TrajectoryOptions& options) {
   TrajectoryOptions still = options;
   still.shake_m = 0.0;
   still.shake_deg = 0.0;
-  const Trajectory poses = MakeTrajectory(still, MinimumFrames(still), kFrameRateHz, 0);
-  double path_m = 0.0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    path_m += (poses[i].world_from_camera.translation - poses[i - 1].world_from_camera.translation)
-                  .norm();
+  return LengthM(MakeTrajectory(still, MinimumFrames(still), kFrameRateHz, 0));
+}
+
+std::optional<std::string> NearText(const Trajectory& trajectory,
+                                    const std::function<double(std::size_t frame)>& distance_m,
+                                    double clearance_m, const std::string& what) {
+  std::string first;
+  int stretches = 0;
+  bool was_near = false;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const double distance = distance_m(i);
+    const bool is_near = distance < clearance_m;
+    if (is_near && !was_near && stretches++ == 0) {
+      first = fmt::format("{} is {:.3f} m from {}, must be at least {:.3f} m",
+                          Shown(static_cast<int>(i), trajectory[i].world_from_camera.translation),
+                          distance, what, clearance_m);
+    }
+    was_near = is_near;
   }
-  return path_m;
+  if (stretches == 0) return {};
+  if (stretches > 1) first += fmt::format("; the first of {} places that are too near", stretches);
+  return first;
 }
 
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place) {
-  std::string first;
-  int stretches = 0;
-  bool was_near = false;
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
-    const double distance = distance_m(position_m);
-    const bool is_near = distance < clearance_m;
-    if (is_near && !was_near && stretches++ == 0) {
-      first = fmt::format("{} is {:.3f} m from geometry, must be at least {:.3f} m",
-                          Shown(static_cast<int>(i), position_m), distance, clearance_m);
-    }
-    was_near = is_near;
-  }
-  if (stretches == 0) return;
-  if (stretches > 1) first += fmt::format("; the first of {} places that are too near", stretches);
-  throw InputError(place, first);
+  const auto of_frame = [&](std::size_t frame) {
+    return distance_m(trajectory[frame].world_from_camera.translation);
+  };
+  const auto near = NearText(trajectory, of_frame, clearance_m, "geometry");
+  if (near) throw InputError(place, *near);
 }
 
 namespace {

@@ -54,6 +54,8 @@ int MinimumFrames(const TrajectoryOptions& options, double rate_hz = kFrameRateH
 Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
                           std::uint64_t seed);
 
+double LengthM(const Trajectory& trajectory);
+
 // The way along it, without the hand's shake.
 double PathLengthM(const TrajectoryOptions& options);
 
@@ -62,6 +64,12 @@ double PathLengthM(const TrajectoryOptions& options);
 void CheckClearance(const Trajectory& trajectory,
                     const std::function<double(const Eigen::Vector3d&)>& distance_m,
                     double clearance_m, const std::string& place);
+
+// The first frame nearer to `what` than clearance_m, with its position, and how many stretches of
+// the path are too near; nothing when none is.
+std::optional<std::string> NearText(const Trajectory& trajectory,
+                                    const std::function<double(std::size_t frame)>& distance_m,
+                                    double clearance_m, const std::string& what);
 
 // Where a camera may be: within the bounds, and above them where nothing is overhead, as it may
 // look over walls.

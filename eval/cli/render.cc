@@ -40,7 +40,8 @@ Written WriteFrame(const World& world, const SyntheticSensor& sensor, const TumF
   }
   thread_local std::unique_ptr<ColourCamera> camera;
   if (!camera) camera = std::make_unique<ColourCamera>(world.scene, world.camera);
-  const RgbImage rgb = camera->Render(pose.world_from_camera).rgb;
+  const auto movers = world.movers.At(world.trajectory, static_cast<std::size_t>(frame));
+  const RgbImage rgb = camera->Render(pose.world_from_camera, movers).rgb;
   writer.WriteFrame(pose.stamp_s, depth, &rgb);
   return written;
 }

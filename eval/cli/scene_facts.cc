@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
@@ -11,6 +13,7 @@
 #include "eval/shipped.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
+#include "mapper/core/level.h"
 #include "mapper/io/png.h"
 
 namespace depthgrid::cli {
@@ -21,13 +24,25 @@ struct ScenePath {
   TrajectoryOptions options;
   Trajectory poses;     // empty: it cannot be made
   std::string refusal;  // empty: it can be taken
+  std::string meeting;  // why not with all movers; empty: it can
 };
+
+std::string MeetingOf(const ScenePath& path, const Scene& scene, const MoverScene& movers) {
+  if (!path.refusal.empty()) return "";
+  try {
+    CheckMovers(path.poses, path.options, scene, movers);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 std::vector<ScenePath> PathsOf(const Scene& scene) {
   const RayScene rays(scene.mesh);
+  const MoverScene movers(scene, rays.isa());
   std::vector<ScenePath> paths;
   for (const auto& [name, options] : scene.trajectories) {
-    ScenePath path = {name, options, {}, ""};
+    ScenePath path = {name, options, {}, "", ""};
     try {
       path.poses = MakeTrajectory(options, MinimumFrames(options), kFrameRateHz,
                                   ExperimentOptions{}.trajectory_seed);
@@ -35,6 +50,7 @@ std::vector<ScenePath> PathsOf(const Scene& scene) {
     } catch (const InputError& error) {
       path.refusal = error.what();
     }
+    path.meeting = MeetingOf(path, scene, movers);
     paths.push_back(std::move(path));
   }
   return paths;
@@ -63,6 +79,38 @@ std::string PathTable(const std::vector<ScenePath>& paths) {
   return Table(rows);
 }
 
+// Once along its waypoints, sampled like a camera path.
+Trajectory RoundOf(const Mover& mover) {
+  const MoverPath path(mover.options);
+  const int frames = static_cast<int>(std::ceil(path.RoundS() * kFrameRateHz));
+  Trajectory round;
+  for (int i = 0; i <= frames; ++i) {
+    const double time_s = std::min(i / kFrameRateHz, path.RoundS());
+    const auto pose = path.At(mover.options.from_s + time_s, {});
+    if (pose) round.push_back({time_s, CameraOf(*pose, 0.0)});
+  }
+  return round;
+}
+
+std::string WayText(const MoverOptions& options) {
+  if (options.ahead_m > 0.0) return fmt::format("{:g} m ahead of the camera", options.ahead_m);
+  if (!options.closed && !options.there_and_back) return "once";
+  const std::string way = options.closed ? "round" : "there and back";
+  return options.laps > 0.0 ? fmt::format("{}, {:g} times", way, options.laps) : way;
+}
+
+std::string MoverTable(const std::vector<Mover>& movers) {
+  std::vector<std::vector<std::string>> rows = {{"mover", "goes", "from s", "path", "takes"}};
+  for (const Mover& mover : movers) {
+    const bool walks = mover.options.ahead_m == 0.0;
+    const Trajectory round = walks ? RoundOf(mover) : Trajectory();
+    rows.push_back({mover.name, WayText(mover.options), fmt::format("{:g}", mover.options.from_s),
+                    walks ? fmt::format("{:.1f} m", LengthM(round)) : "-",
+                    walks ? fmt::format("{:.1f} s", MoverPath(mover.options).RoundS()) : "-"});
+  }
+  return Table(rows);
+}
+
 void WritePlan(const std::string& file, const Scene& scene, const std::vector<ScenePath>& paths) {
   // Those of a second round are dashed, of a third with a dot behind each dash, and so on.
   constexpr std::array kColours = {palette::kEstimate, palette::kSlam, palette::kTruth,
@@ -73,6 +121,10 @@ void WritePlan(const std::string& file, const Scene& scene, const std::vector<Sc
     const std::size_t round = drawn.size() / kColours.size();
     drawn.push_back({path.name, kColours[drawn.size() % kColours.size()], path.poses,
                      PathStyle::kLine, static_cast<int>(round) - 1});
+  }
+  for (const Mover& mover : scene.movers) {
+    if (mover.options.ahead_m > 0.0) continue;
+    drawn.push_back({mover.name, kColours[drawn.size() % kColours.size()], RoundOf(mover)});
   }
   WriteRgbPng(file, PlanOf(scene, drawn));
 }
@@ -96,6 +148,13 @@ void ShowScene(const ScenesArguments& arguments) {
   if (!paths.empty()) fmt::print("\n{}", PathTable(paths));
   for (const ScenePath& path : paths) {
     if (!path.refusal.empty()) fmt::print("refused: {}\n", path.refusal);
+  }
+  if (!scene.movers.empty()) {
+    fmt::print("\n{}they are there with movers: all, or by name, in an experiment\n",
+               MoverTable(scene.movers));
+  }
+  for (const ScenePath& path : paths) {
+    if (!path.meeting.empty()) fmt::print("refused with movers: {}\n", path.meeting);
   }
   if (arguments.plan.empty()) return;
   WritePlan(arguments.plan, scene, paths);

@@ -5,7 +5,8 @@
 
 namespace depthgrid::cli {
 
-// Size, floor, ceiling and paths of one scene, with what is wrong with a path; its plan if asked.
+// Size, floor, ceiling, paths and movers of one scene, with what is wrong with a path; its plan if
+// asked.
 void ShowScene(const ScenesArguments& arguments);
 
 }  // namespace depthgrid::cli

@@ -26,13 +26,14 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
   std::string first_of_scene = name;
   std::string size = SizeText(scene.mesh);
   std::string triangles = fmt::format("{}", scene.mesh.triangles.size());
+  std::string movers = fmt::format("{}", scene.movers.size());
   for (const auto& [path_name, path] : scene.trajectories) {
     const int frames = MinimumFrames(path);
-    rows.push_back({first_of_scene, size, triangles, path_name,
+    rows.push_back({first_of_scene, size, triangles, movers, path_name,
                     fmt::format("{:.1f} m", PathLengthM(path)), fmt::format("{}", frames)});
-    first_of_scene = size = triangles = "";
+    first_of_scene = size = triangles = movers = "";
   }
-  if (scene.trajectories.empty()) rows.push_back({name, size, triangles, "none", "", ""});
+  if (scene.trajectories.empty()) rows.push_back({name, size, triangles, movers, "none", "", ""});
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ void ListScenes(const ScenesArguments& arguments) {
   if (!arguments.scene.empty()) return ShowScene(arguments);
   if (!arguments.plan.empty()) throw InputError("--plan", "draws one scene, which must be given");
   std::vector<std::vector<std::string>> scenes = {
-      {"scene", "size", "triangles", "trajectory", "path", "frames"}};
+      {"scene", "size", "triangles", "movers", "trajectory", "path", "frames"}};
   for (const std::string& name : ShippedNames(ShippedKind::kScene)) AddSceneRows(name, scenes);
   std::vector<std::vector<std::string>> experiments = {
       {"experiment", "scene", "trajectory", "frames"}};

@@ -91,8 +91,9 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
     const std::string what = respect == "sweep"        ? "another sweep"
                              : respect == "experiment" ? "a sweep of another experiment"
                              : respect == "given"      ? "a sweep with other keys given"
-                             : respect == "rooms"      ? "runs in a scene or path that has changed"
-                                                       : "a sweep of another " + respect;
+                             : respect == "rooms"
+                                 ? "runs in a scene, path or movers that have changed"
+                                 : "a sweep of another " + respect;
     throw InputError(place, fmt::format("holds {}: {}; {}", what,
                                         Difference(there_is->second, here_is->second), remedy));
   }

@@ -9,10 +9,10 @@ namespace {
 std::string WorldKey(const ExperimentOptions& options) {
   const PinholeCamera camera = SensorCamera(options.sensor);
   const DepthRange range = SensorRange(options.sensor);
-  return fmt::format("{}\n{}\n{} {}\n{} {} {} {} {} {} {} {} {}", options.scene, options.trajectory,
-                     options.frames, options.trajectory_seed, camera.width_px, camera.height_px,
-                     camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, range.min_m,
-                     range.max_m, static_cast<int>(options.sensor.isa));
+  return fmt::format("{}\n{}\n{}\n{} {}\n{} {} {} {} {} {} {} {} {}", options.scene,
+                     options.trajectory, options.movers, options.frames, options.trajectory_seed,
+                     camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px,
+                     camera.cy_px, range.min_m, range.max_m, static_cast<int>(options.sensor.isa));
 }
 
 // And everything MakeTruth reads besides.

@@ -23,9 +23,10 @@ std::string HashOrNone(const ExperimentOptions& options) {
 
 // Of the first run in each of them.
 std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
-  std::vector<std::size_t> naming;  // positions of the keys that choose room and path
+  std::vector<std::size_t> naming;  // positions of the keys that choose room, path and movers
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
-    if (IsFileKey(plan.parameter_keys[i])) naming.push_back(i);
+    const std::string& key = plan.parameter_keys[i];
+    if (IsFileKey(key) || key == "movers") naming.push_back(i);
   }
   std::set<std::vector<std::string>> seen;
   std::vector<ExperimentOptions> rooms;
@@ -43,8 +44,9 @@ std::string RoomsText(const SweepPlan& plan) {
   std::string text;
   for (const ExperimentOptions& options : RoomsOf(plan)) {
     const std::string scene = std::filesystem::path(options.scene).filename().string();
-    text += fmt::format("{}{}{}: {}\n", scene, options.trajectory.empty() ? "" : ", ",
+    text += fmt::format("{}{}{}{}: {}\n", scene, options.trajectory.empty() ? "" : ", ",
                         std::filesystem::path(options.trajectory).filename().string(),
+                        options.movers == kNoMovers ? "" : ", movers " + options.movers,
                         HashOrNone(options));
   }
   return text;

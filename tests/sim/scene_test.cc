@@ -194,7 +194,8 @@ TEST_F(SceneFiles, ErrorsAreOneLineWithPlaceAndRule) {
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: []}\n"), "~/s.yaml:2: shape is '[]', must be a text");
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: [box]}\n"),
             "~/s.yaml:2: shape is '[box]', must be a text");
-  EXPECT_EQ(ErrorOf("include: []\n"), "~/s.yaml:1: include is '[]', must be a text");
+  EXPECT_EQ(ErrorOf("include: []\n"),
+            "~/s.yaml:1: include is '[]', must be a file or a list of them");
   EXPECT_EQ(ErrorOf("shapes:\n" + kFloor + "  - {shape: box, sise: [1, 1, 1]}\n"),
             "~/s.yaml:3: unknown key 'sise', did you mean 'size'?");
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: box, size: [1, 1]}\n"),
