@@ -28,9 +28,10 @@ struct AheadOptions {
 void ReadAhead(const Config& spec, MoverOptions& options) {
   for (const ConfigEntry& entry : spec.Entries()) {
     if (entry.key == "ahead_m" || entry.key == "from_s") continue;
-    throw InputError(entry.place, fmt::format("{} is not for a mover with ahead_m, which goes "
-                                              "where the camera looks",
-                                              entry.key));
+    throw InputError(spec.PlaceOfKey(entry.key),
+                     fmt::format("{} is not for a mover with ahead_m, which goes "
+                                 "where the camera looks",
+                                 entry.key));
   }
   AheadOptions ahead{options};
   spec.Read(ahead);
@@ -76,6 +77,7 @@ std::vector<std::string> NamesIn(const std::string& chosen) {
 void RequireMover(const std::string& name, const std::string& chosen,
                   const std::vector<Mover>& movers) {
   std::vector<std::string> known;
+  known.reserve(movers.size());
   for (const Mover& mover : movers) known.push_back(mover.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   if (known.empty()) {

@@ -69,13 +69,15 @@ double MoverScene::DistanceM(const MoverPlace& place, const Eigen::Vector3d& poi
 
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m) {
+  // A limit passes through single precision, so it is no answer to compare with the clearance.
+  const double limit_m = clearance_m + 0.1;
   for (std::size_t i = 0; i < movers.size(); ++i) {
     const auto distance_m = [&](std::size_t frame) {
-      double nearest_m = clearance_m;
+      double nearest_m = limit_m;
       for (const MoverPlace& place : movers.At(trajectory, frame)) {
         if (place.mover != i) continue;
         nearest_m =
-            movers.DistanceM(place, trajectory[frame].world_from_camera.translation, clearance_m);
+            movers.DistanceM(place, trajectory[frame].world_from_camera.translation, limit_m);
       }
       return nearest_m;
     };

@@ -96,7 +96,7 @@ std::string WayText(const MoverOptions& options) {
   if (options.ahead_m > 0.0) return fmt::format("{:g} m ahead of the camera", options.ahead_m);
   if (!options.closed && !options.there_and_back) return "once";
   const std::string way = options.closed ? "round" : "there and back";
-  return options.laps > 0.0 ? fmt::format("{}, {:g} times", way, options.laps) : way;
+  return options.laps > 0.0 ? fmt::format("{}, laps: {:g}", way, options.laps) : way;
 }
 
 std::string MoverTable(const std::vector<Mover>& movers) {
