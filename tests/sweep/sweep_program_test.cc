@@ -341,9 +341,8 @@ TEST_F(ProgramSweep, DoesNotGoOnInAChangedRoom) {
   Write("room.yaml", room);
   const Outcome changed = Program("sweep ./sweep.yaml -o out");
   EXPECT_EQ(changed.exit_code, 2);
-  EXPECT_THAT(changed.err,
-              HasSubstr("out: holds runs in a scene, path or movers that have changed: "
-                        "'room.yaml: "));
+  EXPECT_THAT(changed.err, HasSubstr("out: holds runs in a scene, path or movers that have "
+                                     "changed: 'room.yaml: "));
   EXPECT_EQ(ReadFile(Path("out/results.csv")), table);
   room = kRoom;
   room.replace(room.find("[1.9, 2.0, 1.1]"), 15, "[1.8, 2.0, 1.1]");
