@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 using Json = ReportJson;
 
 // More runs than a page can hold: it then has the grid points only.
-constexpr std::size_t kMostRuns = 20'000;
+constexpr std::size_t kMostRunsListed = 20'000;
 constexpr int kSignificantDigits = 6;
 
 // What a reader looks at first; the first of them a sweep has is what its page opens with.
@@ -257,7 +257,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   json["axes"] = AxesJson(results, grid);
   json["points"] = PointsJson(grid);
   json["metrics"] = MetricsJson(results, grid);
-  json["runs"] = results.rows() <= kMostRuns ? RunsJson(results, grid) : Json(nullptr);
+  json["runs"] = results.rows() <= kMostRunsListed ? RunsJson(results, grid) : Json(nullptr);
   return json;
 }
 
