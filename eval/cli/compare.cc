@@ -151,17 +151,17 @@ void CompareRuns(const CompareArguments& arguments) {
   options.metrics = arguments.metrics;
   options.where_a = ConditionsOf(arguments.where, arguments.where_a);
   options.where_b = ConditionsOf(arguments.where, arguments.where_b);
-  std::error_code missing;
-  if (options.where_a == options.where_b &&
-      std::filesystem::equivalent(arguments.a, arguments.b, missing)) {
-    Warn({"A and B are the same runs; --where-a and --where-b choose among those of one sweep"});
-  }
   const SweepResults a = ReadRuns(arguments.a);
   const SweepResults b = ReadRuns(arguments.b);
   const Comparison comparison = Compare(a, b, options);
   if (comparison.metrics.empty() && comparison.all_equal.empty() &&
       comparison.without_direction.empty()) {
     throw InputError(arguments.b, "shares no score that is defined with " + arguments.a);
+  }
+  std::error_code missing;
+  if (options.where_a == options.where_b &&
+      std::filesystem::equivalent(arguments.a, arguments.b, missing)) {
+    Warn({"A and B are the same runs; --where-a and --where-b choose among those of one sweep"});
   }
   if (arguments.json) {
     fmt::print("{}", ComparisonJson(comparison, arguments.a, arguments.b));

@@ -217,7 +217,8 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
   if (noise_.stride() == 1) {
     groups_.Add(pieces, map_from_base);
   } else {
-    groups_.Add(maker_.Make(*scan, noise_, 1), map_from_base);
+    all_pieces_ = maker_.Make(*scan, noise_, 1, std::move(all_pieces_));
+    groups_.Add(all_pieces_, map_from_base);
   }
 }
 

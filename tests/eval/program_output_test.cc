@@ -1,4 +1,5 @@
 // Where a command may put what it writes, said before any work, and finds what it reads.
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include "tests/eval/program.h"
@@ -7,6 +8,7 @@ namespace depthgrid {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::HasSubstr;
 
 class ProgramOutput : public ProgramTest {};
 
