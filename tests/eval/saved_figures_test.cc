@@ -120,7 +120,7 @@ TEST_F(SavedFigures, OfARun) {
   EXPECT_EQ(Count("image"), 1);
   EXPECT_EQ(Count("svg svg > path"), 3);  // truth, SLAM, estimate
   EXPECT_THAT(map.text, HasSubstr(">Estimate at the end</text>"));
-  EXPECT_THAT(map.text, HasSubstr(">2 m</text>"));
+  EXPECT_THAT(map.text, HasSubstr(">1 m</text>"));
   EXPECT_THAT(Save(".map-buttons", "PNG").text, StartsWith("1920x"));
   Save("#plots .plot", "SVG");
   EXPECT_EQ(Count("g g > path"), 3);
