@@ -21,23 +21,26 @@
 namespace depthgrid {
 namespace {
 
+void AddMesh(const TriangleMesh& mesh, ContentHash& hash) {
+  for (const Eigen::Vector3f& v : mesh.vertices) hash.Bytes(v.data(), sizeof(float) * 3);
+  for (const auto& t : mesh.triangles) hash.Bytes(t.data(), sizeof t);
+}
+
 std::string HashOf(const Scene& scene) {
   ContentHash hash;
-  for (const Eigen::Vector3f& v : scene.mesh.vertices) hash.Bytes(v.data(), sizeof(float) * 3);
-  for (const auto& t : scene.mesh.triangles) hash.Bytes(t.data(), sizeof t);
+  AddMesh(scene.mesh, hash);
   hash.Value(scene.floor_z_m);
   return hash.Hex();
 }
 
-// That of the room where nothing moves.
+// Where nothing moves that of the room alone.
 std::string HashWithMovers(const Scene& scene) {
   std::string room = HashOf(scene);
   if (scene.movers.empty()) return room;
   ContentHash hash;
   hash.Text(room);
   for (const Mover& mover : scene.movers) {
-    for (const Eigen::Vector3f& v : mover.mesh.vertices) hash.Bytes(v.data(), sizeof(float) * 3);
-    for (const auto& t : mover.mesh.triangles) hash.Bytes(t.data(), sizeof t);
+    AddMesh(mover.mesh, hash);
     hash.Value(mover.options.ahead_m);
     hash.Text(ToYaml(mover.options));
     for (const MoverWaypoint& waypoint : mover.options.waypoints) hash.Text(ToYaml(waypoint));

@@ -33,6 +33,7 @@ constexpr GLint kLightCount = 4;
 constexpr GLint kLightAt = 5;
 constexpr GLint kLightIntensity = kLightAt + kMaxLights;
 constexpr GLint kWorldFromMover = kLightIntensity + kMaxLights;
+static_assert(kWorldFromMover == 69, "as the shaders have it");
 constexpr GLuint kMaterialBinding = 0;
 
 struct GpuMaterial {

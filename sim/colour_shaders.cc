@@ -5,6 +5,22 @@ namespace {
 
 constexpr const char* kVersion = "#version 450 core\n";
 
+// Between a mesh's own axes and the world's: points, and normals.
+constexpr const char* kStandingAxes = R"glsl(
+vec3 ToWorld(vec3 p) { return p; }
+vec3 TurnToWorld(vec3 n) { return n; }
+vec3 FromWorld(vec3 p) { return p; }
+vec3 TurnFromWorld(vec3 n) { return n; }
+)glsl";
+
+constexpr const char* kMovingAxes = R"glsl(
+layout(location = 69) uniform mat4 world_from_mover;
+vec3 ToWorld(vec3 p) { return (world_from_mover * vec4(p, 1.0)).xyz; }
+vec3 TurnToWorld(vec3 n) { return mat3(world_from_mover) * n; }
+vec3 FromWorld(vec3 p) { return transpose(mat3(world_from_mover)) * (p - world_from_mover[3].xyz); }
+vec3 TurnFromWorld(vec3 n) { return transpose(mat3(world_from_mover)) * n; }
+)glsl";
+
 constexpr const char* kVertex = R"glsl(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -16,49 +32,13 @@ out vec3 normal_in_world;
 out float z_m;
 flat out uint material_index;
 void main() {
-  vec4 point_in_camera = camera_from_world * vec4(position, 1.0);
-  point_in_world = position;
-  normal_in_world = normal;
+  point_in_world = ToWorld(position);
+  vec4 point_in_camera = camera_from_world * vec4(point_in_world, 1.0);
+  normal_in_world = TurnToWorld(normal);
   z_m = point_in_camera.z;
   material_index = material;
   gl_Position = clip_from_camera * point_in_camera;
 }
-)glsl";
-
-constexpr const char* kMovingVertex = R"glsl(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in uint material;
-layout(location = 0) uniform mat4 camera_from_world;
-layout(location = 1) uniform mat4 clip_from_camera;
-layout(location = 69) uniform mat4 world_from_mover;
-out vec3 point_in_world;
-out vec3 normal_in_world;
-out float z_m;
-flat out uint material_index;
-void main() {
-  vec4 at = world_from_mover * vec4(position, 1.0);
-  vec4 point_in_camera = camera_from_world * at;
-  point_in_world = at.xyz;
-  normal_in_world = mat3(world_from_mover) * normal;
-  z_m = point_in_camera.z;
-  material_index = material;
-  gl_Position = clip_from_camera * point_in_camera;
-}
-)glsl";
-
-// Where a pattern is looked up.
-constexpr const char* kStandingPattern = R"glsl(
-vec3 PatternPoint() { return point_in_world; }
-vec3 PatternNormal(vec3 n) { return n; }
-)glsl";
-
-constexpr const char* kMovingPattern = R"glsl(
-layout(location = 69) uniform mat4 world_from_mover;
-vec3 PatternPoint() {
-  return transpose(mat3(world_from_mover)) * (point_in_world - world_from_mover[3].xyz);
-}
-vec3 PatternNormal(vec3 n) { return transpose(mat3(world_from_mover)) * n; }
 )glsl";
 
 constexpr const char* kDepthFragment = R"glsl(
@@ -285,7 +265,7 @@ void main() {
   if (dot(n, to_eye) < 0.0) n = -n;
   vec3 spread = fwidth(point_in_world);
   float footprint = max(spread.x, max(spread.y, spread.z));
-  vec3 albedo = Albedo(m, PatternPoint(), PatternNormal(n), footprint);
+  vec3 albedo = Albedo(m, FromWorld(point_in_world), TurnFromWorld(n), footprint);
   vec3 light = ambient * (0.78 + 0.22 * n.z);
   vec3 highlight = vec3(0.0);
   for (int i = 0; i < light_count; ++i) {
@@ -332,17 +312,17 @@ const char* TextureSource(TextureKind texture) {
   return kPlain;
 }
 
+const char* AxesOf(Drawn drawn) { return drawn == Drawn::kStanding ? kStandingAxes : kMovingAxes; }
+
 }  // namespace
 
-std::string VertexShader(Drawn drawn) {
-  return std::string(kVersion) + (drawn == Drawn::kStanding ? kVertex : kMovingVertex);
-}
+std::string VertexShader(Drawn drawn) { return std::string(kVersion) + AxesOf(drawn) + kVertex; }
 
 std::string DepthFragmentShader() { return std::string(kVersion) + kDepthFragment; }
 
 std::string ColourFragmentShader(TextureKind texture, Drawn drawn) {
-  const char* const pattern = drawn == Drawn::kStanding ? kStandingPattern : kMovingPattern;
-  return std::string(kVersion) + kInterface + pattern + kNoise + TextureSource(texture) + kMain;
+  return std::string(kVersion) + AxesOf(drawn) + kInterface + kNoise + TextureSource(texture) +
+         kMain;
 }
 
 }  // namespace depthgrid

@@ -117,16 +117,11 @@ class SceneReader {
 
   // One file, or a list of them.
   void ReadIncludes(const Config& scene) {
-    if (!scene.HasList("include")) {
-      if (scene.Has("include")) ReadInclude(ExistingFile(scene, "include"));
-      return;
-    }
+    if (!scene.Has("include")) return;
     const std::string place = scene.PlaceOfKey("include");
-    const std::vector<std::string> names = scene.List("include");
+    const std::vector<std::string> names = scene.Texts("include");
     if (names.empty()) throw InputError(place, "include is '[]', must be a file or a list of them");
-    for (const std::string& name : names) {
-      ReadInclude(ExistingFile(Config::FromText("include: " + name, place), "include"));
-    }
+    for (const std::string& name : names) ReadInclude(ExistingFile("include", name, place));
   }
 
   // A file of furniture: materials and groups, nothing else.
@@ -143,12 +138,12 @@ class SceneReader {
   }
 
   // The path of a file that a key names relative to the scene's.
-  std::string ExistingFile(const Config& config, const std::string& key) const {
-    const std::string name = config.Text(key);
+  std::string ExistingFile(const std::string& key, const std::string& name,
+                           const std::string& place) const {
     const auto path = std::filesystem::path(path_).parent_path() / name;
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) return path.string();
-    throw InputError(config.PlaceOfKey(key), fmt::format("{} is '{}': no such file", key, name));
+    throw InputError(place, fmt::format("{} is '{}': no such file", key, name));
   }
 
   void ReadMaterials(Config materials) {
@@ -314,7 +309,8 @@ class SceneReader {
     MeshOptions options;
     config.Read(options);
     if (options.file.empty()) throw InputError(config.Place(), "'file' is missing");
-    MeshFile read = ReadMeshFile(ExistingFile(config, "file"), 1.0, options.up);
+    MeshFile read = ReadMeshFile(
+        ExistingFile("file", config.Text("file"), config.PlaceOfKey("file")), 1.0, options.up);
     if (!options.item.material.empty()) {
       const std::uint16_t material = MaterialIndex(options.item.material, config.Place());
       std::fill(read.mesh.material_of_triangle.begin(), read.mesh.material_of_triangle.end(),

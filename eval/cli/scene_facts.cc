@@ -116,15 +116,16 @@ void WritePlan(const std::string& file, const Scene& scene, const std::vector<Sc
   constexpr std::array kColours = {palette::kEstimate, palette::kSlam, palette::kTruth,
                                    palette::kMissed, palette::kInvented};
   std::vector<Path> drawn;
+  const auto add = [&](const std::string& name, const Trajectory& poses) {
+    const auto round = static_cast<int>(drawn.size() / kColours.size());
+    drawn.push_back(
+        {name, kColours[drawn.size() % kColours.size()], poses, PathStyle::kLine, round - 1});
+  };
   for (const ScenePath& path : paths) {
-    if (path.poses.empty()) continue;
-    const std::size_t round = drawn.size() / kColours.size();
-    drawn.push_back({path.name, kColours[drawn.size() % kColours.size()], path.poses,
-                     PathStyle::kLine, static_cast<int>(round) - 1});
+    if (!path.poses.empty()) add(path.name, path.poses);
   }
   for (const Mover& mover : scene.movers) {
-    if (mover.options.ahead_m > 0.0) continue;
-    drawn.push_back({mover.name, kColours[drawn.size() % kColours.size()], RoundOf(mover)});
+    if (mover.options.ahead_m == 0.0) add(mover.name, RoundOf(mover));
   }
   WriteRgbPng(file, PlanOf(scene, drawn));
 }

@@ -202,6 +202,15 @@ std::string Config::Text(const std::string& key_path, const std::string& otherwi
   return node.IsDefined() ? TextIn(*tree_, key_path, node) : otherwise;
 }
 
+std::vector<std::string> Config::Texts(const std::string& key_path) const {
+  const YAML::Node node = Find(tree_->root, key_path);
+  if (!node.IsDefined()) return {};
+  if (!node.IsSequence()) return {TextIn(*tree_, key_path, node)};
+  std::vector<std::string> texts;
+  for (const auto& item : node) texts.push_back(TextIn(*tree_, key_path, item));
+  return texts;
+}
+
 std::string Config::ToYaml() const {
   YAML::Emitter emitter;
   emitter << tree_->root;

@@ -94,6 +94,8 @@ class Config {
   // The text at a key path, `otherwise` if there is no such key. Throws InputError for a list or a
   // map.
   std::string Text(const std::string& key_path, const std::string& otherwise = "") const;
+  // The same of a list of them; one text is a list of one, no key an empty one.
+  std::vector<std::string> Texts(const std::string& key_path) const;
   // The tree as YAML.
   std::string ToYaml() const;
 

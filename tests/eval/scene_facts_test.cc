@@ -55,22 +55,24 @@ TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   ExpectRefusal("scenes ./takes_hall.yaml", {"takes_hall.yaml: is an experiment, must be a scene"});
 }
 
-// The sixth has the first one's colour, in dashes.
+// The sixth has the first one's colour, in dashes, be it a camera's or a mover's.
 TEST_F(SceneFacts, ThePlanTellsManyPathsApart) {
   const std::string text =
       "shapes: [{shape: box, size: [6, 4, 0.1], at: [3, 2, -0.101]}]\ntrajectories:\n";
-  const auto plan_of = [&](int paths) {
+  const auto plan_of = [&](int paths, const std::string& movers = "") {
     std::string scene = text;
     for (int i = 0; i < paths; ++i) {
       scene += "  path_" + std::to_string(i) + ": {kind: planar, waypoints: [{at: [1, " +
                std::to_string(0.5 + 0.5 * i) + "]}, {at: [5, " + std::to_string(0.5 + 0.5 * i) +
                "]}]}\n";
     }
-    Write("many.yaml", scene);
+    Write("many.yaml", scene + movers);
     Succeed("scenes ./many.yaml --plan many.png --force");
     return DecodeRgbPng(ReadFile(Path("many.png")), "many.png");
   };
   const RgbImage six = plan_of(6), one = plan_of(1);
+  const RgbImage five_and_mover = plan_of(
+      5, "movers: {last: {shapes: [{shape: box}], waypoints: [{at: [1, 3]}, {at: [5, 3]}]}}\n");
   const auto pixels_of = [](const RgbImage& image, int from_row, int to_row) {
     int pixels = 0;
     for (int v = from_row; v < to_row; ++v) {
@@ -84,8 +86,10 @@ TEST_F(SceneFacts, ThePlanTellsManyPathsApart) {
   // Above the legend.
   const int whole = pixels_of(one, 0, 600);
   ASSERT_GT(whole, 0);
-  EXPECT_GT(pixels_of(six, 0, 600), 3 * whole / 2);
-  EXPECT_LT(pixels_of(six, 0, 600), 9 * whole / 5);
+  for (const RgbImage* plan : {&six, &five_and_mover}) {
+    EXPECT_GT(pixels_of(*plan, 0, 600), 3 * whole / 2);
+    EXPECT_LT(pixels_of(*plan, 0, 600), 9 * whole / 5);
+  }
 }
 
 TEST_F(SceneFacts, ForceWithoutAPictureIsSaid) {

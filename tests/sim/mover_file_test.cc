@@ -116,7 +116,10 @@ TEST_F(MoverFiles, SeveralFilesAreIncluded) {
   EXPECT_EQ(LoadScene(Path("s.yaml")).mesh.triangles.size(), 12U);
   Write("s.yaml", "include: [a.yaml, c.yaml]\nshapes: []\n");
   EXPECT_THAT(RefusalOf([&] { LoadScene(Path("s.yaml")); }),
-              HasSubstr("include is 'c.yaml': no such file"));
+              HasSubstr("s.yaml:1: include is 'c.yaml': no such file"));
+  Write("s.yaml", "shapes: []\ninclude: [a.yaml, [b.yaml]]\n");
+  EXPECT_THAT(RefusalOf([&] { LoadScene(Path("s.yaml")); }),
+              HasSubstr("s.yaml:2: include is '[b.yaml]', must be a text"));
 }
 
 // Those who walk through the shipped rooms meet neither furniture nor the cameras.
