@@ -3,12 +3,24 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/idle_settings.h"
 #include "eval/seed_range.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
 #include "sim/slam_calibration.h"
 
 namespace depthgrid::cli {
+namespace {
+
+IdleSettingList OfNoUse() {
+  IdleSettingList idle;
+  for (const char* key : {"mapper", "metrics", "movers", "sensor.noise", "depth_seed"}) {
+    idle.push_back({key, "only SLAM's own poses are looked at"});
+  }
+  return idle;
+}
+
+}  // namespace
 
 void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   for (const char* key : {"seed", "slam_seed"}) {
@@ -19,6 +31,10 @@ void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   const ExperimentOptions options = ExperimentOrScene(arguments.experiment, arguments.common.set);
   const World world = LoadWorld(options, ThreadsOr(arguments.common.threads));
   Warn(DoubtsOfRecord(arguments.experiment, arguments.common.set));
+  Warn(
+      DoubtsOfOverrides(arguments.common.set, OfNoUse(), [&](const std::vector<std::string>& some) {
+        return ToYaml(ExperimentOrScene(arguments.experiment, some));
+      }));
   Warn(world.path_doubts);
   const SeedRange seeds = {arguments.first_seed, arguments.seeds};
   const DriftCalibration found =

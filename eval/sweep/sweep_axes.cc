@@ -84,6 +84,10 @@ void ReadRange(const Config& map, SweepAxis& axis) {
     axis.range = range;
     return;
   }
+  if (read.count == 1 && read.from != read.to) {
+    throw InputError(axis.place,
+                     fmt::format("count 1 from {} to {} must be 2 or more", read.from, read.to));
+  }
   for (int i = 0; i < read.count; ++i) {
     const double share = read.count == 1 ? 0.0 : static_cast<double>(i) / (read.count - 1);
     axis.values.push_back({fmt::format("{}", WithoutRounding(range.At(share)))});

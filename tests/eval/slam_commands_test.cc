@@ -181,6 +181,10 @@ TEST_F(SlamCommands, CalibrateReachesItsTarget) {
   ASSERT_NE(at, std::string::npos) << found.out;
   EXPECT_GT(std::stod(found.out.substr(at + 13)), 1.0);
   EXPECT_EQ(Program(command + "--target 0.05 --threads 1").out, found.out);
+  const Outcome idle = Program(command + "--target 0.05 --set mapper.fusion.gain=0.3");
+  EXPECT_EQ(idle.out, found.out);
+  EXPECT_THAT(idle.err, HasSubstr("--set mapper.fusion.gain=0.3: has no effect because only SLAM's "
+                                  "own poses are looked at"));
 }
 
 TEST_F(SlamCommands, CalibrateRefusesBadInput) {

@@ -278,6 +278,7 @@ TEST_F(ProgramSweep, ErrorsAreOneLineAndLeaveNothing) {
   expect("mode: random\naxes: {frames: [1, 2]}\n", "needs 'samples'");
   expect("axes: {mapper.fusion.gain: {from: 0, to: 1}}\n", "needs 'count'");
   expect("axes: {frames: {from: 0, to: 9, count: 2, scale: log}}\n", "must lie above 0");
+  expect("axes: {frames: {from: 1, to: 9, count: 1}}\n", "count 1 from 1 to 9 must be 2 or more");
   expect("axes: {frames: {from: 1, two: 9, count: 2}}\n", "unknown key 'two'");
   EXPECT_EQ(Program("sweep ./sweep.yaml --shard 3/2 -o out").exit_code, 2);
   EXPECT_EQ(Program("sweep nothing_like_this -o out").exit_code, 2);
