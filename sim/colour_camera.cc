@@ -1,7 +1,5 @@
 #include "sim/colour_camera.h"
 
-#define GL_GLEXT_PROTOTYPES
-#include <GL/glcorearb.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "sim/colour_shaders.h"
 #include "sim/gl_context.h"
+#include "sim/gl_functions.h"
 #include "sim/sensor_options.h"
 #include "sim/shading_mesh.h"
 
@@ -71,18 +70,18 @@ Eigen::Matrix4f MatrixOf(const Pose3& a_from_b) {
 class RenderTarget {
  public:
   RenderTarget(const PinholeCamera& camera, GLenum format, int samples) {
-    glGenFramebuffers(1, &framebuffer_);
-    glGenRenderbuffers(2, buffers_.data());
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    Gl().GenFramebuffers(1, &framebuffer_);
+    Gl().GenRenderbuffers(2, buffers_.data());
+    Gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     const std::array<GLenum, 2> formats = {format, GL_DEPTH_COMPONENT32F};
     const std::array<GLenum, 2> places = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
     for (std::size_t i = 0; i < 2; ++i) {
-      glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
-      glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, formats[i], camera.width_px,
-                                       camera.height_px);
-      glFramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers_[i]);
+      Gl().BindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+      Gl().RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, formats[i], camera.width_px,
+                                          camera.height_px);
+      Gl().FramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers_[i]);
     }
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    if (Gl().CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
       throw InputError("camera", fmt::format("images of {} x {} pixels cannot be drawn",
                                              camera.width_px, camera.height_px));
     }
@@ -92,9 +91,9 @@ class RenderTarget {
   // Ready to draw, all pixels of this colour and infinitely far.
   void BindAndClear(const std::array<float, 4>& colour) const {
     constexpr float kInfinitelyFar = 0.0F;
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    glClearBufferfv(GL_COLOR, 0, colour.data());
-    glClearBufferfv(GL_DEPTH, 0, &kInfinitelyFar);
+    Gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    Gl().ClearBufferfv(GL_COLOR, 0, colour.data());
+    Gl().ClearBufferfv(GL_DEPTH, 0, &kInfinitelyFar);
   }
 
  private:
@@ -119,10 +118,10 @@ struct ColourCamera::Renderer {
         colour_target(camera, GL_RGBA8, 0),
         sky(SrgbFromLinear(scene.lighting.sky)) {
     context.UseZeroToOneDepth();
-    glViewport(0, 0, camera.width_px, camera.height_px);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    Gl().Viewport(0, 0, camera.width_px, camera.height_px);
+    Gl().Enable(GL_DEPTH_TEST);
+    Gl().DepthFunc(GL_GREATER);
+    Gl().PixelStorei(GL_PACK_ALIGNMENT, 1);
     UploadMaterials(scene);
     depth_program = NewProgram(DepthFragmentShader(), Drawn::kStanding);
     room = Upload(scene.mesh, Drawn::kStanding, scene);
@@ -139,7 +138,7 @@ struct ColourCamera::Renderer {
   GLuint NewProgram(const std::string& fragment_shader, Drawn drawn) {
     const GLuint program = CompileProgram(VertexShader(drawn), fragment_shader);
     const Eigen::Matrix4f clip = ClipFromCamera(camera);
-    glProgramUniformMatrix4fv(program, kClipFromCamera, 1, GL_FALSE, clip.data());
+    Gl().ProgramUniformMatrix4fv(program, kClipFromCamera, 1, GL_FALSE, clip.data());
     programs.push_back(program);
     return program;
   }
@@ -168,21 +167,22 @@ struct ColourCamera::Renderer {
   static GLuint UploadCorners(const std::vector<ShadingCorner>& corners) {
     GLuint array = 0;
     GLuint buffer = 0;
-    glGenVertexArrays(1, &array);
-    glBindVertexArray(array);
-    glGenBuffers(1, &buffer);
-    glBindBuffer(GL_ARRAY_BUFFER, buffer);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(ShadingCorner)),
-                 corners.data(), GL_STATIC_DRAW);
+    Gl().GenVertexArrays(1, &array);
+    Gl().BindVertexArray(array);
+    Gl().GenBuffers(1, &buffer);
+    Gl().BindBuffer(GL_ARRAY_BUFFER, buffer);
+    Gl().BufferData(GL_ARRAY_BUFFER,
+                    static_cast<GLsizeiptr>(corners.size() * sizeof(ShadingCorner)), corners.data(),
+                    GL_STATIC_DRAW);
     const auto offset = [](std::size_t bytes) { return reinterpret_cast<const void*>(bytes); };
     constexpr GLsizei kStride = sizeof(ShadingCorner);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride,
-                          offset(offsetof(ShadingCorner, position)));
-    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride,
-                          offset(offsetof(ShadingCorner, normal)));
-    glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, kStride,
-                           offset(offsetof(ShadingCorner, material)));
-    for (GLuint i = 0; i < 3; ++i) glEnableVertexAttribArray(i);
+    Gl().VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride,
+                             offset(offsetof(ShadingCorner, position)));
+    Gl().VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride,
+                             offset(offsetof(ShadingCorner, normal)));
+    Gl().VertexAttribIPointer(2, 1, GL_UNSIGNED_INT, kStride,
+                              offset(offsetof(ShadingCorner, material)));
+    for (GLuint i = 0; i < 3; ++i) Gl().EnableVertexAttribArray(i);
     return array;
   }
 
@@ -194,21 +194,21 @@ struct ColourCamera::Renderer {
                         {m.glow, static_cast<float>(m.grain), 0.0F, 0.0F}});
     }
     GLuint buffer = 0;
-    glGenBuffers(1, &buffer);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaterialBinding, buffer);
-    glBufferData(GL_SHADER_STORAGE_BUFFER,
-                 static_cast<GLsizeiptr>(packed.size() * sizeof(GpuMaterial)), packed.data(),
-                 GL_STATIC_DRAW);
+    Gl().GenBuffers(1, &buffer);
+    Gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, kMaterialBinding, buffer);
+    Gl().BufferData(GL_SHADER_STORAGE_BUFFER,
+                    static_cast<GLsizeiptr>(packed.size() * sizeof(GpuMaterial)), packed.data(),
+                    GL_STATIC_DRAW);
   }
 
   static void SetLights(GLuint program, const Lighting& lighting) {
-    glProgramUniform3fv(program, kAmbient, 1, lighting.ambient.data());
+    Gl().ProgramUniform3fv(program, kAmbient, 1, lighting.ambient.data());
     const int count = std::min(static_cast<int>(lighting.lights.size()), kMaxLights);
-    glProgramUniform1i(program, kLightCount, count);
+    Gl().ProgramUniform1i(program, kLightCount, count);
     for (int i = 0; i < count; ++i) {
       const PointLight& light = lighting.lights[static_cast<std::size_t>(i)];
-      glProgramUniform3fv(program, kLightAt + i, 1, light.at.data());
-      glProgramUniform3fv(program, kLightIntensity + i, 1, light.intensity.data());
+      Gl().ProgramUniform3fv(program, kLightAt + i, 1, light.at.data());
+      Gl().ProgramUniform3fv(program, kLightIntensity + i, 1, light.intensity.data());
     }
   }
 
@@ -216,16 +216,16 @@ struct ColourCamera::Renderer {
     const Eigen::Matrix4f pose = MatrixOf(Inverse(world_from_camera));
     const Eigen::Vector3f eye = world_from_camera.translation.cast<float>();
     for (const GLuint program : programs) {
-      glProgramUniformMatrix4fv(program, kCameraFromWorld, 1, GL_FALSE, pose.data());
+      Gl().ProgramUniformMatrix4fv(program, kCameraFromWorld, 1, GL_FALSE, pose.data());
     }
     for (const auto& [kind, program] : colour_programs) {
-      glProgramUniform3fv(program, kEye, 1, eye.data());
+      Gl().ProgramUniform3fv(program, kEye, 1, eye.data());
     }
   }
 
   static void SetPlace(GLuint program, const MoverPlace& place) {
     const Eigen::Matrix4f pose = MatrixOf(place.world_from_mover);
-    glProgramUniformMatrix4fv(program, kWorldFromMover, 1, GL_FALSE, pose.data());
+    Gl().ProgramUniformMatrix4fv(program, kWorldFromMover, 1, GL_FALSE, pose.data());
   }
 
   DepthImage DrawDepth(const std::vector<MoverPlace>& places) const {
@@ -236,14 +236,14 @@ struct ColourCamera::Renderer {
       DrawDepthOf(movers[place.mover], moving_depth_program);
     }
     DepthImage depth(camera.width_px, camera.height_px);
-    glReadPixels(0, 0, camera.width_px, camera.height_px, GL_RED, GL_FLOAT, depth.z_m.data());
+    Gl().ReadPixels(0, 0, camera.width_px, camera.height_px, GL_RED, GL_FLOAT, depth.z_m.data());
     return depth;
   }
 
   static void DrawDepthOf(const DrawnMesh& mesh, GLuint program) {
-    glBindVertexArray(mesh.array);
-    glUseProgram(program);
-    glDrawArrays(GL_TRIANGLES, 0, mesh.corner_count);
+    Gl().BindVertexArray(mesh.array);
+    Gl().UseProgram(program);
+    Gl().DrawArrays(GL_TRIANGLES, 0, mesh.corner_count);
   }
 
   RgbImage DrawColour(const std::vector<MoverPlace>& places) const {
@@ -256,20 +256,20 @@ struct ColourCamera::Renderer {
     }
     const int width = camera.width_px;
     const int height = camera.height_px;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, sampled_target.framebuffer());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, colour_target.framebuffer());
-    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, colour_target.framebuffer());
+    Gl().BindFramebuffer(GL_READ_FRAMEBUFFER, sampled_target.framebuffer());
+    Gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, colour_target.framebuffer());
+    Gl().BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    Gl().BindFramebuffer(GL_FRAMEBUFFER, colour_target.framebuffer());
     RgbImage image(width, height);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+    Gl().ReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
     return image;
   }
 
   static void DrawColourOf(const DrawnMesh& mesh) {
-    glBindVertexArray(mesh.array);
+    Gl().BindVertexArray(mesh.array);
     for (std::size_t i = 0; i < mesh.batches.size(); ++i) {
-      glUseProgram(mesh.colour_programs[i]);
-      glDrawArrays(GL_TRIANGLES, mesh.batches[i].first_corner, mesh.batches[i].corner_count);
+      Gl().UseProgram(mesh.colour_programs[i]);
+      Gl().DrawArrays(GL_TRIANGLES, mesh.batches[i].first_corner, mesh.batches[i].corner_count);
     }
   }
 
