@@ -183,7 +183,9 @@ IdleSettingList IdleSettings(const MapperOptions& mapper) {
     add("mapper.fusion.gain");
   }
   if (fusion.mode != FusionMode::kAdaptive) add("mapper.fusion.adaptive_rate");
-  if (fusion.mode != FusionMode::kLearned) add("mapper.fusion.judge_innovations");
+  if (fusion.mode != FusionMode::kLearned) {
+    for (const char* key : {"mapper.fusion.judge_innovations", "mapper.rounds.again"}) add(key);
+  }
   AddSlamNoise(fusion, idle);
   if (mapper.scan.mode != ScanMode::kRowBand) {
     idle.push_back({"mapper.scan.band_rows", Stands(mapper.scan, "mapper.scan", "mode")});
@@ -252,6 +254,9 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   }
   if (is_idle("mapper.fusion.judge_innovations")) {
     fusion.judge_innovations = FusionOptions{}.judge_innovations;
+  }
+  if (is_idle("mapper.rounds.again")) {
+    options.mapper.rounds.again = RoundOptions{}.again;
   }
   return options;
 }

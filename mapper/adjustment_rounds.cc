@@ -14,6 +14,8 @@ void RoundOptions::Visit(OptionsVisitor& v) {
   v.Number("first_frames", first_frames, {0, 1e9}, "mapped frames before the first round; 0: none");
   v.Number("growth", growth, {1.1, 1e3}, "so many times as many frames before the next");
   v.Number("last_frames", last_frames, {0, 1e9}, "mapped frames after which there are no rounds");
+  v.Flag("again", again,
+         "whether the first frames are gone through again once SLAM's errors are known");
 }
 
 bool AdjustmentRounds::IsDue(int frames) {

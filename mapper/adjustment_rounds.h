@@ -14,6 +14,10 @@ struct RoundOptions {
   // None with more frames than this: where places are seen again and again its cost grows faster
   // than the run (1.6 s at 4,860 frames of a 20 m floor), and the first frames are long put right.
   int last_frames = 2000;
+  // `learned`: whether the first frames, up to 300, are gone through again after the first round
+  // that tells how SLAM errs, with what is known of it then (docs/math.md, "The first frames
+  // again").
+  bool again = true;
 
   void Visit(OptionsVisitor& v);
 };

@@ -37,6 +37,7 @@ IncrementalMapper::IncrementalMapper(IncrementalMapper&&) noexcept = default;
 IncrementalMapper& IncrementalMapper::operator=(IncrementalMapper&&) noexcept = default;
 
 void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
+  if (oracle) state_->beginning.End();
   state_->match_oracle = std::move(oracle);
 }
 
@@ -61,6 +62,7 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
   state_->mapped.StartFrom(std::move(prior.frames));
   state_->fixed_map = prior.fixed;
   state_->prior_start = prior.map_from_slam;
+  state_->beginning.End();  // a finished map makes up for what SLAM errs by
 }
 
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
@@ -77,6 +79,13 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
 void IncrementalMapper::State::Map(const Frame& frame, FrameReport& report) {
   Begin(frame, report);
   const FrameScans scans = ScansOf(frame, report);
+  MapScans(frame, scans, report);
+  beginning.Add(frame, scans);
+}
+
+void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& scans,
+                                        FrameReport& report) {
+  if (scans.matched) report.beams = HitCount(*scans.matched);
   CloseLoops(frame, scans, report);
   if (!frame.slam_from_camera) return;  // SLAM is lost: nothing is known of this frame
   Prediction prediction = Predict(scans.matched, report);
@@ -105,7 +114,6 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
     const int epoch = history.newest().epoch;
     scans.matched = moving.ToMatch(scans.matched, BaseOf(*frame.slam_from_camera), epoch);
   }
-  if (scans.matched) report.beams = HitCount(*scans.matched);
   report.stand = scans.stand;
   const bool follows_floor = options.scan.floor == FloorSource::kImage;
   // Of SLAM trusted alone the poses stay as they are.
@@ -128,7 +136,10 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
     return;
   }
   if (frame.loops.empty()) {
-    if (rounds.IsDue(mapped.size() - prior_frames)) AdjustBetweenFrames();
+    if (rounds.IsDue(mapped.size() - prior_frames)) {
+      const std::optional<MotionSpread> spread = AdjustBetweenFrames();
+      if (spread && beginning.lasts()) GoThroughAgain(frame, *spread);
+    }
     return;
   }
   std::vector<MappedFrame> frames = mapped.all();
@@ -148,12 +159,14 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   if (provisional) Anchor({newest, 0.0});
 }
 
-// Poses and map corrected together while the run goes on.
-void IncrementalMapper::State::AdjustBetweenFrames() {
+// Poses and map corrected together while the run goes on: how SLAM errs, where that is seen.
+std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
   const Adjustment adjustment =
       loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kRefine, errors.Mapped());
   MoveTo(adjustment.map_from_base, adjustment.covariance);
-  if (adjustment.motion_spread) filter.BoundMotion(*adjustment.motion_spread);
+  const std::optional<MotionSpread>& spread = adjustment.motion_spread;
+  if (spread && spread->IsSure()) filter.BoundMotion(*spread);
+  return spread;
 }
 
 // Those that the mapper finds itself. The frame's online estimate stays as it was given.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapper/adjustment_rounds.h"
+#include "mapper/beginning.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/correction_filter.h"
 #include "mapper/fuse/match_noise.h"
@@ -45,6 +46,7 @@ struct IncrementalMapper::State {
   SlipSearch slips;
   AdjustmentRounds rounds;
   MappedFrames mapped;
+  Beginning beginning;
   int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
   bool fixed_map = false;            // of a prior map that is only localised in
   std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
@@ -65,7 +67,9 @@ struct IncrementalMapper::State {
         slips(opts.loops.relocation.slip_deg),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
-        mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)) {
+        mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)),
+        beginning(opts.method == MapperMethod::kSurfel && opts.rounds.again &&
+                  opts.rounds.first_frames > 0 && filter.Learns()) {
     if (options.fusion.TrustsSlamAlone()) return;
     reference = MakeReference(options);
     if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
@@ -74,8 +78,10 @@ struct IncrementalMapper::State {
   void Map(const Frame& frame, FrameReport& report);
   void Begin(const Frame& frame, FrameReport& report);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
+  void MapScans(const Frame& frame, const FrameScans& scans, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
-  void AdjustBetweenFrames();
+  std::optional<MotionSpread> AdjustBetweenFrames();
+  void GoThroughAgain(const Frame& newest, const MotionSpread& spread);
   void FindLoops(const FrameScans& scans, FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);

@@ -11,7 +11,7 @@
 #include "mapper/core/error.h"
 #include "sim/colour_shaders.h"
 #include "sim/gl_context.h"
-#include "sim/gl_functions.h"
+#include "sim/gl_functions_impl.h"
 #include "sim/sensor_options.h"
 #include "sim/shading_mesh.h"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "sim/gl_functions.h"
+#include "sim/gl_functions_impl.h"
 
 namespace depthgrid {
 namespace {

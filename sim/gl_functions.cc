@@ -1,9 +1,9 @@
-#include "sim/gl_functions.h"
-
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <stdexcept>
+
+#include "sim/gl_functions_impl.h"
 
 namespace depthgrid {
 namespace {

@@ -42,8 +42,13 @@ class CorrectionFilter {
   // The map was corrected: the last pose is now where this correction puts it.
   void SetCorrection(const Pose2& map_from_slam);
 
+  // Mode `learned`, with poses whose differences are motions.
+  bool Learns() const;
   // `learned`: how SLAM's motion errs, as an adjustment of all poses tells.
   void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }
+  void BeginWith(const CorrectionFilter& before, const MotionSpread& spread) {
+    tracker_.BeginWith(before.tracker_, spread);
+  }
 
   // What the last Commit() did to the errors of pose and bias.
   const FilterStep& step() const { return Learns() ? tracker_.step() : step_; }
@@ -57,7 +62,6 @@ class CorrectionFilter {
     double stamp_s = 0.0;
   };
 
-  bool Learns() const;
   // `humble`: the match, its information divided by `match_overconfidence`.
   FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
                        const MatchResult& humble, const Eigen::Vector3d& outside_gain);

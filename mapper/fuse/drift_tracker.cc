@@ -159,6 +159,12 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
   BoundLearnt();
 }
 
+void DriftTracker::BeginWith(const DriftTracker& before, const MotionSpread& spread) {
+  noise_ = before.noise_;
+  learnt_ = before.learnt_;
+  BoundMotion(spread);
+}
+
 // While the prior is believed the map follows it, and the matches, made against that map, agree
 // with it; while the matches are believed the map wanders with them (docs/tried.md, "Laser logs").
 void DriftTracker::BoundLearnt() {

@@ -33,6 +33,8 @@ class DriftTracker {
   // alone is bounded by it: these are made against what the filter's own estimates drew, whose
   // wandering looks like SLAM's. Innovations that speak against the bound lift it.
   void BoundMotion(const MotionSpread& spread);
+  // Before the first pose: what another has learnt of the same SLAM's noise, and the bound on it.
+  void BeginWith(const DriftTracker& before, const MotionSpread& spread);
 
   // What the last Commit() did to the errors of pose and bias.
   const FilterStep& step() const { return step_; }

@@ -36,6 +36,11 @@ MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
 struct MotionSpread {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   double frames = 1.0;
+  int stretches = 0;  // that saw something
+
+  // Fewer are not believed for long: from the seven of the first 60 frames a prior that drifts
+  // 0.375 m was once called nearly perfect (docs/tried.md, "A nearly perfect prior").
+  bool IsSure() const { return stretches >= 20; }
 };
 
 // Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds

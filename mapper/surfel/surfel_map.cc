@@ -127,9 +127,8 @@ std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
 // How well groups' poses are known to be adjusted, before each frame is looked at.
 const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 
-// Fewer groups that saw something do not tell how the prior errs: from the seven of the first 60
-// frames a prior that drifts 0.375 m was called nearly perfect (docs/tried.md).
-constexpr int kMinGroupsForSpread = 20;
+// Fewer groups that saw something tell nothing of how the prior errs.
+constexpr int kMinGroupsForSpread = 4;
 
 // How SLAM's motion errs from group to group of this run's own, `motion_sigma` being a frame's.
 std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
@@ -145,7 +144,7 @@ std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
   }
   if (that_saw < kMinGroupsForSpread) return std::nullopt;
   const int new_frames = static_cast<int>(frames.size()) - first_new;
-  return MotionSpread{motion_sigma, static_cast<double>(new_frames) / new_groups};
+  return MotionSpread{motion_sigma, static_cast<double>(new_frames) / new_groups, that_saw};
 }
 
 }  // namespace
@@ -343,7 +342,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     smoother.push_back({poses[i], match, frames[i].slam_motion});
   }
   MotionNoise noise = NoiseOf(smoother);
-  if (spread) Bound(*spread, noise);
+  if (spread && spread->IsSure()) Bound(*spread, noise);
   const std::vector<Pose2> smoothed = Smoothed(smoother, noise, options_.stay_m);
   std::copy(smoothed.begin(), smoothed.end(), poses.begin() + first_new);
   return poses;

@@ -40,6 +40,8 @@ TEST(IdleSettings, AreThoseThatNothingReads) {
       {"sensor.hfov_deg", "sensor: {fx: 300, fy: 300, noise: handa}", "sensor: {fx: 300}"},
       {"mapper.fusion.slam_noise.jitter_m", "mapper: {fusion: {slam_noise: {source: profile}}}",
        "mapper: {fusion: {mode: kalman}}"},
+      {"mapper.rounds.again", "mapper: {fusion: {mode: fixed}}",
+       "mapper: {fusion: {mode: learned}}"},
       {"mapper.scan.band_rows", "mapper: {scan: {mode: centre_row}}",
        "mapper: {scan: {mode: row_band}}"},
   };
@@ -61,6 +63,8 @@ TEST(IdleSettings, AreLeftOutOfWhatMakesARun) {
   EXPECT_EQ(plain("sensor: {noise: handa, fx: 300, fy: 300, hfov_deg: 60}"),
             plain("sensor: {noise: handa, fx: 300, fy: 300}"));
   EXPECT_EQ(plain("mapper: {scan: {band_rows: 3}}"), plain("{}"));
+  EXPECT_EQ(plain("mapper: {fusion: {mode: fixed}, rounds: {again: false}}"),
+            plain("mapper: {fusion: {mode: fixed}}"));
   const std::string source = "mapper: {fusion: {slam_noise: {source: profile";
   EXPECT_EQ(plain(source + ", jitter_m: 1}}}"), plain(source + "}}}"));
   EXPECT_NE(plain(source + "}}}"), plain("{}"));

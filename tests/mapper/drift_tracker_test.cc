@@ -84,6 +84,17 @@ TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   EXPECT_LT(bound.noise().walk.x(), 2.1e-5 * std::sqrt(6.0));
 }
 
+TEST(DriftTracker, BeginsWithWhatAnotherHasLearnt) {
+  DriftTracker first, second;
+  Pose2 slam;
+  ErrorAfterM(first, slam, 60, 0.02, 1);
+  second.BeginWith(first, {.sigma = {0.02, 0.02, 0.005}, .frames = 9.0});
+  EXPECT_GE(second.noise().walk.x(), first.noise().walk.x());
+  const MotionNoise& noise = second.noise();
+  EXPECT_NEAR(std::hypot(noise.bias.x(), noise.walk.x() / 3.0), 0.02, 0.02);
+  EXPECT_GE(std::hypot(noise.bias.x(), noise.walk.x() / 3.0), 0.02 - 1e-12);
+}
+
 TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
   DriftTracker tracker;
   Pose2 slam;

@@ -244,7 +244,9 @@ TEST(CorrectionFilter, AnAbsolutePriorIsKnownWorseAndWorse) {
       match.found = matched;
       const FusedPose fused = filter.Fuse(slam, prediction, match, Eigen::Vector3d::Zero());
       filter.Commit(slam, 0.0, fused.map_from_base, fused.covariance);
-      if (i == kFrames && matched) EXPECT_GT(fused.gain(0, 0), 0.99);
+      if (i == kFrames && matched) {
+        EXPECT_GT(fused.gain(0, 0), 0.99);
+      }
     }
   }
 }

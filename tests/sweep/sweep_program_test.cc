@@ -271,8 +271,7 @@ TEST_F(ProgramSweep, ErrorsAreOneLineAndLeaveNothing) {
   expect("axes: {seed: [1, 1]}\n", "has the value 1 twice");
   expect("axes: {seed: [1], 'seed, frames': [[1, 2]]}\n", "is on two axes");
   expect("axes: {scene: [./room.yaml, living_roo]}\n", "did you mean 'living_room'?");
-  expect("axes: {seed: [1, 2]}\nstop: {metric: trajectory.est.mean_euclidean, width: 1}\n",
-         "did you mean 'trajectory.est.mean_euclidean_m'?");
+  expect("axes: {seed: [1]}\nstop: {metric: map.all.chamfer, width: 1}\n", "'map.all.chamfer_m'?");
   expect("axes: {seed: [1]}\nmod: zip\n", "did you mean 'mode'?");
   expect("mode: zip\naxes: {frames: [1, 2], mapper.fusion.gain: [0]}\n", "the same number");
   expect("mode: random\naxes: {frames: [1, 2]}\n", "needs 'samples'");
