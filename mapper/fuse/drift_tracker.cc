@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid {
 namespace {
@@ -139,7 +140,8 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
   noise_.walk *= kCaution;
   noise_.bias *= kCaution;
   BoundLearnt();
-  for (int axis = 0; !spread_ && axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!ConfirmsItself(axis)) continue;
     const int seen = learner_.seen()[static_cast<std::size_t>(axis)];
     const double least = kLeastOfFirstWalk * kFirstWalk[axis];
     if (drifted_ || seen < kUnconfirmedMotions) {
@@ -150,6 +152,16 @@ void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const M
     }
   }
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
+}
+
+// Whether nothing from outside says how SLAM errs along an axis, or too little where it errs by
+// more than was thought at first: along a lone wall matches that follow it would soon agree with
+// it.
+bool DriftTracker::ConfirmsItself(int axis) const {
+  if (!spread_) return true;
+  if (spread_->IsSure()) return false;
+  return !spread_->Tells(axis) ||
+         std::sqrt(spread_->frames) * spread_->sigma[axis] > kFirstWalk[axis];
 }
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {

@@ -50,6 +50,7 @@ class DriftTracker {
   DriftState StateAt(const Pose2& slam_from_base) const;
   FilterStep StepTo(const Pose2& predicted) const;
   void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
+  bool ConfirmsItself(int axis) const;
   void BoundLearnt();  // by the spread, if that is known
   void TestBound(const Prediction& prediction, const MatchResult& match);
   void StartAnew();

@@ -101,9 +101,10 @@ MotionErrors ErrorsOver(int frames, const MotionNoise& noise) {
 void Bound(const MotionSpread& spread, MotionNoise& noise) {
   const double root = std::sqrt(spread.frames);
   const Eigen::Vector3d most = kMostOfSpread * spread.sigma;
-  noise.bias = noise.bias.cwiseMin(most);
-  noise.walk = noise.walk.cwiseMin(root * most);
   for (int axis = 0; axis < 3; ++axis) {
+    if (!spread.Tells(axis)) continue;
+    noise.bias[axis] = std::min(noise.bias[axis], most[axis]);
+    noise.walk[axis] = std::min(noise.walk[axis], root * most[axis]);
     const double least = spread.sigma[axis];
     const double walked = noise.walk[axis] / root;
     const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));

@@ -37,10 +37,15 @@ struct MotionSpread {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   double frames = 1.0;
   int stretches = 0;  // that saw something
+  // How well such a motion, of one frame, is told by what was seen; infinite where nothing tells
+  // it.
+  Eigen::Vector3d seen_sigma = Eigen::Vector3d::Zero();
 
   // Fewer are not believed for long: from the seven of the first 60 frames a prior that drifts
   // 0.375 m was once called nearly perfect (docs/tried.md, "A nearly perfect prior").
   bool IsSure() const { return stretches >= 20; }
+  // Of so few that hardly saw along an axis it says nothing there.
+  bool Tells(int axis) const { return IsSure() || seen_sigma[axis] <= 0.01; }
 };
 
 // Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds

@@ -69,6 +69,7 @@ struct JointResult {
   std::vector<Pose2> map_from_group;  // the first is unchanged
   std::vector<bool> loop_accepted;
   Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();        // of the prior, a frame, as learnt
+  Eigen::Vector3d motion_seen = Eigen::Vector3d::Zero();         // SeenSigma() of it
   Eigen::Vector3d motion_persistence = Eigen::Vector3d::Zero();  // of its errors, as learnt
   double correlation = 0.0;                                      // of SightingErrors, as learnt
   // The equations of the last round; null when nothing was solved.

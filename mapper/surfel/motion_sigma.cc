@@ -97,6 +97,12 @@ Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares) {
   return sum / static_cast<double>(shares.size());
 }
 
+Eigen::Vector3d SeenSigma(const Eigen::Vector3d& sigma,
+                          const std::vector<Eigen::Vector3d>& shares) {
+  const Eigen::Array3d share = MeanShare(shares);
+  return sigma.array() * ((1.0 - share) / share).sqrt();
+}
+
 Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Pose2>& map_from_group,
                             const std::vector<Eigen::Vector3d>& shares_seen) {

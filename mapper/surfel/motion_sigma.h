@@ -27,6 +27,10 @@ std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
 // Their mean; one without motions.
 Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares);
 
+// With links of this sigma of which that was seen, the standard deviation of what is seen of a link
+// by itself: 1 / P = 1 / sigma^2 + 1 / seen^2.
+Eigen::Vector3d SeenSigma(const Eigen::Vector3d& sigma, const std::vector<Eigen::Vector3d>& shares);
+
 // The standard deviation, over that of `unit`, of SLAM's motions from the adjusted poses, which the
 // links have drawn towards them: mean square / share. By the median of their errors: where a
 // group sees only walls along one direction nothing but the prior holds it, and a mean square of

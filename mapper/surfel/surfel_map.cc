@@ -130,10 +130,10 @@ const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 // Fewer groups that saw something tell nothing of how the prior errs.
 constexpr int kMinGroupsForSpread = 4;
 
-// How SLAM's motion errs from group to group of this run's own, `motion_sigma` being a frame's.
+// How SLAM's motion errs from group to group of this run's own.
 std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
                                      const std::vector<MappedFrame>& frames,
-                                     const Eigen::Vector3d& motion_sigma) {
+                                     const JointResult& result) {
   const int first_new = FirstNew(frames);
   int new_groups = 0;
   int that_saw = 0;
@@ -144,7 +144,8 @@ std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
   }
   if (that_saw < kMinGroupsForSpread) return std::nullopt;
   const int new_frames = static_cast<int>(frames.size()) - first_new;
-  return MotionSpread{motion_sigma, static_cast<double>(new_frames) / new_groups, that_saw};
+  return MotionSpread{result.motion_sigma, static_cast<double>(new_frames) / new_groups, that_saw,
+                      result.motion_seen};
 }
 
 }  // namespace
@@ -263,7 +264,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
         PoseCovariance(*result.factored, result.map_from_group, GroupsAt(asked, groups.places()));
     result.factored.reset();
   }
-  adjustment.motion_spread = SpreadOf(groups.groups(), frames, result.motion_sigma);
+  adjustment.motion_spread = SpreadOf(groups.groups(), frames, result);
   adjustment.map_from_base =
       effort == AdjustEffort::kFinish
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)

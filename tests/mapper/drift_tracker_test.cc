@@ -95,6 +95,30 @@ TEST(DriftTracker, BeginsWithWhatAnotherHasLearnt) {
   EXPECT_GE(std::hypot(noise.bias.x(), noise.walk.x() / 3.0), 0.02 - 1e-12);
 }
 
+// A spread of few stretches says nothing of an axis that they hardly saw.
+TEST(MotionSpread, OfFewStretchesTellsOnlyWhatTheySaw) {
+  MotionSpread spread{.sigma = {1e-4, 1e-4, 1e-4}, .frames = 9.0, .stretches = 7};
+  spread.seen_sigma = {0.2, 0.001, 0.0001};
+  MotionNoise noise;
+  noise.walk.setConstant(0.003);
+  Bound(spread, noise);
+  EXPECT_EQ(noise.walk.x(), 0.003);
+  EXPECT_NEAR(noise.walk.y(), 6e-4, 1e-12);  // twice sigma over three
+  spread.stretches = 20;
+  Bound(spread, noise);
+  EXPECT_NEAR(noise.walk.x(), 6e-4, 1e-12);
+}
+
+// Where SLAM errs by more than was thought at first few stretches do not let the filter follow it.
+TEST(DriftTracker, AnUnsureSpreadOfLargeErrorsKeepsMatchesBelieved) {
+  DriftTracker tracker;
+  Pose2 slam;
+  tracker.BoundMotion({.sigma = {0.01, 1e-4, 1e-4}, .frames = 9.0, .stretches = 7});
+  ErrorAfterM(tracker, slam, 100, 0.0, 3);
+  EXPECT_GE(tracker.noise().walk.x(), 0.0015);
+  EXPECT_LT(tracker.noise().walk.y(), 0.0007);
+}
+
 TEST(DriftTracker, TellsErrorsWithoutItsOwnCaution) {
   DriftTracker tracker;
   Pose2 slam;
