@@ -44,7 +44,8 @@ struct MotionSpread {
   // Fewer are not believed for long: from the seven of the first 60 frames a prior that drifts
   // 0.375 m was once called nearly perfect (docs/tried.md, "A nearly perfect prior").
   bool IsSure() const { return stretches >= 20; }
-  // Of so few that hardly saw along an axis it says nothing there.
+  // Of so few it says nothing of an axis along which they hardly saw, nor of one along which SLAM
+  // errs by so much that matches had better lead (docs/math.md, "The first frames again").
   bool Tells(int axis) const { return IsSure() || seen_sigma[axis] <= 0.01; }
 };
 

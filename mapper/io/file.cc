@@ -95,6 +95,12 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
 }
 
 void WriteFile(const std::string& path, std::string_view content) {
+  WriteFile(path, [content](std::ostream& stream) {
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  });
+}
+
+void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write) {
   const std::string temporary = TemporaryName(path);
   const EndTask remove_half([&temporary] {
     std::error_code ignored;
@@ -103,7 +109,7 @@ void WriteFile(const std::string& path, std::string_view content) {
   errno = 0;
   {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    write(stream);
     stream.close();
     if (!stream) FailWriting(path, errno);
   }

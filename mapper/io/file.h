@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -29,5 +31,7 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes = kMaxFi
 // a part. Throws std::runtime_error (a failure while running, not bad input) and leaves nothing
 // behind.
 void WriteFile(const std::string& path, std::string_view content);
+// The same of what `write` puts into the stream, so that a large file need not be held whole.
+void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace depthgrid

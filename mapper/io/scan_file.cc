@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <ostream>
 #include <span>
 
 #include "mapper/core/error.h"
@@ -155,12 +156,16 @@ std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& pl
 }
 
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans) {
-  std::string bytes(kMagic);
-  Append(bytes, static_cast<std::uint32_t>(scans.size()));
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    AppendScan(bytes, scans[i], i == 0 || !SameBearings(scans[i - 1], scans[i]));
-  }
-  WriteFile(path, bytes);
+  WriteFile(path, [&scans](std::ostream& stream) {
+    std::string bytes(kMagic);
+    Append(bytes, static_cast<std::uint32_t>(scans.size()));
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      AppendScan(bytes, scans[i], i == 0 || !SameBearings(scans[i - 1], scans[i]));
+      stream << bytes;
+      bytes.clear();
+    }
+    stream << bytes;
+  });
 }
 
 }  // namespace depthgrid

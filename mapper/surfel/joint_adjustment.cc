@@ -221,9 +221,9 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const std::vector<Eigen::Vector3d> shares = SharesSeen(motions, map_from_group, *h);
   Step(*h, g, map_from_group);
   result.factored = std::move(h);
-  result.motion_seen = SeenSigma(result.motion_sigma, shares);
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
   result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
+  result.motion_seen = SeenSigma(result.motion_sigma, shares);
   if (options.learn_persistence) {
     result.motion_persistence = MotionPersistence(unit, map_from_group, shares);
   }

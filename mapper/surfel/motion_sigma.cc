@@ -100,7 +100,7 @@ Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares) {
 Eigen::Vector3d SeenSigma(const Eigen::Vector3d& sigma,
                           const std::vector<Eigen::Vector3d>& shares) {
   const Eigen::Array3d share = MeanShare(shares);
-  return sigma.array() * ((1.0 - share) / share).sqrt();
+  return sigma.array() / share.sqrt();
 }
 
 Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,

@@ -27,8 +27,8 @@ std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
 // Their mean; one without motions.
 Eigen::Vector3d MeanShare(const std::vector<Eigen::Vector3d>& shares);
 
-// With links of this sigma of which that was seen, the standard deviation of what is seen of a link
-// by itself: 1 / P = 1 / sigma^2 + 1 / seen^2.
+// Over the root of the share of it that was seen: large where links err by much, and where little
+// was seen of them; infinite where nothing was.
 Eigen::Vector3d SeenSigma(const Eigen::Vector3d& sigma, const std::vector<Eigen::Vector3d>& shares);
 
 // The standard deviation, over that of `unit`, of SLAM's motions from the adjusted poses, which the

@@ -54,11 +54,10 @@ TEST(SharesSeen, IsWhatThePriorDoesNotTell) {
   EXPECT_NEAR(share.z(), 0.0, 1e-9);
 }
 
-// The same from the share: 300 and 25 a square metre, and nothing.
-TEST(SeenSigma, IsThatOfWhatWasSeenByItself) {
-  const Eigen::Vector3d seen = SeenSigma({0.1, 0.2, 0.05}, {{0.75, 0.5, 0.0}});
-  EXPECT_NEAR(seen.x(), 1.0 / std::sqrt(300.0), 1e-12);
-  EXPECT_NEAR(seen.y(), 0.2, 1e-12);
+TEST(SeenSigma, IsLargeWhereLittleWasSeen) {
+  const Eigen::Vector3d seen = SeenSigma({0.1, 0.2, 0.05}, {{1.0, 0.25, 0.0}});
+  EXPECT_NEAR(seen.x(), 0.1, 1e-12);
+  EXPECT_NEAR(seen.y(), 0.4, 1e-12);
   EXPECT_TRUE(std::isinf(seen.z()));
 }
 
