@@ -65,7 +65,6 @@ PlanarWorld Room() {
 
 struct Way {
   std::vector<std::optional<Pose3>> online;
-  std::vector<FrameReport> reports;
   MapperResult result;
 };
 
@@ -94,8 +93,7 @@ Way Drive(const MapperOptions& options, std::uint64_t seed, double drift_m,
     if (std::find(lost.begin(), lost.end(), i) == lost.end()) {
       frame.slam_from_camera = CameraOf(TruthAt(0) * slam, 1.0);
     }
-    way.reports.push_back(mapper.AddFrame(frame));
-    way.online.push_back(way.reports.back().map_from_camera);
+    way.online.push_back(mapper.AddFrame(frame).map_from_camera);
   }
   way.result = mapper.Finish();
   return way;
