@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
-#include <ostream>
+#include <filesystem>
+#include <fstream>
 #include <span>
 
 #include "mapper/core/error.h"
@@ -16,6 +16,8 @@
 
 namespace depthgrid {
 namespace {
+
+namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little,
               "scans.bin is written as it lies in memory");
@@ -33,39 +35,54 @@ void AppendAll(std::string& bytes, std::span<const T> values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
+// What is still to come of a file, which is never held whole: a long run's scans are many MB.
 class Reader {
  public:
-  Reader(std::string_view bytes, std::string place) : rest_(bytes), place_(std::move(place)) {}
+  explicit Reader(std::string path) : path_(std::move(path)) {
+    RequireFile(path_);
+    std::error_code error;
+    rest_ = fs::file_size(path_, error);
+    if (error) Fail("cannot be read: " + error.message());
+    stream_.open(path_, std::ios::binary);
+    if (!stream_) Fail("cannot be read");
+  }
 
   template <typename T>
   T Take() {
-    if (rest_.size() < sizeof(T)) throw InputError(place_, "is truncated");
     T value;
-    std::memcpy(&value, rest_.data(), sizeof value);
-    rest_.remove_prefix(sizeof value);
+    TakeBytes(&value, sizeof value);
     return value;
   }
   template <typename T>
   void TakeAll(std::uint32_t count, std::vector<T>& values) {
     RequireRoom(count, sizeof(T));
     values.resize(count);
-    if (count > 0) std::memcpy(values.data(), rest_.data(), count * sizeof(T));
-    rest_.remove_prefix(count * sizeof(T));
+    TakeBytes(values.data(), count * sizeof(T));
   }
   void RequireMagic() {
-    if (!rest_.starts_with(kMagic)) Fail("holds no stored scans (scans.bin)");
-    rest_.remove_prefix(kMagic.size());
+    std::string magic(std::min<std::uintmax_t>(rest_, kMagic.size()), '\0');
+    TakeBytes(magic.data(), magic.size());
+    if (magic != kMagic) Fail("holds no stored scans (scans.bin)");
   }
   // Before memory is taken for `count` things that need `bytes_each` in the file.
   void RequireRoom(std::uint32_t count, std::size_t bytes_each) const {
-    if (rest_.size() / bytes_each < count) Fail("is truncated");
+    if (rest_ / bytes_each < count) Fail("is truncated");
   }
-  [[noreturn]] void Fail(const std::string& message) const { throw InputError(place_, message); }
-  bool empty() const { return rest_.empty(); }
+  [[noreturn]] void Fail(const std::string& message) const { throw InputError(path_, message); }
+  bool empty() const { return rest_ == 0; }
 
  private:
-  std::string_view rest_;
-  std::string place_;
+  void TakeBytes(void* to, std::size_t count) {
+    if (rest_ < count) Fail("is truncated");
+    if (!stream_.read(static_cast<char*>(to), static_cast<std::streamsize>(count))) {
+      Fail("cannot be read");
+    }
+    rest_ -= count;
+  }
+
+  std::string path_;
+  std::ifstream stream_;
+  std::uintmax_t rest_ = 0;  // bytes
 };
 
 // Without its beams.
@@ -140,18 +157,14 @@ bool SameBearings(const StoredScan& a, const StoredScan& b) {
 }  // namespace
 
 std::vector<StoredScan> ReadScans(const std::string& path) {
-  return ParseScans(ReadFile(path), path);
-}
-
-std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& place) {
-  Reader reader(bytes, place);
+  Reader reader(path);
   reader.RequireMagic();
   const auto count = reader.Take<std::uint32_t>();
   reader.RequireRoom(count, kScanBytes);
   std::vector<StoredScan> scans;
   ScanTaker taker;
   for (std::uint32_t i = 0; i < count; ++i) scans.push_back(taker.Take(reader));
-  if (!reader.empty()) throw InputError(place, "goes on behind its last scan");
+  if (!reader.empty()) reader.Fail("goes on behind its last scan");
   return scans;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mapper/core/kept_scan.h"
@@ -22,8 +21,6 @@ struct StoredScan {
 
 // Throws InputError for a file that is missing, truncated or something else.
 std::vector<StoredScan> ReadScans(const std::string& path);
-// The same from the file's bytes.
-std::vector<StoredScan> ParseScans(std::string_view bytes, const std::string& place);
 // Beams must be such that CanBeKept(), as a mapper's are: others are not read again.
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans);
 

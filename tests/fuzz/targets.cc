@@ -166,8 +166,8 @@ bool TrySettings(std::string_view bytes) {
 
 bool TryScans(std::string_view bytes) {
   return Accepts([&] {
-    const std::vector<StoredScan> scans = ParseScans(bytes, "x");
-    const std::string path = TheScratch().Put("x.bin", "");
+    const std::string path = TheScratch().Put("x.bin", bytes);
+    const std::vector<StoredScan> scans = ReadScans(path);
     WriteScans(path, scans);
     if (ReadScans(path) != scans) throw std::logic_error("scans change when they are written");
     GridOptions coarse;  // scans of damaged numbers reach far
