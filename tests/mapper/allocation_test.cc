@@ -82,7 +82,7 @@ std::vector<Frame> LaserRound() {
   return round;
 }
 
-const PinholeCamera kCamera{80, 60, 60.1, 60.0, 39.5, 29.5, {}};
+const PinholeCamera kSmallCamera{80, 60, 60.1, 60.0, 39.5, 29.5, {}};
 
 // The same by a depth camera, some of whose pixels are missing.
 std::vector<Frame> DepthRound() {
@@ -96,7 +96,7 @@ std::vector<Frame> DepthRound() {
     const Pose2 base{-0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), WrapAngle(turn_rad)};
     Frame& frame = round[static_cast<std::size_t>(k)];
     frame.slam_from_camera = TiltedCamera(base, 1.15, 0.2, 0.05);
-    DepthImage image = room.Render(kCamera, *frame.slam_from_camera);
+    DepthImage image = room.Render(kSmallCamera, *frame.slam_from_camera);
     for (float& z_m : image.z_m) {
       if (random.Uniform() < 0.02) z_m = kInvalidDepth;
       z_m *= static_cast<float>(random.Uniform(0.995, 1.005));
@@ -110,7 +110,7 @@ std::vector<Frame> DepthRound() {
 // groups of surfels or submaps.
 double AllocationsAFrame(const MapperOptions& options, std::vector<Frame> round) {
   constexpr int kWarm = 600, kCounted = 600;
-  IncrementalMapper mapper(options, kCamera);
+  IncrementalMapper mapper(options, kSmallCamera);
   long before = 0;
   for (int k = 0; k < kWarm + kCounted; ++k) {
     if (k == kWarm) before = allocations;
