@@ -40,6 +40,11 @@ bool IsImpossible(double first_rad, double second_rad, double time_s) {
   return wrapped_rad > kSmallestStepRad && wrapped_rad > kFastestTurnRadPerS * time_s;
 }
 
+// Logs state as field of view what lies between the first and the last reading, or a step more;
+// angles are written with three decimals or more, 0.009 for half a degree being 3 % off.
+constexpr double kFovToleranceSteps = 1.5;
+constexpr double kFovToleranceShare = 0.035;
+
 bool IsHalfCircle(std::size_t readings) {
   return readings == 180 || readings == 181 || readings == 360 || readings == 361;
 }
@@ -49,6 +54,7 @@ bool IsHalfCircle(std::size_t readings) {
 void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, int line_number) {
   AddReadings(scan, no_return_m, line_number);
   AddHeading(scan, line_number);
+  if (scan.states_angles) AddAngles(scan, line_number);
   if (!scan.states_angles && !knows_fov_) AddCount(scan, line_number);
 }
 
@@ -93,6 +99,18 @@ void CarmenCheck::AddCount(const CarmenScan& scan, int line_number) {
   first_count_line_ = line_number;
 }
 
+void CarmenCheck::AddAngles(const CarmenScan& scan, int line_number) {
+  const double step_rad = scan.bearing_step_rad;
+  const double fov_rad = step_rad * static_cast<double>(scan.range_m.size() - 1);
+  const double tolerance_rad = kFovToleranceSteps * step_rad + kFovToleranceShare * fov_rad;
+  if (std::abs(scan.stated_fov_rad - fov_rad) <= tolerance_rad) return;
+  if (contradictions_++ > 0) return;
+  contradiction_line_ = line_number;
+  contradiction_fov_rad_ = scan.stated_fov_rad;
+  contradiction_step_rad_ = step_rad;
+  contradiction_count_ = scan.range_m.size();
+}
+
 std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
   std::vector<std::string> warnings;
   // Rounded down, so that the setting takes all of them.
@@ -123,6 +141,15 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
         "{}:{}: FLASER with {} readings states no angles and is taken as 180 degrees wide ({}): "
         "--set sequence.laser.fov_deg=DEGREES says another width",
         path, first_count_line_, first_count_, Counted(uncommon_counts_, "such line")));
+  }
+  if (contradictions_ > 0) {
+    warnings.push_back(fmt::format(
+        "{}:{}: ROBOTLASER1 states a field of view of {:.4g} rad and {} readings {:.4g} rad apart, "
+        "which span {:.4g} rad; the resolution is taken ({}): one of the two is wrong",
+        path, contradiction_line_, contradiction_fov_rad_, contradiction_count_,
+        contradiction_step_rad_,
+        contradiction_step_rad_ * static_cast<double>(contradiction_count_ - 1),
+        Counted(contradictions_, "such line")));
   }
   return warnings;
 }

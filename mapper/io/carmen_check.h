@@ -1,5 +1,6 @@
 // What may be wrong with a laser log although each of its lines can be read: no-returns that look
-// like walls, ranges that are not in metres, headings in degrees, a scanner that is no half circle.
+// like walls, ranges that are not in metres, headings in degrees, a scanner that is no half circle,
+// a header that contradicts itself.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +28,7 @@ class CarmenCheck {
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
   void AddCount(const CarmenScan& scan, int line_number);
+  void AddAngles(const CarmenScan& scan, int line_number);
 
   double min_range_m_;
   bool knows_fov_;
@@ -53,6 +55,13 @@ class CarmenCheck {
   int uncommon_counts_ = 0;  // lines without angles that are no scanner's half circle
   std::size_t first_count_ = 0;
   int first_count_line_ = 0;
+
+  // Lines whose field of view is not that of their readings, and the first of them.
+  int contradictions_ = 0;
+  int contradiction_line_ = 0;
+  double contradiction_fov_rad_ = 0.0;
+  double contradiction_step_rad_ = 0.0;
+  std::size_t contradiction_count_ = 0;
 };
 
 }  // namespace depthgrid

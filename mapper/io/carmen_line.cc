@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include "mapper/core/frame.h"
 #include "mapper/io/number_rows.h"
@@ -27,6 +28,12 @@ std::optional<double> NumberIn(std::string_view token) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (error != std::errc{} || end != token.data() + token.size()) return std::nullopt;
   return value;
+}
+
+// Of a line that ends, or of any other field.
+std::string Shown(std::string_view token) {
+  constexpr std::size_t kMostShown = 40;
+  return token.empty() ? "missing" : fmt::format("'{}'", token.substr(0, kMostShown));
 }
 
 class Tokens {
@@ -58,24 +65,36 @@ bool IsMessageName(std::string_view word) {
   });
 }
 
-CarmenDamage Damage(std::string_view message, std::string_view what) {
-  return {fmt::format("{} {}", message, what)};
+CarmenDamage Damage(std::string_view message, std::string_view what, std::string fault = {}) {
+  return {fmt::format("{} {}", message, what), true, std::move(fault)};
 }
 
-// Reads a count and as many numbers; empty when either is damaged.
-std::optional<std::vector<double>> ReadList(Tokens& tokens, int minimum) {
-  const std::optional<double> count = tokens.NextNumber();
+struct NumberList {
+  std::vector<double> values;
+  std::string fault;  // empty when it is sound
+};
+
+// Reads a count and as many numbers.
+NumberList ReadList(Tokens& tokens, int minimum) {
+  const std::string_view stated = tokens.Next();
+  const std::optional<double> count = NumberIn(stated);
   if (!count || !(*count >= minimum && *count <= kMaxReadings) || *count != std::floor(*count)) {
-    return std::nullopt;
+    return {{},
+            fmt::format("their count is {}, must be a whole number from {} to {}", Shown(stated),
+                        minimum, kMaxReadings)};
   }
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(*count));
   for (int i = 0; i < static_cast<int>(*count); ++i) {
-    const std::optional<double> value = tokens.NextNumber();
-    if (!value) return std::nullopt;
+    const std::string_view token = tokens.Next();
+    const std::optional<double> value = NumberIn(token);
+    if (!value) {
+      return {{},
+              fmt::format("number {} of {} is {}, must be a number", i + 1, *count, Shown(token))};
+    }
     values.push_back(*value);
   }
-  return values;
+  return {std::move(values), {}};
 }
 
 struct StatedPose {
@@ -99,17 +118,31 @@ std::optional<StatedPose> ReadPose(Tokens& tokens) {
 
 // Reads the end of a scan's line: `skip` numbers, the time, the host and the logger's time. Returns
 // the damage, if any.
-std::optional<std::string_view> ReadEnd(Tokens& tokens, int skip, CarmenScan& scan) {
+std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int skip,
+                                    CarmenScan& scan) {
   constexpr std::string_view kNoTime = "without a time";
   for (int i = 0; i < skip; ++i) {
-    if (!tokens.NextNumber()) return kNoTime;
+    const std::string_view token = tokens.Next();
+    if (NumberIn(token)) continue;
+    return Damage(name, kNoTime,
+                  fmt::format("number {} of {} before it is {}, must be a number", i + 1, skip,
+                              Shown(token)));
   }
-  const std::optional<double> stamp_s = tokens.NextNumber();
-  if (!stamp_s || !std::isfinite(*stamp_s)) return kNoTime;
-  if (std::abs(*stamp_s) > kLatestStampS) return "with a time that is not in seconds";
+  const std::string_view time = tokens.Next();
+  const std::optional<double> stamp_s = NumberIn(time);
+  if (!stamp_s || !std::isfinite(*stamp_s)) {
+    return Damage(name, kNoTime, fmt::format("it is {}, must be a number of seconds", Shown(time)));
+  }
+  if (std::abs(*stamp_s) > kLatestStampS) {
+    return Damage(name, "with a time that is not in seconds",
+                  fmt::format("it is {}, must be at most {:g}", Shown(time), kLatestStampS));
+  }
   // Without the host after it, the time's own digits may have been cut.
   const std::string_view host = tokens.Next();
-  if (host.empty()) return kNoTime;
+  if (host.empty()) {
+    return Damage(name, kNoTime,
+                  fmt::format("the line ends with {}, must go on with the host", Shown(time)));
+  }
   // More readings than the line states move the columns: the time is where the host belongs. Some
   // hosts are numbers, but then the logger's time alone follows.
   const bool is_number = NumberIn(host).has_value();
@@ -117,9 +150,11 @@ std::optional<std::string_view> ReadEnd(Tokens& tokens, int skip, CarmenScan& sc
     const std::string_view token = tokens.Next();
     if (token.empty()) break;
     if (is_number && (i > 0 || !NumberIn(token))) {
-      return "with other columns than its count of readings says";
+      return Damage(name, "with other columns than its count of readings says");
     }
-    if (i == kMostLastColumns) return "with more columns than it states (a lost line end?)";
+    if (i == kMostLastColumns) {
+      return Damage(name, "with more columns than it states (a lost line end?)");
+    }
   }
   scan.stamp_s = *stamp_s;
   return {};
@@ -129,9 +164,9 @@ std::optional<std::string_view> ReadEnd(Tokens& tokens, int skip, CarmenScan& sc
 // angles: it is the SICK's half circle, 1 degree apart for 180 and 181 readings, 0.5 for 360, 361.
 CarmenLine ParseFlaser(Tokens& tokens) {
   CarmenScan scan;
-  const auto ranges = ReadList(tokens, 2);
-  if (!ranges) return Damage("FLASER", "with damaged readings");
-  scan.range_m = *ranges;
+  NumberList ranges = ReadList(tokens, 2);
+  if (!ranges.fault.empty()) return Damage("FLASER", "with damaged readings", ranges.fault);
+  scan.range_m = std::move(ranges.values);
   scan.states_angles = false;
   const auto n = static_cast<double>(scan.range_m.size());
   scan.first_bearing_rad = -kPi / 2.0;
@@ -141,8 +176,35 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   if (!laser || !robot) return Damage("FLASER", kDamagedPose);
   scan.odom_from_laser = laser->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
-  if (const auto damage = ReadEnd(tokens, 0, scan)) return Damage("FLASER", *damage);
+  if (auto damage = ReadEnd(tokens, "FLASER", 0, scan)) return *damage;
   return scan;
+}
+
+// What is impossible of a ROBOTLASER1 header's angles; empty when nothing is.
+std::string FaultOfAngles(double first_rad, double fov_rad, double resolution_rad,
+                          std::size_t readings) {
+  const auto steps = static_cast<double>(readings - 1);
+  if (resolution_rad < 0.0) {
+    return fmt::format("the resolution is {:g}, must be above 0", resolution_rad);
+  }
+  if (resolution_rad == 0.0 && !(fov_rad > 0.0)) {
+    return fmt::format("the field of view is {:g} and the resolution 0, one must be above 0",
+                       fov_rad);
+  }
+  if (resolution_rad > 0.0 && resolution_rad * steps > kMaxFieldOfViewRad) {
+    return fmt::format(
+        "the resolution is {:g}, must be at most {:.4g} (radians) for {} readings: a whole turn",
+        resolution_rad, kMaxFieldOfViewRad / steps, readings);
+  }
+  if (resolution_rad == 0.0 && fov_rad > kMaxFieldOfViewRad) {
+    return fmt::format("the field of view is {:g}, must be at most {:.4g} (radians)", fov_rad,
+                       kMaxFieldOfViewRad);
+  }
+  if (std::abs(first_rad) > kMaxFieldOfViewRad) {
+    return fmt::format("the start angle is {:g}, must be from {:.4g} to {:.4g} (radians)",
+                       first_rad, -kMaxFieldOfViewRad, kMaxFieldOfViewRad);
+  }
+  return {};
 }
 
 // ROBOTLASER1 type start fov resolution max accuracy remission_mode n ranges.. m remissions..
@@ -150,30 +212,39 @@ CarmenLine ParseFlaser(Tokens& tokens) {
 CarmenLine ParseRobotLaser(Tokens& tokens) {
   constexpr std::string_view kName = "ROBOTLASER1";
   CarmenScan scan;
-  double header[7];
-  for (double& value : header) {
-    const auto number = tokens.NextNumber();
-    if (!number || !std::isfinite(*number)) return Damage(kName, "with a damaged header");
-    value = *number;
+  constexpr const char* kFields[] = {"type",    "start angle", "field of view", "resolution",
+                                     "maximum", "accuracy",    "remission mode"};
+  double header[std::size(kFields)];
+  for (std::size_t i = 0; i < std::size(kFields); ++i) {
+    const std::string_view token = tokens.Next();
+    const std::optional<double> number = NumberIn(token);
+    if (!number || !std::isfinite(*number)) {
+      return Damage(kName, "with a damaged header",
+                    fmt::format("the {} is {}, must be a number", kFields[i], Shown(token)));
+    }
+    header[i] = *number;
   }
-  const auto ranges = ReadList(tokens, 2);
-  if (!ranges) return Damage(kName, "with damaged readings");
-  scan.range_m = *ranges;
+  NumberList ranges = ReadList(tokens, 2);
+  if (!ranges.fault.empty()) return Damage(kName, "with damaged readings", ranges.fault);
+  scan.range_m = std::move(ranges.values);
   const auto steps = static_cast<double>(scan.range_m.size() - 1);
   scan.first_bearing_rad = header[1];
+  scan.stated_fov_rad = header[2];
   scan.bearing_step_rad = header[3] > 0.0 ? header[3] : header[2] / steps;
-  if (!(scan.bearing_step_rad > 0.0) || scan.bearing_step_rad * steps > kMaxFieldOfViewRad ||
-      std::abs(scan.first_bearing_rad) > kMaxFieldOfViewRad) {
-    return Damage(kName, "with impossible angles");
+  if (std::string fault = FaultOfAngles(header[1], header[2], header[3], scan.range_m.size());
+      !fault.empty()) {
+    return Damage(kName, "with impossible angles", std::move(fault));
   }
   scan.max_range_m = std::max(header[4], 0.0);
-  if (!ReadList(tokens, 0)) return Damage(kName, "with damaged remissions");
+  if (const NumberList remissions = ReadList(tokens, 0); !remissions.fault.empty()) {
+    return Damage(kName, "with damaged remissions", remissions.fault);
+  }
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage(kName, kDamagedPose);
   scan.odom_from_laser = laser->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
-  if (const auto damage = ReadEnd(tokens, 5, scan)) return Damage(kName, *damage);
+  if (auto damage = ReadEnd(tokens, kName, 5, scan)) return *damage;
   return scan;
 }
 

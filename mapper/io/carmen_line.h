@@ -15,6 +15,7 @@ struct CarmenScan {
   double first_bearing_rad = 0.0;
   double bearing_step_rad = 0.0;
   bool states_angles = true;    // FLASER does not: they are those of a half circle
+  double stated_fov_rad = 0.0;  // as written; of what states angles
   double max_range_m = 0.0;     // 0 when the line does not state it (FLASER)
   std::vector<double> range_m;  // as written: 0, the maximum, NaN included
   Pose2 odom_from_laser;
@@ -33,7 +34,8 @@ inline const std::string kNamelessLine = "a line that begins with no message nam
 // A damaged line, and what is wrong with it.
 struct CarmenDamage {
   std::string reason;
-  bool is_scan = true;  // it begins as a scan
+  bool is_scan = true;     // it begins as a scan
+  std::string fault = {};  // of this very line: field, value and what it must be
 };
 
 using CarmenLine = std::variant<CarmenScan, CarmenMaximum, CarmenOther, CarmenDamage>;

@@ -153,6 +153,7 @@ class CarmenLogSource : public FrameSource {
   struct Problem {
     int count = 0;
     int first_line = 0;
+    std::string first_fault;  // ": field, value and rule", where that is known
   };
 
   // Reads all of the log once: names its scans and says what may be wrong with them.
@@ -183,16 +184,18 @@ class CarmenLogSource : public FrameSource {
 
   void WarnOfProblems() {
     for (const auto& [reason, seen] : problems_) {
-      warnings_.push_back(seen.count == 1 ? fmt::format("{}:{}: {}", path_, seen.first_line, reason)
-                                          : fmt::format("{}:{}: {} ({} such lines)", path_,
-                                                        seen.first_line, reason, seen.count));
+      warnings_.push_back(
+          fmt::format("{}:{}: {}{}{}", path_, seen.first_line, reason, seen.first_fault,
+                      seen.count == 1 ? "" : fmt::format(" ({} such lines)", seen.count)));
     }
   }
 
   // After Survey().
   void RequireScans() const {
     if (!names_.stamps_s.empty()) return;
-    if (has_zero_bytes_) throw InputError(path_, "has zero bytes, must be a text file");
+    if (has_zero_bytes_)
+      throw InputError(
+          path_, "is no text: zero bytes in it (UTF-16, or a binary file?), must be UTF-8 text");
     if (const auto nameless = problems_.find(kNamelessLine);
         nameless != problems_.end() && problems_.size() == 1) {
       throw InputError(
@@ -242,10 +245,10 @@ class CarmenLogSource : public FrameSource {
         path_, earlier_, used + static_cast<std::size_t>(earlier_)));
   }
 
-  void Note(const std::string& reason) {
+  void Note(const std::string& reason, const std::string& fault = {}) {
     if (place_ == Place::kBehindPart) return;
-    Problem& problem = problems_[reason];
-    if (problem.count++ == 0) problem.first_line = line_number_;
+    const Problem first = {0, line_number_, fault.empty() ? "" : ": " + fault};
+    ++problems_.try_emplace(reason, first).first->second.count;
   }
 
   // False at the end of the file.
@@ -299,7 +302,7 @@ class CarmenLogSource : public FrameSource {
       }
       CarmenLine line = ParseCarmenLine(text);
       if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
-        Note(damage->reason);
+        Note(damage->reason, damage->fault);
         lines_of_scans_ += damage->is_scan ? 1 : 0;
       }
       if (const auto* max = std::get_if<CarmenMaximum>(&line)) front_max_m_ = max->range_m;

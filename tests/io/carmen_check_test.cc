@@ -152,5 +152,30 @@ TEST(CarmenCheck, AFlaserThatIsNoHalfCircleIsSaidAndSettled) {
   EXPECT_EQ(ScanOf(stated, options).beams[0].bearing_rad, -0.5F);
 }
 
+TEST(CarmenCheck, AHeaderThatContradictsItselfIsSaidOnce) {
+  const auto log = [](double fov_rad, double resolution_rad) {
+    std::ostringstream lines;
+    for (int scan = 0; scan < 2; ++scan) {
+      lines << "ROBOTLASER1 0 -1.57 " << fov_rad << " " << resolution_rad << " 80 0.01 0 181";
+      for (int i = 0; i < 181; ++i) lines << " " << 1.0 + 0.002 * i;
+      lines << " 0 0 0 0 0 0 0 0 0 0 0 0 " << scan << " h 1\n";
+    }
+    return lines.str();
+  };
+  EXPECT_EQ(WarningsOf(log(3.1416, 0.0349)).substr(WarningsOf(log(3.1416, 0.0349)).find(":1: ")),
+            ":1: ROBOTLASER1 states a field of view of 3.142 rad and 181 readings 0.0349 rad "
+            "apart, which span 6.282 rad; the resolution is taken (2 such lines): one of the two "
+            "is wrong\n");
+  for (const double fov_rad : {6.2832, 0.0, 1.5, -3.1416}) {
+    EXPECT_THAT(WarningsOf(log(fov_rad, 0.0174533)), HasSubstr("the resolution is taken"))
+        << fov_rad;
+  }
+  // From the first to the last reading or a step more, in few decimals, or by the field alone.
+  EXPECT_EQ(WarningsOf(log(3.1416, 0.0174533)), "");
+  EXPECT_EQ(WarningsOf(log(181 * 0.0174533, 0.0174533)), "");
+  EXPECT_EQ(WarningsOf(log(3.1416, 0.017)), "");
+  EXPECT_EQ(WarningsOf(log(3.1416, 0.0)), "");
+}
+
 }  // namespace
 }  // namespace depthgrid

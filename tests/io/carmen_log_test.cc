@@ -198,6 +198,45 @@ TEST(CarmenLog, EveryTruncationOfALineIsSurvived) {
   EXPECT_EQ(cases, 107);
 }
 
+TEST(CarmenLog, ADamagedLineIsSaidWithItsFieldValueAndRule) {
+  const auto fault_of = [](const std::string& line) {
+    const auto parsed = ParseCarmenLine(line);
+    const auto* damage = std::get_if<CarmenDamage>(&parsed);
+    return damage == nullptr ? "" : damage->reason + ": " + damage->fault;
+  };
+  const auto robot_laser = [&](const std::string& angles) {
+    return fault_of("ROBOTLASER1 0 " + angles +
+                    " 6 0.01 0 3 2.5 6.0 0 0 0 0 0 0 0 0 0 0 0 0 0 10.5 host 10.6");
+  };
+  EXPECT_EQ(robot_laser("-0.5 1.0 0.5"), "");
+  EXPECT_EQ(robot_laser("-0.5 1.0 0"), "");  // the readings are spread over the field of view
+  EXPECT_EQ(robot_laser("-0,5 1.0 0.5"),
+            "ROBOTLASER1 with a damaged header: the start angle is '-0,5', must be a number");
+  const std::string angles = "ROBOTLASER1 with impossible angles: the ";
+  EXPECT_EQ(robot_laser("-0.5 1.0 -0.5"), angles + "resolution is -0.5, must be above 0");
+  EXPECT_EQ(robot_laser("-0.5 0 0"),
+            angles + "field of view is 0 and the resolution 0, one must be above 0");
+  EXPECT_EQ(
+      robot_laser("-29 58 29"),
+      angles + "resolution is 29, must be at most 3.142 (radians) for 3 readings: a whole turn");
+  EXPECT_EQ(robot_laser("-29 58 0"),
+            angles + "field of view is 58, must be at most 6.283 (radians)");
+  EXPECT_EQ(robot_laser("-29 1 0.5"),
+            angles + "start angle is -29, must be from -6.283 to 6.283 (radians)");
+  const std::string readings = "FLASER with damaged readings: ";
+  EXPECT_EQ(fault_of("FLASER -5 1 1"),
+            readings + "their count is '-5', must be a whole number from 2 to 20000");
+  EXPECT_EQ(fault_of("FLASER 99999999999999999999 1"),
+            readings +
+                "their count is '99999999999999999999', must be a whole number from 2 to "
+                "20000");
+  EXPECT_EQ(fault_of("FLASER 3 1 2"), readings + "number 3 of 3 is missing, must be a number");
+  EXPECT_EQ(fault_of("FLASER 2 1 1 0 0 0 0 0 0 noon h 1"),
+            "FLASER without a time: it is 'noon', must be a number of seconds");
+  EXPECT_EQ(fault_of("FLASER 2 1 1 0 0 0 0 0 0 1"),
+            "FLASER without a time: the line ends with '1', must go on with the host");
+}
+
 TEST(CarmenLog, RefusesFilesWithoutScan) {
   const TextFile file("PARAM a b\nFLASER 3 1 2\n");
   try {
@@ -296,7 +335,8 @@ TEST(CarmenLog, OdometryFasterThanACarIsSaid) {
 TEST(CarmenLog, SaysThatAFileIsNoText) {
   EXPECT_THAT(LogRefusal("\x1F\x8B\x08 packed"),
               testing::HasSubstr("is compressed by gzip: gunzip it first"));
-  EXPECT_THAT(LogRefusal(std::string("#BAG\n\0\1\n", 8)), testing::HasSubstr("has zero bytes"));
+  EXPECT_THAT(LogRefusal(std::string("#BAG\n\0\1\n", 8)),
+              testing::HasSubstr("is no text: zero bytes in it"));
   // Those that a crash left at the end do no harm.
   const TextFile crashed(std::string(kFlaser) + std::string(100, '\0'));
   EXPECT_EQ(OpenCarmenLog(crashed.path())->FrameCount(), 1);

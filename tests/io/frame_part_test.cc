@@ -218,7 +218,8 @@ TEST(PartOfALog, WarningsAreOfThePart) {
   const auto warnings = [&](const PartOptions& part) {
     return OpenCarmenLog(file.path(), {}, {}, part).source->Warnings();
   };
-  EXPECT_THAT(warnings({}), Contains(HasSubstr(":1: FLASER with damaged readings (5 such")));
+  EXPECT_THAT(warnings({}), Contains(HasSubstr(":1: FLASER with damaged readings: number 2 of 2 is "
+                                               "'x', must be a number (5 such lines)")));
   const auto angles = HasSubstr(":5: FLASER with 2 readings states no angles");
   EXPECT_THAT(warnings({2.0, 4.0}), ElementsAre(HasSubstr(":6: FLASER with damaged readings"),
                                                 HasSubstr(":8: a scan"), angles));
