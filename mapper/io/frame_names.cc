@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "mapper/core/counted.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -17,7 +19,36 @@ double PartEndS(const FrameNames& names) {
   return names.stamps_s[names.part.EndAmong(names.stamps_s.size()) - 1];
 }
 
-std::string RemedyOf(const FrameNames& names, double first_pose_s, double last_pose_s) {
+// Images with their numbers for stamps (ICL-NUIM) and poses with seconds: how many poses a second.
+// Nothing where whole seconds may be meant: poses that are more than the numbers, or span as much.
+std::optional<double> PosesASecond(const FrameNames& names,
+                                   const std::vector<double>& pose_stamps_s) {
+  for (std::size_t i = 0; i < names.stamps_s.size(); ++i) {
+    if (names.stamps_s[i] - names.time_offset_s != static_cast<double>(names.NumberOf(i)))
+      return {};
+  }
+  const double numbers = names.stamps_s.back() - names.stamps_s.front();
+  const double span_s = pose_stamps_s.back() - pose_stamps_s.front();
+  const auto poses = static_cast<double>(pose_stamps_s.size());
+  if (poses < 2.0 || poses > numbers + 1.0 || 2.0 * span_s > numbers) return {};
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < pose_stamps_s.size(); ++i) {
+    steps_s.push_back(pose_stamps_s[i] - pose_stamps_s[i - 1]);
+  }
+  const double step_s = UpperMedian(std::move(steps_s));
+  if (!(step_s > 0.0 && step_s <= 0.5)) return {};
+  return 1.0 / step_s;
+}
+
+std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
+  if (const auto rate_hz = PosesASecond(names, pose_stamps_s)) {
+    return fmt::format(
+        "the images' stamps are their numbers, the poses' look like seconds, {:.3g} a second: a "
+        "pose's must be its image's number",
+        *rate_hz);
+  }
+  const double first_pose_s = pose_stamps_s.front();
+  const double last_pose_s = pose_stamps_s.back();
   const double first_s = names.stamps_s.front();
   const double last_s = names.stamps_s.back();
   const auto [least_s, most_s] = std::minmax({last_s - first_s, last_pose_s - first_pose_s});
@@ -43,7 +74,7 @@ std::string RemedyOf(const FrameNames& names, double first_pose_s, double last_p
 
 }  // namespace
 
-std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s) {
+std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
   const std::string added =
       names.time_offset_s == 0.0 ? "" : fmt::format(" ({:g} s added)", names.time_offset_s);
   const double first_s = names.stamps_s.front();
@@ -52,8 +83,8 @@ std::string StampRanges(const FrameNames& names, double first_pose_s, double las
                                            : fmt::format(", the part's from {:.3f} to {:.3f} s",
                                                          PartBeginS(names), PartEndS(names));
   return fmt::format("images from {:.3f} to {:.3f} s{}{}, poses from {:.3f} to {:.3f} s; {}",
-                     first_s, last_s, added, part, first_pose_s, last_pose_s,
-                     RemedyOf(names, first_pose_s, last_pose_s));
+                     first_s, last_s, added, part, pose_stamps_s.front(), pose_stamps_s.back(),
+                     RemedyOf(names, pose_stamps_s));
 }
 
 std::string PartShown(const FrameNames& names) {

@@ -31,8 +31,8 @@ struct FrameNames {
 };
 
 // "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', the
-// part's own and what may be done about it. `names` has frames.
-std::string StampRanges(const FrameNames& names, double first_pose_s, double last_pose_s);
+// part's own and what may be done about it. `names` has frames, and there are poses, in order.
+std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s);
 
 // Whether so few frames have a pose that it is to be said why.
 inline bool MostLackPoses(std::size_t with_pose, std::size_t frames) {

@@ -114,7 +114,10 @@ class RecordingSource final : public FrameSource {
   }
 
   InputError NoSharedStamps(const SlamOutput& slam, const RecordingOptions& options) const {
-    if (slam.live.empty()) return {recording_.name, "the trajectory for it holds no pose"};
+    const bool any = std::any_of(slam.live.begin(), slam.live.end(), [](const SlamPose& pose) {
+      return pose.slam_from_camera.has_value();
+    });
+    if (!any) return {recording_.name, "the trajectory for it holds no pose"};
     return {recording_.name, fmt::format("no pose within {} s of any image: {}",
                                          options.max_stamp_difference_s, Ranges(slam, options))};
   }
@@ -127,8 +130,11 @@ class RecordingSource final : public FrameSource {
     return ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
-    return StampRanges(NamesOf(recording_, options), slam.live.front().stamp_s,
-                       slam.live.back().stamp_s);
+    std::vector<double> stamps_s;  // those that were given a frame each may lack a pose
+    for (const SlamPose& pose : slam.live) {
+      if (pose.slam_from_camera) stamps_s.push_back(pose.stamp_s);
+    }
+    return StampRanges(NamesOf(recording_, options), stamps_s);
   }
 
   // A folder whose images cannot be read at all, or do not belong to the camera, is bad input; a

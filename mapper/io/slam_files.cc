@@ -40,7 +40,16 @@ struct FramedPose {
 };
 
 std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
-  return StampRanges(frames, poses.front().stamp_s, poses.back().stamp_s);
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : poses) stamps_s.push_back(pose.stamp_s);
+  return StampRanges(frames, stamps_s);
+}
+
+// What was read of a file whose poses have the stamp of no frame that is mapped.
+InputError NoSharedStamps(const std::string& path, double max_difference_s,
+                          const FrameNames& frames, const Trajectory& poses) {
+  return {path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
+                            RangesOf(frames, poses))};
 }
 
 // Poses that hardly ever have the stamp of a frame are of another clock, unit or recording.
@@ -79,8 +88,7 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& 
     if (distance_s(found) < distance_s(framed.back())) framed.back() = found;
   }
   if (framed.empty() && !stamps_s.empty()) {
-    throw InputError(path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
-                                       RangesOf(frames, poses)));
+    throw NoSharedStamps(path, max_difference_s, frames, poses);
   }
   const auto warn = [&](int count, const char* thing, const char* what) {
     WarnOfCount(warnings, path, count, thing, what);
@@ -250,7 +258,11 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   FindCorrections(paths, epochs_known, frames.part, input);
   KeepLoopsOf(frames.part, input);
   if (reading.interpolate) Interpolate(live, reading, slam.live);
-  WarnOfFew(PosedOf(frames.part, slam.live), frames, live, paths.live, input.warnings);
+  const std::size_t posed = PosedOf(frames.part, slam.live);
+  if (posed == 0 && !frames.stamps_s.empty()) {
+    throw NoSharedStamps(paths.live, max_difference_s, frames, live);
+  }
+  WarnOfFew(posed, frames, live, paths.live, input.warnings);
   return input;
 }
 

@@ -139,6 +139,50 @@ TEST_F(SlamFiles, PosesOfHardlyAnyFrameAreSaidWithTheStamps) {
   EXPECT_THAT(ReadSlamFiles(Paths(), {Stamps(example)}).warnings, testing::IsEmpty());
 }
 
+// ICL-NUIM's images have their numbers for stamps.
+TEST_F(SlamFiles, PosesInSecondsOfNumberedImagesAreSaid) {
+  const auto said = [&](const FrameNames& frames, const Trajectory& poses) {
+    WriteTrajectory(Paths().live, poses);
+    std::string all;
+    for (const std::string& line : ReadSlamFiles({Paths().live, "", ""}, frames).warnings) {
+      all += line + "\n";
+    }
+    return all;
+  };
+  const SlamOutput example = Example();
+  FrameNames frames;
+  for (int i = 0; i < 12; ++i) frames.stamps_s.push_back(i);
+  EXPECT_THAT(said(frames, example.final),
+              HasSubstr("gives 1 of 12 frames a pose: images from 0.000 to 11.000 s, poses from "
+                        "0.000 to 0.367 s; the images' stamps are their numbers, the poses' look "
+                        "like seconds, 30 a second: a pose's must be its image's number\n"));
+  // Whole seconds: of poses that are not one an image, of stamps that do not begin with 0.
+  Trajectory dense;
+  for (int i = 0; i < 40; ++i) dense.push_back({0.1 * i, example.final.front().world_from_camera});
+  EXPECT_THAT(said(frames, dense), HasSubstr("interpolate_poses=true"));
+  for (double& stamp_s : frames.stamps_s) stamp_s += 1.0;
+  Trajectory later = example.final;
+  for (StampedPose& pose : later) pose.stamp_s += 1.0;
+  EXPECT_THAT(said(frames, later), HasSubstr("interpolate_poses=true"));
+}
+
+// Its own stamps are named: each frame of the part has a place among the poses, but no pose.
+TEST_F(SlamFiles, AFileThatGivesThePartNoPoseIsRefusedWithItsStamps) {
+  const SlamOutput example = Example();
+  WriteTrajectory(Paths().live, {example.final.begin(), example.final.begin() + 3});
+  FrameNames frames{Stamps(example)};
+  frames.part.begin = 9;
+  for (const bool interpolate : {false, true}) {
+    EXPECT_EQ(RefusalOf([&] {
+                ReadSlamFiles({Paths().live, "", ""}, frames, {0.02, interpolate, 0.2});
+              }),
+              Paths().live +
+                  ": no pose within 0.02 s of any image: images from 0.000 to 0.367 s, "
+                  "the part's from 0.300 to 0.367 s, poses from 0.000 to 0.067 s; none "
+                  "are of the part");
+  }
+}
+
 // A file of positions alone has the columns of a matrix's rows.
 TEST_F(SlamFiles, WhatIsNoMatrixMayBeAMistakenTrajectory) {
   WriteFile(Paths().live, "0 1 2 1\n1 1.1 2 1\n2 1.2 2 1\n");
