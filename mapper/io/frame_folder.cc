@@ -108,12 +108,7 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
 }  // namespace
 
 bool IsFrameFolder(const std::string& folder) {
-  const fs::path images_folder = FolderOfImages(folder);
-  const auto images = DepthImagesOf(images_folder);
-  return !images.empty() && (PoseListOf(images_folder) ||
-                             std::any_of(images.begin(), images.end(), [&](const auto& image) {
-                               return PoseFileOf(image, images_folder).has_value();
-                             }));
+  return !DepthImagesOf(FolderOfImages(folder)).empty();
 }
 
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options) {
@@ -153,6 +148,11 @@ SlamOutput OwnPoses(const FrameFolder& folder) {
     throw InputError(folder.recording.name,
                      fmt::format("none of {} holds a pose that can be used; first: {}",
                                  Counted(without.count, "pose file"), without.first));
+  }
+  if (folder.poses.final.empty()) {
+    throw InputError(folder.recording.name,
+                     "holds no poses (frame-000000.pose.txt, poses.txt, ...); --poses FILE gives "
+                     "them");
   }
   return folder.poses;
 }

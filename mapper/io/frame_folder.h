@@ -22,14 +22,14 @@ struct FrameFolder {
   std::string camera_path;  // empty when the folder has none
 };
 
-// Whether the folder looks like one: numbered depth images, and matrix poses.
+// Whether the folder looks like one: numbered depth images. Poses may be a file's elsewhere.
 bool IsFrameFolder(const std::string& folder);
 
 // Throws InputError when there are no depth images or no poses.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
 
-// The folder's own poses. Throws InputError, with the first file and what is wrong there, when
-// files of one pose each hold none.
+// The folder's own poses. Throws InputError when there are none, with the first file and what is
+// wrong there when files of one pose each hold none.
 SlamOutput OwnPoses(const FrameFolder& folder);
 
 // The folder's camera, or that of `camera_path` when not empty, with what its file leaves open

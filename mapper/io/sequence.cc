@@ -305,11 +305,18 @@ SequenceFormat DetectFormat(const std::string& path) {
   if (IsFrameFolder(path)) return SequenceFormat::kFrames;
   throw InputError(path,
                    "is no kind of sequence that is known (docs/formats.md): no depth.txt, no "
-                   "*.gt.freiburg, no numbered depth images with poses");
+                   "*.gt.freiburg, no numbered depth images");
 }
 
 SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options) {
-  return options.format == SequenceFormat::kAuto ? DetectFormat(path) : options.format;
+  if (options.format == SequenceFormat::kAuto) return DetectFormat(path);
+  std::error_code ignored;
+  if (options.format != SequenceFormat::kCarmen && fs::exists(path, ignored) &&
+      !fs::is_directory(path, ignored)) {
+    throw InputError(
+        path, fmt::format("is a file, must be a {} (sequence.format)", NameOf(options.format)));
+  }
+  return options.format;
 }
 
 std::string NameOf(SequenceFormat format) {

@@ -183,6 +183,10 @@ TEST_F(SequenceTest, OneClearLineForEachFault) {
   EXPECT_THAT(ErrorOf([&] { OpenSequence(folder_); }),
               HasSubstr("~: is no kind of sequence that is known"));
   WriteRoom();
+  SequenceOptions tum;
+  tum.format = SequenceFormat::kTum;
+  EXPECT_EQ(ErrorOf([&] { OpenSequence(Path("camera.yaml"), tum); }),
+            "~/camera.yaml: is a file, must be a TUM RGB-D folder (sequence.format)");
   std::filesystem::remove(Path("groundtruth.txt"));
   EXPECT_EQ(ErrorOf([&] { OpenSequence(folder_); }),
             "~: a TUM folder needs poses: a TUM trajectory (--poses FILE), or groundtruth.txt in "
