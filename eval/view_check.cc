@@ -29,7 +29,7 @@ constexpr double kFewestMatched = 0.9;
 
 struct MatchedFrames {
   int matched = 0;
-  int frames = 0;      // that had a pose and something mapped before them
+  int frames = 0;      // that had an image, a pose and something mapped before them
   double beams = 0.0;  // with a hit, mean
 
   bool AreFew() const { return matched < kFewestMatched * frames; }
@@ -39,7 +39,8 @@ MatchedFrames CountMatched(const MappingRun& run) {
   MatchedFrames count;
   bool any_mapped = false;
   for (const FrameReport& report : run.reports) {
-    if (!report.slam_from_camera) continue;
+    // A frame without an image has no stand; its recording's reader says what is missing.
+    if (!report.slam_from_camera || !report.stand) continue;
     if (any_mapped || report.match.found) {
       count.matched += report.match.found ? 1 : 0;
       ++count.frames;

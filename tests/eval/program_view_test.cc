@@ -75,6 +75,18 @@ TEST_F(ProgramView, ThatFewFramesCouldBeMatchedIsSaid) {
                           HasSubstr("80x60 pixels"), Not(HasSubstr("path"))));
 }
 
+// They are said by their count, and match nothing.
+TEST_F(ProgramView, FramesWithoutAnImageAreNotCountedAsUnmatched) {
+  Succeed("render ./small.yaml --no-colour -o seq --set frames=40");
+  std::vector<std::string> images;
+  for (const std::string& file : FilesIn("seq/depth")) images.push_back("seq/depth/" + file);
+  for (std::size_t i = 3; i < images.size(); i += 4) Write(images[i], "cut");
+  const Outcome outcome = Program("map seq -o out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("seq: 10 depth images missing or damaged"),
+                                 Not(HasSubstr("could be matched"))));
+}
+
 // A pose that turns nothing looks straight up.
 TEST_F(ProgramView, APathThatSeesNothingIsSaid) {
   Write("up.txt", "0 1.5 1.5 1.2 0 0 0 1\n0.1 1.5 1.6 1.2 0 0 0 1\n");
