@@ -27,12 +27,24 @@ struct MapperSettings {
   void Visit(OptionsVisitor& v) { v.Group("mapper", mapper, "the mapper"); }
 };
 
+// Keys of other versions are passed over.
+void RequirePossible(const Config& run) {
+  Config known;
+  for (const std::string& key : KeyPathsOf(MapperSettings{})) {
+    if (!ShapesMap(key, true) || !run.Has(key) || run.HasList(key)) continue;
+    known.Set(key, run.Text(key), run.PlaceOfKey(key));
+  }
+  MapperSettings settings;
+  known.Read(settings);
+}
+
 }  // namespace
 
 PriorMap ReadPriorRun(const std::string& folder) {
   const fs::path drawn_path = fs::path(folder) / "scans.bin";
   const fs::path matched_path = fs::path(folder) / "matched.bin";
   RequireRunFolder(folder);
+  RequirePossible(Config::FromFile((fs::path(folder) / "run.yaml").string()));
   const std::vector<StoredScan> drawn = ReadScans(drawn_path.string());
   const std::vector<StoredScan> matched =
       fs::exists(matched_path) ? ReadScans(matched_path.string()) : drawn;

@@ -11,7 +11,8 @@ namespace depthgrid {
 // Setting `submap.scans` of a run that goes on in a map: the last two submaps hold all of it.
 constexpr int kAllScansInOneSubmap = 1'000'000;
 
-// The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError.
+// The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError,
+// also for settings in its run.yaml that no map can have been made with.
 PriorMap ReadPriorRun(const std::string& folder);
 
 // Where that run's map was made with other settings than it goes on with: the mapper's method, its

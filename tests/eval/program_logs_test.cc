@@ -179,6 +179,20 @@ TEST_F(ProgramLogs, APartThatIsNotThereIsRefused) {
 
 // Odometry a quarter too long: laid over the map, its first metres say where the robot was in the
 // middle of them, the first views where it began.
+// Before the log is read.
+TEST_F(ProgramLogs, AFinishedMapOfImpossibleSettingsIsRefused) {
+  Write("robot.log", ThereAndBack(1.0));
+  Succeed("map robot.log -o first");
+  const std::string settings = ReadFile(Path("first/run.yaml"));
+  Write("first/run.yaml", "foo: [\n");
+  ExpectRefusal("map robot.log --map first -o out", {"first/run.yaml:2: not valid YAML"});
+  Write("first/run.yaml", "mapper:\n  of_old: 1\n  grid: {resolution_m: -3}\n");
+  ExpectRefusal("map robot.log --map first -o out",
+                {"first/run.yaml:3: mapper.grid.resolution_m is '-3', must be from 0.005 to 1"});
+  Write("first/run.yaml", settings + "of_old: 1\n");
+  Succeed("map robot.log --map first -o out");
+}
+
 TEST_F(ProgramLogs, WhereARunBeginsIsFoundWithPosesThatDrift) {
   Write("first.log", ThereAndBack(1.0));
   Succeed("map first.log -o first");
