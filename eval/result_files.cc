@@ -86,6 +86,8 @@ bool IsSlamFile(const fs::path& relative) {
 
 bool IsNoFile(const fs::path&) { return false; }
 
+bool IsRunOrMap(ResultKind kind) { return kind == ResultKind::kRun || kind == ResultKind::kMap; }
+
 // Nothing when it is no file that a command wrote: those say so.
 FileRule FilesOfRun(const std::string& run_yaml) {
   try {
@@ -115,7 +117,7 @@ FileRule FilesOfCases(const fs::path& folder) {
 
 // Those that a result of this kind makes at its top, apart from a study's, which are its cases'.
 Names FoldersOf(ResultKind kind) {
-  if (kind == ResultKind::kRun || kind == ResultKind::kMap) return {"frames"};
+  if (IsRunOrMap(kind)) return {"frames"};
   if (kind == ResultKind::kRender) return {"depth", "rgb"};
   return {};
 }
@@ -151,7 +153,7 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
     return [written](const fs::path& relative) { return written.contains(relative.string()); };
   }
   if (kind == ResultKind::kStudy) return FilesOfCases(place);
-  if (kind != ResultKind::kRun && kind != ResultKind::kMap) return IsNoFile;
+  if (!IsRunOrMap(kind)) return IsNoFile;
   if (!fs::exists(place / "run.yaml")) return IsNoFile;
   // Names that several commands give belong to the one that must have written them.
   const bool rendered = fs::exists(place / "render.yaml");
@@ -162,6 +164,29 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
     if (has_slam && IsSlamFile(relative)) return false;
     return of_run(relative);
   };
+}
+
+void RequireOwnFiles(const std::string& folder, ResultKind kind) {
+  if (!IsRunOrMap(kind) || !fs::is_directory(folder)) return;
+  const fs::path place = folder;
+  const FileRule written = FilesOf(kind);
+  const FileRule of_run = FilesOfRun((place / "run.yaml").string());
+  const bool rendered = fs::exists(place / "render.yaml");
+  const bool has_slam = fs::exists(place / "slam.yaml");
+  std::set<fs::path> others;  // the same one is named everywhere
+  for (const fs::path& part : {place, place / "frames"}) {
+    std::error_code error;  // most folders have no frames
+    for (const auto& entry : fs::directory_iterator(part, error)) {
+      const fs::path relative = entry.path().lexically_relative(place);
+      const bool own = of_run(relative) || (rendered && IsRenderFile(relative)) ||
+                       (has_slam && IsSlamFile(relative));
+      if (written(relative) && !own) others.insert(entry.path());
+    }
+  }
+  if (others.empty()) return;
+  throw InputError(others.begin()->string(),
+                   "is of no result of depthgrid there, and --force would overwrite it; choose "
+                   "another folder");
 }
 
 void RequireNamesFree(const std::string& folder, ResultKind kind,

@@ -23,6 +23,10 @@ FileRule FilesOf(ResultKind kind);
 // Nothing when the folder holds none: files of such names are somebody else's.
 FileRule FilesLeftBy(ResultKind kind, const std::string& folder);
 
+// Throws InputError when the folder has a file that such a result would overwrite and that no
+// result of depthgrid there can have written: a user's own. Of runs and maps.
+void RequireOwnFiles(const std::string& folder, ResultKind kind);
+
 // Throws InputError when what lies there cannot be replaced by such a result: a folder where one of
 // its files goes, or the other way round, or a link where a folder goes: what it links to is no
 // part of the output. `cases`: of a study.

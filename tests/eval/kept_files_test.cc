@@ -45,6 +45,8 @@ class KeptFiles : public ProgramTest {
   }
 };
 
+constexpr const char* kIsOfNoResult =
+    ": is of no result of depthgrid there, and --force would overwrite it; choose another folder";
 constexpr const char* kIsRead = ": is read by this command, and ";
 
 TEST_F(KeptFiles, AMapInTheFolderOfItsInputsKeepsThem) {
@@ -74,11 +76,25 @@ TEST_F(KeptFiles, AMapTakesAwayNothingThatNoMapWrites) {
   expected.insert(expected.end(), others.begin(), others.end());
   EXPECT_THAT(FilesIn("m"), UnorderedElementsAreArray(expected));
   // Nor does it take a run.yaml that no command wrote for the mark of a run.
-  MakeFolder("hand", {"loops.csv", "map.scale.png"});
-  Write("hand/run.yaml", "scene: ./room.yaml\n");
-  Succeed("map one.log -o hand --force");
-  EXPECT_THAT(FilesIn("hand"), Contains("loops.csv"));
-  EXPECT_THAT(FilesIn("hand"), Contains("map.scale.png"));
+  Write("m/run.yaml", "scene: ./room.yaml\n");
+  ExpectRefusal("map one.log -o m --force", "m/frames.csv" + std::string(kIsOfNoResult));
+}
+
+// Names of a result's files are no mark of one.
+TEST_F(KeptFiles, AUsersOwnFileIsNotReplaced) {
+  MakeFolder("mine", {"notes", "loops.csv"});
+  Succeed("map one.log -o mine --force");
+  EXPECT_EQ(ReadFile(Path("mine/loops.csv")), "mine");
+  ExpectRefusal("run ./small.yaml -o mine --force", "mine/loops.csv" + std::string(kIsOfNoResult));
+  for (const std::string file :
+       {"map.pgm", "warnings.txt", "run.yaml", "frames/000000_depth.png"}) {
+    const std::string folder = "of_" + file.substr(0, 3);
+    fs::create_directories(Path(folder + "/frames"));
+    Write(folder + "/" + file, "mine");
+    ExpectRefusal("map one.log -o " + folder + " --force", folder + "/" + file + kIsOfNoResult);
+    ExpectRefusal("run ./small.yaml -o " + folder + " --force",
+                  folder + "/" + file + kIsOfNoResult);
+  }
 }
 
 TEST_F(KeptFiles, AnInputIsNeitherOverwrittenNorRemoved) {
