@@ -68,7 +68,10 @@ Progress ProgressBar::AsProgress() {
   return [this](int done, int total) { Show(done, total); };
 }
 
-void SayReport(const std::string& folder) { fmt::print("look at {}/report.html\n", folder); }
+void SayReport(const std::string& folder) {
+  const bool ends = folder.ends_with('/');
+  fmt::print("look at {}{}report.html\n", folder, ends ? "" : "/");
+}
 
 std::string Printable(std::string text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };

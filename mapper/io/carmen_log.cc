@@ -194,8 +194,8 @@ class CarmenLogSource : public FrameSource {
   void RequireScans() const {
     if (!names_.stamps_s.empty()) return;
     if (has_zero_bytes_)
-      throw InputError(
-          path_, "is no text: zero bytes in it (UTF-16, or a binary file?), must be UTF-8 text");
+      throw InputError(path_,
+                       "holds bytes that are zero (UTF-16, or no text?), must be UTF-8 text");
     if (const auto nameless = problems_.find(kNamelessLine);
         nameless != problems_.end() && problems_.size() == 1) {
       throw InputError(

@@ -275,8 +275,9 @@ void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML
   constexpr std::size_t kMostLetters = 200;  // enough to know the place by
   std::string text = FlowText(node);
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
+  const std::string shown = node.IsNull() ? "empty" : "'" + text + "'";
   throw InputError(tree.PlaceOfKey(key_path, MarkOf(tree, key_path, node)),
-                   fmt::format("{} is '{}', must be {}", key_path, text, rule));
+                   fmt::format("{} is {}, must be {}", key_path, shown, rule));
 }
 
 std::string TextIn(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node) {

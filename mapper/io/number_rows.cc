@@ -118,7 +118,8 @@ std::string_view RestOf(const TextRow& row, std::size_t field) {
 
 void RequireText(const TextRow& row, const std::string& path) {
   if (RestOf(row, 0).find('\0') == std::string_view::npos) return;
-  throw InputError(PlaceOfLine(path, row.line), "has zero bytes (UTF-16?), must be UTF-8 text");
+  throw InputError(PlaceOfLine(path, row.line),
+                   "holds bytes that are zero (UTF-16?), must be UTF-8 text");
 }
 
 void RequirePlainColumns(const std::vector<TextRow>& rows, const std::string& path) {

@@ -12,6 +12,11 @@ using testing::HasSubstr;
 
 class ProgramOutput : public ProgramTest {};
 
+TEST_F(ProgramOutput, ThePageIsNamedAsAPath) {
+  EXPECT_THAT(Program("run ./small.yaml --set frames=2 -o out/").out,
+              HasSubstr("look at out/report.html\n"));
+}
+
 TEST_F(ProgramOutput, TheCurrentFolderIsNeverReplaced) {
   fs::create_directory(Path("here"));
   // In a folder below the test's, as a shell would be.

@@ -253,15 +253,15 @@ TEST(Config, ATextIsNeitherListNorMap) {
   const Config lengthy = Config::FromText("a: [" + std::string(1000, 'x') + "]", "run.yaml");
   EXPECT_EQ(RefusalOf([&] { lengthy.Text("a"); }),
             "run.yaml:1: a is '[" + std::string(199, 'x') + "...', must be a text");
-  EXPECT_EQ(refusal("d"), "run.yaml:4: d is '~', must be a text");
+  EXPECT_EQ(refusal("d"), "run.yaml:4: d is empty, must be a text");
 }
 
 // yaml-cpp has what follows for the place of nothing.
 TEST(Config, AKeyWithoutAValueIsNamedByItsOwnLine) {
   EXPECT_EQ(ConfigRefusal("frames:\nstep_m: 0.5"),
-            "run.yaml:1: frames is '~', must be a whole number");
+            "run.yaml:1: frames is empty, must be a whole number");
   EXPECT_EQ(ConfigRefusal("step_m: 0.5\nfusion:\n  gain:\n\n\nframes: 2"),
-            "run.yaml:3: fusion.gain is '~', must be one number or [forward, left, yaw]");
+            "run.yaml:3: fusion.gain is empty, must be one number or [forward, left, yaw]");
 }
 
 TEST(Config, ListsOfMapsKeepTheirLines) {

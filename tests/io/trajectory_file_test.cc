@@ -107,7 +107,7 @@ TEST(TrajectoryFile, NamesTheBadLine) {
                                               "1\0 \0"
                                               "0\0\n",
                                               9)),
-            "t.txt:1: has zero bytes (UTF-16?), must be UTF-8 text");
+            "t.txt:1: holds bytes that are zero (UTF-16?), must be UTF-8 text");
   EXPECT_EQ(TrajectoryFileRefusal("1 0 0 0 0 0 0 2\n"),
             "t.txt:1: quaternion qx qy qz qw has norm 2, must be 1");
 }
