@@ -309,7 +309,7 @@ TEST_F(ProgramRun, WhatAFileStatesWithoutEffectIsSaid) {
 }
 
 TEST_F(ProgramRun, ForceKeepsWhatItDoesNotWrite) {
-  std::filesystem::create_directory(Path("out"));
+  Succeed("run ./small.yaml --set frames=2 -o out");
   Write("out/notes.txt", "mine");
   Write("out/map.pgm", "old");
   Succeed("run ./small.yaml --force -o out");
