@@ -50,8 +50,12 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
 }
 
 void RequireSound(const ExperimentOptions& options, const std::vector<const Config*>& layers) {
-  RequireInRange(options, "", [&](const std::string& key) { return PlaceOfKey(layers, key); });
-  const std::string place = PlaceOfKey(layers, "sensor");
+  RequireSound(options, [&](const std::string& key) { return PlaceOfKey(layers, key); });
+}
+
+void RequireSound(const ExperimentOptions& options, const KeyPlaces& places) {
+  RequireInRange(options, "", places);
+  const std::string place = places("sensor");
   SensorCamera(options.sensor, place.empty() ? "sensor" : place + ": sensor");
 }
 

@@ -54,6 +54,7 @@ ExperimentOptions ReadExperiment(Config config, const std::string& base_folder);
 // Throws InputError, with the place in `layers`, for values that only together make no sense. Not
 // asked of a sweep's points: one that makes none is a failed run among others.
 void RequireSound(const ExperimentOptions& options, const std::vector<const Config*>& layers);
+void RequireSound(const ExperimentOptions& options, const KeyPlaces& places);
 
 // The keys that an experiment's file sets beside slam.profile, such as the drift calibrated for it,
 // and that stay when one of `profiles` is chosen in place of its own: those that `changes` does not

@@ -208,6 +208,17 @@ std::string WorldHash(const ExperimentOptions& options) {
   return hash.Hex();
 }
 
+void RequireNames(const ExperimentOptions& options) {
+  const Scene scene = SceneOf(options);
+  if (!IsFile(options.trajectory)) {
+    NamedTrajectory(scene, options);
+    return;
+  }
+  RequireTrajectoryFile(options);
+  std::vector<std::string> warnings;
+  ReadTrajectory(options.trajectory, warnings);
+}
+
 // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
 constexpr double kFloatSlackM = 1e-5;
 

@@ -38,6 +38,10 @@ WorldHashes HashesOf(const ExperimentOptions& options);
 std::string HashOfPathFile(const ExperimentOptions& options);  // of a path from a file, alone
 std::string WorldHash(const ExperimentOptions& options);       // both as one
 
+// That the scene can be read and has the movers and the path that are named, or the path's file can
+// be read. Throws InputError; quicker than LoadWorld, which asks more of them.
+void RequireNames(const ExperimentOptions& options);
+
 // That this path, which the scene's options gave, lies within the scene and keeps its clearance.
 // Throws InputError.
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,

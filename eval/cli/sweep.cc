@@ -299,6 +299,7 @@ void Sweep(const SweepArguments& arguments) {
   if (arguments.sweep.empty()) throw InputError("sweep", "name a shipped sweep or a YAML file");
   const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
   const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
+  RequireRooms(plan);
   Warn(plan.warnings);
   Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
   if (arguments.dry_run) {

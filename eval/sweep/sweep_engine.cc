@@ -14,6 +14,7 @@
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/cpu_clock.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
@@ -106,8 +107,10 @@ class Engine {
   // The set without its scans; what is wrong with it is the failure of each of its runs.
   void Prepare(Group& group) {
     try {
-      const ExperimentOptions options = plan_.OptionsOf(*group.runs.front());
-      group.scans = MakeSet(options, inputs_.WorldOf(options));
+      NamingPlaces(plan_.PlaceOfKey(), [&] {
+        const ExperimentOptions options = plan_.OptionsOf(*group.runs.front());
+        group.scans = MakeSet(options, inputs_.WorldOf(options));
+      });
     } catch (const std::exception& error) {
       group.scans.failure = error.what();
     }
@@ -151,20 +154,22 @@ class Engine {
     const double cpu_before_s = ThreadCpuS();
     RunOutcome outcome;
     outcome.run = run.run;
-    outcome.failure = scans.failure;
     MappingRun mapping;
-    if (outcome.failure.empty()) {
-      try {
-        const ExperimentOptions options = Completed(plan_.OptionsOf(run), scans.world->scene);
+    try {
+      NamingPlaces(plan_.PlaceOfKey(), [&] {
+        ExperimentOptions options = plan_.OptionsOf(run);
+        RequireSound(options, plan_.PlaceOfKey());  // says more than what fails of it later
+        if (!scans.failure.empty()) throw InputError("", scans.failure);
+        options = Completed(options, scans.world->scene);
         const auto truth = inputs_.TruthOf(options);
         ScannedSource source(scans);
         mapping = MapExperiment(source, options, *scans.world, scans.slam,
                                 [this](int, int) { TickInRun(); });
         outcome.metrics = SweepMetrics(Score(mapping, *truth, options.metrics));
-      } catch (const std::exception& error) {
-        if (stopped_) throw;
-        outcome.failure = error.what();
-      }
+      });
+    } catch (const std::exception& error) {
+      if (stopped_) throw;
+      outcome.failure = error.what();
     }
     outcome.times = TimesOf(mapping, ThreadCpuS() - cpu_before_s, SecondsSince(start));
     return outcome;

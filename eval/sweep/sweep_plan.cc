@@ -11,6 +11,7 @@
 #include "eval/shipped.h"
 #include "eval/sweep/sweep_again.h"
 #include "eval/sweep/sweep_doubts.h"
+#include "eval/sweep/sweep_experiment.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
@@ -220,18 +221,6 @@ std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {
   return text;
 }
 
-// The lines of given_text: of the `effective` keys below `prefix` those that `base` has.
-std::string GivenText(const Config& effective, const Config& base, const std::string& prefix = "") {
-  std::string text;
-  for (const ConfigEntry& entry : effective.Entries()) {
-    const std::string path = prefix + entry.key;
-    if (!base.Has(path)) continue;
-    text += entry.map ? GivenText(*entry.map, base, path + ".")
-                      : fmt::format("{}: {}\n", path, entry.text);
-  }
-  return text;
-}
-
 void RequireSweep(const Config& config, const std::string& path) {
   if (config.Has("axes") || config.Has("experiment")) return;
   if (config.Has("cases")) {
@@ -256,34 +245,6 @@ void RequireKeys(const Config& config, const std::string& path) {
   }
 }
 
-// The experiment that a sweep runs many times over.
-struct ExperimentFile {
-  std::string path;
-  std::string folder;  // where its file names start
-  Config config;
-  Config record;  // `provenance`, of a run.yaml
-};
-
-// `place`: where the sweep names it.
-ExperimentFile ReadExperimentFile(const std::string& name, const std::string& place,
-                                  const std::string& sweep_folder) {
-  ExperimentFile file;
-  file.path = ResolveNameAt(place, name, ShippedKind::kExperiment, sweep_folder);
-  // A shipped one names no files; those of the sweep are its author's.
-  file.folder = IsFileName(name) ? fs::path(file.path).parent_path().string() : sweep_folder;
-  file.config = Config::FromFile(file.path);
-  file.record = file.config.Take("provenance");
-  // So that its own errors name its own file; a copy would not know its lines.
-  ReadExperiment(Config::FromFile(file.path), file.folder);
-  return file;
-}
-
-// What the sweep's file sets in all runs, and --set after it.
-void Change(const Config& fixed, const std::vector<std::string>& set, Config& config) {
-  for (const ConfigEntry& entry : fixed.Entries()) config.Set(entry.key, entry.text, entry.place);
-  for (const std::string& assignment : set) config.Set(assignment);
-}
-
 // Whether the sweep itself says which room or path, on an axis or for all runs.
 bool IsChosen(const std::string& key, const Config& changes, const SweepPlan& plan) {
   const auto& keys = plan.parameter_keys;
@@ -297,8 +258,7 @@ bool IsOfMapperOnly(const std::string& key) {
 
 std::vector<std::string> DoubtsOf(const SweepPlan& plan, const std::string& experiment_name,
                                   const ExperimentFile& experiment, const SweepLayers& layers) {
-  Config changes;
-  Change(layers.fixed, layers.set, changes);
+  const Config changes = Changed({}, layers.fixed, layers.set);
   const ChosenAnew anew = {IsChosen("scene", changes, plan), IsChosen("trajectory", changes, plan)};
   std::vector<std::string> warnings;
   for (const auto& doubt : {DoubtOfProfiles(experiment_name, experiment.config, changes, plan.axes),
@@ -328,7 +288,16 @@ ExperimentOptions SweepPlan::OptionsOf(const PlannedRun& run) const {
   for (std::size_t i = 0; i < parameter_keys.size(); ++i) {
     config.Set(parameter_keys[i], run.values[i], parameter_keys[i] + "=" + run.values[i]);
   }
-  return ReadExperiment({&config}, base_folder);
+  ExperimentOptions options = ReadExperiment({&config}, base_folder);
+  options.trajectory_place = PlaceOfKey()("trajectory");
+  return options;
+}
+
+KeyPlaces SweepPlan::PlaceOfKey() const {
+  return [this](const std::string& key) {
+    const auto found = places.find(key);
+    return found == places.end() ? "" : found->second;
+  };
 }
 
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set) {
@@ -349,13 +318,12 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
       ReadExperimentFile(file.experiment, place, fs::path(path).parent_path().string());
   plan.base_folder = experiment.folder;
   const auto base_with = [&](const std::vector<std::string>& some) {
-    Config base = Config::FromText(experiment.config.ToYaml(), path + ", set");
-    Change(fixed, some, base);
-    return base;
+    return Changed(Config::FromText(experiment.config.ToYaml(), path + ", set"), fixed, some);
   };
   plan.base = base_with(set);
   plan.experiment_yaml = ToYaml(ReadExperiment(plan.base, plan.base_folder));
   plan.given_text = GivenText(Config::FromText(plan.experiment_yaml, path), plan.base);
+  plan.places = PlacesOf(experiment.config, Changed({}, fixed, set), plan.axes);
   CheckValues(plan);
   CheckStop(file.stop, path);
   EnumerateRuns(file, path, plan);

@@ -4,6 +4,7 @@
 // for one seed all points see the same depth noise and the same errors of SLAM.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -53,9 +54,12 @@ struct SweepPlan {
 
   // What one run is; throws InputError for values that contradict each other.
   ExperimentOptions OptionsOf(const PlannedRun& run) const;
+  // Where a key of the runs was given its value, an axis or a file.
+  KeyPlaces PlaceOfKey() const;
 
-  Config base;              // the experiment with what the sweep sets in it
-  std::string base_folder;  // where its file names start
+  Config base;                                // the experiment with what the sweep sets in it
+  std::string base_folder;                    // where its file names start
+  std::map<std::string, std::string> places;  // of the keys that are given, for errors
 };
 
 // `set`: overrides from the command line. Throws InputError for anything wrong with the file or

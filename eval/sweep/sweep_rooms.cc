@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "eval/shipped.h"
 #include "eval/world.h"
@@ -38,7 +39,39 @@ std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
   return rooms;
 }
 
+// What is wrong with the names of a room's runs; empty when nothing is.
+std::string FailureOf(const SweepPlan& plan, const ExperimentOptions& options) {
+  try {
+    NamingPlaces(plan.PlaceOfKey(), [&] { RequireNames(options); });
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<std::string> NamesIn(const ExperimentOptions& options) {
+  return {"scene " + options.scene, "trajectory " + options.trajectory, "movers " + options.movers};
+}
+
 }  // namespace
+
+void RequireRooms(const SweepPlan& plan) {
+  std::set<std::string> usable;
+  std::vector<std::pair<std::string, ExperimentOptions>> failed;
+  for (const ExperimentOptions& options : RoomsOf(plan)) {
+    const std::string failure = FailureOf(plan, options);
+    if (!failure.empty()) {
+      failed.emplace_back(failure, options);
+      continue;
+    }
+    for (const std::string& name : NamesIn(options)) usable.insert(name);
+  }
+  for (const auto& [failure, options] : failed) {
+    for (const std::string& name : NamesIn(options)) {
+      if (!usable.contains(name)) throw InputError("", failure);
+    }
+  }
+}
 
 std::string RoomsText(const SweepPlan& plan) {
   std::string text;

@@ -181,7 +181,7 @@ axes:
 )");
   const Outcome outcome = Program("sweep ./failing.yaml -o out");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 runs failed, the first: mapper.scan.band_low_m"));
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 3 runs failed, the first: ./failing.yaml:4: mapper"));
   const SweepResults results = ReadSweep(Path("out"));
   ASSERT_EQ(results.rows(), 3U);
   EXPECT_THAT(results.failures[1], HasSubstr("mapper.scan.band_low_m"));
