@@ -122,6 +122,20 @@ Names FoldersOf(ResultKind kind) {
   return {};
 }
 
+// A run and a rendered sequence have a true map each, of one name: what is scored against the one
+// that is left would be scored in the wrong room.
+void RequireNoOtherTruth(const fs::path& folder, ResultKind kind) {
+  const bool rendered = fs::exists(folder / "render.yaml");
+  const bool has_run = !rendered && fs::exists(folder / "trajectory_truth.txt");
+  const char* there = kind == ResultKind::kRun && rendered     ? "a rendered sequence"
+                      : kind == ResultKind::kRender && has_run ? "a run"
+                                                               : nullptr;
+  if (there == nullptr) return;
+  throw InputError(
+      folder.string(),
+      fmt::format("holds {}, whose true map would be replaced; choose another folder", there));
+}
+
 }  // namespace
 
 FileRule FilesOf(ResultKind kind) {
@@ -234,6 +248,7 @@ void RequireNoOtherResult(const std::string& folder, ResultKind kind) {
     if (!fs::exists(fs::path(folder) / mark.file)) continue;
     throw InputError(folder, fmt::format("holds {}; choose another folder", mark.what));
   }
+  RequireNoOtherTruth(folder, kind);
 }
 
 }  // namespace depthgrid

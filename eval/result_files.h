@@ -34,7 +34,8 @@ void RequireNamesFree(const std::string& folder, ResultKind kind,
                       const std::vector<std::string>& cases = {});
 
 // Throws InputError when the folder holds a result of another kind with a report.html of its own:
-// one of the two pages would take the other's place. Only a run is let in beside images and poses.
+// one of the two pages would take the other's place. Only a run is let in beside images and poses,
+// and none beside rendered ones, whose true map it would replace, or the other way round.
 void RequireNoOtherResult(const std::string& folder, ResultKind kind);
 
 }  // namespace depthgrid

@@ -125,6 +125,19 @@ TEST_F(KeptFiles, AnInputIsNeitherOverwrittenNorRemoved) {
   Succeed("map seq --poses seq/groundtruth.txt -o seq --force");
 }
 
+// Both are called truth_map.pgm, and stand beside images or an estimate of their own room.
+TEST_F(KeptFiles, ATrueMapIsNotReplacedByThatOfAnotherResult) {
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o seq");
+  Succeed("run ./small.yaml --set frames=2 -o r");
+  const std::string says = ", whose true map would be replaced; choose another folder\n";
+  ExpectRefusal("run ./small.yaml --set frames=2 -o seq --force",
+                "seq: holds a rendered sequence" + says);
+  ExpectRefusal("render ./small.yaml --set frames=2 --no-colour -o r --force",
+                "r: holds a run" + says);
+  Succeed("run ./small.yaml --set frames=2 -o r --force");
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o seq --force");
+}
+
 TEST_F(KeptFiles, ASingleFileIsNoInputEither) {
   Write("gt.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n");
   fs::create_symlink("gt.txt", Path("link.txt"));
