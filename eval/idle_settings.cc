@@ -198,6 +198,7 @@ IdleSettingList IdleSettings(const ExperimentOptions& options) {
   AddSlam(options.slam, idle);
   AddSensor(options.sensor, idle);
   AddSeeds(options, idle);
+  idle.push_back({"mapper.scan.floor_z_m", "the scene's floor_z_m is taken"});
   return idle;
 }
 
@@ -243,6 +244,7 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   if (is_idle("mapper.scan.band_rows")) {
     options.mapper.scan.band_rows = MapperOptions{}.scan.band_rows;
   }
+  options.mapper.scan.floor_z_m = MapperOptions{}.scan.floor_z_m;
   FusionOptions& fusion = options.mapper.fusion;
   if (const auto source = fusion.slam_noise.source; source == SlamNoiseSource::kProfile) {
     fusion.slam_noise = {};

@@ -49,6 +49,7 @@ TEST(IdleSettings, AreThoseThatNothingReads) {
     EXPECT_THAT(IdleIn(one.idle_in), Contains(one.key));
     EXPECT_THAT(IdleIn(one.used_in), Not(Contains(one.key)));
   }
+  EXPECT_THAT(IdleIn("{}"), Contains("mapper.scan.floor_z_m"));  // the scene's in every run
   EXPECT_THAT(IdleIn("mapper: {fusion: {slam_noise: {source: profile}}}"),
               Not(Contains("mapper.fusion.slam_noise.source")));
 }
@@ -63,6 +64,7 @@ TEST(IdleSettings, AreLeftOutOfWhatMakesARun) {
   EXPECT_EQ(plain("sensor: {noise: handa, fx: 300, fy: 300, hfov_deg: 60}"),
             plain("sensor: {noise: handa, fx: 300, fy: 300}"));
   EXPECT_EQ(plain("mapper: {scan: {band_rows: 3}}"), plain("{}"));
+  EXPECT_EQ(plain("mapper: {scan: {floor_z_m: 0.5}}"), plain("{}"));
   EXPECT_EQ(plain("mapper: {fusion: {mode: fixed}, rounds: {again: false}}"),
             plain("mapper: {fusion: {mode: fixed}}"));
   const std::string source = "mapper: {fusion: {slam_noise: {source: profile";
