@@ -87,6 +87,25 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
   return changed;
 }
 
+std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls) {
+  std::vector<DifferingSetting> differing;
+  if (run_yamls.empty()) return differing;
+  for (const auto& [key, first] : Leaves(run_yamls.front())) {
+    const bool follows = key == "scene" || key == "mapper.scan.floor_z_m" ||
+                         key.starts_with("slam.") || key.starts_with("provenance.") ||
+                         key.starts_with("mapper.fusion.slam_noise.");
+    if (follows) continue;
+    DifferingSetting setting{key, {}};
+    bool same = true;
+    for (const Config& run_yaml : run_yamls) {
+      setting.values.push_back(SettingOf(run_yaml, key));
+      same = same && setting.values.back() == setting.values.front();
+    }
+    if (!same) differing.push_back(std::move(setting));
+  }
+  return differing;
+}
+
 std::string PoseSourceOf(const Config& run_yaml) {
   const std::string profile = SettingOf(run_yaml, "slam.profile");
   const SlamOptions exact = ProfileOptions(SlamProfile::kGroundTruth);

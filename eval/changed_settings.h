@@ -14,6 +14,16 @@ namespace depthgrid {
 // those of its profile. Keys of other versions are no matter.
 std::vector<std::string> ChangedSettings(const Config& run_yaml);
 
+// A key, with its value in each of several runs.
+struct DifferingSetting {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+// Of these runs' files, in the order of the first: what is not the same in all. Left out: the
+// scene, SLAM's settings, and what follows from either.
+std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls);
+
 // The name of SLAM's profile; "own settings over ground_truth" where others make true poses err, as
 // fitted ones do (slam-fit). Empty for recorded poses.
 std::string PoseSourceOf(const Config& run_yaml);

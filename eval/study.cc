@@ -15,12 +15,16 @@ namespace depthgrid {
 namespace {
 
 constexpr double kLargestErrorM = 1000.0;
-const std::vector<std::string> kHeadKeys = {"title"};
+const std::vector<std::string> kHeadKeys = {"title", "headings"};
 const std::vector<std::string> kCaseHeadKeys = {"name", "published_mean_m"};
 
 struct StudyHead {
   std::string title;
-  void Visit(OptionsVisitor& v) { v.Text("title", title, "of the page"); }
+  StudyHeadings headings;
+  void Visit(OptionsVisitor& v) {
+    v.Text("title", title, "of the page");
+    v.Group("headings", headings, "of its parts");
+  }
 };
 
 struct CaseHead {
@@ -117,6 +121,7 @@ StudyOutline OutlineOf(const Config& config, const std::vector<Config>& notes,
   StudyHead head;
   config.Only(kHeadKeys).Read(head);
   outline.title = head.title;
+  outline.headings = head.headings;
   for (const Config& entry : notes) {
     NoteText text;
     entry.Read(text);
@@ -136,6 +141,14 @@ StudyOutline OutlineOf(const Config& config, const std::vector<Config>& notes,
 }
 
 }  // namespace
+
+void StudyHeadings::Visit(OptionsVisitor& v) {
+  v.Text("table", table, "over the errors of the trajectories");
+  v.Text("maps", maps, "over the maps");
+  v.Text("paths", paths, "over the paths");
+  v.Text("notes", notes, "over the notes");
+  v.Text("published", published, "over the published figures in the table");
+}
 
 IdleSettingList IdleInEveryCase(const Study& study) {
   IdleSettingList idle;

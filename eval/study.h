@@ -23,8 +23,21 @@ struct StudyNote {
   std::string text;
 };
 
+// What the page calls its parts: a study of a paper's own says which of its tables and figures they
+// stand against.
+struct StudyHeadings {
+  std::string table = "Errors of the trajectories";
+  std::string maps = "Maps";
+  std::string paths = "Trajectories";
+  std::string notes = "Notes";
+  std::string published = "published";  // the column of published figures
+
+  void Visit(OptionsVisitor& v);
+};
+
 struct StudyOutline {
   std::string title;
+  StudyHeadings headings;
   std::vector<StudyNote> notes;
   std::vector<StudyCase> cases;  // at least one; names differ
 };

@@ -117,6 +117,19 @@ Json CaseJson(const CaseFiles& c, const GridGeometry& part, const Json& metrics)
   return json;
 }
 
+// What the cases differ in beside scene and SLAM, which the page shows by itself.
+Json DifferencesJson(const std::vector<CaseFiles>& cases) {
+  std::vector<Config> settings;
+  for (const CaseFiles& c : cases) {
+    settings.push_back(Config::FromText(c.run.settings, c.head.name + "/run.yaml"));
+  }
+  Json json = Json::array();
+  for (const DifferingSetting& setting : DifferingSettings(settings)) {
+    json.push_back({{"key", setting.key}, {"values", setting.values}});
+  }
+  return json;
+}
+
 // What the command line changed, a line each; folders of earlier versions do not say.
 std::vector<std::string> OverridesIn(const std::string& folder) {
   const std::string path = folder + "/overrides.txt";
@@ -135,6 +148,13 @@ Json StudyJson(const StudyOutline& study, const std::vector<std::string>& overri
   for (const StudyNote& note : study.notes) {
     json["notes"].push_back({{"title", note.title}, {"text", note.text}});
   }
+  const StudyHeadings& headings = study.headings;
+  json["headings"] = {{"table", headings.table},
+                      {"maps", headings.maps},
+                      {"paths", headings.paths},
+                      {"notes", headings.notes},
+                      {"published", headings.published}};
+  json["differences"] = DifferencesJson(cases);
   json["overrides"] = overrides;
   json["rooms"] = Json::array();
   json["cases"] = Json::array();

@@ -21,7 +21,7 @@ const linkTo = (c, text) => make("a", { href: `${STUDY.back}${c.name}/report.htm
 function tableHead() {
   const group = (text, columns, first) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, class: first ? "room" : "" }, text);
   const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5, true));
-  const what = STUDY.rooms.flatMap(() => [group("paper", 1, true), group("input", 2), group("output", 2)]);
+  const what = STUDY.rooms.flatMap(() => [group(STUDY.headings.published, 1, true), group("input", 2), group("output", 2)]);
   const how = STUDY.rooms.flatMap(() => ["mean", "mean", "aligned", "mean", "aligned"].map((text, i) => group(text, 1, i === 0)));
   const source = make("th", { scope: "col", rowspan: 3 }, "Poses from");
   return make("thead", {}, make("tr", {}, source, ...rooms), make("tr", {}, ...what), make("tr", {}, ...how));
@@ -39,7 +39,7 @@ function initTable() {
   table.tHead.replaceWith(tableHead());
   for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, i) => cell.classList.toggle("room", i % 5 === 1));
   byId("table").append(table);
-  byId("table-title").append(saveButtons("Table 1 errors", { CSV: () => csvOfTable(table, "m") }));
+  byId("table-title").append(saveButtons(STUDY.headings.table, { CSV: () => csvOfTable(table, "m") }));
   byId("subtitle").textContent = `${STUDY.cases.length} cases, ${STUDY.rooms.map((room) => nameOf(room.scene)).join(" and ")}`;
 }
 
@@ -163,8 +163,25 @@ function initNotes() {
   for (const note of STUDY.notes) byId("notes").append(make("dt", {}, note.title), make("dd", {}, note.text));
 }
 
+// "seed: 3 (orb), 1 (truth, moved)", of each setting that is not the same in all cases.
+function initDifferences() {
+  const seeds = STUDY.differences.some(({ key }) => key.endsWith("seed"));
+  byId("seeds").textContent = seeds ? "One seed a case, not the same in all." : "One seed.";
+  if (STUDY.differences.length === 0) { byId("differences").remove(); return; }
+  const text = ({ key, values }) => [...new Set(values)].map((value) =>
+    `${value} (${STUDY.cases.filter((_, i) => values[i] === value).map((c) => c.name).join(", ")})`).join(", ");
+  byId("differences").append("Beside scene and SLAM, cases differ in ", ...STUDY.differences.flatMap((one, i) =>
+    [i > 0 ? "; " : "", make("code", {}, one.key), `: ${text(one)}`]), ".");
+}
+
+function initHeadings() {
+  for (const part of ["table", "maps", "paths", "notes"]) byId(`${part}-title`).textContent = STUDY.headings[part];
+}
+
 initTheme();
+initHeadings();
 initOverrides();
+initDifferences();
 initTable();
 initMaps();
 initPaths();

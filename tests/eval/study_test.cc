@@ -58,6 +58,20 @@ TEST_F(StudyRun, ThePageShowsWhatTheCommandLineChanged) {
   EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr(shown));
 }
 
+// A paper's tables and figures are the paper's study's alone.
+TEST_F(StudyRun, ThePageSaysWhatTheCasesDifferInAndCallsItsPartsAsAsked) {
+  Succeed("run ./study.yaml -o out");
+  const std::string page = ReadFile(Path("out/report.html"));
+  EXPECT_THAT(page, HasSubstr("\"differences\":[{\"key\":\"depth_seed\",\"values\":[\"0\",\"9\","
+                              "\"0\"]}]"));
+  for (const char* of_paper : {"Table 1", "Fig. 3", "Fig. 4", "the paper"}) {
+    EXPECT_THAT(page, testing::Not(HasSubstr(of_paper)));
+  }
+  Write("study.yaml", std::string(kStudy) + "headings: {table: 'Table 2: errors'}\n");
+  Succeed("run ./study.yaml -o named");
+  EXPECT_THAT(ReadFile(Path("named/report.html")), HasSubstr("\"table\":\"Table 2: errors\""));
+}
+
 TEST_F(StudyRun, PutsScoresAndPublishedFiguresTogether) {
   Succeed("run ./study.yaml -o out");
   const auto metrics = nlohmann::json::parse(ReadFile(Path("out/metrics.json")));
@@ -184,6 +198,9 @@ TEST_F(StudyRun, ThePageShowsEveryCase) {
                        "document.querySelector(`polyline.${key.dataset.path}`)).stroke)"),
       true);
   EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#maps .bar').length"), 1);
+  EXPECT_THAT(
+      browser.Evaluate("document.getElementById('differences').innerText").get<std::string>(),
+      HasSubstr("depth_seed: 0 (orb, truth), 9 (other_seed)."));
   browser.Open(Path("out/report.html"), 400);
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
