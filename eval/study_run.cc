@@ -10,6 +10,7 @@
 #include "eval/metrics_json.h"
 #include "eval/run_folder.h"
 #include "eval/study_report.h"
+#include "eval/truth_check.h"
 #include "eval/view_check.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/io/file.h"
@@ -54,7 +55,10 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   OutputFolder folder(study_folder.File(study_case.name), false);
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
-  if (const auto doubt = DoubtOfView(run.mapping, run.options)) record.warnings.push_back(*doubt);
+  for (const auto& doubt :
+       {DoubtOfView(run.mapping, run.options), DoubtOfTruth(joint.truth, run.options)}) {
+    if (doubt) record.warnings.push_back(*doubt);
+  }
   record.map_mode = map_mode;
   record.wall_s_total = wall_s;
   record.cpu_s_total = ProcessCpuS();

@@ -30,7 +30,7 @@ Rows RowsOfTum(const std::string& text, const std::string& path, const std::stri
                std::vector<std::string>& warnings) {
   const TrajectoryFile file = ParseTrajectory(text, path);
   const int mended = file.damage.damaged() + file.damage.left_out().count + file.unsorted_stamps +
-                     file.duplicate_stamps;
+                     file.doubled_stamps.count;
   if (mended > 0) {
     throw InputError(
         path, fmt::format("{} no pose or not later than the row before; must all be, as {} has no "

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "eval/shipped.h"
+#include "eval/truth_check.h"
 #include "mapper/core/angle.h"
 
 namespace depthgrid {
@@ -95,6 +96,13 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
         "no frame sees anything from {:g} to {:g} m above the floor (mapper.scan.band_low_m, "
         "band_high_m) and {:g} to {:g} m away (mapper.scan.min_range_m, max_range_m); {}",
         scan.band_low_m, scan.band_high_m, scan.min_range_m, scan.max_range_m, ImagesOf(run));
+  }
+  if (!HasFree(StatesOf(run.result.map))) {
+    return fmt::format(
+        "the map has no free cell: no beam clears anything, as no image shows the way to what it "
+        "sees at {:g} m above the floor (mapper.scan.band_low_m). Is the camera level, or does it "
+        "look at the ceiling, or stand close to a wall? {}",
+        scan.band_low_m, ImagesOf(run));
   }
   if (options.fusion.TrustsSlamAlone()) return {};
   if (!NoneToMatch(run)) {

@@ -13,9 +13,9 @@ namespace depthgrid {
 // Whether the run drew no wall: none of its own scans has a hit.
 bool SawNothing(const MappingRun& run);
 
-// What to say when the map is empty, when nothing could be matched since no scan has a hit at the
-// camera's height, or when so few frames could that the poses are mostly those given: the band, the
-// ranges, the images. Nothing of laser logs.
+// What to say when the map is empty or has no free cell, when nothing could be matched since no
+// scan has a hit at the camera's height, or when so few frames could that the poses are mostly
+// those given: the band, the ranges, the images. Nothing of laser logs.
 std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options);
 
 // The same of an experiment, whose path may be at fault where it is a file's.

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "eval/hash.h"
 #include "eval/shipped.h"
@@ -135,10 +136,39 @@ void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedB
   }
 }
 
+// A camera that is moved gives several frames a second: stamps of other units are told by that.
+void RequireSecondsBetweenFrames(const Trajectory& trajectory, const std::string& path) {
+  constexpr double kMostStepS = 5.0;
+  if (trajectory.size() < 2) return;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    steps_s.push_back(trajectory[i].stamp_s - trajectory[i - 1].stamp_s);
+  }
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (*middle <= kMostStepS) return;
+  throw InputError(path, fmt::format("its stamps, which must be seconds, are {:g} apart (median), "
+                                     "must be at most {:g}",
+                                     *middle, kMostStepS));
+}
+
+Trajectory PathIn(const ExperimentOptions& options, std::vector<std::string>& warnings) {
+  const std::string& path = options.trajectory;
+  RequireTrajectoryFile(options);
+  TrajectoryFile file = ReadTrajectoryFile(path);
+  if (file.poses.size() == 1 && file.doubled_stamps.count > 0) {
+    throw InputError(path, fmt::format("all of its {} poses have the stamp {}, must each have a "
+                                       "later one than the pose before",
+                                       1 + file.doubled_stamps.count, file.poses[0].stamp_s));
+  }
+  Trajectory trajectory = PosesOf(std::move(file), path, warnings);
+  RequireSecondsBetweenFrames(trajectory, path);
+  return trajectory;
+}
+
 Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d& scene,
                     std::vector<std::string>& warnings) {
-  RequireTrajectoryFile(options);
-  Trajectory trajectory = ReadTrajectory(options.trajectory, warnings);
+  Trajectory trajectory = PathIn(options, warnings);
   const auto wanted = static_cast<std::size_t>(options.frames);
   if (wanted > trajectory.size()) {
     throw SettingError("frames",
@@ -214,9 +244,8 @@ void RequireNames(const ExperimentOptions& options) {
     NamedTrajectory(scene, options);
     return;
   }
-  RequireTrajectoryFile(options);
   std::vector<std::string> warnings;
-  ReadTrajectory(options.trajectory, warnings);
+  PathIn(options, warnings);
 }
 
 // DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.

@@ -12,6 +12,7 @@
 #include "eval/run_folder.h"
 #include "eval/shell_word.h"
 #include "eval/synthetic_source.h"
+#include "eval/truth_check.h"
 #include "eval/world.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -67,6 +68,7 @@ void RenderNamed(const RenderArguments& arguments) {
   const ExperimentOptions options = Completed(given, world.scene);
   // Whatever it refuses, now and not at the end.
   const TruthRecord truth = MakeTruth(world, options.mapper, threads);
+  if (const auto doubt = DoubtOfTruth(truth, options)) Warn({*doubt});
   const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   bool any_shows = false;

@@ -16,6 +16,7 @@
 #include "eval/shipped.h"
 #include "eval/study.h"
 #include "eval/study_run.h"
+#include "eval/truth_check.h"
 #include "eval/view_check.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
@@ -107,7 +108,10 @@ void RunOne(const RunArguments& arguments) {
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
-  if (const auto doubt = DoubtOfView(run.mapping, run.options)) record.warnings.push_back(*doubt);
+  for (const auto& doubt :
+       {DoubtOfView(run.mapping, run.options), DoubtOfTruth(run.truth, run.options)}) {
+    if (doubt) record.warnings.push_back(*doubt);
+  }
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <unordered_set>
 
 #include "mapper/core/error.h"
 #include "mapper/core/frame.h"
@@ -36,7 +37,9 @@ std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& p
   return pose;
 }
 
-void AddRow(const TextRow& row, const std::string& place, TrajectoryFile& file) {
+// `seen`: the stamps of the poses before.
+void AddRow(const TextRow& row, const std::string& place, std::unordered_set<double>& seen,
+            TrajectoryFile& file) {
   constexpr std::size_t kColumns = 8;
   const std::vector<double> numbers = NumbersIn(row, kColumns, place);
   const std::string row_place = PlaceOfLine(place, row.line);
@@ -44,6 +47,9 @@ void AddRow(const TextRow& row, const std::string& place, TrajectoryFile& file) 
   const std::optional<Pose3> pose = PoseOf(numbers, row_place, file.damage);
   if (!pose) return;
   if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
+  if (!seen.insert(numbers[0]).second) {
+    file.doubled_stamps.Add(fmt::format("{}: stamp {}", row_place, numbers[0]));
+  }
   file.poses.push_back({numbers[0], *pose});
 }
 
@@ -57,12 +63,10 @@ Trajectory SomePosesOf(TrajectoryFile file, const std::string& path) {
 std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const {
   std::vector<std::string> warnings;
   damage.AppendTo(warnings, name);
-  const auto warn = [&](int count, const char* thing, const char* what) {
-    WarnOfCount(warnings, name, count, thing, what);
-  };
-  warn(damage.left_out().count, "pose", "with NaN, a zero quaternion or beyond 10,000 km ignored");
-  warn(unsorted_stamps, "row", "earlier than the row before, sorted");
-  warn(duplicate_stamps, "row", "with a stamp already given, ignored");
+  damage.left_out().AppendTo(warnings, name, "pose",
+                             "with NaN, a zero quaternion or beyond 10,000 km ignored");
+  WarnOfCount(warnings, name, unsorted_stamps, "row", "earlier than the row before, sorted");
+  doubled_stamps.AppendTo(warnings, name, "row", "with a stamp already given, ignored");
   return warnings;
 }
 
@@ -70,14 +74,14 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
   TrajectoryFile file;
   const std::vector<TextRow> rows = SplitRows(text);
   RequirePlainColumns(rows, place);
-  for (const TextRow& row : rows) file.damage.Try([&] { AddRow(row, place, file); });
+  std::unordered_set<double> seen;
+  for (const TextRow& row : rows) file.damage.Try([&] { AddRow(row, place, seen, file); });
   file.damage.RequireMostGood(text);
   const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
   const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
   std::stable_sort(file.poses.begin(), file.poses.end(), stamp_less);
-  const auto end = std::unique(file.poses.begin(), file.poses.end(), stamp_equal);
-  file.duplicate_stamps = static_cast<int>(std::distance(end, file.poses.end()));
-  file.poses.erase(end, file.poses.end());
+  file.poses.erase(std::unique(file.poses.begin(), file.poses.end(), stamp_equal),
+                   file.poses.end());
   return file;
 }
 

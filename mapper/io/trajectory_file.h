@@ -13,8 +13,8 @@ namespace depthgrid {
 // mended is counted.
 struct TrajectoryFile {
   Trajectory poses;
-  int unsorted_stamps = 0;   // rows earlier than their predecessor: sorted
-  int duplicate_stamps = 0;  // all but the first row of one stamp: dropped
+  int unsorted_stamps = 0;  // rows earlier than their predecessor: sorted
+  Tally doubled_stamps;     // all but the first row of one stamp: dropped
   // Rows that are no pose, and left out those of NaN, a zero quaternion or too far away: dropped.
   RowDamage damage;
 

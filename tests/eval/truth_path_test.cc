@@ -36,10 +36,59 @@ TEST_F(TruthPaths, AFilesPathOutOfReachIsRefusedAndDamageSaid) {
   }
 }
 
+TEST_F(TruthPaths, StampsThatAreNoSecondsAreRefused) {
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  const auto path = [&](double step) {
+    std::string text;
+    for (int i = 0; i < 4; ++i) {
+      text += std::to_string(i * step) + " 1.5 3." + std::to_string(i) + " 1.1" + look;
+    }
+    return text;
+  };
+  Write("ms.txt", path(33.0));
+  Write("ns.txt", path(33e6));
+  Write("one.txt", path(0.0));
+  Write("slow.txt", path(4.0));
+  for (const char* command : {"run", "render --no-colour", "ablate"}) {
+    const std::string with = std::string(command) + " ./small.yaml -o out --set frames=0 --set ";
+    ExpectRefusal(with + "trajectory=./ms.txt",
+                  {"ms.txt: its stamps, which must be seconds, are 33 apart (median), must be at "
+                   "most 5\n"});
+    ExpectRefusal(with + "trajectory=./ns.txt", {"ns.txt: its stamps, which must be seconds"});
+    ExpectRefusal(with + "trajectory=./one.txt",
+                  {"one.txt: all of its 4 poses have the stamp 0, must each have a later one"});
+  }
+  Succeed("run ./small.yaml -o slow --set frames=0 --set trajectory=./slow.txt");
+}
+
+// A floor below the one that is there: the room's own is an obstacle.
+TEST_F(TruthPaths, ATrueMapWithoutFreeCellsIsWarnedOf) {
+  std::string room = kRoom;
+  room.replace(room.find("floor_z_m: 0"), 12, "floor_z_m: -0.5");
+  room.insert(room.find("  - {shape: box"),
+              "  - {shape: box, size: [3, 4, 0.1], at: [1.5, 2, -0.6]}\n");
+  Write("room.yaml", room);
+  for (const char* command : {"run", "render --no-colour"}) {
+    const std::string out = " -o out_" + std::string(command, 3);
+    EXPECT_THAT(Program(std::string(command) + " ./small.yaml --set frames=2" + out).err,
+                HasSubstr("room.yaml: the true map has no free cell: surfaces are 0.1 to 1.8 m "));
+  }
+  EXPECT_THAT(ReadFile(Path("out_run/warnings.txt")), HasSubstr("the true map has no free cell"));
+}
+
+TEST_F(TruthPaths, AMapWithoutFreeCellsIsWarnedOf) {
+  Write("room.yaml", std::string(kRoom) +
+                         "  up: {kind: planar, height_m: 0.6, pitch_deg: 45, "
+                         "waypoints: [{at: [1.5, 1]}, {at: [1.5, 2.5]}]}\n");
+  const std::string run = "run ./small.yaml --set frames=5 --set trajectory=";
+  EXPECT_THAT(Program(run + "up -o up").err, HasSubstr("the map has no free cell: no beam clears"));
+  EXPECT_EQ(Program(run + "look_around -o level").err, "");
+}
+
 TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
   // Upright, looking along +y: through the room's far wall, from y = 4 to 4.1.
   const std::string look = " -0.7071068 0 0 0.7071068\n";
-  Write("inside.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look + "0.2 1.5 3.4 1.1" + look);
+  Write("inside.txt", "0 1.5 1.0 1.1" + look + "0.1 1.5 1.2 1.1" + look + "0.2 1.5 1.4 1.1" + look);
   Write("through.txt",
         "0 1.5 3.0 1.1" + look + "0.1 1.5 3.7 1.1" + look + "0.2 1.5 4.3 1.1" + look);
   Write("near.txt", "0 1.5 3.0 1.1" + look + "0.1 1.5 3.97 1.1" + look);
@@ -72,7 +121,7 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
   }
   Write("sweep.yaml",
         "experiment: ./small.yaml\nset: {frames: 0}\naxes:\n"
-        "  trajectory: [./inside.txt, ./near.txt, ./nothing.txt]\n  mapper.fusion.gain: [0, 1]\n");
+        "  trajectory: [./inside.txt, ./near.txt]\n  mapper.fusion.gain: [0, 1]\n");
   const Outcome sweep = Program("sweep ./sweep.yaml --dry-run -o sweep");
   EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
   const std::size_t once = sweep.err.find("near.txt: frame 1 at (1.50, 3.97, 1.10) is 0.030 m");
@@ -84,13 +133,13 @@ TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
 // A file's path stays when the room is chosen anew, and may have changed since.
 TEST_F(TruthPaths, AFilesPathIsComparedInAnotherRoomToo) {
   const std::string look = " -0.7071068 0 0 0.7071068\n";
-  const std::string path = "0 1.5 3.0 1.1" + look + "0.1 1.5 3.2 1.1" + look;
+  const std::string path = "0 1.5 1.0 1.1" + look + "0.1 1.5 1.2 1.1" + look;
   Write("path.txt", path);
   std::filesystem::copy_file(Path("room.yaml"), Path("other.yaml"));
   Succeed("run ./small.yaml --set frames=0 --set trajectory=./path.txt -o out");
   const std::string command = "run out/run.yaml --set scene=./other.yaml --force -o again";
   EXPECT_EQ(Program(command).err, "");
-  Write("path.txt", path + "0.2 1.5 3.3 1.1" + look);
+  Write("path.txt", path + "0.2 1.5 1.3 1.1" + look);
   EXPECT_THAT(Program(command).err,
               AllOf(HasSubstr("out/run.yaml: trajectory_hash is "), HasSubstr("path.txt is ")));
   EXPECT_EQ(Program(command + " --set trajectory=./path.txt").err, "");

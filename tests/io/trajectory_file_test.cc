@@ -53,10 +53,12 @@ TEST(TrajectoryFile, SurvivesAndCountsBadRows) {
   ASSERT_EQ(file.poses.size(), 2U);
   EXPECT_EQ(file.poses[0].stamp_s, 1.0);
   EXPECT_EQ(file.poses[1].world_from_camera.translation.x(), 0.0);  // the first of stamp 3
-  EXPECT_THAT(file.Warnings("t"),
-              ElementsAre("t: 5 poses with NaN, a zero quaternion or beyond 10,000 km ignored",
-                          "t: 1 row earlier than the row before, sorted",
-                          "t: 1 row with a stamp already given, ignored"));
+  EXPECT_THAT(
+      file.Warnings("t"),
+      ElementsAre("t: 5 poses with NaN, a zero quaternion or beyond 10,000 km ignored "
+                  "(first: x:4: the position is (nan, 0, 0), must be finite and within 10,000 km)",
+                  "t: 1 row earlier than the row before, sorted",
+                  "t: 1 row with a stamp already given, ignored (first: x:3: stamp 3)"));
 }
 
 TEST(TrajectoryFile, OneWithoutAnyUsableRowSaysWhy) {

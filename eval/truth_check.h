@@ -1,0 +1,18 @@
+// Whether the true map can be one of the room that is meant.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "eval/experiment_options.h"
+#include "eval/truth_record.h"
+
+namespace depthgrid {
+
+bool HasFree(const StateMap& map);
+
+// What to say when nothing of the true map is free, or most of the camera's path lies in what is
+// not: the scene's faces or its floor.
+std::optional<std::string> DoubtOfTruth(const TruthRecord& truth, const ExperimentOptions& options);
+
+}  // namespace depthgrid
