@@ -14,6 +14,7 @@
 #include "eval/world.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/io/config.h"
 #include "mapper/io/png.h"
 
 namespace depthgrid::cli {
@@ -136,6 +137,12 @@ void RequirePlanFile(const std::string& file, bool force) {
   RequireNewFile(file, force);
 }
 
+void RefuseSweep(const std::string& path) {
+  if (!path.ends_with(".yaml") && !path.ends_with(".yml")) return;
+  if (!Config::FromFile(path).Has("axes")) return;
+  throw InputError(path, "is a sweep, must be a scene or mesh file");
+}
+
 }  // namespace
 
 void ShowScene(const ScenesArguments& arguments) {
@@ -143,7 +150,9 @@ void ShowScene(const ScenesArguments& arguments) {
   if (IsFileName(arguments.scene) && IsExperiment(arguments.scene)) {
     throw InputError(arguments.scene, "is an experiment, must be a scene or mesh file");
   }
-  const Scene scene = LoadScene(ResolveName(arguments.scene, ShippedKind::kScene));
+  const std::string file = ResolveName(arguments.scene, ShippedKind::kScene);
+  RefuseSweep(file);
+  const Scene scene = LoadScene(file);
   const std::vector<ScenePath> paths = PathsOf(scene);
   fmt::print("{}", Facts(scene));
   if (!paths.empty()) fmt::print("\n{}", PathTable(paths));

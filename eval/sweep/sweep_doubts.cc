@@ -102,6 +102,16 @@ std::optional<std::string> DoubtOfCameras(const SweepPlan& plan) {
   return fmt::format("{}: {}{}", plan.title, found.front(), more);
 }
 
+std::optional<std::string> DoubtOfStop(const SweepPlan& plan, const std::string& place) {
+  const std::size_t seeds = plan.runs.size() / static_cast<std::size_t>(plan.point_count);
+  const auto least = static_cast<std::size_t>(plan.stop.min_seeds);
+  if (!plan.stop.Enabled() || seeds > least) return {};
+  return fmt::format(
+      "{}: stop has no effect: min_seeds is {}, must be below the {} that a point has over the "
+      "seeds",
+      place, least, Counted(seeds, "run"));
+}
+
 std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,
                                           const std::vector<std::string>& set) {
   std::vector<std::string> doubts;

@@ -14,6 +14,9 @@ namespace depthgrid {
 // effect there: one line, nothing when all differ. Of very many runs the first ones are looked at.
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
 
+// A `stop`, which stands at `place`, for which the points have too few seeds.
+std::optional<std::string> DoubtOfStop(const SweepPlan& plan, const std::string& place);
+
 // What the sweep's file (`fixed`) or --set gives of the keys of an axis, whose values take its
 // place in every run: a line each.
 std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,

@@ -190,6 +190,10 @@ void CheckValues(const SweepPlan& plan) {
 
 // What would change nothing, without a word.
 void RequireEffect(const Config& config, const SweepFileOptions& file) {
+  if (config.Has("stop.width") && file.stop.width <= 0.0) {
+    throw InputError(config.PlaceOfKey("stop.width"),
+                     fmt::format("stop.width is {}, must be above 0", file.stop.width));
+  }
   if (config.Has("stop") && (!file.stop.Enabled() || file.stop.width <= 0.0)) {
     throw InputError(config.PlaceOfKey("stop"), "stop needs a 'metric' and a 'width' above 0");
   }
@@ -279,7 +283,7 @@ std::vector<std::string> DoubtsOf(const SweepPlan& plan, const std::string& expe
 void StopOptions::Visit(OptionsVisitor& v) {
   constexpr double kMaxSeeds = 1e6;
   v.Text("metric", metric, "a metric of results.csv; empty never stops early");
-  v.Number("width", width, {0.0}, "of the 95 % interval of its mean");
+  v.Number("width", width, {}, "of the 95 % interval of its mean; above 0");
   v.Number("min_seeds", min_seeds, {2, kMaxSeeds}, "before a point may stop");
 }
 
@@ -306,8 +310,9 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   RequireKeys(config, path);
   SweepPlan plan;
   plan.title = fs::path(path).stem().string();
+  const std::string place_of_axes = config.PlaceOfKey("axes");
   plan.axes = ReadAxes(config.Take("axes"));
-  if (plan.axes.empty()) throw InputError(path, "has no axes");
+  if (plan.axes.empty()) throw InputError(place_of_axes, "has no axes");
   const Config fixed = config.Take("set");
   const std::string place = config.PlaceOfKey("experiment");
   SweepFileOptions file;
@@ -325,11 +330,14 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   plan.given_text = GivenText(Config::FromText(plan.experiment_yaml, path), plan.base);
   plan.places = PlacesOf(experiment.config, Changed({}, fixed, set), plan.axes);
   CheckValues(plan);
-  CheckStop(file.stop, path);
+  CheckStop(file.stop, config.PlaceOfKey("stop.metric"));
   EnumerateRuns(file, path, plan);
   plan.warnings =
       DoubtsOf(plan, file.experiment, experiment, {experiment.config, fixed, set, base_with});
   plan.stop = file.stop;
+  if (const auto doubt = DoubtOfStop(plan, config.PlaceOfKey("stop"))) {
+    plan.warnings.push_back(*doubt);
+  }
   file.experiment.clear();  // its content counts, not its name
   plan.sweep_text = TextOf(file, plan);
   plan.again_text = SweepAgainText(plan, file.mode, file.samples, file.sample_seed);

@@ -32,7 +32,7 @@ function headline() {
   const m = RUN.metrics;
   const known = (path) => path.x.filter((x) => x !== null).length;
   const [posed, tracked] = [known(RUN.paths.est), known(RUN.paths.slam)];
-  const others = tracked < frameCount ? `, of the ${tracked} frames that it tracked` : "";
+  const others = tracked < frameCount ? `, of the ${tracked} ${tracked === 1 ? "frame" : "frames"} that it tracked` : "";
   if (m) {
     const seen = m.map.observable ?? m.map.all;
     add(fixed(seen.occupied.f1, 3), `F1 of ${m.map.observable ? "observable " : ""}walls, 1-cell tolerance`);

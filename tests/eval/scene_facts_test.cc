@@ -53,6 +53,8 @@ TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   ExpectRefusal("scenes ./nowhere.yaml", {"nowhere.yaml: no such file"});
   Write("takes_hall.yaml", "scene: ./hall.yaml\n");
   ExpectRefusal("scenes ./takes_hall.yaml", {"takes_hall.yaml: is an experiment, must be a scene"});
+  Write("sweep.yaml", "experiment: ./takes_hall.yaml\naxes: {seed: [1]}\n");
+  ExpectRefusal("scenes ./sweep.yaml", {"sweep.yaml: is a sweep, must be a scene or mesh file"});
 }
 
 // The sixth has the first one's colour, in dashes, be it a camera's or a mover's.

@@ -119,7 +119,38 @@ TEST_F(SweepPlanTest, KeysWithoutEffectAreRefused) {
               testing::EndsWith("yaml:3: 'samples' is for mode random alone"));
   EXPECT_THAT(refusal("sample_seed: 5"),
               testing::EndsWith("'sample_seed' is for mode random alone"));
+  EXPECT_THAT(refusal("stop: {metric: map.coverage, width: -1}"),
+              testing::EndsWith("sweep.yaml:3: stop.width is -1, must be above 0"));
   EXPECT_EQ(refusal("stop: {metric: map.coverage, width: 0.1}"), "no error");
+}
+
+TEST_F(SweepPlanTest, AStopThatCannotActIsSaid) {
+  const std::string stop = "stop: {metric: map.coverage, width: 0.1, min_seeds: 4}\n";
+  const auto doubts = [&](const std::string& axes) {
+    Write("small.yaml", "scene: living_room\nsensor: {noise: handa}\n");
+    Write("sweep.yaml", "experiment: ./small.yaml\n" + axes + stop);
+    std::vector<std::string> said;
+    for (const std::string& warning : ReadSweepPlan(Path("sweep.yaml"), {}).warnings) {
+      said.push_back(Short(warning));
+    }
+    return said;
+  };
+  const std::string never =
+      "~/sweep.yaml:3: stop has no effect: min_seeds is 4, must be below the ";
+  EXPECT_THAT(doubts("axes: {seed: {seeds: 4}}\n"),
+              ElementsAre(never + "4 runs that a point has over the seeds"));
+  EXPECT_THAT(doubts("axes: {mapper.grid.resolution_m: [0.05, 0.1]}\n"),
+              ElementsAre(never + "1 run that a point has over the seeds"));
+  EXPECT_THAT(doubts("axes: {seed: {seeds: 5}}\n"), ElementsAre());
+}
+
+TEST_F(SweepPlanTest, ErrorsOfItsPartsNameTheLine) {
+  EXPECT_THAT(RefusalOf([&] { PlanOf("mode: grid\naxes: {}\n"); }),
+              testing::EndsWith("sweep.yaml:3: has no axes"));
+  EXPECT_THAT(RefusalOf([&] {
+                PlanOf("axes: {seed: {seeds: 9}}\nstop:\n  width: 1\n  metric: map.all.chamfer\n");
+              }),
+              testing::HasSubstr("sweep.yaml:5: stop.metric is 'map.all.chamfer', must be"));
 }
 
 // It would be an axis of a name of its own that sets the seed all the same.
@@ -229,6 +260,9 @@ TEST_F(SweepPlanTest, RunsThatRepeatAnotherAreSaid) {
       ElementsAre("sweep: 1 of 4 runs repeats another: there sensor.noise_scale has no effect"));
   EXPECT_THAT(doubts("axes: {mapper.method: [paper, surfel], mapper.surfel.stay_m: [0.05, 0.1]}\n"),
               ElementsAre("sweep: 1 of 4 runs repeats another: there mapper.surfel.stay_m has no "
+                          "effect"));
+  EXPECT_THAT(doubts("axes: {mapper.scan.floor_z_m: [0, 0.5, 1]}\n"),
+              ElementsAre("sweep: 2 of 3 runs repeat another: there mapper.scan.floor_z_m has no "
                           "effect"));
   EXPECT_THAT(doubts("axes: {slam.drift_scale: [1, 2], slam.drift_speed_mps: [0.1]}\n"),
               ElementsAre());
