@@ -76,6 +76,22 @@ TEST_F(TruthPaths, ATrueMapWithoutFreeCellsIsWarnedOf) {
   EXPECT_THAT(ReadFile(Path("out_run/warnings.txt")), HasSubstr("the true map has no free cell"));
 }
 
+TEST_F(TruthPaths, APathMostlyAboveObstaclesIsWarnedOf) {
+  std::string room = kRoom;
+  room.insert(room.find("trajectories:"),
+              "  - {shape: box, size: [1, 1, 0.9], at: [1.5, 2.5, 0]}\n");
+  Write("block.yaml", room);
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  Write("over.txt", "0 1.5 1.5 1.1" + look + "0.1 1.5 2.2 1.1" + look + "0.2 1.5 2.4 1.1" + look +
+                        "0.3 1.5 2.6 1.1" + look);
+  const std::string run = "run ./small.yaml --set scene=./block.yaml --set trajectory=./over.txt";
+  EXPECT_THAT(Program(run + " --set frames=4 -o out").err,
+              HasSubstr("block.yaml: 3 of 4 poses of the camera's path lie where the true map is "
+                        "not free: "));
+  EXPECT_THAT(Program(run + " --set frames=2 -o half").err,
+              testing::Not(HasSubstr("the true map is not free")));
+}
+
 TEST_F(TruthPaths, AMapWithoutFreeCellsIsWarnedOf) {
   Write("room.yaml", std::string(kRoom) +
                          "  up: {kind: planar, height_m: 0.6, pitch_deg: 45, "
