@@ -16,6 +16,7 @@ class TrueScanSource final : public FrameSource {
  public:
   TrueScanSource(const World& world, const MapperOptions& mapper, SlamOutput slam)
       : camera_(world.camera),
+        floor_z_m_(world.scene.floor_z_m),
         scanner_(world.scene.mesh, world.scene.floor_z_m, world.rays, world.camera,
                  {mapper.scan.beams, mapper.scan.band_low_m, mapper.scan.band_high_m,
                   mapper.scan.min_range_m, mapper.scan.max_range_m, world.depth_range.min_m,
@@ -29,6 +30,7 @@ class TrueScanSource final : public FrameSource {
     Frame frame = playback_.FrameAt(next_++, slam_);
     frame.scan = std::make_shared<const Scan>(scanner_.Obstacles(world_from_camera));
     frame.matched_scan = std::make_shared<const Scan>(scanner_.Slice(world_from_camera));
+    frame.stand = StandOf(world_from_camera, floor_z_m_);
     return frame;
   }
   std::optional<PinholeCamera> Camera() const override { return camera_; }
@@ -37,6 +39,7 @@ class TrueScanSource final : public FrameSource {
 
  private:
   PinholeCamera camera_;
+  double floor_z_m_;
   TrueScanner scanner_;
   Trajectory trajectory_;
   SlamOutput slam_;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "mapper/core/camera.h"
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/rgb_image.h"
 #include "mapper/core/scan.h"
-#include "mapper/scan/camera_stand.h"
 #include "mapper/scan/scan_options.h"
 
 namespace depthgrid {

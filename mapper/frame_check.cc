@@ -109,6 +109,11 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
   if (frame.slam_from_camera) RequirePose(NameOf(frame), *frame.slam_from_camera, "its pose");
   if (frame.depth) RequireDepth(frame, camera);
   if (frame.matched_scan && !frame.scan) Refuse(frame, "has a matched_scan, but no scan");
+  if (frame.stand && !frame.scan) Refuse(frame, "has a stand, but no scan that it belongs to");
+  if (frame.stand) {
+    const Pose3 stand{frame.stand->level_from_camera, {0.0, 0.0, frame.stand->height_m}};
+    RequirePose(NameOf(frame), stand, "its stand");
+  }
   for (const auto& scan : {frame.scan, frame.matched_scan}) {
     if (scan) RequireReach(NameOf(frame), *scan);
   }

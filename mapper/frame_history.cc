@@ -24,6 +24,11 @@ bool IsNear(const FrameHistory& history, const FrameRecord& record) {
   return history.newest().stamp_s - record.stamp_s <= kNearS;
 }
 
+// Of SLAM's poses, both of which are there.
+Pose2 MotionOf(const FrameRecord& from, const FrameRecord& to) {
+  return Between(BaseOf(*from.slam_from_camera), BaseOf(*to.slam_from_camera));
+}
+
 // A second at 30 Hz: SLAM's own motion over it is good to millimetres.
 constexpr int kLoopReachFrames = 30;
 
@@ -81,8 +86,23 @@ int FrameHistory::FramesToNewest() const {
     const double step_s = records_[i].stamp_s - records_[i - 1].stamp_s;
     if (step_s > 0.0) steps_s[count++] = step_s;
   }
-  return StepsIn(newest().stamp_s - records_[records_.size() - 2].stamp_s,
-                 UsualStepS(std::span(steps_s).first(count)));
+  const FrameRecord& before = records_[records_.size() - 2];
+  const int steps =
+      StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
+  return steps > 1 ? MovingStepsIn(steps, MotionOf(before, newest()), UsualMotionSoFar()) : steps;
+}
+
+// Of the last thousand frames before the newest: a pause is rare, and asks for it.
+UsualMotion FrameHistory::UsualMotionSoFar() const {
+  constexpr std::size_t kMostFrames = 1000;
+  UsualMotion usual;
+  const std::size_t end = records_.size() - 1;
+  for (std::size_t i = std::max<std::size_t>(end, kMostFrames) - kMostFrames + 1; i < end; ++i) {
+    const FrameRecord& a = records_[i - 1];
+    const FrameRecord& b = records_[i];
+    if (a.slam_from_camera && b.slam_from_camera && a.epoch == b.epoch) usual.Add(MotionOf(a, b));
+  }
+  return usual;
 }
 
 const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int reach) const {
@@ -114,8 +134,7 @@ std::optional<Anchor> AnchorOf(const FrameRecord& record, const FrameHistory& hi
   const FrameRecord* mapped = history.NearestMapped(record, kLoopReachFrames);
   if (mapped == nullptr) return std::nullopt;
   if (mapped->index == record.index) return Anchor{mapped->mapped, {}};
-  return Anchor{mapped->mapped,
-                Between(BaseOf(*mapped->slam_from_camera), BaseOf(*record.slam_from_camera))};
+  return Anchor{mapped->mapped, MotionOf(*mapped, record)};
 }
 
 }  // namespace
@@ -137,7 +156,7 @@ Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_sl
   const double step_s = later->stamp_s - before->stamp_s;
   // Stamps that repeat or go back tell no speed.
   if (gap_s < 0.0 || step_s <= 0.0 || gap_s > kMostExtrapolatedSteps * step_s) return went_on;
-  const Pose2 motion = Between(BaseOf(*before->slam_from_camera), BaseOf(*later->slam_from_camera));
+  const Pose2 motion = MotionOf(*before, *later);
   went_on.map_from_base =
       went_on.map_from_base * Pose2::FromVector(gap_s / step_s * motion.vector());
   return went_on;

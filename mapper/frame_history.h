@@ -8,6 +8,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/core/slam_epochs.h"
+#include "mapper/core/usual_step.h"
 #include "mapper/reference_map.h"
 #include "mapper/scan/stand_blend.h"
 
@@ -42,7 +43,8 @@ class FrameHistory {
   // without any. A recording that paused lost nothing.
   bool WasLost() const;
   // From the record before to the newest, in usual steps of time: more than one where the recording
-  // paused; one where SLAM was lost or began another epoch.
+  // paused and SLAM moved on meanwhile (MovingStepsIn); one where SLAM was lost or began another
+  // epoch.
   int FramesToNewest() const;
   // The mapped frame closest in order to a frame, itself if it is mapped, of the same epoch and at
   // most `reach` input frames away; null if there is none.
@@ -55,6 +57,7 @@ class FrameHistory {
   using Positions = std::vector<std::pair<int, std::size_t>>;
   // The first entry that is not before this index.
   Positions::const_iterator PlaceOf(int frame_index) const;
+  UsualMotion UsualMotionSoFar() const;
 
   Positions position_of_index_;
   SlamEpochs epochs_;

@@ -5,8 +5,8 @@
 #include <array>
 #include <optional>
 
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/pose3.h"
-#include "mapper/scan/camera_stand.h"
 
 namespace depthgrid {
 

@@ -117,7 +117,7 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   report.stand = scans.stand;
   const bool follows_floor = options.scan.floor == FloorSource::kImage;
   // Of SLAM trusted alone the poses stay as they are.
-  if (follows_floor && scans.stand && !options.fusion.TrustsSlamAlone()) {
+  if (follows_floor && scans.stand && frame.slam_from_camera && !options.fusion.TrustsSlamAlone()) {
     history.newest().stand = scans.stand;
     stands.Add(*frame.slam_from_camera, *scans.stand);
   }

@@ -77,7 +77,8 @@ class IncrementalMapper {
   // - its pose or a loop is not made of finite numbers: of a unit quaternion (to 0.001) within
   //   10,000 km, a sigma positive;
   // - its image is not the camera's size, there is no camera, or a scan as well;
-  // - a scan's max_range_m is negative or not finite, or there is a matched_scan alone.
+  // - a scan's max_range_m is negative or not finite, or there is a matched_scan or a stand alone;
+  // - the stand is not made of finite numbers, or of a quaternion that is none.
   // What else is amiss is lived with: without a pose nothing is known of the frame, without image
   // or scan only its pose is corrected; beams and pixels that are no distances say nothing
   // (mapper/scan/frame_scans.h); stamps that repeat or go back tell no speed; a loop with a frame

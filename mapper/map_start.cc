@@ -91,6 +91,7 @@ class FirstFrames {
       // The scanner writes its scans again once nobody holds them.
       frame->scan = scans.obstacles;
       frame->matched_scan = scans.matched;
+      frame->stand = scans.stand;
       frame->loops.clear();
       frames_.push_back(std::move(*frame));
       return true;

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kScansExtension = ".scans";
-constexpr std::uint32_t kScansMagic = 0x31534744;  // "DGS1"
+constexpr std::uint32_t kScansMagic = 0x32534744;  // "DGS2"
 constexpr int kNumbersABeam = 5;
 
 // Values of this machine's own layout, one behind the other: the key holds the instruction set.
@@ -36,6 +36,12 @@ class ByteWriter {
       Put(std::array<float, kNumbersABeam>{beam.bearing_rad, beam.range_m, beam.clear_from_m,
                                            beam.clear_to_m, beam.hit ? 1.0F : 0.0F});
     }
+  }
+  void Put(const std::optional<CameraStand>& stand) {
+    Put<std::uint8_t>(stand ? 1 : 0);
+    if (!stand) return;
+    for (const double v : stand->level_from_camera.coeffs()) Put(v);
+    Put(stand->height_m);
   }
   std::string Take() { return std::move(bytes_); }
 
@@ -67,6 +73,13 @@ class ByteReader {
       beam = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] != 0.0F};
     }
     return scan;
+  }
+  std::optional<CameraStand> GetStand() {
+    if (Get<std::uint8_t>() == 0) return std::nullopt;
+    CameraStand stand;
+    for (double& v : stand.level_from_camera.coeffs()) v = Get<double>();
+    stand.height_m = Get<double>();
+    return stand;
   }
 
  private:
@@ -109,6 +122,7 @@ std::optional<std::vector<FrameScans>> ScanCache::Load(const std::string& key) c
       frame.obstacles = reader.GetScan();
       const bool same = reader.Get<std::uint8_t>() != 0;
       frame.matched = same ? frame.obstacles : reader.GetScan();
+      frame.stand = reader.GetStand();
     }
     std::error_code ignored;
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
@@ -126,6 +140,7 @@ void ScanCache::Store(const std::string& key, const std::vector<FrameScans>& sca
     content.Put(frame.obstacles);
     content.Put<std::uint8_t>(same ? 1 : 0);
     if (!same) content.Put(frame.matched);
+    content.Put(frame.stand);
   }
   const std::string bytes = content.Take();
   ByteWriter file;

@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 // Counts up whenever the same input may give other scans.
-constexpr int kScanFormat = 3;
+constexpr int kScanFormat = 4;
 
 void Add(ContentHash& hash, const Pose3& pose) {
   for (const double v : pose.rotation.coeffs()) hash.Value(v);
@@ -64,6 +64,7 @@ std::optional<Frame> ScannedSource::Next() {
   Frame frame = playback_.FrameAt(next_++, set_.slam);
   frame.scan = scans.obstacles;
   frame.matched_scan = scans.matched;
+  frame.stand = scans.stand;
   return frame;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapper/core/camera.h"
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/scan.h"
 #include "mapper/core/slam_output.h"
@@ -41,6 +42,9 @@ struct Frame {
   std::shared_ptr<const Scan> scan;
   // With `scan` only: what is matched where that is another one (mapper/scan/frame_scans.h).
   std::shared_ptr<const Scan> matched_scan;
+  // With `scan` only: how the camera stood over the floor seen in the image that the scan was made
+  // from. Empty: as the pose has it.
+  std::optional<CameraStand> stand;
   // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
   // metres (docs/conventions.md). Empty while SLAM is lost. With a ready scan of a sensor that has
   // no optical axes it is CameraOf() of `base` (mapper/core/level.h).

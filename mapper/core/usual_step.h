@@ -6,6 +6,7 @@
 #include <span>
 
 #include "mapper/core/median.h"
+#include "mapper/core/pose2.h"
 
 namespace depthgrid {
 
@@ -20,6 +21,39 @@ inline int StepsIn(double step_s, double usual_s) {
   constexpr double kMostSteps = 1000.0;
   if (!(usual_s > 0.0) || !(step_s > usual_s)) return 1;
   return static_cast<int>(std::min(std::round(step_s / usual_s), kMostSteps));
+}
+
+// How far frames move, in the mean.
+class UsualMotion {
+ public:
+  void Add(const Pose2& motion) {
+    way_m_ += motion.translation().norm();
+    turn_rad_ += std::abs(motion.yaw_rad);
+    ++motions_;
+  }
+  // How many frames at least would have gone so far.
+  double FramesFor(const Pose2& motion) const {
+    const auto times = [this](double length, double sum) {
+      return length > 0.0 ? length * motions_ / sum : 0.0;  // infinite if nothing moved before
+    };
+    return std::max(times(motion.translation().norm(), way_m_),
+                    times(std::abs(motion.yaw_rad), turn_rad_));
+  }
+
+ private:
+  double way_m_ = 0.0;
+  double turn_rad_ = 0.0;
+  int motions_ = 0;
+};
+
+// SLAM errs as it moves: over a pause in which it hardly did, by no more than over a few frames,
+// however long it was. `steps` of time, and what SLAM moved by meanwhile; ways are rarely straight.
+inline int MovingStepsIn(int steps, const Pose2& motion, const UsualMotion& usual) {
+  constexpr int kFew = 30;
+  constexpr double kRoundabout = 2.0;
+  if (steps <= kFew) return steps;
+  return static_cast<int>(
+      std::clamp(std::ceil(kRoundabout * usual.FramesFor(motion)), double{kFew}, double(steps)));
 }
 
 }  // namespace depthgrid

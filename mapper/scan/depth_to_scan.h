@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "mapper/core/camera.h"
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/scan.h"
 #include "mapper/scan/bearing_returns.h"
-#include "mapper/scan/camera_stand.h"
 #include "mapper/scan/scan_beams.h"
 #include "mapper/scan/scan_options.h"
 

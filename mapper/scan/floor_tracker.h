@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/pose3.h"
-#include "mapper/scan/camera_stand.h"
 #include "mapper/scan/floor_plane.h"
 #include "mapper/scan/scan_options.h"
 

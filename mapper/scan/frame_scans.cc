@@ -85,7 +85,7 @@ std::shared_ptr<const Scan> FrameScanner::SoundPart(const Scan& given) {
 FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (frame.scan) {
     const std::shared_ptr<const Scan> scan = SoundPart(*frame.scan);
-    return {scan, frame.matched_scan ? SoundPart(*frame.matched_scan) : scan, std::nullopt};
+    return {scan, frame.matched_scan ? SoundPart(*frame.matched_scan) : scan, frame.stand};
   }
   const int epoch = epochs_.Of(frame);
   if (!frame.depth || !frame.slam_from_camera) return {};

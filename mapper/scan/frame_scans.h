@@ -20,7 +20,7 @@ namespace depthgrid {
 struct FrameScans {
   std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
   std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
-  std::optional<CameraStand> stand = {};  // of depth images
+  std::optional<CameraStand> stand = {};  // of depth images, and of scans made from such
 };
 
 // Scans that are written again once nobody else holds them.
@@ -41,8 +41,8 @@ class FrameScanner {
   // bearing, less those that say nothing, as they are not finite, start behind the sensor, or hit
   // nearer than 1 mm or beyond the scan's reach, and clear no farther than that. Where it does not
   // tell its reach that is 1 km, and a beam without a hit that clears farther says nothing either.
-  // A depth image without a pose gives neither; a ready scan needs none. Frames come in order: the
-  // floor is followed from one to the next.
+  // The stand is the one that came with it. A depth image without a pose gives neither; a ready
+  // scan needs none. Frames come in order: the floor is followed from one to the next.
   FrameScans ScansOf(const Frame& frame);
 
  private:

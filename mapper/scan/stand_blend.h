@@ -2,8 +2,8 @@
 // that is followed in the images (docs/math.md, "Height and tilt").
 #pragma once
 
+#include "mapper/core/camera_stand.h"
 #include "mapper/core/pose3.h"
-#include "mapper/scan/camera_stand.h"
 
 namespace depthgrid {
 

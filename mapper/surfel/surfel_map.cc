@@ -42,10 +42,21 @@ double UsualFrameStepS(const std::vector<MappedFrame>& frames) {
   return UsualStepS(steps_s);
 }
 
-// How many usual steps it took from the frame before: more than one where the recording paused.
-int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s) {
-  const bool follows = frame.frame == before.frame + 1;
-  return follows ? StepsIn(frame.stamp_s - before.stamp_s, usual_s) : 1;
+UsualMotion UsualFrameMotion(const std::vector<MappedFrame>& frames) {
+  UsualMotion usual;
+  for (const MappedFrame& frame : frames) {
+    if (frame.slam_motion) usual.Add(*frame.slam_motion);
+  }
+  return usual;
+}
+
+// How many usual steps it took from the frame before: more than one where the recording paused and
+// SLAM moved on meanwhile.
+int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
+            const UsualMotion& usual) {
+  if (frame.frame != before.frame + 1) return 1;
+  const int steps = StepsIn(frame.stamp_s - before.stamp_s, usual_s);
+  return frame.slam_motion ? MovingStepsIn(steps, *frame.slam_motion, usual) : steps;
 }
 
 // SLAM's motion from each group to the next, from those of the frames between.
@@ -53,6 +64,7 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
   const std::vector<SurfelGroup>& groups = of.groups();
   std::vector<GroupMotion> motions(groups.size());
   const double usual_s = UsualFrameStepS(frames);
+  const UsualMotion usual = UsualFrameMotion(frames);
   for (std::size_t g = 1; g < groups.size(); ++g) {
     GroupMotion& motion = motions[g];
     motion.known = true;
@@ -61,7 +73,7 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
       const std::optional<Pose2>& step = frames[static_cast<std::size_t>(i)].slam_motion;
       motion.known = motion.known && step;
       motion.frames += StepsTo(frames[static_cast<std::size_t>(i)],
-                               frames[static_cast<std::size_t>(i) - 1], usual_s);
+                               frames[static_cast<std::size_t>(i) - 1], usual_s, usual);
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
     const auto first = static_cast<std::size_t>(groups[g].first_frame);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/rng.h"
+#include "mapper/incremental_mapper.h"
+#include "mapper/scan/frame_scans.h"
 #include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
@@ -176,6 +178,50 @@ TEST(FloorTracker, WithHeightsFromThePoseTheImageIsNotLookedAt) {
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
   const CameraStand stand = FloorTracker(camera, options).Follow({}, pose, 0);
   EXPECT_DOUBLE_EQ(stand.height_m, kCameraHeightM - 0.2);
+}
+
+// Of a camera that stands still while SLAM's height and tilt drift off.
+Frame DriftingFrame(int index) {
+  const Pose3 truth = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+  Frame frame;
+  frame.index = index;
+  frame.stamp_s = index / 30.0;
+  frame.depth = std::make_shared<DepthImage>(RoomWithTable().Render(SmallCamera(), truth));
+  frame.slam_from_camera = truth;
+  frame.slam_from_camera->translation.z() += 0.01 * index;
+  frame.slam_from_camera->rotation =
+      ExpRotation(RadFromDeg(0.1 * index) * Eigen::Vector3d(0.6, 0.8, 0.0)) *
+      frame.slam_from_camera->rotation;
+  return frame;
+}
+
+// What was scanned before is mapped as its images are, height and tilt with it.
+TEST(FloorTracker, ScansBringTheirStandAlong) {
+  MapperOptions options;
+  options.scan.floor = FloorSource::kImage;
+  IncrementalMapper of_images(options, SmallCamera()), of_scans(options, SmallCamera());
+  FrameScanner scanner(SmallCamera(), options.scan);
+  for (int i = 0; i < 30; ++i) {
+    Frame frame = DriftingFrame(i);
+    of_images.AddFrame(frame);
+    const FrameScans scans = scanner.ScansOf(frame);
+    frame.depth.reset();
+    frame.scan = std::make_shared<Scan>(*scans.obstacles);
+    frame.matched_scan = std::make_shared<Scan>(*scans.matched);
+    frame.stand = scans.stand;
+    of_scans.AddFrame(frame);
+  }
+  const auto images = of_images.Finish({}).map_from_camera;
+  const auto scans = of_scans.Finish({}).map_from_camera;
+  EXPECT_EQ(images, scans);
+  EXPECT_NEAR(images.back()->translation.z(), kCameraHeightM, 0.03);
+  // A scan needs no pose, with a stand or without.
+  Frame lost;
+  lost.index = 30;
+  lost.stamp_s = 1.0;
+  lost.scan = std::make_shared<Scan>();
+  lost.stand = CameraStand{};
+  EXPECT_FALSE(of_scans.AddFrame(lost).map_from_camera.has_value());
 }
 
 }  // namespace

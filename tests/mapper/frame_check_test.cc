@@ -71,6 +71,13 @@ const std::vector<Case>& Cases() {
        "holds 7 values, must hold 3072"},
       {[](Frame& f) { f.scan = std::make_shared<Scan>(); }, "a depth image and a scan"},
       {[](Frame& f) { f.matched_scan = std::make_shared<Scan>(); }, "a matched_scan, but no scan"},
+      {[](Frame& f) { f.stand = CameraStand{}; }, "a stand, but no scan that it belongs to"},
+      {[](Frame& f) {
+         f.depth.reset();
+         f.scan = std::make_shared<Scan>();
+         f.stand = CameraStand{.height_m = kNan};
+       },
+       "its stand lies at (0.0"},
       {[](Frame& f) {
          f.depth.reset();
          f.scan = std::make_shared<Scan>(Scan{.beams = {}, .max_range_m = kNan});

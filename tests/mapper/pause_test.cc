@@ -77,6 +77,30 @@ TEST(FrameHistory, TellsForHowManyFramesARecordingPaused) {
   EXPECT_EQ(frames_to(4.0), 1);  // SLAM was lost
 }
 
+// The robot stood, however long: SLAM erred no more than over a few frames. A turn counts too.
+TEST(FrameHistory, APauseInWhichNothingMovedIsAShortOne) {
+  const auto frames_over = [](const Pose2& motion, double pause_s) {
+    FrameHistory history;
+    Pose2 pose;
+    Frame frame;
+    for (frame.index = 0; frame.index < 40; ++frame.index) {
+      frame.stamp_s = 0.1 * frame.index;
+      frame.slam_from_camera = CameraOf(pose, 1.0);
+      history.Start(frame);
+      pose = pose * Pose2{0.02, 0.0, 0.01};
+    }
+    frame.stamp_s += pause_s;
+    frame.slam_from_camera = CameraOf(BaseOf(*history.newest().slam_from_camera) * motion, 1.0);
+    history.Start(frame);
+    return history.FramesToNewest();
+  };
+  EXPECT_EQ(frames_over({0.01, 0.0, 0.0}, 2.0), 20);
+  EXPECT_EQ(frames_over({0.01, 0.0, 0.0}, 60.0), 30);
+  EXPECT_NEAR(frames_over({1.0, 0.0, 0.0}, 60.0), 100, 1);
+  EXPECT_NEAR(frames_over({0.0, 0.0, 1.0}, 60.0), 200, 1);
+  EXPECT_EQ(frames_over({20.0, 0.0, 0.0}, 60.0), 600);
+}
+
 TEST(DriftTracker, BelievesSlamsMotionOverAPauseLess) {
   DriftTracker tracker;
   MatchResult match;

@@ -19,7 +19,8 @@ std::shared_ptr<const Scan> ScanOf(float range_m) {
 
 std::vector<FrameScans> Frames() {
   const auto one = ScanOf(1.5F);
-  return {{one, one}, {}, {ScanOf(2.0F), ScanOf(3.0F)}};
+  const CameraStand stand{Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0), 1.3};
+  return {{one, one}, {}, {ScanOf(2.0F), ScanOf(3.0F), stand}};
 }
 
 void ExpectSame(const std::vector<FrameScans>& a, const std::vector<FrameScans>& b) {
@@ -30,6 +31,10 @@ void ExpectSame(const std::vector<FrameScans>& a, const std::vector<FrameScans>&
     EXPECT_EQ(*a[i].obstacles, *b[i].obstacles);
     EXPECT_EQ(*a[i].matched, *b[i].matched);
     EXPECT_EQ(a[i].obstacles == a[i].matched, b[i].obstacles == b[i].matched);
+    ASSERT_EQ(a[i].stand.has_value(), b[i].stand.has_value());
+    if (!a[i].stand) continue;
+    EXPECT_EQ(a[i].stand->level_from_camera.coeffs(), b[i].stand->level_from_camera.coeffs());
+    EXPECT_EQ(a[i].stand->height_m, b[i].stand->height_m);
   }
 }
 
