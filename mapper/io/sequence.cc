@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <span>
 
@@ -145,17 +146,22 @@ void FindCorrections(const std::string& path, const RecordingOptions& options,
   StartEpochs(jumps, slam.live);
 }
 
-// Where up is looked for: in all of the recording, so that its parts have one world; in the part
-// where SLAM was given little more.
-std::span<const RecordedImage> ImagesForUp(const DepthSequence& sequence,
-                                           const RecordingOptions& options) {
-  const std::span<const RecordedImage> all = sequence.recording.images;
+// Where up is looked for: in all of the recording that has poses, so that its parts have one world;
+// in the part where SLAM was given little more.
+std::vector<RecordedImage> ImagesForUp(const DepthSequence& sequence,
+                                       const RecordingOptions& options) {
   const PoseTrack track(sequence.slam.live, options);
-  const auto with_pose = std::count_if(all.begin(), all.end(), [&](const RecordedImage& image) {
-    return track.At(image.stamp_s).slam_from_camera.has_value();
-  });
-  return MostLackPoses(static_cast<std::size_t>(with_pose), all.size())
-             ? ImagesOfPart(sequence.recording)
+  const auto with_pose = [&](std::span<const RecordedImage> images) {
+    std::vector<RecordedImage> posed;
+    std::copy_if(images.begin(), images.end(), std::back_inserter(posed),
+                 [&](const RecordedImage& image) {
+                   return track.At(image.stamp_s).slam_from_camera.has_value();
+                 });
+    return posed;
+  };
+  const std::vector<RecordedImage> all = with_pose(sequence.recording.images);
+  return MostLackPoses(all.size(), sequence.recording.images.size())
+             ? with_pose(ImagesOfPart(sequence.recording))
              : all;
 }
 
@@ -169,7 +175,7 @@ Recording WithImages(Recording recording, std::vector<RecordedImage> images) {
 // From a few images spread over the recording, and some of its first.
 std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
   std::vector<RecordedImage> chosen;
-  const auto images = ImagesForUp(sequence, options);
+  const std::vector<RecordedImage> images = ImagesForUp(sequence, options);
   const std::size_t every = std::max<std::size_t>(1, images.size() / kGravityViews);
   const std::size_t every_first = std::max<std::size_t>(1, every / kFirstGravityViews);
   std::set<double> spread_s;
@@ -247,8 +253,9 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
                        DepthSequence& sequence, Sequence& result) {
   const auto gravity = FindGravity(sequence, options);
   if (!gravity) {
-    result.notes.push_back(
-        fmt::format("no floor seen in the images, taking {} as up", NameOf(sequence.usual_up)));
+    sequence.recording.warnings.push_back(
+        fmt::format("{}: no floor seen in the images, {} is taken as up (--up says another axis)",
+                    path, NameOf(sequence.usual_up)));
     return AxisOf(sequence.usual_up);
   }
   const Eigen::Vector3d up = SnappedUp(*gravity);

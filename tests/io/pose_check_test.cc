@@ -230,6 +230,17 @@ TEST(PoseCheck, NamesAnotherCamera) {
   EXPECT_EQ(cases, 3);
 }
 
+// As little as SLAM's own errors look like over a few seconds.
+TEST(PoseCheck, ACameraThatIsSlightlyOffIsNotNamed) {
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  for (const double factor : {0.94, 1.06}) {
+    PinholeCamera focal = kCamera;
+    focal.fx_px *= factor;
+    focal.fy_px *= factor;
+    EXPECT_FALSE(DoubtOfPoses(pairs, focal, Given(AsItIs), {})) << factor;
+  }
+}
+
 // Of a robot's axes, and of a camera's that were not tilted with it.
 TEST(PoseCheck, NamesAMountingAngle) {
   const std::vector<ImagePair> pairs = Pairs(0.002);

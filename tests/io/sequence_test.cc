@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -28,14 +29,14 @@ class SequenceTest : public TemporaryFolderTest {
  protected:
   static CameraFile Camera() { return {{80, 60, 60.2, 60.0, 39.5, 29.5, {}}, 5000.0}; }
 
-  // Twelve frames in a room; returns the true poses.
-  Trajectory WriteRoom() const {
+  // Frames in a room, twelve a round; returns the true poses.
+  Trajectory WriteRoom(int frames = 12) const {
     AnalyticRoom room;
     room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.45}}};
     const TumFolderWriter writer(folder_, Camera());
     Trajectory truth;
     std::vector<double> stamps_s;
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < frames; ++i) {
       const double stamp_s = 0.125 * i;
       const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.0, kPi * i / 6.0}, kHeightM, 0.35, 0.1);
       writer.WriteFrame(stamp_s, room.Render(Camera().camera, pose), nullptr);
@@ -93,6 +94,34 @@ TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
     ++cases;
   }
   EXPECT_EQ(cases, 2);
+}
+
+// SLAM saw every second image alone, and none of those that would be looked at first.
+TEST_F(SequenceTest, UpIsFoundFromTheImagesThatHavePoses) {
+  const Trajectory truth = WriteRoom(48);
+  Trajectory odd;
+  for (std::size_t i = 1; i < truth.size(); i += 2) odd.push_back(truth[i]);
+  const Pose3 first = Inverse(odd.front().world_from_camera);
+  const Sequence sequence = OpenSequence(folder_, {}, SlamOutputOf(Turned(odd, first)));
+  ASSERT_TRUE(sequence.floor_z_m);
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("camera is 1.20 m above the floor")));
+}
+
+TEST_F(SequenceTest, WhereNoFloorIsSeenTheAxisTakenIsWarnedOf) {
+  const TumFolderWriter writer(folder_, Camera());
+  Trajectory poses;
+  const std::vector<double> stamps_s = {0.0, 0.1, 0.2};
+  for (const double stamp_s : stamps_s) {
+    DepthImage wall(Camera().camera.width_px, Camera().camera.height_px);
+    std::fill(wall.z_m.begin(), wall.z_m.end(), 2.0F);
+    writer.WriteFrame(stamp_s, wall, nullptr);
+    poses.push_back({stamp_s, CameraOf({}, kHeightM)});
+  }
+  writer.Finish(stamps_s, false, poses);
+  const Sequence sequence = OpenSequence(folder_);
+  while (sequence.source->Next()) continue;
+  EXPECT_THAT(sequence.source->Warnings(),
+              Contains(HasSubstr("no floor seen in the images, z is taken as up")));
 }
 
 TEST_F(SequenceTest, AJumpOfTheFoldersOwnPosesIsNoMotion) {
