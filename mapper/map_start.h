@@ -18,6 +18,7 @@ struct StartTrial {
   int frames = 0;
   double agreement = 0.0;       // 0..1, of the place chosen
   double agreement_next = 0.0;  // of the best one that led elsewhere
+  double against = 0.0;         // c / (a + c), of the place chosen
 };
 
 struct MapStart {
@@ -26,6 +27,9 @@ struct MapStart {
 
   // Whether another place fits nearly as well.
   bool uncertain() const;
+  // Whether much of what was seen contradicts the map wherever it is placed: it is of another
+  // place, or much has changed.
+  bool contradicted() const;
 };
 
 // The first views of `source` (of its first 3 m) are laid over the whole map. From each place where

@@ -129,7 +129,12 @@ FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettin
         start->trial->places, Counted(start->trial->frames, "frame"), start->trial->agreement,
         start->trial->agreement_next);
   }
-  if (start->uncertain()) {
+  if (start->contradicted()) {
+    warnings.push_back(fmt::format(
+        "{}: where the sequence fits it best, {:.0f} % of what its first metres show there is free "
+        "or behind a wall in it: it is of another place, or much has changed",
+        arguments.map, 100.0 * start->trial->against));
+  } else if (start->uncertain()) {
     warnings.push_back(arguments.map +
                        ": where in it the sequence begins is uncertain, another place "
                        "fits nearly as well");

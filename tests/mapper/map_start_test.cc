@@ -50,8 +50,7 @@ PriorMap MapOfHall() {
 // A robot that goes `way_m` straight ahead; SLAM's frame is where it begins.
 class WalkThroughHall final : public FrameSource {
  public:
-  WalkThroughHall(const Pose2& begin, double way_m) {
-    const PlanarWorld world = Hall();
+  WalkThroughHall(const Pose2& begin, double way_m, const PlanarWorld& world = Hall()) {
     for (int i = 0; i * 0.1 <= way_m; ++i) {
       const Pose2 slam_from_base{0.1 * i, 0.0, 0.0};
       Frame frame;
@@ -88,6 +87,7 @@ TEST(FindStart, TriesPlacesThatLookAlike) {
   EXPECT_GE(start->trial->places, 2);
   EXPECT_GE(start->trial->frames, 60);  // six metres
   EXPECT_GT(start->trial->agreement, start->trial->agreement_next);
+  EXPECT_FALSE(start->contradicted());
   const Pose2 off = Between(begin, start->place.map_from_slam);
   EXPECT_LT(off.translation().norm(), 0.5);  // matching finds the rest
   EXPECT_LT(std::abs(off.yaw_rad), 0.05);
@@ -99,6 +99,14 @@ TEST(FindStart, SaysThatItIsUncertain) {
   const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
   ASSERT_TRUE(start);
   EXPECT_TRUE(start->uncertain());
+}
+
+// Wherever it is laid over the hall, its walls stand in free space.
+TEST(FindStart, SaysThatTheMapIsOfAnotherPlace) {
+  WalkThroughHall walk({}, 5.0, RectangleWorld(-1.5, -2.8, 6.5, 2.9));
+  const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
+  ASSERT_TRUE(start);
+  EXPECT_TRUE(start->contradicted()) << start->trial->against;
 }
 
 TEST(FindStart, TakesFramesThatWereCollected) {
