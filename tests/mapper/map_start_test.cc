@@ -101,9 +101,9 @@ TEST(FindStart, SaysThatItIsUncertain) {
   EXPECT_TRUE(start->uncertain());
 }
 
-// Wherever it is laid over the hall, its walls stand in free space.
+// A corridor: wherever it is laid over the hall, a wall of it stands in free space.
 TEST(FindStart, SaysThatTheMapIsOfAnotherPlace) {
-  WalkThroughHall walk({}, 5.0, RectangleWorld(-1.5, -2.8, 6.5, 2.9));
+  WalkThroughHall walk({}, 5.0, RectangleWorld(-1.0, -0.8, 9.0, 0.8));
   const auto start = FindStart(MapOfHall(), walk, MapperOptions{});
   ASSERT_TRUE(start);
   EXPECT_TRUE(start->contradicted()) << start->trial->against;
