@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
@@ -192,43 +193,61 @@ TEST(Slip, OfAFewDegreesIsTakenBackAtOnce) {
   }
 }
 
+// The largest errors, of a run.
+struct Worst {
+  double online_m = 0.0;
+  double final_m = 0.0;  // after the loss
+};
+
 // SLAM is lost for 1.5 s and finds itself again, 2 cm off; the camera meanwhile turned to what it
-// had not seen. Nothing ties what comes after to what came before but SLAM's own word.
-TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
+// had not seen.
+Worst WorstOfShortLoss(MapperMethod method, std::uint64_t seed) {
   constexpr int kLost = 40, kBack = 85, kFrames = 200;
   const Pose2 off{0.02, -0.01, 0.005};
-  for (const MapperMethod method : {MapperMethod::kSurfel, MapperMethod::kPaper}) {
-    MapperOptions options;
-    options.method = method;
-    IncrementalMapper mapper(options, std::nullopt);
-    double worst_online_m = 0.0;
-    for (int i = 0; i < kFrames; ++i) {
-      const bool is_after = i >= kBack;
-      Frame frame;
-      frame.index = i;
-      frame.stamp_s = i / 30.0;
-      frame.slam_epoch = is_after ? 1 : 0;
-      if (i < kLost || is_after) {
-        frame.slam_from_camera = CameraOf(RoundTheRoom(i) * (is_after ? off : Pose2{}), 1.0);
-        const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
-        frame.scan = std::make_shared<const Scan>(
-            ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, 5, static_cast<std::uint32_t>(i)));
-      }
-      const FrameReport report = mapper.AddFrame(frame);
-      if (!report.map_from_camera) continue;
-      worst_online_m =
-          std::max(worst_online_m,
-                   Between(RoundTheRoom(i), BaseOf(*report.map_from_camera)).translation().norm());
+  MapperOptions options;
+  options.method = method;
+  IncrementalMapper mapper(options, std::nullopt);
+  Worst worst;
+  for (int i = 0; i < kFrames; ++i) {
+    const bool is_after = i >= kBack;
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.slam_epoch = is_after ? 1 : 0;
+    if (i < kLost || is_after) {
+      frame.slam_from_camera = CameraOf(RoundTheRoom(i) * (is_after ? off : Pose2{}), 1.0);
+      const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, seed, static_cast<std::uint32_t>(i)));
     }
-    const MapperResult result = mapper.Finish();
-    double worst_m = 0.0;
-    for (int i = kBack; i < kFrames; ++i) {
-      const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
-      worst_m = std::max(worst_m, Between(RoundTheRoom(i), pose).translation().norm());
+    const FrameReport report = mapper.AddFrame(frame);
+    if (!report.map_from_camera) continue;
+    worst.online_m =
+        std::max(worst.online_m,
+                 Between(RoundTheRoom(i), BaseOf(*report.map_from_camera)).translation().norm());
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = kBack; i < kFrames; ++i) {
+    const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
+    worst.final_m = std::max(worst.final_m, Between(RoundTheRoom(i), pose).translation().norm());
+  }
+  return worst;
+}
+
+// Nothing ties what comes after to what came before but SLAM's own word: few walls are seen from
+// both sides of the loss. Single runs are off by .03 to .18 m at worst.
+TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
+  constexpr int kSeeds = 12;
+  for (const auto& [method, most_m] :
+       {std::pair(MapperMethod::kSurfel, 0.08), std::pair(MapperMethod::kPaper, 0.13)}) {
+    Worst mean;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const Worst worst = WorstOfShortLoss(method, seed);
+      mean.online_m += worst.online_m / kSeeds;
+      mean.final_m += worst.final_m / kSeeds;
     }
-    // Little is known better than SLAM's word: few walls are seen from both sides of the loss.
-    EXPECT_LT(worst_online_m, 0.1);
-    EXPECT_LT(worst_m, 0.1);
+    EXPECT_LT(mean.online_m, most_m);
+    EXPECT_LT(mean.final_m, most_m);
   }
 }
 
