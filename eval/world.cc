@@ -13,7 +13,7 @@
 #include "eval/shipped.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
-#include "mapper/core/median.h"
+#include "mapper/core/usual_step.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/trajectory_file.h"
@@ -145,7 +145,7 @@ void RequireSecondsBetweenFrames(const Trajectory& trajectory, const std::string
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     steps_s.push_back(trajectory[i].stamp_s - trajectory[i - 1].stamp_s);
   }
-  const double step_s = UpperMedian(std::move(steps_s));
+  const double step_s = UsualStepS(steps_s);
   if (step_s <= kMostStepS) return;
   throw InputError(path, fmt::format("its stamps, which must be seconds, are {:g} apart (median), "
                                      "must be at most {:g}",

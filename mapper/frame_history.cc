@@ -89,7 +89,8 @@ int FrameHistory::FramesToNewest() const {
   const FrameRecord& before = records_[records_.size() - 2];
   const int steps =
       StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
-  return steps > 1 ? MovingStepsIn(steps, MotionOf(before, newest()), UsualMotionSoFar()) : steps;
+  if (steps <= kFewSteps) return steps;  // what was usual is asked for where it counts alone
+  return MovingStepsIn(steps, MotionOf(before, newest()), UsualMotionSoFar());
 }
 
 // Of the last thousand frames before the newest: a pause is rare, and asks for it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "mapper/core/median.h"
@@ -31,10 +32,11 @@ class UsualMotion {
     turn_rad_ += std::abs(motion.yaw_rad);
     ++motions_;
   }
-  // How many frames at least would have gone so far.
+  // How many frames at least would have gone so far; infinite if nothing moved before.
   double FramesFor(const Pose2& motion) const {
     const auto times = [this](double length, double sum) {
-      return length > 0.0 ? length * motions_ / sum : 0.0;  // infinite if nothing moved before
+      if (length == 0.0) return 0.0;
+      return sum > 0.0 ? length * motions_ / sum : std::numeric_limits<double>::infinity();
     };
     return std::max(times(motion.translation().norm(), way_m_),
                     times(std::abs(motion.yaw_rad), turn_rad_));
@@ -46,14 +48,18 @@ class UsualMotion {
   int motions_ = 0;
 };
 
+// A second at 30 Hz: pauses up to this count by the time alone, whatever moved.
+constexpr int kFewSteps = 30;
+
 // SLAM errs as it moves: over a pause in which it hardly did, by no more than over a few frames,
-// however long it was. `steps` of time, and what SLAM moved by meanwhile; ways are rarely straight.
+// however long it was. `steps` of time, and what SLAM moved by meanwhile.
 inline int MovingStepsIn(int steps, const Pose2& motion, const UsualMotion& usual) {
-  constexpr int kFew = 30;
+  // Ways are rarely straight: chosen, of no measurement; what it gives is in docs/tried.md,
+  // "Pauses".
   constexpr double kRoundabout = 2.0;
-  if (steps <= kFew) return steps;
-  return static_cast<int>(
-      std::clamp(std::ceil(kRoundabout * usual.FramesFor(motion)), double{kFew}, double(steps)));
+  if (steps <= kFewSteps) return steps;
+  return static_cast<int>(std::clamp(std::ceil(kRoundabout * usual.FramesFor(motion)),
+                                     double{kFewSteps}, double(steps)));
 }
 
 }  // namespace depthgrid

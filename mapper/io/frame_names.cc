@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "mapper/core/counted.h"
-#include "mapper/core/median.h"
+#include "mapper/core/usual_step.h"
 
 namespace depthgrid {
 namespace {
@@ -35,7 +34,7 @@ std::optional<double> PosesASecond(const FrameNames& names,
   for (std::size_t i = 1; i < pose_stamps_s.size(); ++i) {
     steps_s.push_back(pose_stamps_s[i] - pose_stamps_s[i - 1]);
   }
-  const double step_s = UpperMedian(std::move(steps_s));
+  const double step_s = UsualStepS(steps_s);
   if (!(step_s > 0.0 && step_s <= 0.5)) return {};
   return 1.0 / step_s;
 }

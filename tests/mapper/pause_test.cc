@@ -101,6 +101,16 @@ TEST(FrameHistory, APauseInWhichNothingMovedIsAShortOne) {
   EXPECT_EQ(frames_over({20.0, 0.0, 0.0}, 60.0), 600);
 }
 
+// Where no motion is known, or nothing moved before, the time alone tells.
+TEST(MovingStepsIn, IsTheTimesWhereNothingIsUsual) {
+  UsualMotion stood;
+  stood.Add({});
+  for (const UsualMotion& usual : {UsualMotion{}, stood}) {
+    EXPECT_EQ(MovingStepsIn(500, {0.1, 0.0, 0.0}, usual), 500);
+    EXPECT_EQ(MovingStepsIn(500, {}, usual), 30);
+  }
+}
+
 TEST(DriftTracker, BelievesSlamsMotionOverAPauseLess) {
   DriftTracker tracker;
   MatchResult match;
