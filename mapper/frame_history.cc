@@ -15,6 +15,8 @@ namespace {
 
 // The last motion goes on for this long at most; after a longer gap it says nothing.
 constexpr double kNearS = 0.5;
+// From one frame to the next, at 10 Hz.
+constexpr double kNextS = 0.1;
 // Speeds change: after so long it is off by all of kEpochSigma, before with the square of the time.
 constexpr double kSurpriseS = 0.3;
 // And over no more of its steps: it took no time then, but for a stamp's rounding.
@@ -145,7 +147,7 @@ Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_sl
   if (last == nullptr) return {BaseOf(*history.newest().slam_from_camera), true};
   const double gap_s = history.newest().stamp_s - last->stamp_s;
   Extrapolation went_on{map_from_slam * BaseOf(*last->slam_from_camera), IsNear(history, *last),
-                        std::min(1.0, std::pow(gap_s / kSurpriseS, 2))};
+                        gap_s <= kNextS, std::min(1.0, std::pow(gap_s / kSurpriseS, 2))};
   const FrameRecord* later = last;
   const FrameRecord* before = history.PosedBefore(*later);
   // An epoch of one frame has no motion: that before it is the newest known.

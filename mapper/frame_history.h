@@ -68,6 +68,7 @@ class FrameHistory {
 struct Extrapolation {
   Pose2 map_from_base;
   bool near = false;         // the last pose was so short ago that this is near it
+  bool next = false;         // and that no camera goes elsewhere
   double sigma_share = 1.0;  // of kEpochSigma, how well it is known
 };
 Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);

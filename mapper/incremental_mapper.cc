@@ -188,7 +188,8 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
   if (history.WasLost()) {
-    relocation.Lost(report.stamp_s - history.PosedBefore(history.newest())->stamp_s);
+    const FrameRecord& before = *history.PosedBefore(history.newest());
+    relocation.Lost(report.stamp_s - before.stamp_s, before.epoch != history.newest().epoch);
   }
   if (report.beams == 0) return;  // nothing seen, nothing told
   const double share = report.match.found ? report.match.score : 0.0;
@@ -308,6 +309,7 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
     const InnovationSize size =
         SeenSize(*errors.innovation_covariance(), report.match.information, fused.innovation);
     report.innovation_chi2 = size.chi2;
+    filter.AddInnovation(fused.innovation, size.weight);
     if (options.fusion.JudgesInnovations()) match_noise.Add(size);
   }
   report.motion_from = errors.motion_from();

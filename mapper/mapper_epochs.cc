@@ -54,11 +54,12 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
       share(carried.map_from_base, 1.0) < kWhollyUsual * relocation.usual_share()) {
     carried.sigma_share = kWordSigmaShare;
   }
-  // After a longer gap the last motion says nothing, and SLAM is believed unless it is plainly
-  // wrong.
-  const bool goes_on =
-      went_on.near ? share_going_on >= share_carried
-                   : relocation.IsUsual(share_going_on) && !relocation.IsUsual(share_carried);
+  const bool explained = relocation.IsUsual(share_going_on);
+  // Along a lone wall both may be. From one frame to the next the camera went on, whatever SLAM
+  // says; after a longer gap the last motion says nothing, and SLAM is believed unless it is
+  // plainly wrong.
+  const bool goes_on = went_on.near ? share_going_on >= share_carried || (went_on.next && explained)
+                                    : explained && !relocation.IsUsual(share_carried);
   return goes_on ? going_on : carried;
 }
 

@@ -6,12 +6,21 @@
 namespace depthgrid {
 namespace {
 
-// Of so few steps before it none is judged by what is usual.
+// So few do not tell what is usual.
 constexpr std::size_t kFewSteps = 6;
 // After a gap as long the motion may be another.
 constexpr double kForgottenS = 1.0;
+// A step is off so many times what is too much once the usual is known, where it is not.
+constexpr double kSurelyOff = 3.0;
 
 }  // namespace
+
+bool SlamEpochs::Motions::AreFew() const { return count < kFewSteps; }
+
+SlamStep SlamEpochs::Motions::Usual() const {
+  auto reordered = steps;
+  return UsualOf(std::span(reordered).first(std::min(count, steps.size())));
+}
 
 int SlamEpochs::Of(const Frame& frame) {
   if (!frame.slam_from_camera) return epoch_;
@@ -21,24 +30,43 @@ int SlamEpochs::Of(const Frame& frame) {
   return epoch_;
 }
 
-// A motion becomes the newest step.
+// The step that breaks is the first of what comes after: were it a motion after all, what was usual
+// no longer is.
 bool SlamEpochs::Breaks(const Posed& last, const Posed& next) {
   const double duration_s = next.stamp_s - last.stamp_s;
-  if (!(duration_s < kForgottenS)) step_count_ = 0;
+  const bool gap = !(duration_s < kForgottenS);
+  if (gap) {
+    if (!since_.AreFew()) before_ = since_;
+    since_ = Motions();
+    gap_ = true;
+  }
   if (next.slam_epoch != last.slam_epoch) return true;
   const double step_m =
       (next.slam_from_camera.translation - last.slam_from_camera.translation).norm();
   if (IsTooFar(step_m, duration_s)) return true;
-  if (!(duration_s > 0.0)) return false;  // stamps may repeat or go back
+  if (gap || !(duration_s > 0.0)) return false;  // stamps may repeat or go back
   const SlamStep step = StepOf(last.slam_from_camera, next.slam_from_camera, duration_s);
-  auto recent = steps_;
-  const std::span known(recent.data(), std::min(step_count_, recent.size()));
-  if (known.size() >= kFewSteps && BreaksMotion(step, UsualOf(known))) {
-    step_count_ = 0;  // were it a motion after all, what was usual no longer is
-    return true;
+  const bool breaks = BreaksMotions(step);
+  if (breaks) {
+    if (!since_.AreFew()) {
+      before_ = since_;
+      gap_ = false;
+    }
+    since_ = Motions();
   }
-  steps_[step_count_++ % steps_.size()] = step;
-  return false;
+  since_.Add(step);
+  return breaks;
+}
+
+// SLAM that errs for a frame comes back in the next, and one that was lost corrects itself again
+// and again: while little is known of the motion since, a step is one that goes on as before, as
+// since or, after a gap, from standing.
+bool SlamEpochs::BreaksMotions(const SlamStep& step) const {
+  if (!since_.AreFew()) return BreaksMotion(step, since_.Usual());
+  const double times = gap_ ? kSurelyOff : 1.0;
+  return BreaksMotion(step, before_.Usual(), times) &&
+         (since_.count == 0 || BreaksMotion(step, since_.Usual(), times)) &&
+         (!gap_ || BreaksMotion(step, SlamStep(), times));
 }
 
 }  // namespace depthgrid

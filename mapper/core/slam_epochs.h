@@ -24,13 +24,22 @@ class SlamEpochs {
     Pose3 slam_from_camera;
     int slam_epoch = 0;
   };
+  // The last motions: a ring.
+  struct Motions {
+    std::array<SlamStep, 8> steps;
+    std::size_t count = 0;  // ever
+    void Add(const SlamStep& step) { steps[count++ % steps.size()] = step; }
+    bool AreFew() const;
+    SlamStep Usual() const;  // their medians
+  };
   bool Breaks(const Posed& last, const Posed& next);
+  bool BreaksMotions(const SlamStep& step) const;
 
   std::optional<Posed> last_;
   int epoch_ = 0;
-  // The last motions, by which the next step is judged: a ring.
-  std::array<SlamStep, 8> steps_;
-  std::size_t step_count_ = 0;  // ever, since nothing was forgotten
+  Motions since_;    // the last break or gap: by them the next step is judged
+  Motions before_;   // while those are few, by these as well
+  bool gap_ = true;  // between the two, or nothing was before
 };
 
 }  // namespace depthgrid

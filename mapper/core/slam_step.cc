@@ -9,14 +9,13 @@ namespace {
 
 constexpr double kAccelerationMps2 = 10.0;
 constexpr double kTurnAccelerationRadps2 = 30.0;
-constexpr double kLongestStepS = 0.2;
 
 // In which the usual motion takes `dt_s`.
-bool BreaksWithin(double dt_s, const SlamStep& step, const SlamStep& usual) {
+bool BreaksWithin(double dt_s, const SlamStep& step, const SlamStep& usual, double times) {
   const Eigen::Vector3d off_m = step.velocity * step.duration_s - usual.velocity * dt_s;
   const Eigen::Vector3d off_rad = step.turn_rate * step.duration_s - usual.turn_rate * dt_s;
-  return off_m.norm() > kSlamJumpM + kAccelerationMps2 * dt_s * dt_s ||
-         off_rad.norm() > 2.0 * kSlamJumpRad + kTurnAccelerationRadps2 * dt_s * dt_s;
+  return off_m.norm() > times * (kSlamJumpM + kAccelerationMps2 * dt_s * dt_s) ||
+         off_rad.norm() > times * (2.0 * kSlamJumpRad + kTurnAccelerationRadps2 * dt_s * dt_s);
 }
 
 }  // namespace
@@ -39,10 +38,9 @@ SlamStep UsualOf(std::span<SlamStep> steps) {
   return usual;
 }
 
-bool BreaksMotion(const SlamStep& step, const SlamStep& usual) {
-  if (step.duration_s > kLongestStepS) return false;
-  return BreaksWithin(step.duration_s, step, usual) &&
-         BreaksWithin(std::max(step.duration_s, usual.duration_s), step, usual);
+bool BreaksMotion(const SlamStep& step, const SlamStep& usual, double times) {
+  return BreaksWithin(step.duration_s, step, usual, times) &&
+         BreaksWithin(std::max(step.duration_s, usual.duration_s), step, usual, times);
 }
 
 }  // namespace depthgrid

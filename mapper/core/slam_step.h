@@ -37,7 +37,7 @@ inline bool IsTooFar(double step_m, double duration_s) {
 
 // Whether the usual motion around a step does not lead where it goes, with what a hand or robot can
 // change of its speed meanwhile; neither in the step's own time nor, as stamps come bunched, in a
-// usual one's. Over a long step nothing can be said, and it never does.
-bool BreaksMotion(const SlamStep& step, const SlamStep& usual);
+// usual one's. `times` as far off, where little is known of what is usual.
+bool BreaksMotion(const SlamStep& step, const SlamStep& usual, double times = 1.0);
 
 }  // namespace depthgrid

@@ -80,6 +80,8 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
   v.Number("slip_deg", slip_deg, {0.0, 180.0},
            "headings tried when the map suddenly explains little of a scan, degrees; 0: none");
   v.Number("min_lost_s", min_lost_s, {0.0, 1e6}, "without a pose for so long, at least");
+  v.Number("min_lost_epoch_s", min_lost_epoch_s, {0.0, 1e6},
+           "and where SLAM's poses begin a new epoch");
   v.Number("min_share", min_share, {0.0, 1.0},
            "of what the map explained before: guesses that reach it are right");
   v.Number("window_m", window_m, {0.1, 1e3}, "half width of the search, metres");
@@ -105,11 +107,15 @@ void Relocation::Explained(double share) {
   usual_share_ += (share - usual_share_) / explained_frames_;
 }
 
-void Relocation::Lost(double duration_s) { unjudged_s_ = std::max(unjudged_s_, duration_s); }
+void Relocation::Lost(double duration_s, bool other_epoch) {
+  unjudged_s_ = std::max(unjudged_s_, duration_s);
+  unjudged_ =
+      unjudged_ || duration_s >= (other_epoch ? options_.min_lost_epoch_s : options_.min_lost_s);
+}
 
 bool Relocation::Begins(double share, int next_frame) {
   const double lost_s = std::exchange(unjudged_s_, 0.0);
-  if (!options_.use || lost_s < options_.min_lost_s || next_frame == 0) return false;
+  if (!std::exchange(unjudged_, false) || !options_.use || next_frame == 0) return false;
   // Lost again before the first loss was understood: all of it is one new part.
   if (active_) {
     lost_s_ += lost_s;

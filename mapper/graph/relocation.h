@@ -20,6 +20,9 @@ struct RelocationOptions {
   // Without a pose for less than this, the last motion or SLAM's own relocalisation is near enough
   // for matching.
   double min_lost_s = 2.0;
+  // The same where SLAM's poses begin a new epoch, whose origin may lie anywhere: so long the last
+  // motion is known.
+  double min_lost_epoch_s = 0.5;
   // A guess is right when the map explains at least this share of what it usually did before the
   // loss.
   double min_share = 0.6;
@@ -57,8 +60,8 @@ class Relocation {
 
   // A matched frame in ordinary times: what the map explains of it.
   void Explained(double share);
-  // So long there was no pose before this frame's.
-  void Lost(double duration_s);
+  // So long there was no pose before this frame's, which is of the same epoch or of another.
+  void Lost(double duration_s, bool other_epoch);
   // Whether the guess since the last loss is to be doubted: the first scan after it, of which the
   // map explains this share, tells. Begins the search then; the next mapped frame is the first of
   // its part.
@@ -89,6 +92,7 @@ class Relocation {
   double usual_share_ = 0.0;
   int explained_frames_ = 0;  // of which it is the mean, at most kUsualFrames
   double unjudged_s_ = 0.0;   // the longest loss since the last scan
+  bool unjudged_ = false;     // such that a guess is to be doubted
   bool active_ = false;
   int first_frame_ = 0;
   double lost_s_ = 0.0;

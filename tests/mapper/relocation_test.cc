@@ -29,7 +29,8 @@ Pose2 RoundTheRoom(int frame) {
 
 // `blind`: frames on either side of the loss that have a pose and no scan.
 LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Path path_after,
-             bool use, MapperMethod method = MapperMethod::kSurfel, int blind = 0) {
+             bool use, MapperMethod method = MapperMethod::kSurfel, int blind = 0,
+             double lost_s = 5.0) {
   constexpr int kBefore = 240, kAfter = 160;
   MapperOptions options;
   options.method = method;
@@ -45,7 +46,7 @@ LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Pat
     truths.push_back(truth);
     Frame frame;
     frame.index = i;
-    frame.stamp_s = i / 30.0 + (is_after ? 5.0 : 0.0);
+    frame.stamp_s = i / 30.0 + (is_after ? lost_s : 0.0);
     frame.slam_epoch = is_after ? 1 : 0;
     frame.slam_from_camera = CameraOf(off * truth, 1.0);
     const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
@@ -76,6 +77,17 @@ TEST(Relocation, FindsTheCameraInWhatWasSeen) {
   const LostRun paper = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kPaper);
   EXPECT_EQ(paper.relocated, 1);
   EXPECT_LT(paper.final_error_m, 0.1);
+}
+
+// SLAM that begins anew has its origin where it likes, however short it was lost.
+TEST(Relocation, FindsTheCameraAfterARestartOfSlam) {
+  const PlanarWorld room = FurnishedRoom();
+  const Path goes_on = [](int frame) { return RoundTheRoom(240 + 20 + frame); };
+  for (const double lost_s : {0.4, 0.7, 1.5}) {
+    const LostRun run =
+        Lose(room, room, RoundTheRoom, goes_on, true, MapperMethod::kSurfel, 0, lost_s);
+    EXPECT_LT(run.final_error_m, 0.02) << lost_s;
+  }
 }
 
 // A covered camera tells nothing, neither of what is usual nor of the guess.
@@ -297,7 +309,7 @@ TEST(Relocation, AnUnknownRoomBeforeTheLossDoesNotMakeAnyGuessRight) {
   for (int i = 0; i < 150; ++i) relocation.Explained(0.9);
   for (int i = 0; i < 100; ++i) relocation.Explained(0.0);
   EXPECT_FALSE(relocation.IsUsual(0.2));
-  relocation.Lost(5.0);
+  relocation.Lost(5.0, true);
   EXPECT_TRUE(relocation.Begins(0.2, 250));
 }
 
@@ -306,16 +318,20 @@ TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
   Relocation relocation(options, {}, {});
   for (int i = 0; i < 50; ++i) relocation.Explained(0.9);
   EXPECT_FALSE(relocation.Begins(0.1, 50));  // not lost at all
-  const auto begins = [](Relocation& lost, double lost_s, double share) {
-    lost.Lost(lost_s);
+  const auto begins = [](Relocation& lost, double lost_s, double share, bool other_epoch = false) {
+    lost.Lost(lost_s, other_epoch);
     return lost.Begins(share, 50);
   };
   EXPECT_FALSE(begins(relocation, 1.9, 0.1));  // not lost for long
   EXPECT_FALSE(begins(relocation, 5.0, 0.6));  // two thirds of what is usual
   EXPECT_FALSE(relocation.Begins(0.1, 50));    // and judged once
+  EXPECT_FALSE(begins(relocation, 0.4, 0.1, true));
   EXPECT_TRUE(begins(relocation, 5.0, 0.5));
   EXPECT_TRUE(relocation.active());
   EXPECT_EQ(relocation.first_frame(), 50);
+  Relocation anew(options, {}, {});
+  anew.Explained(0.9);
+  EXPECT_TRUE(begins(anew, 0.6, 0.5, true));
   options.use = false;
   Relocation off(options, {}, {});
   off.Explained(0.9);

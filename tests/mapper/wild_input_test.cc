@@ -129,6 +129,60 @@ TEST(FrameHistory, WhatAHandOrRobotDoesIsMotion) {
   EXPECT_EQ(EpochsOnAWay(60, thrown, at_30_hz).back(), 1);
 }
 
+// SLAM is wrong for a few frames and comes back.
+TEST(FrameHistory, AGlitchOfSlamBeginsAnEpochAndSoDoesTheWayBack) {
+  for (const double rate_hz : {30.0, 10.0}) {
+    const auto stamp_s = [&](int i) { return i / rate_hz; };
+    for (const int frames : {1, 2, 3, 5, 8}) {
+      for (const double jump_m : {0.25, 3.0}) {
+        const auto off = [&](int i) {
+          return 0.02 * i + (i >= 20 && i < 20 + frames ? jump_m : 0.0);
+        };
+        const std::vector<int> epochs = EpochsOnAWay(60, off, stamp_s);
+        EXPECT_EQ(epochs[19], 0);
+        EXPECT_EQ(epochs[20], 1);
+        EXPECT_EQ(epochs.back(), 2) << frames << " frames off by " << jump_m << " m";
+      }
+    }
+  }
+}
+
+// Few frames after the start, or after a loss, the usual motion is not known yet.
+TEST(FrameHistory, LargeCorrectionsAreSeenFromTheStart) {
+  for (const double lost_s : {0.0, 1.0, 3.0}) {
+    const auto stamp_s = [&](int i) { return i / 30.0 + (i < 20 ? 0.0 : lost_s); };
+    for (const int frame : {1, 2, 3, 6, 21, 22, 25}) {
+      const auto corrected = [&](int i) { return 0.03 * i + (i < frame ? 0.0 : -0.5); };
+      const std::vector<int> epochs = EpochsOnAWay(60, corrected, stamp_s);
+      EXPECT_EQ(epochs[static_cast<std::size_t>(frame) - 1], 0);
+      EXPECT_EQ(epochs[static_cast<std::size_t>(frame)], 1) << frame;
+      EXPECT_EQ(epochs.back(), 1) << frame;
+    }
+  }
+  // A robot may set off at once, and is seen first on its way.
+  const auto at_10_hz = [](int i) { return i / 10.0; };
+  EXPECT_EQ(EpochsOnAWay(
+                60, [](int i) { return 0.4 * i; }, at_10_hz)
+                .back(),
+            0);
+}
+
+// Or where a frame did not come in time, or few come.
+TEST(FrameHistory, OverALongStepOnlyLargeCorrectionsAreSeen) {
+  const auto corrected_by = [](double jump_m, double rate_hz) {
+    const auto way = [=](int i) { return 0.6 * i / rate_hz + (i < 20 ? 0.0 : jump_m); };
+    return EpochsOnAWay(40, way, [=](int i) { return i / rate_hz; }).back();
+  };
+  EXPECT_EQ(corrected_by(1.0, 4.0), 1);
+  EXPECT_EQ(corrected_by(0.6, 4.0), 0);
+  EXPECT_EQ(corrected_by(3.0, 2.0), 1);
+  const auto late = [](int i) { return i / 30.0 + (i < 20 ? 0.0 : 0.25); };
+  EXPECT_EQ(EpochsOnAWay(
+                40, [](int i) { return i < 20 ? 0.0 : 1.0; }, late)
+                .back(),
+            1);
+}
+
 TEST(WildInput, ACorrectionThatSlamDoesNotTellBendsNothing) {
   const auto correct = [](const Pose2& old_from_new, int epoch) {
     return RunWith([=](Frame& frame) {
@@ -164,7 +218,7 @@ TEST(WildInput, NoStampIsFartherAwayThanADay) {
 }
 
 TEST(WildInput, OnePoseFarAwayMovesNoOther) {
-  for (const double off_m : {15.0, 1e4, 5e6}) {
+  for (const double off_m : {0.3, 3.0, 15.0, 1e4, 5e6}) {
     const WildRun run = RunWith([&](Frame& frame) {
       if (frame.index == kWild) frame.slam_from_camera->translation.x() += off_m;
     });
