@@ -44,8 +44,12 @@ class CorrectionFilter {
 
   // Mode `learned`, with poses whose differences are motions.
   bool Learns() const;
-  // `learned`: how SLAM's motion errs, as an adjustment of all poses tells.
+  // `learned`: how SLAM's motion errs, as an adjustment of all poses tells, and how the last match
+  // was off for pose and map together (DriftTracker).
   void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }
+  void AddInnovation(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& weight) {
+    if (Learns()) tracker_.AddInnovation(innovation, weight);
+  }
   void BeginWith(const CorrectionFilter& before, const MotionSpread& spread) {
     tracker_.BeginWith(before.tracker_, spread);
   }

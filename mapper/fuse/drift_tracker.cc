@@ -32,6 +32,9 @@ constexpr int kMostLearntFrames = 3;
 // Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
 // was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
+// And of that by pose and map together, whose errors are better known: 31 was the most with a
+// perfect prior (docs/tried.md, "A nearly perfect prior").
+constexpr double kMostMapChi2 = 60.0;
 
 MotionNoise FirstNoise() {
   MotionNoise noise;
@@ -50,6 +53,7 @@ void DriftTracker::StartAnew() {
   next_fit_ = kFirstFit;
   spread_.reset();
   evidence_ = DriftEvidence();
+  map_evidence_ = DriftEvidence();
 }
 
 DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
@@ -168,6 +172,7 @@ void DriftTracker::BoundMotion(const MotionSpread& spread) {
   spread_ = spread;
   drifted_ = false;
   evidence_ = DriftEvidence();
+  map_evidence_ = DriftEvidence();
   BoundLearnt();
 }
 
@@ -189,7 +194,7 @@ void DriftTracker::BoundLearnt() {
 void DriftTracker::TestBound(const Prediction& prediction, const MatchResult& match) {
   evidence_.Add(InnovationOf(prediction.map_from_base, match.map_from_base),
                 InnovationWeight(prediction, match.information));
-  if (evidence_.Chi2() <= kMostChi2) return;
+  if (evidence_.Chi2() <= kMostChi2 || map_evidence_.Chi2() <= kMostMapChi2) return;
   StartAnew();
   drifted_ = true;
 }

@@ -33,6 +33,13 @@ class DriftTracker {
   // alone is bounded by it: these are made against what the filter's own estimates drew, whose
   // wandering looks like SLAM's. Innovations that speak against the bound lift it.
   void BoundMotion(const MotionSpread& spread);
+  // After Commit(): the innovation that it took, in base axes of the predicted pose, and the
+  // inverse of its covariance as pose and map together tell it (PoseErrors). An old part of the
+  // map, come back to, may be off by more than the filter knows: that does not speak against the
+  // bound.
+  void AddInnovation(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& weight) {
+    map_evidence_.Add(innovation, weight);
+  }
   // Before the first pose: what another has learnt of the same SLAM's noise, and the bound on it.
   void BeginWith(const DriftTracker& before, const MotionSpread& spread);
 
@@ -59,8 +66,9 @@ class DriftTracker {
   MotionNoise learnt_;  // without: what is told of the errors
   MotionNoiseLearner learner_;
   std::optional<MotionSpread> spread_;
-  bool drifted_ = false;    // SLAM, more than it was taken to since the last adjustment
-  DriftEvidence evidence_;  // against it
+  bool drifted_ = false;        // SLAM, more than it was taken to since the last adjustment
+  DriftEvidence evidence_;      // against it, as the filter knows its errors,
+  DriftEvidence map_evidence_;  // and as pose and map together are known
   int next_fit_ = 0;
   FilterStep step_;
   DriftState state_;

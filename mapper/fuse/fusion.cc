@@ -53,11 +53,12 @@ InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d
                         const Eigen::Vector3d& innovation) {
   const SeenBasisMatrix seen = SeenBasis(information);
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
   const Square seen_covariance = seen.transpose() * covariance * seen;
-  const Vector seen_innovation = seen.transpose() * innovation;
-  return {seen_innovation.dot(Eigen::LDLT<Square>(seen_covariance).solve(seen_innovation)),
-          static_cast<int>(seen.cols())};
+  InnovationSize size;
+  size.weight = seen * Eigen::LDLT<Square>(seen_covariance).solve(seen.transpose().eval());
+  size.chi2 = innovation.dot(size.weight * innovation);
+  size.directions = static_cast<int>(seen.cols());
+  return size;
 }
 
 Eigen::Matrix3d InformationIn(const Pose2& pose, const MatchResult& match) {

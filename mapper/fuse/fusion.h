@@ -41,6 +41,7 @@ SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information);
 // nu^T S^-1 nu over the directions that a match with this information sees.
 struct InnovationSize {
   double chi2 = 0.0;
+  Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();  // S^-1, zero along the others
   int directions = 0;
 };
 InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,

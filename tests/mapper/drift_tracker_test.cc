@@ -53,15 +53,20 @@ MatchResult NoisyMatch(RandomStream& random) {
 }
 
 // The camera stands still; SLAM creeps forward by `creep_m` a frame. Mean error over the frames.
+// `map_m`: how well the map that is matched against is known.
 double ErrorAfterM(DriftTracker& tracker, Pose2& slam, int frames, double creep_m,
-                   std::uint64_t seed) {
+                   std::uint64_t seed, double map_m = 0.0) {
   RandomStream random(seed, RandomStage::kTest);
   double sum_m = 0.0;
   for (int i = 0; i < frames; ++i) {
     slam = slam * Pose2{creep_m, 0.0, 0.0};
     const MatchResult match = NoisyMatch(random);
+    const Prediction prediction = tracker.Predict(slam);
     const FusedPose fused = tracker.Fuse(slam, match);
     tracker.Commit(slam, fused.map_from_base, fused.covariance, match);
+    tracker.AddInnovation(fused.innovation,
+                          WithAddedCovariance(InnovationWeight(prediction, match.information),
+                                              Squared({map_m, map_m, map_m})));
     sum_m += fused.map_from_base.translation().norm();
   }
   return sum_m / frames;
@@ -188,6 +193,20 @@ TEST(DriftTracker, InnovationsThatAllPointOneWayLiftTheBound) {
   ErrorAfterM(tracker, slam, 100, 0.003, 3);
   EXPECT_GT(tracker.noise().walk.x() + tracker.noise().bias.x(), 1e-3);
   EXPECT_LT(ErrorAfterM(tracker, slam, 100, 0.003, 4), 0.02);
+}
+
+// Come back to an old part of the map the camera finds it off by what both wandered on the way.
+TEST(DriftTracker, InnovationsThatTheMapExplainsLiftNoBound) {
+  for (const double map_m : {0.0, 0.3}) {
+    DriftTracker tracker;
+    Pose2 slam;
+    ErrorAfterM(tracker, slam, 100, 0.0, 1);
+    tracker.BoundMotion(kNearlyPerfect);
+    ErrorAfterM(tracker, slam, 200, 0.0, 2);
+    slam = slam * Pose2{0.3, 0.0, 0.0};
+    ErrorAfterM(tracker, slam, 100, 0.0, 3, map_m);
+    EXPECT_EQ(tracker.noise().walk.x() > 1e-3, map_m == 0.0) << map_m;
+  }
 }
 
 TEST(DriftTracker, BelievesAPriorThatDriftedOnlyAfterTheNextAdjustment) {
