@@ -3,6 +3,7 @@
 #include "eval/metric_columns.h"
 #include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
+#include "eval/truth_check.h"
 #include "eval/view_check.h"
 #include "mapper/core/level.h"
 #include "sim/slam_surrogate.h"
@@ -146,6 +147,7 @@ AblationResult RunAblation(const AblationPlan& plan, const RunContext& context) 
                static_cast<int>(world.trajectory.size()), finished);
   AblationResult result;
   result.warnings = world.path_doubts;
+  if (auto doubt = DoubtOfTruth(world, truth, options)) result.warnings.push_back(*doubt);
   for (const std::uint64_t seed : plan.seeds) {
     options.seed = seed;
     for (const AblationVariant& variant : variants) {

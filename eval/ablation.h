@@ -45,7 +45,7 @@ struct AblationPlan {
 
 struct AblationResult {
   std::vector<AblationRun> runs;
-  std::vector<std::string> warnings;  // what is amiss with the path and with what is seen from it
+  std::vector<std::string> warnings;  // what is amiss with the path, the truth and what is seen
 };
 
 // Every variant with every seed, by seed; `progress` counts frames.

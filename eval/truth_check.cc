@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "eval/storey_check.h"
 #include "mapper/core/counted.h"
 
 namespace depthgrid {
@@ -43,6 +44,18 @@ std::optional<std::string> DoubtOfTruth(const TruthRecord& truth,
       "{}: {}: surfaces are {:g} to {:g} m (mapper.scan.band_low_m, band_high_m) above a floor at "
       "{:g} m there; the mesh's faces may point away from the room, or floor_z_m be wrong",
       options.scene, what, scan.band_low_m, scan.band_high_m, scan.floor_z_m);
+}
+
+std::optional<std::string> DoubtOfStorey(const World& world, const ExperimentOptions& options) {
+  const auto doubt = DoubtOfStorey(world.trajectory, world.scene, world.rays);
+  if (!doubt) return {};
+  return PlaceOfPath(world.scene, options) + ": " + *doubt;
+}
+
+std::optional<std::string> DoubtOfTruth(const World& world, const TruthRecord& truth,
+                                        const ExperimentOptions& options) {
+  auto doubt = DoubtOfStorey(world, options);
+  return doubt ? doubt : DoubtOfTruth(truth, options);
 }
 
 }  // namespace depthgrid

@@ -220,6 +220,11 @@ WorldHashes HashesOf(const Scene& scene, const ExperimentOptions& options) {
 
 }  // namespace
 
+std::string PlaceOfPath(const Scene& scene, const ExperimentOptions& options) {
+  if (IsFile(options.trajectory)) return options.trajectory;
+  return scene.trajectories.at(NamedTrajectory(scene, options)).place;
+}
+
 WorldHashes HashesOf(const ExperimentOptions& options) {
   return HashesOf(SceneOf(options), options);
 }

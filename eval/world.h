@@ -42,6 +42,9 @@ std::string WorldHash(const ExperimentOptions& options);       // both as one
 // be read. Throws InputError; quicker than LoadWorld, which asks more of them.
 void RequireNames(const ExperimentOptions& options);
 
+// Where the path is written: its file, or the scene's line that names it.
+std::string PlaceOfPath(const Scene& scene, const ExperimentOptions& options);
+
 // That this path, which the scene's options gave, lies within the scene and keeps its clearance.
 // Throws InputError.
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,

@@ -68,7 +68,7 @@ void RenderNamed(const RenderArguments& arguments) {
   const ExperimentOptions options = Completed(given, world.scene);
   // Whatever it refuses, now and not at the end.
   const TruthRecord truth = MakeTruth(world, options.mapper, threads);
-  if (const auto doubt = DoubtOfTruth(truth, options)) Warn({*doubt});
+  if (const auto doubt = DoubtOfTruth(world, truth, options)) Warn({*doubt});
   const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});
   bool any_shows = false;

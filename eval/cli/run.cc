@@ -109,7 +109,7 @@ void RunOne(const RunArguments& arguments) {
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
   for (const auto& doubt :
-       {DoubtOfView(run.mapping, run.options), DoubtOfTruth(run.truth, run.options)}) {
+       {DoubtOfView(run.mapping, run.options), DoubtOfTruth(run.world, run.truth, run.options)}) {
     if (doubt) record.warnings.push_back(*doubt);
   }
   record.map_mode = arguments.output.map_mode;

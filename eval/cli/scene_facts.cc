@@ -11,6 +11,7 @@
 #include "eval/output_file.h"
 #include "eval/scene_plan.h"
 #include "eval/shipped.h"
+#include "eval/storey_check.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
@@ -26,6 +27,7 @@ struct ScenePath {
   Trajectory poses;     // empty: it cannot be made
   std::string refusal;  // empty: it can be taken
   std::string meeting;  // why not with all movers; empty: it can
+  std::string doubt;    // empty: none
 };
 
 std::string MeetingOf(const ScenePath& path, const Scene& scene, const MoverScene& movers) {
@@ -43,11 +45,13 @@ std::vector<ScenePath> PathsOf(const Scene& scene) {
   const MoverScene movers(scene, rays.isa());
   std::vector<ScenePath> paths;
   for (const auto& [name, options] : scene.trajectories) {
-    ScenePath path = {name, options, {}, "", ""};
+    ScenePath path = {name, options, {}, "", "", ""};
     try {
       path.poses = MakeTrajectory(options, MinimumFrames(options), kFrameRateHz,
                                   ExperimentOptions{}.trajectory_seed);
       CheckPath(path.poses, options, scene, rays);
+      const auto doubt = DoubtOfStorey(path.poses, scene, rays);
+      if (doubt) path.doubt = options.place + ": " + *doubt;
     } catch (const InputError& error) {
       path.refusal = error.what();
     }
@@ -158,6 +162,7 @@ void ShowScene(const ScenesArguments& arguments) {
   if (!paths.empty()) fmt::print("\n{}", PathTable(paths));
   for (const ScenePath& path : paths) {
     if (!path.refusal.empty()) fmt::print("refused: {}\n", path.refusal);
+    if (!path.doubt.empty()) fmt::print("warning: {}\n", path.doubt);
   }
   if (!scene.movers.empty()) {
     fmt::print("\n{}they are there with movers: all, or by name, in an experiment\n",

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/shipped.h"
+#include "eval/truth_check.h"
 #include "eval/world.h"
 #include "mapper/core/error.h"
 
@@ -87,13 +88,15 @@ std::string RoomsText(const SweepPlan& plan) {
 
 std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads) {
   std::vector<std::string> doubts;
+  const auto add = [&](const std::string& doubt) {
+    const bool is_new = std::find(doubts.begin(), doubts.end(), doubt) == doubts.end();
+    if (is_new) doubts.push_back(doubt);
+  };
   for (const ExperimentOptions& options : RoomsOf(plan)) {
-    if (!IsFileName(options.trajectory)) continue;
     try {
-      for (std::string& doubt : LoadWorld(options, threads).path_doubts) {
-        const bool is_new = std::find(doubts.begin(), doubts.end(), doubt) == doubts.end();
-        if (is_new) doubts.push_back(std::move(doubt));
-      }
+      const World world = LoadWorld(options, threads);
+      for (const std::string& doubt : world.path_doubts) add(doubt);
+      if (const auto doubt = DoubtOfStorey(world, options)) add(*doubt);
     } catch (const InputError&) {  // its runs fail and say why
     }
   }

@@ -16,8 +16,8 @@ std::string RoomsText(const SweepPlan& plan);
 // slip in it or the file is not there. A pair that does not go together is a failed run instead.
 void RequireRooms(const SweepPlan& plan);
 
-// What is amiss with the paths that are read from files, a line each: of those in rooms that can be
-// read, for the runs of the others fail and say why.
+// What is amiss with the paths, a line each: of those in rooms that can be read, for the runs of
+// the others fail and say why.
 std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads);
 
 }  // namespace depthgrid
