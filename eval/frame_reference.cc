@@ -1,8 +1,10 @@
 #include "eval/frame_reference.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "mapper/core/error.h"
 #include "mapper/core/frame.h"
@@ -19,9 +21,11 @@ std::optional<std::size_t> RowOf(const CsvTable& frames, int frame) {
   return static_cast<std::size_t>(found - index.begin());
 }
 
-std::optional<Pose2> PoseAt(const CsvTable& frames, std::size_t row) {
-  const Pose2 pose = {frames.Column("map_x_m")[row], frames.Column("map_y_m")[row],
-                      frames.Column("map_yaw_rad")[row]};
+// `whose`: "map", "match".
+std::optional<Pose2> PoseAt(const CsvTable& frames, std::size_t row,
+                            const std::string& whose = "map") {
+  const Pose2 pose = {frames.Column(whose + "_x_m")[row], frames.Column(whose + "_y_m")[row],
+                      frames.Column(whose + "_yaw_rad")[row]};
   // Nothing, or damage: no run is anywhere else.
   if (!IsWithinReach({pose.x_m, pose.y_m, 0.0}) || !std::isfinite(pose.yaw_rad))
     return std::nullopt;
@@ -33,6 +37,20 @@ bool LoopsBetween(const CsvTable& frames, std::size_t first_row, std::size_t las
   return std::any_of(loops.begin() + static_cast<std::ptrdiff_t>(first_row),
                      loops.begin() + static_cast<std::ptrdiff_t>(last_row) + 1,
                      [](double accepted) { return accepted > 0.0; });
+}
+
+Eigen::Vector3d AxesAt(const CsvTable& frames, std::size_t row,
+                       const std::array<const char*, 3>& names) {
+  return {frames.Column(names[0])[row], frames.Column(names[1])[row], frames.Column(names[2])[row]};
+}
+
+// Of runs before the table had the matched pose. Eq. 3 backwards: estimate = prediction * (K
+// innovation); of K it has the diagonal, so that this is right where the modes have no more.
+Pose2 MatchFromGain(const CsvTable& frames, std::size_t row, const Pose2& estimate,
+                    const Eigen::Vector3d& innovation) {
+  const Eigen::Vector3d gain = AxesAt(frames, row, {"gain_forward", "gain_left", "gain_yaw"});
+  return estimate * Inverse(Pose2::FromVector(gain.cwiseProduct(innovation))) *
+         Pose2::FromVector(innovation);
 }
 
 // How far from base a scan says anything.
@@ -79,17 +97,16 @@ std::optional<FrameAtTheTime> FrameAtRow(const CsvTable& frames, std::size_t row
   if (!estimate) return std::nullopt;
   FrameAtTheTime frame;
   frame.map_from_base = *estimate;
-  const Eigen::Vector3d innovation = {frames.Column("innovation_forward_m")[row],
-                                      frames.Column("innovation_left_m")[row],
-                                      frames.Column("innovation_yaw_rad")[row]};
+  const Eigen::Vector3d innovation =
+      AxesAt(frames, row, {"innovation_forward_m", "innovation_left_m", "innovation_yaw_rad"});
   if (!innovation.allFinite()) return frame;
-  const Eigen::Vector3d gain = {frames.Column("gain_forward")[row], frames.Column("gain_left")[row],
-                                frames.Column("gain_yaw")[row]};
-  // Eq. 3 backwards: estimate = prediction * (K innovation), match = prediction * innovation. Of a
-  // full gain matrix the table has the diagonal only.
-  const Pose2 taken = Pose2::FromVector(gain.cwiseProduct(innovation));
-  frame.predicted_map_from_base = *estimate * Inverse(taken);
-  frame.matched_map_from_base = *frame.predicted_map_from_base * Pose2::FromVector(innovation);
+  const std::optional<Pose2> matched =
+      frames.columns.contains("match_x_m")
+          ? PoseAt(frames, row, "match")
+          : std::optional(MatchFromGain(frames, row, *estimate, innovation));
+  if (!matched) return frame;
+  frame.matched_map_from_base = matched;
+  frame.predicted_map_from_base = *matched * Inverse(Pose2::FromVector(innovation));
   return frame;
 }
 

@@ -27,12 +27,14 @@ std::string ErrorCell(const std::optional<Pose3>& pose, const Pose3* truth) {
 }
 
 std::string MatchCells(const FrameReport& report) {
-  if (!report.match.found) return ",,,,,,,,,,";
+  if (!report.match.found) return ",,,,,,,,,,,,,";
+  const Pose2& m = report.match.map_from_base;
   const auto& g = report.gain;
   const auto& i = report.innovation;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", g[0], g[1], g[2], i[0], i[1], i[2],
-                     report.innovation_chi2, DirectionsSeen(report.match), report.match.score,
-                     report.match.iterations, report.innovation_rejected ? 1 : 0);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", m.x_m, m.y_m, m.yaw_rad, g[0],
+                     g[1], g[2], i[0], i[1], i[2], report.innovation_chi2,
+                     DirectionsSeen(report.match), report.match.score, report.match.iterations,
+                     report.innovation_rejected ? 1 : 0);
 }
 
 std::string CovarianceCells(const Eigen::Matrix3d& c) {
@@ -46,7 +48,8 @@ std::string MotionCells(const FrameReport& report) {
 
 constexpr const char* kFrameColumns =
     "frame,stamp_s,slam_epoch,slam_x_m,slam_y_m,slam_yaw_rad,map_x_m,map_y_m,map_yaw_rad,"
-    "gain_forward,gain_left,gain_yaw,innovation_forward_m,innovation_left_m,innovation_yaw_rad,"
+    "match_x_m,match_y_m,match_yaw_rad,gain_forward,gain_left,gain_yaw,"
+    "innovation_forward_m,innovation_left_m,innovation_yaw_rad,"
     "innovation_chi2,innovation_directions,match_score,match_iterations,innovation_rejected,cov_xx,"
     "cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
     "cov_yawyaw,motion_from,motion_cov_xx,motion_cov_xy,motion_cov_xyaw,motion_cov_yy,"

@@ -55,7 +55,7 @@ struct FrameReport {
   // Against its covariance, the errors of the map that was matched against included; of what the
   // gate refused, against prediction and match as the gate has it.
   double innovation_chi2 = 0.0;
-  std::array<double, 3> gain = {};  // the share of the innovation taken, per base axis
+  std::array<double, 3> gain = {};  // the diagonal of K, base axes
   // Of the estimate in base axes, the map taken for exact.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   // The motion of the estimate from an earlier frame (FrameReport::index; at most a submap's frames

@@ -33,7 +33,7 @@ function initPlots() {
       column("left", "innovation_left_m", "slam", 100, 2, "cm"),
     ]);
     add("Innovation in heading", "degrees", [column("yaw", "innovation_yaw_rad", "truth", degree, 3, "°")]);
-    add("Gain: share of the innovation taken", "share", [
+    add("Gain: diagonal of K, of the innovation taken in each axis by itself", "share", [
       column("forward", "gain_forward", "est", 1, 3),
       column("left", "gain_left", "slam", 1, 3),
       column("yaw", "gain_yaw", "truth", 1, 3),

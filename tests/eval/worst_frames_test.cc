@@ -1,11 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "eval/frame_reference.h"
 #include "eval/match_surface.h"
+#include "eval/run_tables.h"
 #include "eval/worst_frames_impl.h"
+#include "mapper/core/level.h"
+#include "mapper/io/file.h"
+#include "tests/scratch.h"
 
 namespace depthgrid {
 namespace {
@@ -109,6 +114,43 @@ TEST(FrameAtRow, UndoesTheFusion) {
   EXPECT_NEAR(second->predicted_map_from_base->y_m, 0.01, 1e-12);
   EXPECT_NEAR(second->matched_map_from_base->x_m, 1.03, 1e-12);
   EXPECT_NEAR(second->matched_map_from_base->y_m, -0.01, 1e-12);
+}
+
+// A full gain, as Kalman's is: nothing of it is undone, the table has the match itself.
+TEST(FrameAtRow, TakesTheMatchOfTheTable) {
+  CsvTable frames = Frames();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  frames.columns["match_x_m"] = {none, 1.2, 2.0};
+  frames.columns["match_y_m"] = {none, 0.1, 0.0};
+  frames.columns["match_yaw_rad"] = {none, 0.0, 0.0};
+  EXPECT_FALSE(FrameAtRow(frames, 0)->matched_map_from_base);
+  const auto second = FrameAtRow(frames, 1);
+  ASSERT_TRUE(second && second->predicted_map_from_base);
+  EXPECT_EQ(*second->matched_map_from_base, Pose2(1.2, 0.1, 0.0));
+  EXPECT_NEAR(second->predicted_map_from_base->x_m, 1.16, 1e-12);
+  EXPECT_NEAR(second->predicted_map_from_base->y_m, 0.12, 1e-12);
+}
+
+// As a run writes it.
+TEST(FrameAtRow, ReadsTheMatchBack) {
+  const Pose2 predicted{1.0, -0.5, 2.0};
+  const Pose2 matched{1.03, -0.52, 2.01};
+  MappingRun run;
+  run.reports.resize(1);
+  FrameReport& report = run.reports.front();
+  report.map_from_camera = CameraOf(Pose2{1.02, -0.51, 2.004}, 1.0);
+  report.match.found = true;
+  report.match.map_from_base = matched;
+  const Eigen::Vector3d innovation = Between(predicted, matched).vector();
+  report.innovation = {innovation.x(), innovation.y(), innovation.z()};
+  report.gain = {0.9, 0.1, 0.2};
+  const std::string path = ScratchPath();
+  WriteFile(path, FramesCsv(run, nullptr));
+  const auto frame = FrameAtRow(ReadCsv(path), 0);
+  std::filesystem::remove(path);
+  ASSERT_TRUE(frame && frame->predicted_map_from_base);
+  EXPECT_EQ(*frame->matched_map_from_base, matched);
+  EXPECT_LT((frame->predicted_map_from_base->vector() - predicted.vector()).norm(), 1e-12);
 }
 
 Scan OneHit() {
