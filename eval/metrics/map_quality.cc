@@ -12,6 +12,24 @@ void MetricsOptions::Visit(OptionsVisitor& v) {
   v.Group("navigability", navigability, "the robot and its plans");
 }
 
+namespace {
+
+// The true map knows a wall to its cell alone (one on a boundary is in the cell above it,
+// docs/truth.md), and half of a good map's cells may lie beside it. A motion that leaves the walls
+// no nearer to each other than they are is not told by the map.
+std::optional<MapRegistration> RegistrationOf(const ScoredMaps& maps, const CellSet& true_walls,
+                                              const CellSet& walls) {
+  auto found = RegisterMap(maps.truth, maps.estimate, maps.scored);
+  if (!found) return {};
+  const auto as_it_lies_m = DistanceToWallLines(true_walls, walls, maps.scored);
+  const auto moved_m =
+      DistanceToWallLines(true_walls, walls, maps.scored, found->truth_from_estimate);
+  if (as_it_lies_m && (!moved_m || *as_it_lies_m <= *moved_m)) return MapRegistration{};
+  return found;
+}
+
+}  // namespace
+
 MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
                            const std::optional<CellSet>& observable,
                            const MetricsOptions& options) {
@@ -20,8 +38,7 @@ MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
   const CellSet walls = CellsIn(maps.estimate, CellState::kOccupied);
   MapQuality quality;
   quality.walls = ScoreWallDistances(true_walls, walls, maps.scored);
-  if (options.registration)
-    quality.registration = RegisterMap(maps.truth, maps.estimate, maps.scored);
+  if (options.registration) quality.registration = RegistrationOf(maps, true_walls, walls);
   if (quality.registration) {
     quality.registered = ScoreWallDistances(true_walls, walls, maps.scored,
                                             quality.registration->truth_from_estimate);

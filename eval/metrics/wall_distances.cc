@@ -1,6 +1,7 @@
 #include "eval/metrics/wall_distances.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -63,6 +64,54 @@ double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
   return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
 
+constexpr double kBucketCells = 4.0;
+
+// From each map's points, of which those in scored cells count, to what the other's points are
+// measured against.
+struct BothWays {
+  std::vector<double> forth_m;  // from the estimate
+  std::vector<double> back_m;
+};
+
+std::vector<Eigen::Vector2d> Moved(const Pose2& motion, std::vector<Eigen::Vector2d> points) {
+  for (Eigen::Vector2d& p : points) p = motion * p;
+  return points;
+}
+
+BothWays DistancesOf(const CellSet& true_walls, const std::vector<Eigen::Vector2d>& true_targets,
+                     const std::vector<Eigen::Vector2d>& points,
+                     const std::vector<Eigen::Vector2d>& targets, const CellSet& scored) {
+  if (true_targets.empty() || targets.empty()) return {};
+  const double resolution_m = scored.geometry.resolution_m;
+  std::vector<Eigen::Vector2d> counted;
+  for (const Eigen::Vector2d& p : points) {
+    if (scored.Has(CellOf(p, resolution_m))) counted.push_back(p);
+  }
+  const double bucket_m = kBucketCells * resolution_m;
+  return {NearestDistances(counted, true_targets, bucket_m),
+          NearestDistances(CentresOf(InBoth(true_walls, scored)), targets, bucket_m)};
+}
+
+// Centres, and points on the way from each to those of its neighbours.
+std::vector<Eigen::Vector2d> LinesThrough(const CellSet& walls) {
+  constexpr std::array<double, 3> kOnTheWay = {0.25, 0.5, 0.75};
+  constexpr std::array<Cell, 4> kHalfOfNeighbours = {{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  const double resolution_m = walls.geometry.resolution_m;
+  std::vector<Eigen::Vector2d> points = CentresOf(walls);
+  for (std::size_t i = 0; i < walls.members.size(); ++i) {
+    if (walls.members[i] == 0) continue;
+    const Cell cell = walls.geometry.CellAt(i);
+    for (const Cell& step : kHalfOfNeighbours) {
+      if (!walls.Has({cell.x + step.x, cell.y + step.y})) continue;
+      for (const double share : kOnTheWay) {
+        points.emplace_back(CellCentre(cell, resolution_m) +
+                            share * resolution_m * Eigen::Vector2d(step.x, step.y));
+      }
+    }
+  }
+  return points;
+}
+
 }  // namespace
 
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
@@ -79,19 +128,9 @@ std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate) {
   WallDistanceScore score;
-  const double resolution_m = scored.geometry.resolution_m;
-  const std::vector<Eigen::Vector2d> true_points = CentresOf(true_walls);
-  std::vector<Eigen::Vector2d> points = CentresOf(walls);
-  for (Eigen::Vector2d& p : points) p = truth_from_estimate * p;
-  if (true_points.empty() || points.empty()) return score;
-  std::vector<Eigen::Vector2d> counted;
-  for (const Eigen::Vector2d& p : points) {
-    if (scored.Has(CellOf(p, resolution_m))) counted.push_back(p);
-  }
-  constexpr double kBucketCells = 4.0;
-  const double bucket_m = kBucketCells * resolution_m;
-  const auto forth_m = NearestDistances(counted, true_points, bucket_m);
-  const auto back_m = NearestDistances(CentresOf(InBoth(true_walls, scored)), points, bucket_m);
+  const std::vector<Eigen::Vector2d> points = Moved(truth_from_estimate, CentresOf(walls));
+  const auto [forth_m, back_m] =
+      DistancesOf(true_walls, CentresOf(true_walls), points, points, scored);
   if (!forth_m.empty()) score.estimate_to_truth_m = Summarise(forth_m).mean;
   if (!back_m.empty()) score.truth_to_estimate_m = Summarise(back_m).mean;
   if (forth_m.empty() || back_m.empty()) return score;
@@ -102,6 +141,15 @@ WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& w
   score.f1_5cm = F1Of(ShareWithin(forth_m, 0.05), ShareWithin(back_m, 0.05));
   score.f1_10cm = F1Of(ShareWithin(forth_m, 0.10), ShareWithin(back_m, 0.10));
   return score;
+}
+
+std::optional<double> DistanceToWallLines(const CellSet& true_walls, const CellSet& walls,
+                                          const CellSet& scored, const Pose2& truth_from_estimate) {
+  const auto [forth_m, back_m] = DistancesOf(
+      true_walls, LinesThrough(true_walls), Moved(truth_from_estimate, CentresOf(walls)),
+      Moved(truth_from_estimate, LinesThrough(walls)), scored);
+  if (forth_m.empty() || back_m.empty()) return {};
+  return 0.5 * (Summarise(forth_m).mean + Summarise(back_m).mean);
 }
 
 }  // namespace depthgrid

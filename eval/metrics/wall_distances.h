@@ -33,4 +33,11 @@ struct WallDistanceScore {
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate = {});
 
+// Mean of the two directed mean distances from wall cells, as above, to the other map's walls drawn
+// through as lines from centre to centre: unlike the distance between centres it does not grow when
+// a wall is moved along itself off the lattice. Empty where a direction has none.
+std::optional<double> DistanceToWallLines(const CellSet& true_walls, const CellSet& walls,
+                                          const CellSet& scored,
+                                          const Pose2& truth_from_estimate = {});
+
 }  // namespace depthgrid

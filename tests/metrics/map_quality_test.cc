@@ -198,6 +198,35 @@ TEST(Navigability, ADoorDrawnTooNarrowBlocksAWideRobot) {
             blocked->falsely_blocked_rate);
 }
 
+// Walls on the lattice's lines: the truth has each in the cell above, a good map some cells of it
+// below. All of the map may be off by a part of a cell, but no motion brings the walls nearer.
+TEST(MapQuality, WallsOnCellBoundariesAreNoShift) {
+  const StateMap truth = MovedRoom({1e-4, 1e-4, 0.0});
+  const StateMap below = MovedRoom({-1e-4, -1e-4, 0.0});
+  StateMap states = truth;
+  for (std::size_t i = 0; i < states.states.size(); ++i) {
+    const Cell cell = truth.geometry.CellAt(i);
+    if ((cell.x / 3 + cell.y / 3) % 5 < 2) states.states[i] = below.states[i];
+  }
+  const CellSet all = Everywhere(truth.geometry);
+  ASSERT_GT(RegisterMap(truth, states, all)->mean_shift_m, 0.01);
+  const auto quality_of = [&](const StateMap& estimate) {
+    OccupancyMap map(estimate.geometry);
+    for (std::size_t i = 0; i < estimate.states.size(); ++i) {
+      if (estimate.states[i] == CellState::kOccupied) map.occupied_prob[i] = 0.9F;
+      if (estimate.states[i] == CellState::kFree) map.occupied_prob[i] = 0.1F;
+    }
+    return ScoreMapQuality(truth, map, std::nullopt, {});
+  };
+  const MapQuality lies_right = quality_of(states);
+  EXPECT_EQ(lies_right.registration->truth_from_estimate, Pose2{});
+  EXPECT_EQ(lies_right.registration->mean_shift_m, 0.0);
+  EXPECT_EQ(lies_right.registered->chamfer_m, lies_right.walls.chamfer_m);
+  const MapQuality shifted = quality_of(MovedRoom({0.08, -0.06, 0.0}));
+  EXPECT_NEAR(shifted.registration->mean_shift_m, 0.1, 0.02);
+  EXPECT_LT(*shifted.registered->chamfer_m, *shifted.walls.chamfer_m);
+}
+
 TEST(MapQuality, APerfectMap) {
   const StateMap truth = MovedRoom({0.013, 0.021, 0.05});
   OccupancyMap estimate(truth.geometry);

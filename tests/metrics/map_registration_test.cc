@@ -170,6 +170,12 @@ TEST(WallDistances, HandWorked) {
   // Moved by one cell to the left, the upper two coincide.
   const auto moved = ScoreWallDistances(walls(truth), walls(estimate), all, {-0.05, 0.0, 0.0});
   EXPECT_NEAR(*moved.estimate_to_truth_m, 0.1 / 3, 1e-12);
+  // Lines: where walls that cross half a cell off lie on the other's, centres are half a cell away.
+  const StateMap level = DrawnMap({".....", "#####", "....."});
+  EXPECT_NEAR(*DistanceToWallLines(walls(level), walls(level), all, {0.025, 0.0, 0.0}),
+              0.5 * (0.0 + 0.025 / 5), 1e-12);
+  EXPECT_NEAR(*DistanceToWallLines(walls(level), walls(level), all, {0.0, 0.025, 0.0}), 0.025,
+              1e-12);
   // Where only true walls are scored there is one direction, and no score of both.
   const auto one_way = ScoreWallDistances(walls(truth), walls(estimate), walls(truth));
   EXPECT_FALSE(one_way.estimate_to_truth_m);
