@@ -105,7 +105,7 @@ void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t p
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
   const std::string time = estimate.cpu_s > 0.0
                                ? "about " + DurationText(estimate.cpu_s / context.threads)
-                               : "the first points fail: nobody knows how long";
+                               : "the first points fail (" + estimate.failure + ")";
   fmt::print("{} with {} at a time, {} of scans\n", time, context.threads,
              Counted(estimate.scan_sets, "different set"));
   std::fflush(stdout);
@@ -181,12 +181,15 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
     bar.Show(done, total);
     file.Note({done, total});
   };
+  std::vector<std::string> doubts;
   {
     const EndTask write_table([&output] {
       if (InterruptExitCode()) TabulateKnown(output);
     });
-    DoRuns(plan, database, context);
+    doubts = DoRuns(plan, database, context);
   }
+  bar.Clear();
+  Warn(doubts);
   WriteResultsCsv(database, output);
   return database.Results();
 }

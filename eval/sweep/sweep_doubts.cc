@@ -9,6 +9,7 @@
 
 #include "eval/camera_doubts.h"
 #include "eval/idle_settings.h"
+#include "eval/truth_check.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 
@@ -133,6 +134,35 @@ std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& f
     check(one, "--set " + assignment);
   }
   return doubts;
+}
+
+// Runs end in any order; the first is that of the plan.
+void RunDoubts::Kind::Add(int run, const std::string& doubt) {
+  if (runs++ > 0 && run > first) return;
+  first = run;
+  of_first = doubt;
+}
+
+void RunDoubts::Add(const PlannedRun& run, const OccupancyMap& map, const TruthRecord& truth,
+                    const ExperimentOptions& options) {
+  if (const auto doubt = DoubtOfTruth(truth, options)) truth_.Add(run.run, *doubt);
+  if (!HasFree(StatesOf(map))) map_.Add(run.run, "the map has no free cell");
+}
+
+std::vector<std::string> RunDoubts::Lines(const SweepPlan& plan) const {
+  std::vector<std::string> lines;
+  for (const Kind& kind : {truth_, map_}) {
+    if (kind.runs == 0) continue;
+    const PlannedRun& run = plan.runs[static_cast<std::size_t>(kind.first)];
+    std::vector<std::string> values;
+    for (std::size_t k = 0; k < plan.parameter_keys.size(); ++k) {
+      values.push_back(plan.parameter_keys[k] + "=" + run.values[k]);
+    }
+    lines.push_back(fmt::format("{}: {} of {}, the first with {}: {}", plan.title, kind.runs,
+                                Counted(plan.runs.size(), "run"), fmt::join(values, ", "),
+                                kind.of_first));
+  }
+  return lines;
 }
 
 std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config& experiment,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eval/sweep/sweep_plan.h"
+#include "eval/truth_record.h"
 
 namespace depthgrid {
 
@@ -38,6 +39,26 @@ struct SweepLayers {
 // the user's (`is_shipped`: it is not).
 std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
                                         bool is_shipped);
+
+// What runs showed to be likely not meant, once however many do: a true map without a free cell or
+// in which most of the path lies in others, and maps without a free cell.
+class RunDoubts {
+ public:
+  void Add(const PlannedRun& run, const OccupancyMap& map, const TruthRecord& truth,
+           const ExperimentOptions& options);
+  std::vector<std::string> Lines(const SweepPlan& plan) const;
+
+ private:
+  struct Kind {
+    int runs = 0;
+    int first = -1;
+    std::string of_first;
+
+    void Add(int run, const std::string& doubt);
+  };
+  Kind truth_;
+  Kind map_;
+};
 
 // Settings that the experiment's file holds for its own slam.profile, and that stay when `fixed` or
 // an axis chooses another: one line.

@@ -11,6 +11,7 @@
 #include "eval/statistics/resamples.h"
 #include "eval/statistics/seed_units.h"
 #include "eval/sweep/scan_maker.h"
+#include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/cpu_clock.h"
@@ -87,6 +88,7 @@ class Engine {
     Tick();
   }
   int done() const { return done_; }
+  std::vector<std::string> doubts() const { return doubts_.Lines(plan_); }
 
  private:
   void Tick() {
@@ -166,6 +168,8 @@ class Engine {
         mapping = MapExperiment(source, options, *scans.world, scans.slam,
                                 [this](int, int) { TickInRun(); });
         outcome.metrics = SweepMetrics(Score(mapping, *truth, options.metrics));
+        const std::lock_guard lock(mutex_);
+        doubts_.Add(run, mapping.result.map, *truth, options);
       });
     } catch (const std::exception& error) {
       if (stopped_) throw;
@@ -180,6 +184,7 @@ class Engine {
   const SweepContext& context_;
   SweepInputs inputs_;
   std::mutex mutex_;
+  RunDoubts doubts_;
   std::atomic<bool> stopped_ = false;
   int done_ = 0;
   int total_ = 0;
@@ -251,7 +256,8 @@ void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine
 
 }  // namespace
 
-void DoRuns(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context) {
+std::vector<std::string> DoRuns(const SweepPlan& plan, SweepDatabase& database,
+                                const SweepContext& context) {
   Engine engine(plan, database, context);
   const std::vector<const PlannedRun*> runs = Unfinished(plan, database);
   const auto planned = static_cast<int>(database.PlannedRuns().size());
@@ -262,6 +268,7 @@ void DoRuns(const SweepPlan& plan, SweepDatabase& database, const SweepContext& 
   } else {
     engine.Do(runs, groups);
   }
+  return engine.doubts();
 }
 
 }  // namespace depthgrid

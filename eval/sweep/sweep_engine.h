@@ -20,12 +20,15 @@ struct SweepContext {
 };
 
 // Every outcome goes into the database as soon as it is known. The table at the end depends
-// neither on threads nor on what was in the database before.
-void DoRuns(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context);
+// neither on threads nor on what was in the database before. Returns what the runs that were done
+// showed to be likely not meant (RunDoubts).
+std::vector<std::string> DoRuns(const SweepPlan& plan, SweepDatabase& database,
+                                const SweepContext& context);
 
 // How long the runs will take, from a few frames of the first of them; about.
 struct SweepEstimate {
-  double cpu_s = 0.0;  // 0 when each run that was tried failed
+  double cpu_s = 0.0;   // 0 when each run that was tried failed
+  std::string failure;  // of the first of those
   int scan_sets = 0;
 };
 SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,

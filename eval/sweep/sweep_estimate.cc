@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <string>
 
 #include "eval/sweep/scan_set.h"
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_inputs.h"
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/cpu_clock.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
@@ -71,20 +73,30 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
 }
 
 // Of the first run that does not fail: what is wrong with those before they will say themselves.
-std::optional<PilotTimes> TimesOfARun(const SweepPlan& plan, const std::vector<int>& runs,
-                                      const SweepContext& context) {
+struct Pilot {
+  std::optional<PilotTimes> times;
+  std::string failure;  // of the first run that was tried and failed
+};
+
+Pilot PilotOf(const SweepPlan& plan, const std::vector<int>& runs, const SweepContext& context) {
+  Pilot pilot;
   std::set<int> tried;  // points
   for (const int run : runs) {
     const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
     if (!tried.insert(planned.point).second) continue;
     if (tried.size() > kMostTries) break;
     try {
-      return TimesOfFirstFrames(plan.OptionsOf(planned), context);
-    } catch (const std::exception&) {
-      continue;
+      NamingPlaces(plan.PlaceOfKey(), [&] {
+        const ExperimentOptions options = plan.OptionsOf(planned);
+        RequireSound(options, plan.PlaceOfKey());
+        pilot.times = TimesOfFirstFrames(options, context);
+      });
+      return pilot;
+    } catch (const std::exception& error) {
+      if (pilot.failure.empty()) pilot.failure = error.what();
     }
   }
-  return {};
+  return pilot;
 }
 
 }  // namespace
@@ -97,7 +109,9 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
   std::set<int> used;
   for (const int run : runs) used.insert(groups[static_cast<std::size_t>(run)]);
   estimate.scan_sets = static_cast<int>(used.size());
-  if (const auto times = TimesOfARun(plan, runs, context)) {
+  const Pilot pilot = PilotOf(plan, runs, context);
+  estimate.failure = pilot.failure;
+  if (const auto& times = pilot.times) {
     const auto frames = static_cast<double>(times->frames);
     estimate.cpu_s = estimate.scan_sets * frames * times->scan_s +
                      static_cast<double>(runs.size()) * times->run_s;

@@ -1,13 +1,20 @@
 // Camera paths that are read from a file: what is refused, what is only said.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "eval/storey_check.h"
+#include "mapper/core/level.h"
 #include "tests/eval/program.h"
 
 namespace depthgrid {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class TruthPaths : public ProgramTest {};
 
@@ -74,6 +81,14 @@ TEST_F(TruthPaths, ATrueMapWithoutFreeCellsIsWarnedOf) {
                 HasSubstr("room.yaml: the true map has no free cell: surfaces are 0.1 to 1.8 m "));
   }
   EXPECT_THAT(ReadFile(Path("out_run/warnings.txt")), HasSubstr("the true map has no free cell"));
+  EXPECT_THAT(Program("ablate ./small.yaml --set frames=2 --seeds 1 -o ablated").err,
+              HasSubstr("room.yaml: the true map has no free cell: "));
+  Write("sweep.yaml", "experiment: ./small.yaml\nset: {frames: 2}\naxes: {seed: [4, 5]}\n");
+  const std::string said = Program("sweep ./sweep.yaml -o swept").err;
+  const std::string once = "sweep: 2 of 2 runs, the first with seed=4: ";
+  EXPECT_THAT(said, HasSubstr(once));
+  EXPECT_THAT(said, HasSubstr("room.yaml: the true map has no free cell: "));
+  EXPECT_EQ(said.find(once), said.rfind(once + "/")) << said;
 }
 
 TEST_F(TruthPaths, APathMostlyAboveObstaclesIsWarnedOf) {
@@ -92,6 +107,85 @@ TEST_F(TruthPaths, APathMostlyAboveObstaclesIsWarnedOf) {
               testing::Not(HasSubstr("the true map is not free")));
 }
 
+constexpr const char* kHouse = R"(shapes:
+  - {shape: box, size: [3, 4, 0.2], at: [1.5, 2, -0.2]}
+  - {shape: box, size: [3, 4, 0.2], at: [1.5, 2, 2.4]}
+  - {shape: box, size: [1, 1, 1.9], at: [0.6, 2, 2.6]}
+  - {shape: wall, from: [0, 0], to: [3, 0], side: right, height_m: 6}
+  - {shape: wall, from: [3, 0], to: [3, 4], side: right, height_m: 6}
+  - {shape: wall, from: [3, 4], to: [0, 4], side: right, height_m: 6}
+  - {shape: wall, from: [0, 4], to: [0, 0], side: right, height_m: 6}
+trajectories:
+  down: {kind: planar, height_m: 1.1, waypoints: [{at: [1.5, 1]}, {at: [1.5, 3]}]}
+  up: {kind: planar, height_m: 3.7, waypoints: [{at: [1.5, 1]}, {at: [1.5, 3]}]}
+)";
+
+TEST_F(TruthPaths, APathInAnotherStoreyIsWarnedOf) {
+  Write("house.yaml", kHouse);
+  Write("upper.yaml", "floor_z_m: 2.6\n" + std::string(kHouse));
+  const std::string said =
+      "house.yaml:11: trajectory 'up': 2 of 2 poses are above level surface at z = 2.6 m, but maps "
+      "are of the storey whose floor is at 0 m; floor_z_m: 2.6 in the scene's file takes that one";
+  const std::string with = " ./small.yaml --force --set scene=./house.yaml --set frames=2 ";
+  for (const char* command : {"run", "render --no-colour", "ablate --seeds 1"}) {
+    const std::string to = std::string(command) + with + "-o out_" + std::string(command, 3);
+    EXPECT_THAT(Program(to + " --set trajectory=up").err, HasSubstr(said)) << command;
+    EXPECT_THAT(Program(to + " --set trajectory=down").err, Not(HasSubstr("storey"))) << command;
+    EXPECT_THAT(Program(to + " --set trajectory=up --set scene=./upper.yaml").err,
+                Not(HasSubstr("storey")));
+  }
+  Write("sweep.yaml",
+        "experiment: ./small.yaml\nset: {scene: ./house.yaml, frames: 2}\n"
+        "axes: {trajectory: [down, up], mapper.fusion.gain: [0, 1]}\n");
+  const std::string swept = Program("sweep ./sweep.yaml --dry-run -o sweep").err;
+  EXPECT_THAT(swept, HasSubstr(said));
+  EXPECT_EQ(std::count(swept.begin(), swept.end(), '\n'), 1) << swept;
+  const std::string look = " -0.7071068 0 0 0.7071068\n";
+  Write("path.txt", "0 1.5 1.5 3.7" + look + "0.1 1.5 1.6 3.7" + look);
+  EXPECT_THAT(Program("run" + with + "-o file --set trajectory=./path.txt").err,
+              HasSubstr("path.txt: 2 of 2 poses are above level surface at z = 2.6 m"));
+  const std::string facts = Program("scenes ./house.yaml").out;
+  EXPECT_THAT(facts, ContainsRegex("warning: .*house.yaml:11: trajectory 'up': [0-9]+ of"));
+  EXPECT_THAT(facts, Not(HasSubstr("'down'")));
+}
+
+TEST_F(TruthPaths, NeitherFurnitureNorStairsAreAnotherStorey) {
+  Write("house.yaml", kHouse);
+  const Scene scene = LoadScene(Path("house.yaml"));
+  const RayScene rays(scene.mesh);
+  Trajectory path;
+  const auto add = [&](int poses, double x_m, double z_m) {
+    for (int i = 0; i < poses; ++i) {
+      const Pose2 base{x_m, 2.0, 0.0};
+      path.push_back({0.1 * static_cast<double>(path.size()), CameraOf(base, z_m)});
+    }
+  };
+  add(4, 0.6, 5.5);  // a cupboard of 1.9 m in the upper storey
+  add(1, 2.0, 5.5);
+  EXPECT_FALSE(DoubtOfStorey(path, scene, rays));
+  path.clear();
+  add(2, 2.0, 1.0);
+  add(2, 2.0, 3.6);
+  EXPECT_FALSE(DoubtOfStorey(path, scene, rays));
+  add(1, 2.0, 3.6);
+  EXPECT_THAT(DoubtOfStorey(path, scene, rays).value_or(""), HasSubstr("3 of 5 poses are above"));
+  // Above nothing at all.
+  path.clear();
+  add(3, 9.0, 3.6);
+  EXPECT_FALSE(DoubtOfStorey(path, scene, rays));
+  // Ten steps of 30 cm.
+  std::string stairs = "shapes:\n  - {shape: box, size: [11, 2, 0.1], at: [5, 2, -0.1]}\n";
+  for (int i = 1; i <= 10; ++i) {
+    stairs +=
+        fmt::format("  - {{shape: box, size: [1, 2, {}], at: [{}, 2, 0]}}\n", 0.3 * i, i - 0.5);
+  }
+  Write("stairs.yaml", stairs);
+  const Scene flight = LoadScene(Path("stairs.yaml"));
+  path.clear();
+  for (int i = 1; i <= 10; ++i) add(5, i - 0.5, 0.3 * i + 1.0);
+  EXPECT_FALSE(DoubtOfStorey(path, flight, RayScene(flight.mesh)));
+}
+
 TEST_F(TruthPaths, AMapWithoutFreeCellsIsWarnedOf) {
   Write("room.yaml", std::string(kRoom) +
                          "  up: {kind: planar, height_m: 0.6, pitch_deg: 45, "
@@ -99,6 +193,11 @@ TEST_F(TruthPaths, AMapWithoutFreeCellsIsWarnedOf) {
   const std::string run = "run ./small.yaml --set frames=5 --set trajectory=";
   EXPECT_THAT(Program(run + "up -o up").err, HasSubstr("the map has no free cell: no beam clears"));
   EXPECT_EQ(Program(run + "look_around -o level").err, "");
+  Write("sweep.yaml",
+        "experiment: ./small.yaml\nset: {frames: 5}\naxes: {trajectory: [look_around, up]}\n");
+  EXPECT_THAT(Program("sweep ./sweep.yaml -o swept").err,
+              HasSubstr("sweep: 1 of 2 runs, the first with trajectory=up: the map has no free "
+                        "cell\n"));
 }
 
 TEST_F(TruthPaths, AFilesPathThroughAWallIsWarnedOf) {
