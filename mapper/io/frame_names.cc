@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mapper/core/counted.h"
 #include "mapper/core/usual_step.h"
@@ -18,8 +19,21 @@ double PartEndS(const FrameNames& names) {
   return names.stamps_s[names.part.EndAmong(names.stamps_s.size()) - 1];
 }
 
-// Images with their numbers for stamps (ICL-NUIM) and poses with seconds: how many poses a second.
-// Nothing where whole seconds may be meant: poses that are more than the numbers, or span as much.
+// Of stamps in seconds that belong to numbers from the first to the last of `numbers`: how many a
+// second. Nothing where the numbers may be whole seconds: they span as much.
+std::optional<double> RateBesideNumbers(const std::vector<double>& stamps_s, double numbers) {
+  if (stamps_s.size() < 2 || 2.0 * (stamps_s.back() - stamps_s.front()) > numbers) return {};
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < stamps_s.size(); ++i) {
+    steps_s.push_back(stamps_s[i] - stamps_s[i - 1]);
+  }
+  const double step_s = UsualStepS(steps_s);
+  if (!(step_s > 0.0 && step_s <= 0.5)) return {};
+  return 1.0 / step_s;
+}
+
+// Images with their numbers for stamps (ICL-NUIM) and poses with seconds, not more than there are
+// numbers: how many poses a second.
 std::optional<double> PosesASecond(const FrameNames& names,
                                    const std::vector<double>& pose_stamps_s) {
   for (std::size_t i = 0; i < names.stamps_s.size(); ++i) {
@@ -27,16 +41,23 @@ std::optional<double> PosesASecond(const FrameNames& names,
       return {};
   }
   const double numbers = names.stamps_s.back() - names.stamps_s.front();
-  const double span_s = pose_stamps_s.back() - pose_stamps_s.front();
-  const auto poses = static_cast<double>(pose_stamps_s.size());
-  if (poses < 2.0 || poses > numbers + 1.0 || 2.0 * span_s > numbers) return {};
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < pose_stamps_s.size(); ++i) {
-    steps_s.push_back(pose_stamps_s[i] - pose_stamps_s[i - 1]);
+  if (static_cast<double>(pose_stamps_s.size()) > numbers + 1.0) return {};
+  return RateBesideNumbers(pose_stamps_s, numbers);
+}
+
+// Images with seconds and poses with their images' numbers, counted from 0 or 1, for stamps: how
+// many images a second.
+std::optional<double> ImagesASecond(const FrameNames& names,
+                                    const std::vector<double>& pose_stamps_s) {
+  const auto is_number = [](double stamp_s) {
+    return stamp_s >= 0.0 && stamp_s == std::round(stamp_s);
+  };
+  const auto images = static_cast<double>(names.NumberOf(names.stamps_s.size() - 1)) + 1.0;
+  if (pose_stamps_s.back() > images ||
+      !std::all_of(pose_stamps_s.begin(), pose_stamps_s.end(), is_number)) {
+    return {};
   }
-  const double step_s = UsualStepS(steps_s);
-  if (!(step_s > 0.0 && step_s <= 0.5)) return {};
-  return 1.0 / step_s;
+  return RateBesideNumbers(names.stamps_s, pose_stamps_s.back() - pose_stamps_s.front());
 }
 
 std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
@@ -44,6 +65,12 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
     return fmt::format(
         "the images' stamps are their numbers, the poses' look like seconds, {:.3g} a second: a "
         "pose's must be its image's number",
+        *rate_hz);
+  }
+  if (const auto rate_hz = ImagesASecond(names, pose_stamps_s)) {
+    return fmt::format(
+        "the poses' stamps are numbers, the images' look like seconds, {:.3g} a second: a pose's "
+        "must be its image's stamp",
         *rate_hz);
   }
   const double first_pose_s = pose_stamps_s.front();

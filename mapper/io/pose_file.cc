@@ -53,8 +53,8 @@ std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const
   }();
   RequireSomePose(poses, damage, place);
   damage.AppendTo(warnings, place);
-  WarnOfCount(warnings, place, damage.left_out().count, "pose",
-              "with NaN, a zero rotation or beyond 10,000 km ignored");
+  damage.left_out().AppendTo(warnings, place, "pose",
+                             "with NaN, a zero rotation or beyond 10,000 km ignored");
   return poses;
 }
 

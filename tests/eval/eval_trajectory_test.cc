@@ -168,8 +168,10 @@ TEST_F(EvalTrajectory, MatricesThatDoNotPairAreRefused) {
   ExpectRefusal("eval trajectory mended.txt three.txt",
                 {"mended.txt: 1 row is no pose or not later than the row before"});
   const Outcome gap = Program("eval trajectory three.txt gap.txt --max-difference 0.1");
-  EXPECT_THAT(gap.err,
-              HasSubstr("gap.txt: 1 pose with NaN, a zero rotation or beyond 10,000 km ignored"));
+  EXPECT_THAT(
+      gap.err,
+      HasSubstr("gap.txt: 1 pose with NaN, a zero rotation or beyond 10,000 km ignored (first: "));
+  EXPECT_THAT(gap.err, HasSubstr("gap.txt:2: the matrix must be finite)"));
   EXPECT_THAT(gap.err, HasSubstr("--max-difference: has no effect because rows pair in order"));
   EXPECT_THAT(gap.out, HasSubstr("2 of 3 reference and 2 estimated poses matched"));
 }

@@ -156,6 +156,20 @@ TEST_F(SlamFiles, PosesInSecondsOfNumberedImagesAreSaid) {
               HasSubstr("gives 1 of 12 frames a pose: images from 0.000 to 11.000 s, poses from "
                         "0.000 to 0.367 s; the images' stamps are their numbers, the poses' look "
                         "like seconds, 30 a second: a pose's must be its image's number\n"));
+  // The other way round.
+  FrameNames timed;
+  for (int i = 0; i < 12; ++i) timed.stamps_s.push_back(100.0 + i / 30.0);
+  Trajectory numbered = example.final;
+  for (std::size_t i = 0; i < numbered.size(); ++i) numbered[i].stamp_s = static_cast<double>(i);
+  WriteTrajectory(Paths().live, numbered);
+  try {
+    ReadSlamFiles({Paths().live, "", ""}, timed);
+    ADD_FAILURE() << "numbers are no seconds";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("the poses' stamps are numbers, the images' look like seconds, 30 a "
+                          "second: a pose's must be its image's stamp"));
+  }
   // Whole seconds: of poses that are not one an image, of stamps that do not begin with 0.
   Trajectory dense;
   for (int i = 0; i < 40; ++i) dense.push_back({0.1 * i, example.final.front().world_from_camera});
