@@ -103,11 +103,13 @@ void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t p
   std::fflush(stdout);
   if (runs.empty()) return;
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
-  const std::string time = estimate.cpu_s > 0.0
-                               ? "about " + DurationText(estimate.cpu_s / context.threads)
-                               : "the first points fail (" + estimate.failure + ")";
-  fmt::print("{} with {} at a time, {} of scans\n", time, context.threads,
-             Counted(estimate.scan_sets, "different set"));
+  if (estimate.cpu_s > 0.0) {
+    fmt::print("about {} with {} at a time, {} of scans\n",
+               DurationText(estimate.cpu_s / context.threads), context.threads,
+               Counted(estimate.scan_sets, "different set"));
+  } else {
+    fmt::print("the first points fail: {}\n", estimate.failure);
+  }
   std::fflush(stdout);
 }
 
