@@ -7,7 +7,7 @@
 namespace depthgrid {
 
 // Throws InputError, with file and line, for a count, stride or offset that the file cannot hold,
-// and for an accessor that leads beyond its array.
+// for an accessor that leads beyond its array and for what is no index in a list of them.
 void RequireSoundCounts(const std::string& dae_path);
 
 }  // namespace depthgrid

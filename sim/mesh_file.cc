@@ -49,6 +49,12 @@ std::string OneLine(std::string text) {
   return text;
 }
 
+// Assimp passes on what the standard library calls it.
+bool IsOfMemory(std::string_view message) {
+  return message.find("bad_alloc") != std::string_view::npos ||
+         message.find("bad_array_new_length") != std::string_view::npos;
+}
+
 // The rotation that brings the file's up axis to z; cyclic, so handedness stays.
 Eigen::Matrix3d ZUpFrom(UpAxis up) {
   Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
@@ -164,6 +170,9 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
   const aiScene* scene = importer.ReadFile(
       path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
   if (scene == nullptr || scene->mRootNode == nullptr) {
+    if (IsOfMemory(importer.GetErrorString())) {
+      throw InputError(path, "needs more memory to be read than there is");
+    }
     throw InputError(path, "is not a readable mesh: " + OneLine(importer.GetErrorString()));
   }
   // Assimp turns a DAE to +y up by what it states; glTF has +y up.

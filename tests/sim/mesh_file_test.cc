@@ -290,6 +290,47 @@ TEST_F(MeshFiles, CountsThatADaeCannotHoldAreRefused) {
   EXPECT_EQ(ErrorOf("a.dae", sound), "no error");
 }
 
+// Assimp never gets past what is no number, and takes memory all the while.
+TEST_F(MeshFiles, IndicesOfADaeThatAreNoNumbersAreRefused) {
+  const std::string sound = Dae("Z_UP", "1");
+  const std::string list = "<p>0 2 1";
+  const auto with = [&](const std::string& to) {
+    std::string text = sound;
+    return text.replace(text.find(list), list.size(), to);
+  };
+  for (const std::string word : {"nan", "inf", "abc", "1e3", "1.0", "-1", "+1", "1,2", "&#48;"}) {
+    EXPECT_THAT(ErrorOf("a.dae", with("<p>0\n2 " + word)),
+                StartsWith("2: <p> has '" + word + "', must be a whole number from 0 to "));
+  }
+  EXPECT_THAT(ErrorOf("a.dae", with("<p>0 2 99999999999")), StartsWith("1: <p> has '99999999999'"));
+  EXPECT_THAT(ErrorOf("a.dae", with("<p><![CDATA[0 2 x]]>")), StartsWith("1: <p> has 'x'"));
+  EXPECT_THAT(ErrorOf("a.dae", with("<p name='>'>0 2 x")), StartsWith("1: <p> has 'x'"));
+  EXPECT_EQ(ErrorOf("a.dae", with("<!-- <p>0 2 x</p> --><p>0 2 1")), "no error");
+  EXPECT_EQ(ErrorOf("a.dae", with("<p>\r\n\t0 2 1")), "no error");
+  EXPECT_EQ(ErrorOf("a.dae", sound + std::string(1, '\0')),
+            "has a zero byte, must be text in UTF-8");
+}
+
+// Each number fits, all of them together do not.
+TEST_F(MeshFiles, CornersThatADaeCannotHoldAreRefused) {
+  const auto with = [](const std::string& vcount) {
+    std::string text = Dae("Z_UP", "1");
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"<triangles", "<polylist"},
+                                   {"</triangles", "</polylist"},
+                                   {"<p>", "<vcount>" + vcount + "</vcount><p>"}}) {
+      text.replace(text.find(from), from.size(), to);
+    }
+    return text;
+  };
+  EXPECT_EQ(ErrorOf("a.dae", with("3 3 3 3")), "no error");
+  EXPECT_THAT(ErrorOf("a.dae", with("3 3 x 3")), StartsWith("1: <vcount> has 'x'"));
+  EXPECT_THAT(ErrorOf("a.dae", with("900 900 900 900")),
+              StartsWith("1: polylist states 3600 corners of 1 indices each, must be "));
+  std::string text = with("300 300 300 300");
+  text.replace(text.find("offset=\"0\""), 10, "offset=\"9\"");
+  EXPECT_THAT(ErrorOf("a.dae", text), StartsWith("1: polylist states 1200 corners of 10 indices"));
+}
+
 // Cut off anywhere, a file of any format is refused or gives what is whole, and never hangs.
 TEST_F(MeshFiles, FilesCutOffAnywhereAreSurvived) {
   int cases = 0;
