@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -30,6 +31,24 @@ class Cursor {
     }
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
+  }
+  // What parts the header from a binary raster of so many bytes: one white space, which a text tool
+  // may have made a line end of two bytes.
+  void SkipHeaderEnd(std::size_t raster_bytes) {
+    constexpr std::string_view kTwoBytes = "\r\n";
+    const bool has_both =
+        rest_.starts_with(kTwoBytes) && rest_.size() >= kTwoBytes.size() + raster_bytes;
+    Skip(has_both ? kTwoBytes.size() : 1);
+  }
+  // A line end and further images are the format's; whatever else is there, the pixels may have
+  // been taken from the wrong place.
+  void RequireEnd() {
+    const std::size_t surplus = rest_.size();
+    SkipSpaceAndComments();
+    if (rest_.empty() || IsPgm(rest_)) return;
+    throw InputError(place_, fmt::format("PGM has {} after its pixels, must end with them or "
+                                         "with a line end",
+                                         Counted(surplus, "byte")));
   }
   void Skip(std::size_t count) { rest_.remove_prefix(std::min(count, rest_.size())); }
   std::string_view rest() const { return rest_; }
@@ -57,9 +76,12 @@ void RequireBytes(std::size_t have, std::size_t need, const std::string& place) 
   }
 }
 
-void ReadBinary(std::string_view raster, const std::string& place, PgmImage& image) {
+void ReadBinary(Cursor& cursor, const std::string& place, PgmImage& image) {
   const std::size_t sample_bytes = image.max_value > 255 ? 2 : 1;
-  RequireBytes(raster.size(), image.values.size() * sample_bytes, place);
+  const std::size_t raster_bytes = image.values.size() * sample_bytes;
+  cursor.SkipHeaderEnd(raster_bytes);
+  const std::string_view raster = cursor.rest();
+  RequireBytes(raster.size(), raster_bytes, place);
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     const auto byte = [&](std::size_t k) { return static_cast<std::uint8_t>(raster[k]); };
     image.values[i] = sample_bytes == 1
@@ -70,6 +92,7 @@ void ReadBinary(std::string_view raster, const std::string& place, PgmImage& ima
                                           image.values[i], image.max_value));
     }
   }
+  cursor.Skip(raster_bytes);
 }
 
 }  // namespace
@@ -102,9 +125,9 @@ PgmImage DecodePgm(std::string_view bytes, const std::string& place) {
       value = static_cast<std::uint16_t>(cursor.Number("pixel", image.max_value));
     }
   } else {
-    cursor.Skip(1);  // exactly one white space parts the header from the raster
-    ReadBinary(cursor.rest(), place, image);
+    ReadBinary(cursor, place, image);
   }
+  cursor.RequireEnd();
   return image;
 }
 

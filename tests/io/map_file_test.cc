@@ -9,6 +9,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "mapper/io/pgm.h"
 #include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
@@ -157,6 +158,39 @@ TEST_F(MapFileTest, ScaleAndRawRoundTripKeepTheProbabilities) {
       }
     }
   }
+}
+
+// A text tool may have made each line end two bytes; the raster's own bytes are not moved by it.
+TEST_F(MapFileTest, APgmWithLineEndsOfTwoBytesHasItsPixelsInTheirPlaces) {
+  const auto values = [](const std::string& bytes) { return DecodePgm(bytes, "m.pgm").values; };
+  const std::string four("\x01\xfe\xcd\x0a", 4);
+  const std::vector<std::uint16_t> expected = {1, 254, 205, 10};
+  EXPECT_EQ(values("P5\n2 2\n255\n" + four), expected);
+  EXPECT_EQ(values("P5\r\n2 2\r\n255\r\n" + four), expected);
+  EXPECT_EQ(values("P5\r\n2 2\r\n255\r\n" + four + "\r\n"), expected);
+  EXPECT_EQ(values("P5\r2 2\r255\r" + four), expected);
+  const std::string line_feed_first("\x0a\xfe\xcd\x01", 4);
+  EXPECT_EQ(values("P5\r2 2\r255\r" + line_feed_first).front(), 10);
+}
+
+TEST_F(MapFileTest, WhatFollowsThePixelsOfAPgmIsALineEndOrAnImage) {
+  const std::string pgm("P5\n2 2\n255\n\x01\xfe\xcd\x0a", 15);
+  const auto error = [](const std::string& bytes) {
+    try {
+      DecodePgm(bytes, "m.pgm");
+      return std::string("no error");
+    } catch (const InputError& refused) {
+      return std::string(refused.what());
+    }
+  };
+  for (const std::string& rest : {std::string(), std::string("\n"), std::string("\r\n"), pgm}) {
+    EXPECT_EQ(error(pgm + rest), "no error");
+  }
+  EXPECT_EQ(error(pgm + "abc"),
+            "m.pgm: PGM has 3 bytes after its pixels, must end with them or with a line end");
+  EXPECT_THAT(error("P5\n2 2\n255 \n\x01\xfe\xcd\xfe"), HasSubstr("has 1 byte after"));
+  EXPECT_THAT(error("P2 2 1 255 1 2 3"), HasSubstr("has 2 bytes after"));
+  EXPECT_EQ(error("P2 2 1 255 1 2\n# made by hand\n"), "no error");
 }
 
 TEST_F(MapFileTest, OneClearLineForEachFault) {
