@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <new>
+#include <stdexcept>
+
 #include "eval/map_picture.h"
 #include "eval/metrics_json.h"
 #include "eval/placed_path.h"
@@ -136,12 +139,24 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
   WriteStoredScans(folder, *record.mapping);
   WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
-  WriteSamplePictures(folder.work().string(), *record.mapping, record.scan, record.world);
+  WriteDepthPictures(folder.work().string(), *record.mapping, record.scan);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
   WriteRunReport(folder.work().string(),
                  {folder.work().string()});  // of what the folder holds by now
+}
+
+std::optional<std::string> AddColour(const std::string& folder, const RunRecord& record) {
+  try {
+    WriteColourPictures(folder, *record.mapping, *record.world);
+  } catch (const std::bad_alloc&) {
+    return "pictures in colour are left out: out of memory";
+  } catch (const std::runtime_error& error) {
+    return fmt::format("pictures in colour are left out: {}", error.what());
+  }
+  WriteRunReport(folder, {folder});
+  return std::nullopt;
 }
 
 }  // namespace depthgrid

@@ -1,6 +1,7 @@
 // The folder of a run (docs/run_folder.md): all that `run` and `map` leave behind.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ OccupancyMap MapToWrite(const OccupancyMap& map);
 
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
+
+// Puts the pictures in colour into a run's folder, and its page anew: apart, for the library that
+// draws them may be missing, or end the program when memory is short. Returns why there are none.
+std::optional<std::string> AddColour(const std::string& folder, const RunRecord& record);
 
 // metrics.json of a run.
 std::string MetricsOf(const RunScores& scores);

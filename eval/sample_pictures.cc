@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <optional>
 
 #include "eval/depth_picture.h"
 #include "mapper/io/png.h"
@@ -36,22 +35,29 @@ RgbImage PictureOf(const SampleFrame& sample, const MappingRun& run, const ScanO
                                options);
 }
 
+std::string StemOf(const std::string& folder, const SampleFrame& sample) {
+  return fmt::format("{}/frames/{:06}", folder, sample.frame);
+}
+
 }  // namespace
 
-void WriteSamplePictures(const std::string& folder, const MappingRun& run,
-                         const ScanOptions& options, const World* world) {
+void WriteDepthPictures(const std::string& folder, const MappingRun& run,
+                        const ScanOptions& options) {
   if (run.samples.empty()) return;
   std::filesystem::create_directory(folder + "/frames");
-  std::optional<ColourCamera> camera;
-  if (world != nullptr && run.camera) camera.emplace(world->scene, *run.camera);
   for (const SampleFrame& sample : run.samples) {
-    const std::string stem = fmt::format("{}/frames/{:06}", folder, sample.frame);
-    WriteRgbPng(stem + "_depth.png", PictureOf(sample, run, options));
-    if (!camera) continue;
+    WriteRgbPng(StemOf(folder, sample) + "_depth.png", PictureOf(sample, run, options));
+  }
+}
+
+void WriteColourPictures(const std::string& folder, const MappingRun& run, const World& world) {
+  if (run.samples.empty() || !run.camera) return;
+  ColourCamera camera(world.scene, *run.camera);
+  for (const SampleFrame& sample : run.samples) {
     const auto frame = static_cast<std::size_t>(sample.frame);
-    const Pose3& pose = world->trajectory[frame].world_from_camera;
-    const auto movers = world->movers.At(world->trajectory, frame);
-    WriteRgbPng(stem + "_colour.png", camera->Render(pose, movers).rgb);
+    const Pose3& pose = world.trajectory[frame].world_from_camera;
+    const auto movers = world.movers.At(world.trajectory, frame);
+    WriteRgbPng(StemOf(folder, sample) + "_colour.png", camera.Render(pose, movers).rgb);
   }
 }
 

@@ -9,8 +9,9 @@
 
 namespace depthgrid {
 
-// `world` may be null: recorded data has no colour to render.
-void WriteSamplePictures(const std::string& folder, const MappingRun& run,
-                         const ScanOptions& options, const World* world);
+void WriteDepthPictures(const std::string& folder, const MappingRun& run,
+                        const ScanOptions& options);
+// Beside them. Throws std::runtime_error when colour cannot be drawn.
+void WriteColourPictures(const std::string& folder, const MappingRun& run, const World& world);
 
 }  // namespace depthgrid

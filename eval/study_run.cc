@@ -64,8 +64,10 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   record.cpu_s_total = ProcessCpuS();
   WriteMap(folder.File("input_map.yaml"), MapToWrite(input), map_mode);
   WriteRunFolder(folder, record);
+  const auto no_colour = AddColour(folder.work().string(), record);
   folder.Commit();
   result.warnings = std::move(record.warnings);
+  if (no_colour) result.warnings.push_back(*no_colour);
   return result;
 }
 

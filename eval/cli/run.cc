@@ -119,6 +119,9 @@ void RunOne(const RunArguments& arguments) {
   bar.Say("writing the folder and the report");
   WriteRunFolder(folder, record);
   folder.Commit();
+  if (const auto no_colour = AddColour(arguments.common.output, record)) {
+    record.warnings.push_back(*no_colour);
+  }
   WriteVideo(arguments.output, arguments.common, run.mapping, run.options.mapper.grid);
   bar.Clear();
   Warn(record.warnings);

@@ -49,6 +49,20 @@ TEST_F(ProgramRun, WritesTheWholeFolder) {
   }
 }
 
+// The library brings LLVM along; a robot's computer may well be without it.
+TEST_F(ProgramRun, IsWholeWithoutColourWhereItCannotBeDrawn) {
+  std::filesystem::create_directory(Path("lib"));
+  Write("lib/libOSMesa.so.8", "no library");
+  const Outcome outcome = Program("run ./small.yaml -o out", "LD_LIBRARY_PATH=lib ");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: pictures in colour are left out: libOSMesa.so.8"));
+  EXPECT_THAT(FilesIn("out"), IsSupersetOf({"map.pgm", "metrics.json", "report.html"}));
+  EXPECT_THAT(FilesIn("out/frames"), Not(IsEmpty()));
+  const Outcome render = Program("render ./small.yaml -o images", "LD_LIBRARY_PATH=lib ");
+  EXPECT_EQ(render.exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(Path("images")));
+}
+
 TEST_F(ProgramRun, TruePosesGiveTheTrueMap) {
   Succeed(
       "run ./small.yaml --set slam.profile=ground_truth --set sensor.noise=none "
