@@ -181,8 +181,9 @@ std::vector<SlamEvent> StampedEvents(const std::vector<TextRow>& rows, EventKind
 
 }  // namespace
 
-SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
+SlamEvents ParseSlamEvents(const std::string& whole_text, const std::string& place,
                            const FrameNames& frames, double max_difference_s) {
+  const std::string_view text = WithoutByteOrderMark(whole_text);
   const std::vector<TextRow> rows = SplitRows(text);
   const EventKind kind = KindOf(text, rows, place);
   SlamEvents result;
@@ -197,7 +198,7 @@ SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
   }
   std::stable_sort(result.events.begin(), result.events.end(),
                    [](const auto& a, const auto& b) { return a.frame < b.frame; });
-  damage.RequireMostGood(text);
+  damage.RequireMostGood(whole_text);
   damage.AppendTo(result.warnings, place);
   if (missing > 0) {
     result.warnings.push_back(fmt::format("{}: {} of frames that the recording does not have",

@@ -43,6 +43,14 @@ TEST(LoopEvents, OrbSlamsEventsByHand) {
   EXPECT_TRUE(loop.first_from_second.translation.isApprox(Eigen::Vector3d(0.0, 0.0, 0.5)));
 }
 
+// Spreadsheets put one before what they save.
+TEST(LoopEvents, AByteOrderMarkIsNoPartOfTheFirstWord) {
+  const std::string header = "kind,frame,epoch,x,sigma_rotation_rad\n";
+  const SlamEvents events = Parse("\xef\xbb\xbf" + header);
+  EXPECT_EQ(events.kind, Parse(header).kind);
+  EXPECT_TRUE(events.warnings.empty());
+}
+
 TEST(LoopEvents, StampedLoopsWithAndWithoutSigmas) {
   const SlamEvents events = Parse(
       "# first second pose\n"
