@@ -14,6 +14,7 @@
 #include "eval/output_folder.h"
 #include "eval/shell_word.h"
 #include "eval/shipped.h"
+#include "eval/sweep/scan_maker.h"
 #include "eval/sweep/slurm.h"
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_folder.h"
@@ -305,6 +306,7 @@ void Sweep(const SweepArguments& arguments) {
   const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
   const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
   RequireRooms(plan);
+  RequireUsableCache(CacheFolder(arguments.common));
   Warn(plan.warnings);
   Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
   if (arguments.dry_run) {

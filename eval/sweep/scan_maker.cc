@@ -107,6 +107,10 @@ void ScanJob(DepthJob& job, const ScanMakerContext& context) {
 
 }  // namespace
 
+void RequireUsableCache(const std::string& cache_folder) {
+  if (!cache_folder.empty()) ScanCache(cache_folder + kScanFolder);
+}
+
 void MakeScans(const std::vector<ScanSet*>& sets, const ScanMakerContext& context) {
   std::optional<ScanCache> cache;
   if (!context.cache_folder.empty()) cache.emplace(context.cache_folder + kScanFolder);

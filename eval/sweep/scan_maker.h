@@ -16,6 +16,9 @@ struct ScanMakerContext {
   std::function<void()> tick;  // called often from one thread at a time; may throw to stop
 };
 
+// Throws InputError when such a folder can be no cache, before any set fails by it.
+void RequireUsableCache(const std::string& cache_folder);
+
 // Fills `scans` of each set, or `failure`. Sets that have a failure already are left alone.
 void MakeScans(const std::vector<ScanSet*>& sets, const ScanMakerContext& context);
 

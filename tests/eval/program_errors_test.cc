@@ -236,6 +236,11 @@ TEST_F(ProgramErrors, AnExperimentIsNeitherASceneNorAMesh) {
   ExpectRefusal("run ./done -o out", {"./done: is a folder; the run.yaml in it can be run again"});
 }
 
+TEST_F(ProgramErrors, ASweepsCacheIsRefusedBeforeItStarts) {
+  Write("sweep.yaml", "experiment: ./small.yaml\naxes: {seed: [1, 2]}\n");
+  ExpectRefusal("sweep ./sweep.yaml -o out --cache room.yaml", {"cannot be used as a cache"});
+}
+
 TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {
   // Half a table would be taken for a whole one.
   for (const char* arguments : {"scenes", "--help", "run --keys"}) {
