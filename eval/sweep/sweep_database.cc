@@ -14,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "eval/sweep/sql_errors_impl.h"
 #include "eval/sweep/sql_values_impl.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -43,17 +44,6 @@ CREATE TABLE failures (run INTEGER PRIMARY KEY, reason TEXT NOT NULL);
 
 std::string DatabasePath(const std::string& folder) {
   return (fs::path(folder) / kSweepDatabaseName).string();
-}
-
-// A full disk, a folder that may not be written: no bad input, and the file is named.
-template <typename Work>
-void Writing(const std::string& folder, const Work& work) {
-  try {
-    work();
-  } catch (const SQLite::Exception& error) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written: {}", DatabasePath(folder), error.what()));
-  }
 }
 
 // Why not; empty where it may be.
@@ -109,10 +99,12 @@ struct SweepDatabase::Impl {
   }
 
   std::vector<int> RunsWhere(const std::string& condition) const {
-    std::vector<int> runs;
-    SQLite::Statement query(*database, "SELECT run FROM runs " + condition + " ORDER BY run");
-    while (query.executeStep()) runs.push_back(query.getColumn(0).getInt());
-    return runs;
+    return Reading(DatabasePath(folder), [&] {
+      std::vector<int> runs;
+      SQLite::Statement query(*database, "SELECT run FROM runs " + condition + " ORDER BY run");
+      while (query.executeStep()) runs.push_back(query.getColumn(0).getInt());
+      return runs;
+    });
   }
 
   void AddColumn(const std::string& table, const std::string& name) {
@@ -234,7 +226,7 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
   const std::string partial = DatabasePath(folder) + kPartial;
   fs::remove(partial);
   fs::remove(partial + kJournal);
-  Writing(folder, [&] {
+  Writing(DatabasePath(folder), [&] {
     Impl impl(folder, partial, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     SQLite::Transaction transaction(*impl.database);
     impl.database->exec(kTables);
@@ -249,14 +241,11 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
 }
 
 SweepDatabase SweepDatabase::Opened(const std::string& folder, const std::string& name, int flags) {
-  std::string schema;
-  try {
-    SweepDatabase opened(std::make_unique<Impl>(folder, name, flags));
-    schema = opened.Environment()["schema"];
-    if (schema == kSchema) return opened;
-  } catch (const SQLite::Exception& error) {
-    throw InputError(DatabasePath(folder), std::string("cannot be read: ") + error.what());
-  }
+  SweepDatabase opened = Reading(DatabasePath(folder), [&] {
+    return SweepDatabase(std::make_unique<Impl>(folder, name, flags));
+  });
+  const std::string schema = opened.Environment()["schema"];
+  if (schema == kSchema) return opened;
   throw InputError(DatabasePath(folder),
                    fmt::format("has layout '{}', must have {}", schema, kSchema));
 }
@@ -268,7 +257,7 @@ SweepDatabase SweepDatabase::Open(const std::string& folder) {
   }
   SweepDatabase opened = Opened(folder, DatabasePath(folder), SQLite::OPEN_READWRITE);
   // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
-  Writing(folder, [&] {
+  Writing(DatabasePath(folder), [&] {
     opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
   });
   return opened;
@@ -290,12 +279,14 @@ SweepDatabase SweepDatabase::OpenToRead(const std::string& folder) {
 }
 
 std::map<std::string, std::string> SweepDatabase::Environment() const {
-  std::map<std::string, std::string> environment;
-  SQLite::Statement query(*impl_->database, "SELECT key, value FROM environment");
-  while (query.executeStep()) {
-    environment[query.getColumn(0).getString()] = query.getColumn(1).getString();
-  }
-  return environment;
+  return Reading(DatabasePath(impl_->folder), [&] {
+    std::map<std::string, std::string> environment;
+    SQLite::Statement query(*impl_->database, "SELECT key, value FROM environment");
+    while (query.executeStep()) {
+      environment[query.getColumn(0).getString()] = query.getColumn(1).getString();
+    }
+    return environment;
+  });
 }
 
 std::vector<int> SweepDatabase::FinishedRuns() const {
@@ -312,7 +303,7 @@ void SweepDatabase::Record(const RunOutcome& outcome) { Record(std::vector{outco
 
 void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
   try {
-    Writing(impl_->folder, [&] {
+    Writing(DatabasePath(impl_->folder), [&] {
       SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
       for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
       transaction.commit();
@@ -325,7 +316,7 @@ void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
 
 int SweepDatabase::PlanFailedAgain() {
   int failed = 0;
-  Writing(impl_->folder, [&] {
+  Writing(DatabasePath(impl_->folder), [&] {
     SQLite::Database& database = *impl_->database;
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     database.exec("DELETE FROM times WHERE run IN (SELECT run FROM failures)");
@@ -337,7 +328,7 @@ int SweepDatabase::PlanFailedAgain() {
 }
 
 void SweepDatabase::Drop(const std::vector<int>& runs) {
-  Writing(impl_->folder, [&] {
+  Writing(DatabasePath(impl_->folder), [&] {
     SQLite::Transaction transaction(*impl_->database, SQLite::TransactionBehavior::IMMEDIATE);
     for (const char* table : {"runs", "parameters", "metrics", "times", "failures"}) {
       SQLite::Statement remove(*impl_->database,
@@ -354,39 +345,43 @@ void SweepDatabase::Drop(const std::vector<int>& runs) {
 
 std::vector<double> SweepDatabase::MetricOf(const std::string& name,
                                             const std::vector<int>& runs) const {
-  const auto columns = ColumnsOf(*impl_->database, "metrics");
-  std::vector<double> values(runs.size(), kNone);
-  if (std::find(columns.begin(), columns.end(), name) == columns.end()) return values;
-  SQLite::Statement query(*impl_->database,
-                          "SELECT " + Quoted(name) + " FROM metrics WHERE run = ?");
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    query.bind(1, runs[i]);
-    if (query.executeStep()) values[i] = NumberOf(query.getColumn(0));
-    query.reset();
-  }
-  return values;
+  return Reading(DatabasePath(impl_->folder), [&] {
+    const auto columns = ColumnsOf(*impl_->database, "metrics");
+    std::vector<double> values(runs.size(), kNone);
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) return values;
+    SQLite::Statement query(*impl_->database,
+                            "SELECT " + Quoted(name) + " FROM metrics WHERE run = ?");
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      query.bind(1, runs[i]);
+      if (query.executeStep()) values[i] = NumberOf(query.getColumn(0));
+      query.reset();
+    }
+    return values;
+  });
 }
 
 SweepResults SweepDatabase::Results() const {
-  // One view of the table, whoever writes meanwhile.
-  const SQLite::Transaction snapshot(*impl_->database);
-  SweepResults results;
-  results.folder = impl_->folder;
-  results.environment = Environment();
-  SQLite::Statement planned(*impl_->database, "SELECT count(*) FROM runs");
-  if (planned.executeStep()) results.planned_runs = planned.getColumn(0).getInt();
-  SQLite::Statement query(*impl_->database,
-                          "SELECT r.run, r.point, f.reason FROM runs r LEFT JOIN failures f "
-                          "ON f.run = r.run WHERE r.state <> 'planned' ORDER BY r.run");
-  while (query.executeStep()) {
-    results.runs.push_back(query.getColumn(0).getInt());
-    results.points.push_back(query.getColumn(1).getInt());
-    results.failures.push_back(query.getColumn(2).getString());
-  }
-  results.parameters = impl_->Parameters();
-  results.metrics = impl_->WideColumns("metrics");
-  results.times = impl_->WideColumns("times");
-  return results;
+  return Reading(DatabasePath(impl_->folder), [&] {
+    // One view of the table, whoever writes meanwhile.
+    const SQLite::Transaction snapshot(*impl_->database);
+    SweepResults results;
+    results.folder = impl_->folder;
+    results.environment = Environment();
+    SQLite::Statement planned(*impl_->database, "SELECT count(*) FROM runs");
+    if (planned.executeStep()) results.planned_runs = planned.getColumn(0).getInt();
+    SQLite::Statement query(*impl_->database,
+                            "SELECT r.run, r.point, f.reason FROM runs r LEFT JOIN failures f "
+                            "ON f.run = r.run WHERE r.state <> 'planned' ORDER BY r.run");
+    while (query.executeStep()) {
+      results.runs.push_back(query.getColumn(0).getInt());
+      results.points.push_back(query.getColumn(1).getInt());
+      results.failures.push_back(query.getColumn(2).getString());
+    }
+    results.parameters = impl_->Parameters();
+    results.metrics = impl_->WideColumns("metrics");
+    results.times = impl_->WideColumns("times");
+    return results;
+  });
 }
 
 }  // namespace depthgrid

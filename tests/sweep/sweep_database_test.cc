@@ -1,6 +1,7 @@
 // What goes into a sweep's database comes out of it, in a fixed order.
 #include "eval/sweep/sweep_database.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -53,6 +55,25 @@ TEST_F(SweepDatabaseTest, GivesBackWhatWasRecorded) {
             "run,point,mapper.fusion.gain,slam.profile,seed,failed,a,b,time_s\n"
             "0,0,0.1,orb_slam2,1,1,,,2\n"
             "2,1,\"[0.5, 1, 0]\",\"a,\"\"b\"\"\",3,0,,2.5,1\n");
+}
+
+// Wherever the damage is, and whenever that page is read.
+TEST_F(SweepDatabaseTest, DamageIsSaidToBeTheFilesOwn) {
+  SmallPlan(folder_).Record({0, "", {{"a", 1.5}}, {{"time_s", 2.0}}});
+  const std::string path = Path(kSweepDatabaseName);
+  const std::string sound = ReadFile(path);
+  constexpr std::size_t kPageBytes = 4096;
+  int refused = 0;
+  for (std::size_t page = kPageBytes; page < sound.size(); page += kPageBytes) {
+    std::string damaged = sound;
+    damaged[page] = 'U';
+    WriteFile(path, damaged);
+    const std::string refusal = RefusalOf([&] { ReadSweep(folder_); });
+    if (refusal == "no error") continue;  // of an index that no question needs
+    EXPECT_THAT(refusal, testing::HasSubstr("results.sqlite: cannot be read: "));
+    ++refused;
+  }
+  EXPECT_GE(refused, 4);
 }
 
 TEST_F(SweepDatabaseTest, PlansFailedRunsAgain) {
