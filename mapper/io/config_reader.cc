@@ -180,7 +180,7 @@ class YamlReader final : public OptionsVisitor {
       if (used) continue;
       const std::string prefix = level.path.empty() ? "" : level.path + ".";
       throw InputError(tree_.PlaceOfKey(prefix + key, MarkOfKey(entry.first, entry.second)),
-                       fmt::format("unknown key '{}{}'{}", prefix, key,
+                       fmt::format("unknown key '{}{}'{}", prefix, Shortened(key),
                                    Hint(prefix, key, entry.second, level.known)));
     }
   }

@@ -18,6 +18,9 @@ std::string Joined(const std::vector<std::string_view>& names) {
 
 namespace {
 
+// What is longer is no misspelt name; to compare it would take for ever.
+constexpr std::size_t kLongestName = 100;
+
 // Optimal string alignment: letters put in, left out or replaced, and neighbours swapped.
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> two_above, above(b.size() + 1), row(b.size() + 1);
@@ -40,6 +43,7 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates) {
+  if (word.size() > kLongestName) return "";
   const auto begins_so = [&](const std::string& candidate) { return candidate.starts_with(word); };
   if (!word.empty() && std::ranges::count_if(candidates, begins_so) == 1) {
     return *std::ranges::find_if(candidates, begins_so);
@@ -56,6 +60,10 @@ std::string NearestWord(const std::string& word, const std::vector<std::string>&
   return best;
 }
 
+std::string Shortened(const std::string& word) {
+  return word.size() > kLongestName ? word.substr(0, kLongestName) + "..." : word;
+}
+
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates,
                        const std::string& prefix) {
   const std::string nearest = NearestWord(word, candidates);
@@ -64,6 +72,7 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 
 std::string DidYouMeanKey(const std::string& key_path, const std::vector<std::string>& key_paths,
                           bool or_near) {
+  if (key_path.size() > kLongestName) return "";
   constexpr std::size_t kMost = 3;
   const auto last_of = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
   std::set<std::string> lasts;

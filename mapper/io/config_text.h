@@ -9,5 +9,7 @@ namespace depthgrid {
 
 // "fixed, kalman".
 std::string Joined(const std::vector<std::string_view>& names);
+// The word, of a very long one its beginning.
+std::string Shortened(const std::string& word);
 
 }  // namespace depthgrid

@@ -309,6 +309,7 @@ TEST(NearestWord, FindsSmallSlipsOnly) {
   EXPECT_EQ(NearestWord("rnu", {"map", "run"}), "run");
   EXPECT_EQ(NearestWord("frams", {"frame_rate", "frames"}), "frames");
   EXPECT_EQ(NearestWord("", {"mode"}), "");
+  EXPECT_EQ(NearestWord(std::string(101, 'a'), {std::string(100, 'a')}), "");  // no slip
   EXPECT_EQ(NearestWord("--out", {"--set", "--output"}), "--output");
   EXPECT_EQ(NearestWord("--f", {"--frames", "--frame-rate"}), "");
   EXPECT_EQ(DidYouMean("gian", {"mode", "gain"}, "fusion."), ", did you mean 'fusion.gain'?");
