@@ -21,7 +21,7 @@ constexpr const char* kFirstSteps =
     "  depthgrid run living_room -o out     a minute; then open out/report.html\n"
     "  depthgrid COMMAND --help             options and examples of a command\n"
     "Exit codes: 0 done, 1 failed while running, 2 bad usage or input, 130 ended by Ctrl-C,\n"
-    "143 by kill, 129 by a closed terminal.";
+    "143 by kill, 129 by a closed terminal, 141 when nobody reads what it prints.";
 
 struct Program {
   CLI::App app{"depthgrid: 2D navigation maps from RGB-D cameras, simulated and recorded",

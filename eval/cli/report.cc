@@ -44,8 +44,18 @@ void RequireNoneButAPage(const std::string& path) {
   }
 }
 
+// A link would be replaced itself, by a file.
+void RequireNoLinks(const std::string& folder) {
+  for (const char* name : {"report.html", "timing.js", "experiment.yaml", "sweep_again.yaml"}) {
+    const fs::path path = fs::path(folder) / name;
+    if (!fs::is_symlink(path)) continue;
+    throw InputError(path.string(), "is a link, and stays; -o names another folder for the page");
+  }
+}
+
 void WriteInPlace(const std::string& folder) {
   RequireWritable(folder, "; -o names another folder for the page");
+  RequireNoLinks(folder);
   RequireNoneButAPage(folder + "/report.html");
   WriteReport(folder, {folder});
 }

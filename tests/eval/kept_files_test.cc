@@ -315,6 +315,10 @@ TEST_F(KeptFiles, ReportReplacesNothingButAPage) {
   Write("m/report.html", "<title>my notes on depthgrid</title>");
   ExpectRefusal("report m", "m/report.html: is no page of depthgrid's");
   EXPECT_EQ(ReadFile(Path("m/report.html")), "<title>my notes on depthgrid</title>");
+  fs::remove(Path("m/report.html"));
+  fs::create_symlink("../elsewhere.html", Path("m/report.html"));
+  ExpectRefusal("report m", "m/report.html: is a link, and stays");
+  EXPECT_TRUE(fs::is_symlink(Path("m/report.html")));
 }
 
 }  // namespace
