@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mapper/scan/bearing_block.h"
+#include "mapper/scan/slanting.h"
 
 namespace depthgrid {
 namespace {
@@ -33,15 +34,22 @@ BandSamples RoomAt(const BearingBlock& block, float* samples) {
   return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
 
-// The ranges of a lane.
-std::span<const float> RangesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
-                                const ReturnLimits& limits, std::vector<float>& column) {
+// The samples of a lane, one a row. Of groups without a range it matters only that none of their
+// rows marks.
+std::span<const float> SamplesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
+                                 const ReturnLimits& limits, std::vector<float>& column) {
   column.clear();
   for (std::size_t first = 0; first < rows; first += kGroupRows) {
-    if (band.nearest[first / kGroupRows * kBlockBearings + lane] > limits.max_range_m) continue;
-    for (std::size_t r = first; r < std::min(first + kGroupRows, rows); ++r) {
+    const std::size_t end = std::min(first + kGroupRows, rows);
+    const float nearest = band.nearest[first / kGroupRows * kBlockBearings + lane];
+    if (nearest > limits.max_range_m) {
+      column.insert(column.end(), end - first, std::max(nearest, kPassing));
+      continue;
+    }
+    for (std::size_t r = first; r < end; ++r) {
       const float sample = band.samples[r * kBlockBearings + lane];
-      if (sample <= limits.max_range_m) column.push_back(sample);
+      const bool is_too_far = sample > limits.max_range_m && sample < kPassing;
+      column.push_back(is_too_far ? kPassing : sample);
     }
   }
   return column;
@@ -59,17 +67,20 @@ RowRange GapOf(float from, float to) { return to - from > 1.0F ? RangeOf(from, t
 
 struct ReturnsJob {
   ImageBands bands;
+  const BearingLineTable& lines;
   const NoiseWindow& window;
   ReturnsMemory& memory;
 };
 
-// FindNearest for a block of so many bearings. Lanes whose smallest sample is not supported by
-// others (a stray pixel) are done one by one. A lane of which what was skipped could matter, or
-// none.
-std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BandFound& found,
-                                              std::size_t rows, std::size_t bearings,
-                                              BlockHits& hits) {
+// FindNearest for a block of so many bearings, of obstacles FindNearestOrSlanting. Lanes whose
+// smallest sample is not supported by others (a stray pixel, a surface at a slant) are done one by
+// one. A lane of which what was skipped could matter, or none.
+template <bool kSlanting>
+std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BearingBlock& block,
+                                              const BandFound& found, std::size_t bearings,
+                                              std::size_t at, BlockHits& hits) {
   const ReturnLimits& limits = job.bands.limits;
+  const std::size_t rows = block.RowCount();
   auto [alone, doubtful] = internal::FindSupported(found, rows, limits, job.window, hits);
   if (bearings < kBlockBearings) {
     const std::uint64_t taken = (std::uint64_t{1} << bearings) - 1;
@@ -78,10 +89,14 @@ std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BandF
   }
   for (; alone != 0 && doubtful == 0; alone &= alone - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(alone));
+    const std::span<const float> samples =
+        SamplesOf(found.samples, rows, i, limits, job.memory.column);
     BearingReturns returns;
     const float mattered_m =
-        FindNearest(RangesOf(found.samples, rows, i, limits, job.memory.column), limits, job.window,
-                    job.memory.sorted, returns);
+        kSlanting
+            ? FindNearestOrSlanting(samples, block.rows.first, job.lines[at * kBlockBearings + i],
+                                    limits, job.window, job.memory.sorted, returns)
+            : FindNearest(samples, limits, job.window, job.memory.sorted, returns);
     hits.is_hit[i] = returns.hit ? 1.0F : 0.0F;
     hits.range_m[i] = returns.range_m;
     if (std::min(mattered_m, limits.max_range_m) >= found.skipped_from[i]) return i;
@@ -122,11 +137,12 @@ void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::s
     return;
   }
   FindViewsOfBlock(block, found, job.bands.limits.min_depth_m, all.views[at]);
-  while (const auto lane = FindNearestOfBlock(job, found.band, rows, bearings, all.obstacles[at])) {
+  while (const auto lane =
+             FindNearestOfBlock<true>(job, block, found.band, bearings, at, all.obstacles[at])) {
     internal::SampleSkipped(job.bands, block, *lane, found);
   }
   if (!has_slice) return;
-  FindNearestOfBlock(job, found.slice, rows, bearings, all.slice[at]);
+  FindNearestOfBlock<false>(job, block, found.slice, bearings, at, all.slice[at]);
   if (job.bands.slice.agree_sigmas > 0.0F) {
     internal::SteadySlice(job.bands, job.window, block, found.slice, all.slice[at]);
   }
@@ -180,7 +196,7 @@ ImageReturns& FindReturns(const DepthImage& image, const BearingLineTable& lines
   all.views.resize(lines.blocks.size());
   all.obstacles.resize(lines.blocks.size());
   all.slice.resize(slice ? lines.blocks.size() : 0);
-  const ReturnsJob job{{image, limits, slice.value_or(kNoSlice)}, window, memory};
+  const ReturnsJob job{{image, limits, slice.value_or(kNoSlice)}, lines, window, memory};
   const internal::SkipWidths widths = internal::SkipWidthsOf(window);
   Stripe stripe;
   const std::size_t most = internal::StripeBlocks(lines.size(), image.width_px);

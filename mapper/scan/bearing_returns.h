@@ -79,10 +79,19 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
 // The rows of a line that take part.
 RowRange RowsOf(const BearingLine& line, const ReturnLimits& limits);
 
-// The nearest range that enough samples agree on: the mean over the noise window above the smallest
-// supported sample, once more centred on itself (more often where NoiseWindow::MeansOf says so).
-// `sorted` is memory. Returns up to where samples mattered: more of them beyond would change
-// nothing.
+// The smallest sample that enough others support, within the noise window above it; kPassing when
+// there is none. `sorted` is memory, and afterwards begins with all samples that are smaller.
+float SmallestSupported(std::span<const float> samples, const ReturnLimits& limits,
+                        const NoiseWindow& window, std::vector<float>& sorted);
+
+// Makes the surface whose smallest sample this is the hit, at the mean over the noise window above
+// it, once more centred on itself (more often where NoiseWindow::MeansOf says so). Returns up to
+// where samples mattered: more of them beyond would change nothing.
+float RangeFrom(std::span<const float> samples, float smallest_m, const NoiseWindow& window,
+                BearingReturns& returns);
+
+// The nearest range that enough samples agree on: that from the smallest supported sample. Returns
+// up to where samples mattered.
 float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
                   const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns);
 

@@ -95,8 +95,23 @@ float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLim
   return marks ? range_m : kPassing;
 }
 
-float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
-                  const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns) {
+float RangeFrom(std::span<const float> samples, float smallest_m, const NoiseWindow& window,
+                BearingReturns& returns) {
+  const float width_m = window.At(smallest_m);
+  const float half_m = 0.5F * width_m;
+  float mattered_m = smallest_m + width_m;
+  returns.hit = true;
+  returns.range_m = MeanWithin(samples, smallest_m, mattered_m, smallest_m);
+  for (int mean = 0; mean < NoiseWindow::MeansOf(width_m); ++mean) {
+    const float centre_m = returns.range_m;
+    mattered_m = std::max(mattered_m, centre_m + half_m);
+    returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
+  }
+  return mattered_m;
+}
+
+float SmallestSupported(std::span<const float> samples, const ReturnLimits& limits,
+                        const NoiseWindow& window, std::vector<float>& sorted) {
   sorted.clear();
   const auto needed = static_cast<std::size_t>(limits.min_returns);
   std::size_t last = needed - 1;
@@ -108,20 +123,16 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
     from = next + 1;
     for (; last < sorted.size(); ++last) {
       const float smallest = sorted[last + 1 - needed];
-      const float width_m = window.At(smallest);
-      if (sorted[last] > smallest + width_m) continue;
-      const float half_m = 0.5F * width_m;
-      float mattered_m = smallest + width_m;
-      returns.hit = true;
-      returns.range_m = MeanWithin(samples, smallest, mattered_m, smallest);
-      for (int mean = 0; mean < NoiseWindow::MeansOf(width_m); ++mean) {
-        const float centre_m = returns.range_m;
-        mattered_m = std::max(mattered_m, centre_m + half_m);
-        returns.range_m = MeanWithin(samples, centre_m - half_m, centre_m + half_m, centre_m);
-      }
-      return mattered_m;
+      if (sorted[last] <= smallest + window.At(smallest)) return smallest;
     }
   }
+}
+
+float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
+                  const NoiseWindow& window, std::vector<float>& sorted, BearingReturns& returns) {
+  const float smallest_m = SmallestSupported(samples, limits, window, sorted);
+  if (smallest_m >= kPassing) return kPassing;
+  return RangeFrom(samples, smallest_m, window, returns);
 }
 
 float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,

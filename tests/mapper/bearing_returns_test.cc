@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include "mapper/core/rng.h"
+#include "mapper/scan/slanting.h"
 #include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
@@ -15,7 +16,8 @@ void ConsiderGap(RowRange& longest, int from, int to) {
 }
 
 BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
-                            const ReturnLimits& limits, const NoiseWindow& window) {
+                            const ReturnLimits& limits, const NoiseWindow& window,
+                            bool is_slice = false) {
   const RowRange rows = RowsOf(line, limits);
   BearingReturns returns;
   std::vector<float> samples, heap;
@@ -30,7 +32,11 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
     }
     returns.seen.last = v;
   }
-  FindNearest(samples, limits, window, heap, returns);
+  if (is_slice) {
+    FindNearest(samples, limits, window, heap, returns);
+  } else {
+    FindNearestOrSlanting(samples, rows.first, line, limits, window, heap, returns);
+  }
   return returns;
 }
 
@@ -144,7 +150,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         ASSERT_EQ(returns.gap_below, plain.gap_below) << i << " " << k;
         ASSERT_EQ(returns.gap_above, plain.gap_above) << i << " " << k;
         ASSERT_EQ(one.At(k, one.obstacles), returns) << i << " " << k;
-        BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window);
+        BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window, true);
         if (plain_slice.hit) {
           const float whole_m = plain_slice.range_m;
           plain_slice.range_m =
