@@ -52,7 +52,8 @@ struct Frame {
   // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
   // two poses is a motion only within an epoch, and a jump that is taken for one bends the map for
   // good. A step that the motion before does not lead to (mapper/core/slam_step.h) begins one by
-  // itself; corrections of less than 0.1 m go unseen.
+  // itself; corrections of less than 0.1 m go unseen, and of less than 0.1 m + 10 m/s^2 t^2 over a
+  // step that takes t, up to a second; over more, all.
   int slam_epoch = 0;
   // Reported with this frame, to be applied before its pose is used.
   std::vector<LoopClosure> loops;

@@ -73,6 +73,11 @@ std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std:
   return near;
 }
 
+// Beyond what is walked and turned in the time of a loss.
+constexpr double kStepM = 0.5;
+constexpr double kStepRad = 0.5;
+constexpr double kTurnRadps = 2.0;
+
 }  // namespace
 
 void RelocationOptions::Visit(OptionsVisitor& v) {
@@ -107,10 +112,17 @@ void Relocation::Explained(double share) {
   usual_share_ += (share - usual_share_) / explained_frames_;
 }
 
-void Relocation::Lost(double duration_s, bool other_epoch) {
+void Relocation::Lost(double duration_s, const std::optional<Pose2>& epoch_step) {
   unjudged_s_ = std::max(unjudged_s_, duration_s);
+  const bool elsewhere = epoch_step && IsElsewhere(duration_s, *epoch_step);
   unjudged_ =
-      unjudged_ || duration_s >= (other_epoch ? options_.min_lost_epoch_s : options_.min_lost_s);
+      unjudged_ || duration_s >= (elsewhere ? options_.min_lost_epoch_s : options_.min_lost_s);
+}
+
+// SLAM that finds back into its own map does not come back there.
+bool Relocation::IsElsewhere(double duration_s, const Pose2& epoch_step) const {
+  return epoch_step.translation().norm() > kStepM + options_.speed_mps * duration_s ||
+         std::abs(epoch_step.yaw_rad) > kStepRad + kTurnRadps * duration_s;
 }
 
 bool Relocation::Begins(double share, int next_frame) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mapper/core/error.h"
 #include "mapper/core/frame.h"
 #include "mapper/io/number_rows.h"
 
@@ -267,6 +268,25 @@ CarmenLine ParseCarmenLine(std::string_view line) {
   if (name == "PARAM") return ParseParameter(tokens);
   if (IsMessageName(name)) return CarmenOther{};
   return CarmenDamage{kNamelessLine, false};
+}
+
+void RequireSound(const CarmenScan& scan) {
+  const auto require = [](bool holds, const char* field, double value, const char* rule) {
+    if (!holds) throw InputError(field, fmt::format("is {:g}, {}", value, rule));
+  };
+  require(std::isfinite(scan.first_bearing_rad), "first_bearing_rad", scan.first_bearing_rad,
+          "must be finite");
+  require(std::isfinite(scan.bearing_step_rad), "bearing_step_rad", scan.bearing_step_rad,
+          "must be finite");
+  require(scan.bearing_step_rad != 0.0 || scan.range_m.size() < 2 || !scan.states_angles,
+          "bearing_step_rad", scan.bearing_step_rad, "must not be, of more than one reading");
+  require(scan.max_range_m >= 0.0, "max_range_m", scan.max_range_m, "must be 0 or more");
+}
+
+void RequireFieldOfView(double fov_deg) {
+  if (fov_deg == 0.0 || fov_deg >= 1.0) return;
+  throw SettingError("sequence.laser.fov_deg",
+                     fmt::format("is {:g}, must be 0 or from 1 to 360", fov_deg));
 }
 
 }  // namespace depthgrid

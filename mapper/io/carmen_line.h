@@ -22,6 +22,12 @@ struct CarmenScan {
   double stated_yaw_rad = 0.0;  // of odom_from_laser, as written: not wrapped
 };
 
+// Of a laser's driver: throws InputError for bearings that are not finite or all the same, and for
+// a maximum that is negative or NaN.
+void RequireSound(const CarmenScan& scan);
+// Of CarmenLogOptions: throws SettingError for what sweeps no surroundings.
+void RequireFieldOfView(double fov_deg);
+
 // PARAM robot_front_laser_max: from here on readings of the front laser say "nothing there".
 struct CarmenMaximum {
   double range_m = 0.0;

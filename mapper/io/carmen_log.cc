@@ -39,8 +39,7 @@ double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
 // Where nothing else says when a reading is no return (CarmenLogOptions).
 constexpr double kUsualMaxM = 80.0;
 // Some lasers write a little less than the stated maximum (29.99 of 30.00).
-constexpr double kMaxToleranceM = 0.01;
-constexpr double kMaxToleranceShare = 1e-3;
+constexpr double kMaxToleranceM = 0.01, kMaxToleranceShare = 1e-3;
 
 struct LaserReach {
   double max_m = 0.0;
@@ -115,6 +114,22 @@ void NarrowGaps(Scan& scan, double narrowest_m) {
   }
 }
 
+Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options) {
+  const LaserReach reach = ReachOf(line, options);
+  const Bearings bearings = BearingsOf(line, options);
+  Scan scan;
+  scan.max_range_m = reach.max_m;
+  scan.beams.reserve(line.range_m.size());
+  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
+    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
+    const double sign = options.upside_down ? -1.0 : 1.0;
+    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
+  }
+  if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
+  NarrowGaps(scan, options.no_return_gap_m);
+  return scan;
+}
+
 class CarmenLogSource : public FrameSource {
  public:
   CarmenLogSource(std::string path, const CarmenLogOptions& options,
@@ -123,6 +138,7 @@ class CarmenLogSource : public FrameSource {
     for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
     RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
+    RequireFieldOfView(options_.fov_deg);
     Rewind();
     Survey();
     RequireScans();
@@ -136,7 +152,7 @@ class CarmenLogSource : public FrameSource {
     Frame frame;
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
-    frame.scan = std::make_shared<const Scan>(ScanOf(*line, options_));
+    frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
     frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
@@ -344,6 +360,12 @@ class CarmenLogSource : public FrameSource {
 
 }  // namespace
 
+Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  RequireFieldOfView(options.fov_deg);
+  RequireSound(line);
+  return ScanOfLine(line, options);
+}
+
 void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Number("max_range_m", max_range_m, {0.0, 1000.0},
            "readings from here on are no return; 0 takes the log's own maximum, or 80");
@@ -356,22 +378,6 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
            "how far a reading without return is free space");
   v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},
            "readings without return in a gap narrower than this clear up to the nearer hit beside");
-}
-
-Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  const LaserReach reach = ReachOf(line, options);
-  const Bearings bearings = BearingsOf(line, options);
-  Scan scan;
-  scan.max_range_m = reach.max_m;
-  scan.beams.reserve(line.range_m.size());
-  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
-    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
-    const double sign = options.upside_down ? -1.0 : 1.0;
-    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
-  }
-  if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
-  NarrowGaps(scan, options.no_return_gap_m);
-  return scan;
 }
 
 FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options,

@@ -44,7 +44,9 @@ FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options
                         const PartOptions& part = {});
 
 // What a line's readings mean, or those of any laser's driver (ROS's LaserScan: +infinity is
-// "nothing there", -infinity and NaN are no data): a scan in the laser's own axes.
+// "nothing there", -infinity and NaN are no data): a scan in the laser's own axes. Throws
+// InputError for bearings that are not finite or all the same, and for a maximum that is negative
+// or NaN.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
 #include "mapper/core/error.h"
@@ -99,6 +100,29 @@ TEST(CarmenLog, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
   CarmenLogOptions wide;
   wide.no_return_gap_m = 0.0;
   EXPECT_EQ(ScanOf(line, wide).beams[1].clear_to_m, 5.0F);
+}
+
+TEST(CarmenLog, ADriversMetadataMustBeSound) {
+  CarmenScan sound;
+  sound.first_bearing_rad = -0.1;
+  sound.bearing_step_rad = 0.1;
+  sound.max_range_m = std::numeric_limits<double>::infinity();
+  sound.range_m = {1, 2, 3};
+  EXPECT_EQ(ScanOf(sound, {}).beams.size(), 3U);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto spoilt = [&](double CarmenScan::*field, double value) {
+    CarmenScan scan = sound;
+    scan.*field = value;
+    return scan;
+  };
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::first_bearing_rad, nan), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::bearing_step_rad, nan), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::bearing_step_rad, 0.0), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::max_range_m, nan), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::max_range_m, -1.0), {}), InputError);
+  CarmenLogOptions narrow;
+  narrow.fov_deg = 0.001;
+  EXPECT_THROW(ScanOf(sound, narrow), InputError);
 }
 
 TEST(CarmenLog, ALaserUpsideDownIsReadFromLeftToRight) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "mapper/core/level.h"
@@ -30,7 +31,7 @@ Pose2 RoundTheRoom(int frame) {
 // `blind`: frames on either side of the loss that have a pose and no scan.
 LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Path path_after,
              bool use, MapperMethod method = MapperMethod::kSurfel, int blind = 0,
-             double lost_s = 5.0) {
+             double lost_s = 5.0, const Pose2& restart = {1.6, -0.7, 0.9}) {
   constexpr int kBefore = 240, kAfter = 160;
   MapperOptions options;
   options.method = method;
@@ -42,7 +43,7 @@ LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Pat
   for (int i = 0; i < kBefore + kAfter; ++i) {
     const bool is_after = i >= kBefore;
     const Pose2 truth = is_after ? path_after(i - kBefore) : path(i);
-    const Pose2 off = is_after ? Pose2{1.6, -0.7, 0.9} : Pose2{};
+    const Pose2 off = is_after ? restart : Pose2{};
     truths.push_back(truth);
     Frame frame;
     frame.index = i;
@@ -84,8 +85,8 @@ TEST(Relocation, FindsTheCameraAfterARestartOfSlam) {
   const PlanarWorld room = FurnishedRoom();
   const Path goes_on = [](int frame) { return RoundTheRoom(240 + 20 + frame); };
   for (const double lost_s : {0.4, 0.7, 1.5}) {
-    const LostRun run =
-        Lose(room, room, RoundTheRoom, goes_on, true, MapperMethod::kSurfel, 0, lost_s);
+    const LostRun run = Lose(room, room, RoundTheRoom, goes_on, true, MapperMethod::kSurfel, 0,
+                             lost_s, {4.0, 1.0, 0.9});
     EXPECT_LT(run.final_error_m, 0.02) << lost_s;
   }
 }
@@ -309,7 +310,7 @@ TEST(Relocation, AnUnknownRoomBeforeTheLossDoesNotMakeAnyGuessRight) {
   for (int i = 0; i < 150; ++i) relocation.Explained(0.9);
   for (int i = 0; i < 100; ++i) relocation.Explained(0.0);
   EXPECT_FALSE(relocation.IsUsual(0.2));
-  relocation.Lost(5.0, true);
+  relocation.Lost(5.0, {});
   EXPECT_TRUE(relocation.Begins(0.2, 250));
 }
 
@@ -318,20 +319,22 @@ TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
   Relocation relocation(options, {}, {});
   for (int i = 0; i < 50; ++i) relocation.Explained(0.9);
   EXPECT_FALSE(relocation.Begins(0.1, 50));  // not lost at all
-  const auto begins = [](Relocation& lost, double lost_s, double share, bool other_epoch = false) {
-    lost.Lost(lost_s, other_epoch);
+  const auto begins = [](Relocation& lost, double lost_s, double share,
+                         const std::optional<Pose2>& epoch_step = {}) {
+    lost.Lost(lost_s, epoch_step);
     return lost.Begins(share, 50);
   };
   EXPECT_FALSE(begins(relocation, 1.9, 0.1));  // not lost for long
   EXPECT_FALSE(begins(relocation, 5.0, 0.6));  // two thirds of what is usual
   EXPECT_FALSE(relocation.Begins(0.1, 50));    // and judged once
-  EXPECT_FALSE(begins(relocation, 0.4, 0.1, true));
+  EXPECT_FALSE(begins(relocation, 0.4, 0.1, Pose2{5.0, 0.0, 0.0}));
   EXPECT_TRUE(begins(relocation, 5.0, 0.5));
   EXPECT_TRUE(relocation.active());
   EXPECT_EQ(relocation.first_frame(), 50);
   Relocation anew(options, {}, {});
   anew.Explained(0.9);
-  EXPECT_TRUE(begins(anew, 0.6, 0.5, true));
+  EXPECT_FALSE(begins(anew, 0.6, 0.5, Pose2{0.5, 0.0, 1.0}));
+  EXPECT_TRUE(begins(anew, 0.6, 0.5, Pose2{5.0, 0.0, 0.0}));
   options.use = false;
   Relocation off(options, {}, {});
   off.Explained(0.9);
