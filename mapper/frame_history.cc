@@ -79,6 +79,14 @@ bool FrameHistory::WasLost() const {
   return last != nullptr && (last + 1 != &newest() || last->epoch != newest().epoch);
 }
 
+bool FrameHistory::OutranUsualMotion() const {
+  constexpr double kFar = 3.0;  // chosen, of no measurement
+  const FrameRecord* last = PosedBefore(newest());
+  if (last == nullptr || !newest().slam_from_camera) return false;
+  const auto frames = static_cast<double>(&newest() - last);
+  return UsualMotionSoFar().FramesFor(MotionOf(*last, newest())) > kFar * frames;
+}
+
 int FrameHistory::FramesToNewest() const {
   constexpr std::size_t kRecentSteps = 15;
   if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return 1;

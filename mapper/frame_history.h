@@ -42,6 +42,9 @@ class FrameHistory {
   // Whether SLAM comes back with the newest frame: to poses of another epoch, or after frames
   // without any. A recording that paused lost nothing.
   bool WasLost() const;
+  // Whether SLAM's newest pose lies far beyond where its usual motion leads in the frames since the
+  // last one.
+  bool OutranUsualMotion() const;
   // From the record before to the newest, in usual steps of time: more than one where the recording
   // paused and SLAM moved on meanwhile (MovingStepsIn); one where SLAM was lost or began another
   // epoch.

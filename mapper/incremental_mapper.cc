@@ -189,12 +189,11 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
   if (history.WasLost()) {
     const FrameRecord& before = *history.PosedBefore(history.newest());
-    std::optional<Pose2> epoch_step;
-    if (before.epoch != history.newest().epoch) {
-      epoch_step =
-          Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
+    std::optional<Pose2> step;
+    if (before.epoch != history.newest().epoch || history.OutranUsualMotion()) {
+      step = Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
     }
-    relocation.Lost(report.stamp_s - before.stamp_s, epoch_step);
+    relocation.Lost(report.stamp_s - before.stamp_s, step);
   }
   if (report.beams == 0) return;  // nothing seen, nothing told
   const double share = report.match.found ? report.match.score : 0.0;

@@ -86,7 +86,7 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
            "headings tried when the map suddenly explains little of a scan, degrees; 0: none");
   v.Number("min_lost_s", min_lost_s, {0.0, 1e6}, "without a pose for so long, at least");
   v.Number("min_lost_epoch_s", min_lost_epoch_s, {0.0, 1e6},
-           "and where SLAM's poses begin a new epoch");
+           "and where SLAM's poses go on elsewhere");
   v.Number("min_share", min_share, {0.0, 1.0},
            "of what the map explained before: guesses that reach it are right");
   v.Number("window_m", window_m, {0.1, 1e3}, "half width of the search, metres");
@@ -112,17 +112,17 @@ void Relocation::Explained(double share) {
   usual_share_ += (share - usual_share_) / explained_frames_;
 }
 
-void Relocation::Lost(double duration_s, const std::optional<Pose2>& epoch_step) {
+void Relocation::Lost(double duration_s, const std::optional<Pose2>& step) {
   unjudged_s_ = std::max(unjudged_s_, duration_s);
-  const bool elsewhere = epoch_step && IsElsewhere(duration_s, *epoch_step);
+  const bool elsewhere = step && IsElsewhere(duration_s, *step);
   unjudged_ =
       unjudged_ || duration_s >= (elsewhere ? options_.min_lost_epoch_s : options_.min_lost_s);
 }
 
 // SLAM that finds back into its own map does not come back there.
-bool Relocation::IsElsewhere(double duration_s, const Pose2& epoch_step) const {
-  return epoch_step.translation().norm() > kStepM + options_.speed_mps * duration_s ||
-         std::abs(epoch_step.yaw_rad) > kStepRad + kTurnRadps * duration_s;
+bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
+  return step.translation().norm() > kStepM + options_.speed_mps * duration_s ||
+         std::abs(step.yaw_rad) > kStepRad + kTurnRadps * duration_s;
 }
 
 bool Relocation::Begins(double share, int next_frame) {

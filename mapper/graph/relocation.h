@@ -20,8 +20,9 @@ struct RelocationOptions {
   // Without a pose for less than this, the last motion or SLAM's own relocalisation is near enough
   // for matching.
   double min_lost_s = 2.0;
-  // The same where SLAM's poses begin a new epoch farther away than anybody went meanwhile, as one
-  // that begins anew has its origin where it likes: so long the last motion is known.
+  // The same where SLAM's poses go on, in a new epoch or far beyond their usual motion, farther
+  // away than anybody went meanwhile, as SLAM that begins anew has its origin where it likes: so
+  // long the last motion is known.
   double min_lost_epoch_s = 0.5;
   // A guess is right when the map explains at least this share of what it usually did before the
   // loss.
@@ -60,9 +61,9 @@ class Relocation {
 
   // A matched frame in ordinary times: what the map explains of it.
   void Explained(double share);
-  // So long there was no pose before this frame's; where that is of another epoch, SLAM's poses
-  // differ by this.
-  void Lost(double duration_s, const std::optional<Pose2>& epoch_step);
+  // So long there was no pose before this frame's; where that may be of a SLAM that began anew, its
+  // poses differ by this.
+  void Lost(double duration_s, const std::optional<Pose2>& step);
   // Whether the guess since the last loss is to be doubted: the first scan after it, of which the
   // map explains this share, tells. Begins the search then; the next mapped frame is the first of
   // its part.
@@ -83,7 +84,7 @@ class Relocation {
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
 
  private:
-  bool IsElsewhere(double duration_s, const Pose2& epoch_step) const;
+  bool IsElsewhere(double duration_s, const Pose2& step) const;
   bool GuessIsRight(const std::vector<MappedFrame>& frames,
                     const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
   bool IsSame(const Pose2& a, const Pose2& b, const Pose2& map_from_base) const;

@@ -91,6 +91,30 @@ TEST(Relocation, FindsTheCameraAfterARestartOfSlam) {
   }
 }
 
+// Recordings have frames without poses, and no word of a new epoch.
+TEST(Relocation, FindsTheCameraWhereNobodyTellsOfTheRestart) {
+  constexpr int kLost = 240, kBack = 260, kFrames = 420;
+  const PlanarWorld room = FurnishedRoom();
+  IncrementalMapper mapper({}, std::nullopt);
+  for (int i = 0; i < kFrames; ++i) {
+    const Pose2 truth = RoundTheRoom(i);
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    frame.scan =
+        std::make_shared<const Scan>(ScanOf(room, truth, laser, 4, static_cast<std::uint32_t>(i)));
+    const Pose2 off = i < kBack ? Pose2{} : Pose2{4.0, 1.0, 0.9};
+    if (i < kLost || i >= kBack) frame.slam_from_camera = CameraOf(off * truth, 1.0);
+    mapper.AddFrame(frame);
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = kBack; i < kFrames; ++i) {
+    const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
+    ASSERT_LT((pose.translation() - RoundTheRoom(i).translation()).norm(), 0.03) << i;
+  }
+}
+
 // A covered camera tells nothing, neither of what is usual nor of the guess.
 TEST(Relocation, FramesThatSeeNothingDoNotJudge) {
   const PlanarWorld room = FurnishedRoom();
