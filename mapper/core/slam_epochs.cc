@@ -10,7 +10,8 @@ namespace {
 constexpr std::size_t kFewSteps = 6;
 // After a gap as long the motion may be another.
 constexpr double kForgottenS = 1.0;
-// A step is off so many times what is too much once the usual is known, where it is not.
+// A step is off so many times what is too much once the usual is known, where it is not. Chosen, of
+// no measurement: 0.33 m at 30 Hz, and ORB-SLAM2's first pose after a loss was off by 0.6 m.
 constexpr double kSurelyOff = 3.0;
 
 }  // namespace
