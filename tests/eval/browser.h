@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,6 +47,7 @@ class Browser {
       throw std::runtime_error("no pipe");
     }
     std::filesystem::create_directories(folder);
+    prctl(PR_SET_CHILD_SUBREAPER, 1);  // its helpers outlive it: to be waited for here
     child_ = fork();
     if (child_ == 0) Become(program, in[0], out[1]);
     close(in[0]);
@@ -62,8 +64,8 @@ class Browser {
   }
   ~Browser() {
     kill(-child_, SIGKILL);  // its own group: the browser and all its helpers
-    waitpid(child_, nullptr, 0);
-    for (int i = 0; i < 100 && kill(-child_, 0) == 0; ++i) usleep(10'000);
+    while (waitpid(-child_, nullptr, 0) > 0) {
+    }
     close(to_);
     close(from_);
     std::error_code still_busy;
