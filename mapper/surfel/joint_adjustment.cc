@@ -214,7 +214,10 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const SightingTrust trust = TrustAt(landmarks, map_from_group, options);
   result.correlation = trust.errors.correlation;
   landmarks.AddTo(map_from_group, trust, *h, g);
-  const std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
+  std::vector<GroupLink> motions = MotionLinks(problem, result.motion_sigma);
+  for (std::size_t i = 0; i < result.motion_growth.size(); ++i) {
+    motions[i].sigma = motions[i].sigma.cwiseProduct(result.motion_growth[i]);
+  }
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
   AddMotions(motions, result.motion_persistence, map_from_group, *h, g);
   if (!Factor(*h)) return false;
@@ -224,6 +227,9 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, dou
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
   result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
   result.motion_seen = SeenSigma(result.motion_sigma, shares);
+  if (options.judge_stretches) {
+    result.motion_growth = MotionGrowth(unit, motions, map_from_group, shares, result.motion_sigma);
+  }
   if (options.learn_persistence) {
     result.motion_persistence = MotionPersistence(unit, map_from_group, shares);
   }
@@ -276,6 +282,8 @@ void JointOptions::Visit(OptionsVisitor& v) {
          "whether a landmark whose sightings fit worse than most is believed less");
   v.Flag("judge_motions", judge_motions,
          "whether a motion tells as much of SLAM's errors as it was seen");
+  v.Flag("judge_stretches", judge_stretches,
+         "whether SLAM is believed less where its motions err by far more than most");
   v.Flag("learn_persistence", learn_persistence,
          "whether SLAM's errors go on from group to group as much as they are seen to");
   v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");

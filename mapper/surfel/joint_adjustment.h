@@ -43,6 +43,8 @@ struct JointOptions {
   // What SLAM's motions err by is told by each as far as it was seen (MotionSigma); else by all
   // alike.
   bool judge_motions = true;
+  // Where SLAM errs by far more than elsewhere it is believed less (MotionGrowth).
+  bool judge_stretches = true;
   // SLAM's errors go on from group to group as much as they are seen to (MotionPersistence).
   bool learn_persistence = true;
   double loop_huber_sigmas = 2.0;
@@ -69,6 +71,7 @@ struct JointResult {
   std::vector<Pose2> map_from_group;  // the first is unchanged
   std::vector<bool> loop_accepted;
   Eigen::Vector3d motion_sigma = Eigen::Vector3d::Zero();        // of the prior, a frame, as learnt
+  std::vector<Eigen::Vector3d> motion_growth;                    // MotionGrowth(); empty: none
   Eigen::Vector3d motion_seen = Eigen::Vector3d::Zero();         // SeenSigma() of it
   Eigen::Vector3d motion_persistence = Eigen::Vector3d::Zero();  // of its errors, as learnt
   double correlation = 0.0;                                      // of SightingErrors, as learnt

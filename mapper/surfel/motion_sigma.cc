@@ -46,6 +46,14 @@ struct Weighed {
   double weight = 0.0;
 };
 
+// So many motions on either side of one are near it. Of so many they must count for: a few that
+// were seen among others that were not tell of themselves.
+constexpr std::size_t kNear = 5;
+constexpr double kLeastNear = 6.0;
+// They err by more than all if by so much: medians of so few differ by a third by chance, and where
+// SLAM's error is a slowly varying bias neighbours are all as large.
+constexpr double kLeastGrowth = 5.0;
+
 // Half of the weight lies below it and half above; where nothing has weight all count alike.
 double WeighedMedian(std::vector<Weighed> values) {
   double all = 0.0;
@@ -62,6 +70,30 @@ double WeighedMedian(std::vector<Weighed> values) {
   }
   return values.back().value;
 }
+
+// The sigma of errors of which this share was seen. Each of weight by its share.
+class ErrorSpread {
+ public:
+  void Add(double error, double share) {
+    const double weight = std::min(share / kWhollyCounted, 1.0);
+    errors_.push_back({std::abs(error), weight});
+    weights_ += weight;
+    squares_ += weight * weight;
+    seen_ += weight * share;
+  }
+  // How many errors of equal weight would tell as much (Kish 1965, "Survey Sampling").
+  double Count() const { return squares_ > 0.0 ? weights_ * weights_ / squares_ : 0.0; }
+  double Sigma(double least_share) && {
+    const double share = std::max(weights_ > 0.0 ? seen_ / weights_ : 0.0, least_share);
+    return kSigmaOfMedian * WeighedMedian(std::move(errors_)) / std::sqrt(share);
+  }
+
+ private:
+  std::vector<Weighed> errors_;
+  double weights_ = 0.0;
+  double squares_ = 0.0;
+  double seen_ = 0.0;
+};
 
 }  // namespace
 
@@ -109,23 +141,44 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
   if (unit.empty()) return kLeastMotionSigma;
   Eigen::Vector3d sigma;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<Weighed> errors;
-    double weights = 0.0, seen = 0.0;
+    ErrorSpread spread;
     for (std::size_t i = 0; i < unit.size(); ++i) {
       const double error = LinkError(unit[i], map_from_group)[axis] / unit[i].sigma[axis];
-      const double share = shares_seen[i][axis];
-      const double weight = std::min(share / kWhollyCounted, 1.0);
-      errors.push_back({std::abs(error), weight});
-      weights += weight;
-      seen += weight * share;
+      spread.Add(error, shares_seen[i][axis]);
     }
     // Below the least share the prior is taken for a little better each time, down to the least
     // sigma if it is perfect (docs/tried.md, "A nearly perfect prior").
-    const double share = std::max(weights > 0.0 ? seen / weights : 0.0, kLeastShareSeen);
-    sigma[axis] = kSigmaOfMedian * WeighedMedian(std::move(errors)) / std::sqrt(share);
+    sigma[axis] = std::move(spread).Sigma(kLeastShareSeen);
   }
   const double most = std::max(sigma.head<2>().maxCoeff(), kMetresARadian * sigma.z());
   return sigma.cwiseMax(most * kLeastOfOthers).cwiseMax(kLeastMotionSigma);
+}
+
+std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
+                                          const std::vector<GroupLink>& believed,
+                                          const std::vector<Pose2>& map_from_group,
+                                          const std::vector<Eigen::Vector3d>& shares_seen,
+                                          const Eigen::Vector3d& sigma) {
+  std::vector<Eigen::Vector3d> growth(unit.size(), Eigen::Vector3d::Ones());
+  std::vector<Eigen::Vector3d> errors;
+  for (const GroupLink& link : believed) {
+    errors.push_back(LinkError(link, map_from_group).cwiseQuotient(link.sigma));
+  }
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const std::size_t end = std::min(i + kNear + 1, unit.size());
+    for (int axis = 0; axis < 3; ++axis) {
+      ErrorSpread spread;
+      for (std::size_t j = i - std::min(i, kNear); j < end; ++j) {
+        spread.Add(errors[j][axis], shares_seen[j][axis]);
+      }
+      if (spread.Count() <= kLeastNear) continue;
+      // The errors' size over what it was believed to be.
+      const double ratio = std::move(spread).Sigma(kWhollyCounted);
+      const double times = ratio * believed[i].sigma[axis] / (unit[i].sigma[axis] * sigma[axis]);
+      if (ratio > 1.0 && times > kLeastGrowth) growth[i][axis] = times;
+    }
+  }
+  return growth;
 }
 
 }  // namespace depthgrid

@@ -40,4 +40,16 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Pose2>& map_from_group,
                             const std::vector<Eigen::Vector3d>& shares_seen);
 
+// How many times `sigma`, that of most motions (MotionSigma), those near each one err by: 1, or
+// where it is 5 or more, that. A SLAM that was perfect for long and then drifts would be believed
+// to the end, since most of its motions are right. `believed`: the links as they were when the
+// poses were adjusted, one for each of `unit` and with any growth in them. Their errors r are set
+// against what they should be, r^2 = share * sigma^2, so that where the prior is believed far too
+// much, and holds the poses nearly at its own, what pulls at them is seen.
+std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
+                                          const std::vector<GroupLink>& believed,
+                                          const std::vector<Pose2>& map_from_group,
+                                          const std::vector<Eigen::Vector3d>& shares_seen,
+                                          const Eigen::Vector3d& sigma);
+
 }  // namespace depthgrid
