@@ -49,7 +49,10 @@ void FitPivot(const std::vector<RunEvents>& runs, SlamFit& fit) {
     }
   }
   if (turn_turn == 0.0 || shift_shift == 0.0) return;
-  fit.options.pivot_m = std::max(0.0, turn_shift / turn_turn);
+  // Turns that are the rounding of a file's quaternions are those of no pivot that could be.
+  const double pivot_m = turn_shift / turn_turn;
+  if (!(pivot_m > 0.0 && pivot_m <= kMostPivotM)) return;
+  fit.options.pivot_m = pivot_m;
   fit.pivot_explains = turn_shift * turn_shift / (turn_turn * shift_shift);
 }
 

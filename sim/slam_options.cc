@@ -56,7 +56,8 @@ void SlamOptions::Visit(OptionsVisitor& v) {
            "sets all keys below; those given override it");
   if (profile != before) *this = ProfileOptions(profile);
   v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and drift");
-  v.Number("pivot_m", pivot_m, {0.0, 20.0}, "rotation errors turn about a point this far ahead");
+  v.Number("pivot_m", pivot_m, {0.0, kMostPivotM},
+           "rotation errors turn about a point this far ahead");
   v.Number("tilt_share", tilt_share, {0.0, 1.0}, "roll and pitch errors against yaw's");
   v.Number("jitter_translation_m", jitter_translation_m, kMetres, "white error of a pose");
   v.Number("jitter_rotation_deg", jitter_rotation_deg, kDegrees, "white error of a pose");

@@ -48,6 +48,8 @@ struct SlamLoopOptions {
   void Visit(OptionsVisitor& v);
 };
 
+constexpr double kMostPivotM = 20.0;
+
 struct SlamOptions {
   SlamProfile profile = SlamProfile::kGroundTruth;
   double drift_scale = 1.0;  // multiplies walk and drift; what calibration sets

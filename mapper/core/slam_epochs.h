@@ -12,8 +12,9 @@ namespace depthgrid {
 class SlamEpochs {
  public:
   // The frame's epoch, counted from 0: another one where Frame::slam_epoch changes, and where SLAM
-  // corrected itself without a word, as a step shows that nothing drives. A frame without a pose
-  // has that of the last one with a pose. Once a frame, in the order of time.
+  // corrected itself without a word, as a step shows that nothing drives, or began anew, as a pose
+  // shows that lies where the first one did after a pause. A frame without a pose has that of the
+  // last one with a pose. Once a frame, in the order of time.
   int Of(const Frame& frame);
   // The last frame begins another epoch as well, as something else told.
   int BeginAtLast() { return ++epoch_; }
@@ -33,8 +34,10 @@ class SlamEpochs {
     SlamStep Usual() const;  // their medians
   };
   bool Breaks(const Posed& last, const Posed& next);
+  bool BeginsAnew(const Posed& last, const Posed& next) const;
   bool BreaksMotions(const SlamStep& step) const;
 
+  std::optional<Pose3> first_;
   std::optional<Posed> last_;
   int epoch_ = 0;
   Motions since_;    // the last break or gap: by them the next step is judged

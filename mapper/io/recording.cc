@@ -10,6 +10,7 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
+#include "mapper/io/frozen_images.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/undistort.h"
 
@@ -74,6 +75,11 @@ class RecordingSource final : public FrameSource {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
     }
     frame.depth = Read(image);
+    if (frame.depth && frame.slam_from_camera &&
+        frozen_.IsFrozen(frame.depth, *frame.slam_from_camera, frame.stamp_s, frame.slam_epoch)) {
+      repeated_.Add(image.depth_path);
+      frame.depth = nullptr;
+    }
     ++next_;
     return frame;
   }
@@ -86,6 +92,8 @@ class RecordingSource final : public FrameSource {
     unreadable_.AppendTo(warnings, recording_.name, "depth image", "missing or damaged");
     wrong_size_.AppendTo(warnings, recording_.name, "depth image",
                          "of another size than the camera");
+    repeated_.AppendTo(warnings, recording_.name, "depth image",
+                       "the same as before while the camera moved, and left out");
     return warnings;
   }
 
@@ -188,6 +196,8 @@ class RecordingSource final : public FrameSource {
   std::size_t next_ = 0;
   Tally unreadable_;
   Tally wrong_size_;
+  FrozenImages frozen_;
+  Tally repeated_;
 };
 
 }  // namespace

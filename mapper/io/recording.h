@@ -53,9 +53,10 @@ void CompleteSize(const Recording& recording, CameraDescription& camera);
 
 // Frames of the recording's part in its order, without the camera's distortion, numbered as in the
 // whole recording. Images that are missing, damaged or of the wrong size become frames with a pose
-// only and are counted; loops with an end outside the part are left out. Throws InputError when
-// there is no image, when none of the first images can be read, when their size is not the
-// camera's, or when no image finds a pose.
+// only and are counted, and so do those that came again while the camera moved (FrozenImages);
+// loops with an end outside the part are left out. Throws InputError when there is no image, when
+// none of the first images can be read, when their size is not the camera's, or when no image finds
+// a pose.
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader);
 

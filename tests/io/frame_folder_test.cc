@@ -87,6 +87,26 @@ TEST_F(FrameFolderTest, ScanNetsFolders) {
   EXPECT_THAT(WarningsOf(*source), ElementsAre("~: 1 of 3 frames has no pose"));
 }
 
+// The driver gave frame 2 five times over while the camera went ahead by 10 cm a frame.
+TEST_F(FrameFolderTest, ImagesThatComeAgainWhileTheCameraMovesAreLeftOut) {
+  for (int number = 0; number < 10; ++number) {
+    WriteDepth(fmt::format("depth/{}.png", number), 3000 - (number < 2 || number > 6 ? number : 2));
+    Write(fmt::format("pose/{}.txt", number),
+          fmt::format("1 0 0 0\n0 1 0 0\n0 0 1 {}\n0 0 0 1\n", 0.1 * number));
+  }
+  Write("intrinsic/intrinsic_depth.txt", "577 0 1.5 0\n0 578 1 0\n0 0 1 0\n0 0 0 1\n");
+  const auto source = OpenFrameFolder(folder_);
+  std::vector<int> without;
+  for (const Frame& frame : All(*source)) {
+    EXPECT_TRUE(frame.slam_from_camera) << frame.index;
+    if (!frame.depth) without.push_back(frame.index);
+  }
+  EXPECT_THAT(without, ElementsAre(3, 4, 5, 6));
+  EXPECT_THAT(WarningsOf(*source),
+              ElementsAre("~: 4 depth images the same as before while the camera moved, and left "
+                          "out (first: ~/depth/3.png)"));
+}
+
 TEST_F(FrameFolderTest, OneFileOfPoses) {
   for (int number = 0; number < 3; ++number) {
     WriteDepth(fmt::format("frame-{:06}.depth.png", number), 1000);

@@ -17,7 +17,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr int kFrames = 240;
+constexpr int kJumpFrames = 240;
 constexpr int kJumpAt = 200;
 
 // A circle of 1 m radius, walked in 6 s and a third of it again, looking along the path.
@@ -30,7 +30,7 @@ Pose3 OnCircle(int frame) {
 // SLAM drifted by up to 0.3 m and jumps back when it closes the circle, a bit late.
 std::vector<SlamPose> Drifting() {
   std::vector<SlamPose> live;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < kJumpFrames; ++i) {
     Pose3 pose = OnCircle(i);
     if (i < kJumpAt) pose.translation.x() += 0.3 * i / kJumpAt;
     live.push_back({i / 30.0, pose, 0});
@@ -40,7 +40,7 @@ std::vector<SlamPose> Drifting() {
 
 Trajectory Revised() {
   Trajectory final;
-  for (int i = 0; i < kFrames; ++i) final.push_back({i / 30.0, OnCircle(i)});
+  for (int i = 0; i < kJumpFrames; ++i) final.push_back({i / 30.0, OnCircle(i)});
   return final;
 }
 

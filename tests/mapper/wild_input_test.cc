@@ -129,6 +129,23 @@ TEST(FrameHistory, WhatAHandOrRobotDoesIsMotion) {
   EXPECT_EQ(EpochsOnAWay(60, thrown, at_30_hz).back(), 1);
 }
 
+// A driver or a SLAM that was started again while the camera stood counts from its origin.
+TEST(FrameHistory, APoseAtTheOriginAfterAPauseBeginsAnEpoch) {
+  for (const double pause_s : {2.0, 60.0}) {
+    const auto stamp_s = [&](int i) { return i / 30.0 + (i < 60 ? 0.0 : pause_s); };
+    for (const double origin_m : {0.0, 4.0}) {  // where it counts from is where it began, or 0
+      const auto anew = [&](int i) { return i < 60 ? origin_m + 0.02 * i : 0.02 * (i - 60); };
+      const auto as_at_first = [&](int i) { return origin_m + 0.02 * (i < 60 ? i : i - 60); };
+      EXPECT_EQ(EpochsOnAWay(80, anew, stamp_s).back(), 1) << pause_s << " " << origin_m;
+      EXPECT_EQ(EpochsOnAWay(80, as_at_first, stamp_s).back(), 1) << pause_s << " " << origin_m;
+    }
+    const auto goes_on = [&](int i) { return 4.0 + 0.02 * i + (i < 60 ? 0.0 : 1.5); };
+    EXPECT_EQ(EpochsOnAWay(80, goes_on, stamp_s).back(), 0) << pause_s;
+    const auto never_left = [&](int i) { return 0.002 * (i < 60 ? i : i - 60); };
+    EXPECT_EQ(EpochsOnAWay(80, never_left, stamp_s).back(), 0) << pause_s;
+  }
+}
+
 // SLAM is wrong for a few frames and comes back.
 TEST(FrameHistory, AGlitchOfSlamBeginsAnEpochAndSoDoesTheWayBack) {
   for (const double rate_hz : {30.0, 10.0}) {

@@ -7,6 +7,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/core/rng.h"
 #include "sim/error_growth.h"
 #include "sim/slam_calibration.h"
 #include "sim/slam_events.h"
@@ -98,6 +99,24 @@ TEST(FitGrowth, FindsTheTermsOfAnExactGrowth) {
   EXPECT_NEAR(fitted.drift, declared.drift, 1e-6);
   const GrowthTerms less = FitGrowth(growth, times, 0.001 * 0.001);
   EXPECT_NEAR(less.walk, 0.001 * std::sqrt(3.0), 1e-6);
+}
+
+// A file's quaternions are rounded: what is left of turns without an error explains no shift.
+TEST(FitSlamErrors, RoundedTurnsAreNoPivot) {
+  SlamOptions given;
+  given.walk_translation_m = 0.02;
+  std::vector<SlamRun> runs = Runs(given, 2, 100.0);
+  RandomStream random(5, RandomStage::kTest, 0);
+  for (SlamRun& run : runs) {
+    for (auto& posed : run.estimate) {
+      const Eigen::Vector3d rounding(random.Normal(), random.Normal(), random.Normal());
+      posed.world_from_camera.rotation =
+          posed.world_from_camera.rotation * ExpRotation(1e-15 * rounding);
+    }
+  }
+  const SlamFit fit = FitSlamErrors(runs);
+  EXPECT_EQ(fit.options.pivot_m, 0.0);
+  EXPECT_LT(fit.options.walk_translation_m, 0.1);
 }
 
 TEST(FitSlamErrors, FindsWhatTheSurrogateWasGiven) {

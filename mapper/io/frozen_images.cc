@@ -1,0 +1,40 @@
+#include "mapper/io/frozen_images.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mapper/core/angle.h"
+
+namespace depthgrid {
+namespace {
+
+// Chosen, of no measurement.
+constexpr double kTurnRad = RadFromDeg(2.0);
+constexpr double kAheadM = 0.05;
+
+bool SeesSomething(const DepthImage& image) {
+  return std::any_of(image.z_m.begin(), image.z_m.end(),
+                     [](float z_m) { return z_m != kInvalidDepth; });
+}
+
+}  // namespace
+
+bool FrozenImages::IsFrozen(std::shared_ptr<const DepthImage> image, const Pose3& slam_from_camera,
+                            double stamp_s, int slam_epoch) {
+  const bool same =
+      image_ && slam_epoch == slam_epoch_ && image->z_m == image_->z_m && SeesSomething(*image);
+  if (!same) {
+    image_ = std::move(image);
+    slam_from_camera_ = slam_from_camera;
+    stamp_s_ = stamp_s;
+    slam_epoch_ = slam_epoch;
+    return false;
+  }
+  const double seconds = std::max(stamp_s - stamp_s_, 0.0);
+  const Pose3 motion = Inverse(slam_from_camera_) * slam_from_camera;
+  return LogRotation(motion.rotation).norm() > kTurnRad * (1.0 + seconds) ||
+         std::abs(motion.translation.z()) > kAheadM * (1.0 + seconds);
+}
+
+}  // namespace depthgrid
