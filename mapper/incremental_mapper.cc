@@ -340,7 +340,11 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   report.well_seen = !added.kept();
   if (!reference) return;
   if (added.kept()) {
-    if (added.slam_motion) reference->Corrected(prediction.map_from_base, fused.map_from_base);
+    // What a jittering SLAM is off by in this frame alone corrects nothing.
+    const Pose2 corrected =
+        prediction.map_from_base *
+        Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
+    if (added.slam_motion) reference->Corrected(prediction.map_from_base, corrected);
     reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);

@@ -89,7 +89,8 @@ class ReferenceMap {
                             const Prediction& prediction) = 0;
   // What the last match was made against; good until the next call of anything.
   virtual std::span<const MapPart> MatchedParts() const = 0;
-  // Where the frame to be inserted next was predicted, from the one before, and where it is.
+  // Where the frame to be inserted next was predicted, from the one before, and where it is but for
+  // what SLAM is off by in it alone.
   virtual void Corrected(const Pose2& /*predicted_map_from_base*/, const Pose2& /*map_from_base*/) {
   }
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
