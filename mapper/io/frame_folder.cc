@@ -20,6 +20,12 @@ namespace fs = std::filesystem;
 // Exports of depth in millimetres (7-Scenes, 3DMatch, ScanNet) when no camera file says otherwise.
 constexpr double kMillimetres = 1000.0;
 
+// Names that are stamps (ROS, EuRoC): no recording has as many frames, and in these units the
+// numbers from here on are times since 1970, micro- up to nanoseconds those of the next 3,000
+// years.
+constexpr long kLeastMicroseconds = 1'000'000'000'000'000;
+constexpr long kLeastNanoseconds = 100'000'000'000'000'000;
+
 std::vector<NumberedImage> DepthImagesOf(const fs::path& folder) {
   for (const char* ending : {".depth.png", "-depth.png", "_depth.png"}) {
     auto images = NumberedImagesIn(folder, ending);
@@ -46,6 +52,13 @@ fs::path FolderOfImages(const fs::path& folder) {
                     std::min_element(found.begin(), found.end())->filename().string()));
   }
   return found.empty() ? folder : found.front();
+}
+
+double StampS(long number, const RecordingOptions& options) {
+  const double units_a_second = number >= kLeastNanoseconds    ? 1e9
+                                : number >= kLeastMicroseconds ? 1e6
+                                                               : options.frame_rate_hz;
+  return static_cast<double>(number) / units_a_second;
 }
 
 std::optional<fs::path> FirstExisting(const std::vector<fs::path>& paths) {
@@ -129,8 +142,7 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
     images.erase(end, images.end());
   }
   for (const NumberedImage& image : images) {
-    const double stamp_s = static_cast<double>(image.number) / options.frame_rate_hz;
-    recording.images.push_back({stamp_s, image.path.string(), image.number});
+    recording.images.push_back({StampS(image.number, options), image.path.string(), image.number});
   }
   const auto poses = PosesOf(images, images_folder, listed);
   for (std::size_t i = 0; i < images.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/frozen_images.h"
+#include "mapper/io/number_rows.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/undistort.h"
 
@@ -57,6 +58,7 @@ class RecordingSource final : public FrameSource {
                   DepthReader reader)
       : recording_(std::move(recording)), reader_(std::move(reader)) {
     if (recording_.images.empty()) throw InputError(recording_.name, "holds no depth image");
+    RequireSeconds(recording_.images.back().stamp_s, recording_.images.back().depth_path);
     FindPoses(slam, options);
     Probe();
     next_ = recording_.part.begin;

@@ -172,6 +172,32 @@ TEST_F(FrameFolderTest, ImagesAloneTakeThePosesThatAreGiven) {
   EXPECT_TRUE(source->Next()->slam_from_camera);
 }
 
+// As ROS and EuRoC name them.
+TEST_F(FrameFolderTest, NamesOfMicroAndNanosecondsAreStamps) {
+  for (const std::string& zeros : {std::string("000"), std::string("000000")}) {
+    SetUp();
+    for (const int milliseconds : {0, 50}) {
+      WriteDepth(fmt::format("depth/14036365797{:02}{}.png", 10 + milliseconds, zeros), 1000);
+    }
+    Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+    const auto source = OpenFrameFolder(
+        folder_, SlamOutputOf({{1403636579.71, Pose3{}}, {1403636579.76, Pose3{}}}));
+    const auto frames = All(*source);
+    ASSERT_EQ(frames.size(), 2U);
+    EXPECT_NEAR(frames[0].stamp_s, 1403636579.71, 1e-6);
+    EXPECT_NEAR(frames[1].stamp_s, 1403636579.76, 1e-6);
+    EXPECT_TRUE(frames[1].slam_from_camera);
+  }
+}
+
+// The map's files hold stamps of seconds: it would be refused when it is written.
+TEST_F(FrameFolderTest, ANumberThatIsNoStampIsRefusedFirst) {
+  WriteSevenScenes("");
+  WriteDepth("frame-500000000000000.depth.png", 1000);
+  EXPECT_THAT(OpenError(), HasSubstr("~/frame-500000000000000.depth.png: the stamp is 1.66667e+13, "
+                                     "must be in seconds"));
+}
+
 TEST_F(FrameFolderTest, OneClearLineForEachFault) {
   EXPECT_FALSE(IsFrameFolder(folder_));
   EXPECT_EQ(OpenError(), "~: holds no numbered depth images (frame-000000.depth.png, depth/0.png)");
