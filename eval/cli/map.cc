@@ -10,6 +10,7 @@
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
+#include "eval/floor_check.h"
 #include "eval/mapping_run.h"
 #include "eval/place_check.h"
 #include "eval/prior_run.h"
@@ -167,8 +168,23 @@ void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
 // The map of another axis than up is a cut through the walls, and looks like a map.
 void CheckUp(const Config& config, const Sequence& sequence, std::vector<std::string>& warnings) {
   if (!sequence.up_doubt) return;
-  warnings.push_back(fmt::format("{}: the floor seen in the images says {}, if they are upright",
-                                 config.PlaceOfKey("sequence.world_up"), *sequence.up_doubt));
+  const char* upside_down = "; if the camera is mounted upside down, that is the ceiling";
+  warnings.push_back(fmt::format("{}: the floor seen in the images says {}, if they are upright{}",
+                                 config.PlaceOfKey("sequence.world_up"), sequence.up_doubt->up,
+                                 sequence.up_doubt->opposite ? upside_down : ""));
+}
+
+// Poses whose world has its floor elsewhere than at 0, as a surveyor's has.
+void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const ScanOptions& scan,
+                const MappingRun& run, std::vector<std::string>& warnings) {
+  const auto& seen_z_m = sequence.seen_floor_z_m;
+  if (!seen_z_m || !MapsFloor(run, *seen_z_m, scan)) return;
+  warnings.push_back(
+      fmt::format("{}: the floor seen in the images lies at z = {:.2f}, {:g} is taken for it, and "
+                  "so it is drawn "
+                  "as walls: --set mapper.scan.floor_z_m={:.2f} says where it is",
+                  arguments.poses.empty() ? arguments.input : arguments.poses, *seen_z_m,
+                  scan.floor_z_m, *seen_z_m));
 }
 
 // Only one of the two can be right; which one, the mapper cannot know.
@@ -280,6 +296,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   std::vector<std::string> warnings = run.warnings;
   CheckPoses(arguments, input, warnings);
   CheckUp(request.config, input, warnings);
+  CheckFloor(arguments, input, settings.mapper.scan, run, warnings);
   const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Poses read the wrong way have another scale too.

@@ -147,8 +147,8 @@ Eigen::Vector3d NormalOf(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& 
 
 struct Direction {
   Eigen::Vector3d up;
-  double wander_rad = 0.0;
-  bool drifts = false;
+  double wander_rad;
+  bool drifts;
 };
 
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -381,11 +381,9 @@ std::optional<Gravity> GravityFinder::Find() const {
   const Eigen::Vector3d image_up = image_up_.normalized();
   const Views upward = Upward(views_, image_up);
   const Views first_upward = Upward(first_views_, image_up);
-  std::size_t patches = 0;
-  for (const SurfaceView& view : views_) patches += view.patches.size();
   const Patches together = PatchesOf(upward);
-  const std::size_t needed = std::max(
-      kMinFloorPatches, static_cast<std::size_t>(kMinFloorShare * static_cast<double>(patches)));
+  const double share = kMinFloorShare * static_cast<double>(PatchesOf(views_).size());
+  const std::size_t needed = std::max(kMinFloorPatches, static_cast<std::size_t>(share));
   if (together.size() < needed) return {};
   const auto direction = CommonUp(upward, first_upward, CommonNormal(together));
   if (!direction) return {};
@@ -393,8 +391,10 @@ std::optional<Gravity> GravityFinder::Find() const {
   if (level.size() < needed) return {};
   const FloorOfViews floor = FloorUnder(upward, first_upward, level, direction->up);
   if (floor.camera_height_m <= 0.0) return {};
+  const double below = internal::ShareBelow(views_, direction->up, floor.height_m - kTableM);
   return Gravity{direction->up,  direction->wander_rad, direction->drifts,
-                 floor.height_m, floor.camera_height_m, floor.is_late};
+                 floor.height_m, floor.camera_height_m, floor.is_late,
+                 below};
 }
 
 }  // namespace depthgrid

@@ -26,7 +26,12 @@ struct Gravity {
   double camera_height_m = 0.0;  // above the floor, median over the frames
   // It drifts, and the first images see no floor: floor_m is off by what it drifted before one did.
   bool floor_is_late = false;
+  double share_below = 0.0;  // of all surface seen, what lies clearly lower than the floor
 };
+
+// Whether the floor may be a table that fills the images: beside it they see what lies lower. Of a
+// floor they see little, reflections or steps.
+inline bool IsTable(const Gravity& gravity) { return gravity.share_below > 0.01; }
 
 class GravityFinder {
  public:

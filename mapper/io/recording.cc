@@ -218,6 +218,12 @@ std::span<const RecordedImage> ImagesOfPart(const Recording& recording) {
   return images.subspan(recording.part.begin, recording.part.CountAmong(images.size()));
 }
 
+Recording WithImages(Recording recording, std::vector<RecordedImage> images) {
+  recording.images = std::move(images);
+  recording.part = {};
+  return recording;
+}
+
 FrameNames NamesOf(const Recording& recording, const RecordingOptions& options) {
   FrameNames names;
   names.time_offset_s = options.time_offset_s;

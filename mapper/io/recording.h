@@ -36,6 +36,9 @@ struct Recording {
 FramePart FindPart(const PartOptions& part, const Recording& recording);
 std::span<const RecordedImage> ImagesOfPart(const Recording& recording);
 
+// Of the recording's images these alone.
+Recording WithImages(Recording recording, std::vector<RecordedImage> images);
+
 // With the stamps as recorded, but for the options' offset.
 FrameNames NamesOf(const Recording& recording, const RecordingOptions& options = {});
 

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
-#include <set>
-#include <span>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/find_up.h"
 #include "mapper/io/frame_folder.h"
-#include "mapper/io/gravity.h"
 #include "mapper/io/icl_folder.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/slam_jumps.h"
@@ -25,16 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Images looked at for gravity.
-constexpr int kGravityViews = 24;
-// Between the first two of them: what is level before SLAM drifts.
-constexpr int kFirstGravityViews = 8;
-// Where SLAM's tilt drifts, what one place's floor says of up is off by 1.5 degrees; and a world as
-// little tilted is levelled from image to image (FloorTracker).
-constexpr double kDriftingAxisRad = RadFromDeg(3.0);
 // A given axis farther than this from what the floor says is another one: axes are 90 degrees
 // apart, and a world that is as oblique to all of them has none.
 const double kSureOfAxis = std::cos(RadFromDeg(45.0));
+// The opposite of a level axis, SLAM's tilt and the normals' errors aside.
+const double kSureOfOpposite = std::cos(RadFromDeg(5.0));
 // A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
 constexpr double kFloorIsZeroM = 0.02;
 
@@ -146,63 +138,6 @@ void FindCorrections(const std::string& path, const RecordingOptions& options,
   StartEpochs(jumps, slam.live);
 }
 
-// Where up is looked for: in all of the recording that has poses, so that its parts have one world;
-// in the part where SLAM was given little more.
-std::vector<RecordedImage> ImagesForUp(const DepthSequence& sequence,
-                                       const RecordingOptions& options) {
-  const PoseTrack track(sequence.slam.live, options);
-  const auto with_pose = [&](std::span<const RecordedImage> images) {
-    std::vector<RecordedImage> posed;
-    std::copy_if(images.begin(), images.end(), std::back_inserter(posed),
-                 [&](const RecordedImage& image) {
-                   return track.At(image.stamp_s).slam_from_camera.has_value();
-                 });
-    return posed;
-  };
-  const std::vector<RecordedImage> all = with_pose(sequence.recording.images);
-  return MostLackPoses(all.size(), sequence.recording.images.size())
-             ? with_pose(ImagesOfPart(sequence.recording))
-             : all;
-}
-
-// Of the recording's images these alone.
-Recording WithImages(Recording recording, std::vector<RecordedImage> images) {
-  recording.images = std::move(images);
-  recording.part = {};
-  return recording;
-}
-
-// From a few images spread over the recording, and some of its first.
-std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
-  std::vector<RecordedImage> chosen;
-  const std::vector<RecordedImage> images = ImagesForUp(sequence, options);
-  const std::size_t every = std::max<std::size_t>(1, images.size() / kGravityViews);
-  const std::size_t every_first = std::max<std::size_t>(1, every / kFirstGravityViews);
-  std::set<double> spread_s;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const bool spread = i % every == 0;
-    if (!spread && !(i < every && i % every_first == 0)) continue;
-    chosen.push_back(images[i]);
-    if (spread) spread_s.insert(images[i].stamp_s);
-  }
-  GravityFinder finder;
-  try {
-    const auto source = OpenRecording(WithImages(sequence.recording, std::move(chosen)),
-                                      sequence.slam, options, sequence.reader);
-    const double first_end_s =
-        images.empty() ? 0.0 : images[std::min(every, images.size() - 1)].stamp_s;
-    while (const auto frame = source->Next()) {
-      if (!frame->depth || !frame->slam_from_camera) continue;
-      const Pose3& pose = *frame->slam_from_camera;
-      if (spread_s.contains(frame->stamp_s)) finder.Add(*frame->depth, *source->Camera(), pose);
-      if (frame->stamp_s < first_end_s) finder.AddFirst(*frame->depth, *source->Camera(), pose);
-    }
-  } catch (const InputError&) {
-    return {};  // what is wrong with the recording is said when the whole of it is opened
-  }
-  return finder.Find();
-}
-
 // Whether its poses are what they were read as.
 std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
                                     const RecordingOptions& options) {
@@ -225,27 +160,20 @@ std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
   }
 }
 
-// Up as the floor in the images has it, one of the axes where it is near enough to one.
-Eigen::Vector3d SnappedUp(const Gravity& gravity) {
-  const double unsure_rad =
-      gravity.drifts ? std::max(gravity.wander_rad, kDriftingAxisRad) : gravity.wander_rad;
-  const WorldUp axis = NearestAxis(gravity.up_in_world, unsure_rad);
-  return axis == WorldUp::kAuto ? gravity.up_in_world : AxisOf(axis);
+std::optional<Gravity> FindGravity(const DepthSequence& sequence, const RecordingOptions& options) {
+  return FindGravity(sequence.recording, sequence.slam, sequence.reader, options);
 }
 
-// "z" or "(0.000, 0.707, 0.707)".
-std::string ShownUp(const Eigen::Vector3d& up) {
-  const WorldUp axis = NearestAxis(up);
-  return axis == WorldUp::kAuto ? fmt::format("({:.3f}, {:.3f}, {:.3f})", up.x(), up.y(), up.z())
-                                : NameOf(axis);
-}
-
-// Of a given axis, which is taken whatever the images say.
-std::optional<std::string> DoubtOfUp(const DepthSequence& sequence,
-                                     const SequenceOptions& options) {
+// A given axis is taken whatever the images say.
+void CheckAxis(const DepthSequence& sequence, const SequenceOptions& options, Sequence& result) {
   const auto gravity = FindGravity(sequence, options.recording);
-  if (!gravity || gravity->up_in_world.dot(AxisOf(options.world_up)) > kSureOfAxis) return {};
-  return ShownUp(SnappedUp(*gravity));
+  if (!gravity) return;
+  const double along = gravity->up_in_world.dot(AxisOf(options.world_up));
+  if (along <= kSureOfAxis) {
+    result.up_doubt = UpDoubt{ShownUp(SnappedUp(*gravity)), along < -kSureOfOpposite};
+  } else if (!IsTable(*gravity)) {
+    result.seen_floor_z_m = gravity->floor_m;
+  }
 }
 
 // Which way is up, and what is to be said about it.
@@ -259,12 +187,21 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
     return AxisOf(sequence.usual_up);
   }
   const Eigen::Vector3d up = SnappedUp(*gravity);
+  if (!IsTable(*gravity)) result.seen_floor_z_m = gravity->floor_m;
   result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
   const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));
   result.notes.push_back(fmt::format("up is {}, removed {:.1f} degrees", ShownUp(up), removed_deg));
   result.notes.push_back(
       fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
                   gravity->camera_height_m, *result.floor_z_m));
+  if (-up.z() > kSureOfOpposite) {
+    sequence.recording.warnings.push_back(
+        path +
+        ": up is -z, right if z of the poses' world points down (--up -z says so); if the camera "
+        "is "
+        "mounted upside down, the ceiling is taken for the floor and the map is mirrored, and --up "
+        "z is right");
+  }
   if (gravity->floor_is_late) {
     sequence.recording.warnings.push_back(
         path +
@@ -374,7 +311,7 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   SayPart(NamesOf(sequence.recording), result.notes);
   if (!slam) FindCorrections(path, options.recording, sequence, result.notes);
   result.pose_doubt = CheckPoses(sequence, options.recording);
-  if (options.world_up != WorldUp::kAuto) result.up_doubt = DoubtOfUp(sequence, options);
+  if (options.world_up != WorldUp::kAuto) CheckAxis(sequence, options, result);
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(path, options.recording, sequence, result)
                                  : AxisOf(options.world_up);

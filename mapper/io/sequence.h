@@ -35,19 +35,25 @@ struct SequenceOptions {
   void Visit(OptionsVisitor& v);
 };
 
+// What the floor seen in the images says of up, where another axis was given.
+struct UpDoubt {
+  std::string up;         // "z", "-y" or a direction
+  bool opposite = false;  // to the axis: so it is, too, if the camera is mounted upside down
+};
+
 struct Sequence {
   std::unique_ptr<FrameSource> source;
   std::string kind;                // "TUM RGB-D folder"
   std::vector<std::string> notes;  // what was found out about it, a line each
   // z of the floor in the poses' level world, where it was found; 0 when it is within 2 cm of 0.
   std::optional<double> floor_z_m;
+  // The same as it was seen, of a given axis too. Nothing where it may be a table.
+  std::optional<double> seen_floor_z_m;
   // SLAM's own, in the level world and by the clock of the frames; empty when unknown.
   Trajectory final_poses;
   // Where the images fit the poses only if these are read otherwise.
   std::optional<PoseDoubt> pose_doubt;
-  // What the floor seen in the images says is up, where another axis was given: "z", "-y" or a
-  // direction.
-  std::optional<std::string> up_doubt;
+  std::optional<UpDoubt> up_doubt;
 };
 
 // The kind a path looks like. Throws InputError when it is none that is known.

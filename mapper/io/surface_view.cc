@@ -44,4 +44,15 @@ SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
   return view;
 }
 
+double ShareBelow(const std::vector<SurfaceView>& views, const Eigen::Vector3d& up,
+                  double height_m) {
+  std::size_t below = 0;
+  std::size_t all = 0;
+  for (const SurfaceView& view : views) {
+    all += view.patches.size();
+    for (const SurfacePatch& patch : view.patches) below += up.dot(patch.point) < height_m ? 1 : 0;
+  }
+  return all == 0 ? 0.0 : static_cast<double>(below) / static_cast<double>(all);
+}
+
 }  // namespace depthgrid::internal

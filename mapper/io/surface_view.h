@@ -25,6 +25,10 @@ struct SurfaceView {
 
 SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
                    const Pose3& world_from_camera);
+
+// Of all patches, those whose height along `up` is less than `height_m`.
+double ShareBelow(const std::vector<SurfaceView>& views, const Eigen::Vector3d& up,
+                  double height_m);
 }  // namespace internal
 
 }  // namespace depthgrid

@@ -11,8 +11,6 @@ namespace {
 // Around where the floor is expected, a surface is the floor: what SLAM drifts from one sight of it
 // to the next, and the tilt's error times the distance.
 constexpr double kNearM = 0.12;
-// The same where it was not seen yet, and only the pose says anything.
-constexpr double kNearPoseM = 0.35;
 // Heights that a pose may have if its z is that of the floor's frame; z of a recording often begins
 // at 0.
 constexpr double kLeastPoseHeightM = 0.1;

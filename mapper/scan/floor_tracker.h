@@ -13,6 +13,10 @@ namespace depthgrid {
 
 class FloorTracker {
  public:
+  // Where the floor was not seen yet, and only the pose says where it is, a surface this near to
+  // that is the floor.
+  static constexpr double kNearPoseM = 0.35;
+
   FloorTracker(const PinholeCamera& camera, const ScanOptions& options)
       : camera_(camera), source_(options.floor), floor_z_m_(options.floor_z_m) {}
 

@@ -154,17 +154,52 @@ TEST_F(SequenceTest, AnAxisThatTheFloorSpeaksAgainstIsDoubted) {
   const auto doubt = [&](WorldUp up, const Trajectory& poses) {
     SequenceOptions options;
     options.world_up = up;
-    return OpenSequence(folder_, options, SlamOutputOf(poses)).up_doubt.value_or("none");
+    const Sequence sequence = OpenSequence(folder_, options, SlamOutputOf(poses));
+    const UpDoubt said = sequence.up_doubt.value_or(UpDoubt{"none"});
+    return said.up + (said.opposite ? ", opposite" : "");
   };
   EXPECT_EQ(doubt(WorldUp::kZ, truth), "none");
   EXPECT_EQ(doubt(WorldUp::kAuto, truth), "none");
-  for (const WorldUp wrong : {WorldUp::kX, WorldUp::kMinusY, WorldUp::kMinusZ}) {
-    EXPECT_EQ(doubt(wrong, truth), "z");
-  }
+  for (const WorldUp wrong : {WorldUp::kX, WorldUp::kMinusY}) EXPECT_EQ(doubt(wrong, truth), "z");
+  EXPECT_EQ(doubt(WorldUp::kMinusZ, truth), "z, opposite");
   const Pose3 tilted{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())),
                      Eigen::Vector3d::Zero()};
   EXPECT_EQ(doubt(WorldUp::kZ, Turned(truth, tilted)), "none");
   EXPECT_THAT(doubt(WorldUp::kX, Turned(truth, tilted)), ::testing::StartsWith("(0.0"));
+}
+
+// A camera mounted upside down, or a world whose z points down: the images show the same.
+TEST_F(SequenceTest, UpOppositeToZIsWarnedOf) {
+  const Trajectory truth = WriteRoom();
+  const auto warnings_of = [&](const Eigen::Vector3d& half_turn, WorldUp up) {
+    const Pose3 turned{Eigen::Quaterniond(Eigen::AngleAxisd(kPi, half_turn)),
+                       Eigen::Vector3d::Zero()};
+    SequenceOptions options;
+    options.world_up = up;
+    const SlamOutput poses = SlamOutputOf(Turned(truth, turned));
+    std::vector<std::string> warnings = OpenSequence(folder_, options, poses).source->Warnings();
+    for (std::string& warning : warnings) warning = Short(warning);
+    return warnings;
+  };
+  const auto says = Contains(HasSubstr("~: up is -z, right if z of the poses' world points down"));
+  EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitX(), WorldUp::kAuto), says);
+  EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitX(), WorldUp::kMinusZ), testing::Not(says));
+  EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitZ(), WorldUp::kAuto), testing::Not(says));
+  const Pose3 first = Inverse(truth.front().world_from_camera);  // y down, z forward
+  const Sequence camera_axes = OpenSequence(folder_, {}, SlamOutputOf(Turned(truth, first)));
+  EXPECT_THAT(camera_axes.source->Warnings(), testing::IsEmpty());
+}
+
+TEST_F(SequenceTest, TheFloorOfAGivenAxisIsSeen) {
+  const Trajectory truth = WriteRoom();
+  const Pose3 higher{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.6}};
+  SequenceOptions options;
+  options.world_up = WorldUp::kZ;
+  const Sequence sequence = OpenSequence(folder_, options, SlamOutputOf(Turned(truth, higher)));
+  EXPECT_FALSE(sequence.floor_z_m);  // what is given is not changed
+  ASSERT_TRUE(sequence.seen_floor_z_m);
+  EXPECT_NEAR(*sequence.seen_floor_z_m, 0.6, 0.02);
+  EXPECT_FALSE(sequence.up_doubt);
 }
 
 TEST_F(SequenceTest, KindsAreDetected) {
