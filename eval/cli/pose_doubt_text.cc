@@ -20,6 +20,31 @@ std::string ShownScale(double scale) {
   return fmt::format("{:g}", std::round(scale / unit) * unit);
 }
 
+// "-y x z": of which numbers of a row the three axes come.
+std::string PositionsOf(const Eigen::Matrix3d& axes) {
+  std::string text;
+  for (int row = 0; row < 3; ++row) {
+    int column = 0;
+    axes.row(row).cwiseAbs().maxCoeff(&column);
+    text += fmt::format("{}{}{}", row > 0 ? " " : "", axes(row, column) < 0.0 ? "-" : "",
+                        "xyz"[column]);
+  }
+  return text;
+}
+
+// "x forward, y left, z up"
+std::string AxesOf(const Eigen::Matrix3d& camera_from_own) {
+  constexpr const char* kWays[3][2] = {{"right", "left"}, {"down", "up"}, {"forward", "backward"}};
+  std::string text;
+  for (int own = 0; own < 3; ++own) {
+    int way = 0;
+    camera_from_own.col(own).cwiseAbs().maxCoeff(&way);
+    text += fmt::format("{}{} {}", own > 0 ? ", " : "", "xyz"[own],
+                        kWays[way][camera_from_own(way, own) < 0.0 ? 1 : 0]);
+  }
+  return text;
+}
+
 // A slow camera moves a centimetre in it.
 constexpr double kSureOfTimeS = 0.04;
 
@@ -29,12 +54,21 @@ std::string RemedyOf(const PoseDoubt& doubt) {
       return "with quaternions that begin with w; rows must be t x y z qx qy qz qw";
     case PoseReading::kInverse:
       return "with each pose inverted; poses must take the camera to the world";
-    case PoseReading::kBodyAxes:
-      return "with poses of axes x forward, y left, z up; they must be the camera's x right, y "
-             "down, z forward";
-    case PoseReading::kGlAxes:
-      return "with poses of axes x right, y up, z backward; they must be the camera's x right, y "
-             "down, z forward";
+    case PoseReading::kPositions:
+      return fmt::format(
+          "with {} as the positions' x y z; they must be in the axes that the quaternions are of",
+          PositionsOf(doubt.axes));
+    case PoseReading::kYUp:
+      return "with poses of a left-handed world and a camera whose y points up; they must be of "
+             "one "
+             "whose y points down, or fy of the camera file negative";
+    case PoseReading::kYDown:
+      return "with poses of a camera whose y points down; fy of the camera file must be positive "
+             "with them";
+    case PoseReading::kAxes:
+      return fmt::format(
+          "with poses of {}axes {}; they must be the camera's x right, y down, z forward",
+          doubt.axes.determinant() < 0.0 ? "a left-handed world and " : "", AxesOf(doubt.axes));
     case PoseReading::kScaled:
       return fmt::format(
           "with images {} times as deep: their scale (depth_scale of the camera file, or --set "
@@ -58,7 +92,14 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           "with fx, fy, cx and cy about {:.2g} times as large: those of the camera are for images "
           "of another size",
           doubt.scale);
+    case PoseReading::kRayLengths:
+      return "with images that hold lengths of rays; they must hold depth along the camera's z "
+             "axis, "
+             "the ray's length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1)";
     case PoseReading::kShifted:
+    case PoseReading::kStanding:
+    case PoseReading::kUnturned:
+    case PoseReading::kNone:
       break;
   }
   const std::string setting = fmt::format(
@@ -71,10 +112,21 @@ std::string RemedyOf(const PoseDoubt& doubt) {
 
 std::string PoseDoubtText(const PoseDoubt& doubt) {
   constexpr double kPercent = 100.0;
-  return fmt::format(
+  const std::string apart = fmt::format(
       "the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their depth "
-      "apart; they would, at {:.1f} %, {}",
-      kPercent * doubt.misfit, kPercent * doubt.better_misfit, RemedyOf(doubt));
+      "apart",
+      kPercent * doubt.misfit);
+  switch (doubt.reading) {
+    case PoseReading::kStanding:
+      return apart + ": the poses do not move, all positions are the same";
+    case PoseReading::kUnturned:
+      return apart + ": the poses do not turn, all quaternions are the same";
+    case PoseReading::kNone:
+      return apart + ", and no reading of them fits: are they of these images, in this order?";
+    default:
+      return fmt::format("{}; they would, at {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
+                         RemedyOf(doubt));
+  }
 }
 
 }  // namespace depthgrid::cli

@@ -151,10 +151,7 @@ std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
       if (!first->depth || !second->depth) continue;
       pairs.push_back({first->stamp_s, second->stamp_s, first->depth, second->depth});
     }
-    const PoseChange as_written = sequence.y_up
-                                      ? PoseChange([](const Pose3& pose) { return FlipY(pose); })
-                                      : PoseChange([](const Pose3& pose) { return pose; });
-    return DoubtOfPoses(pairs, *source->Camera(), sequence.slam.live, options, as_written);
+    return DoubtOfPoses(pairs, *source->Camera(), sequence.slam.live, options, sequence.y_up);
   } catch (const InputError&) {
     return {};  // what is wrong with the recording is said when the whole of it is opened
   }

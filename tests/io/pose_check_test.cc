@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "mapper/core/rng.h"
 #include "mapper/io/camera_formats.h"
 #include "tests/mapper/analytic_room.h"
 
 namespace depthgrid {
 namespace {
+
+using PoseChange = std::function<Pose3(const Pose3&)>;
 
 constexpr double kFrameS = 0.1;
 constexpr int kFrames = 120;
@@ -131,8 +135,8 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
   const std::vector<std::pair<PoseReading, PoseChange>> readings = {
       {PoseReading::kWFirst, WFirst},
       {PoseReading::kInverse, Inverted},
-      {PoseReading::kBodyAxes, body},
-      {PoseReading::kGlAxes, gl}};
+      {PoseReading::kAxes, body},
+      {PoseReading::kAxes, gl}};
   const std::vector<ImagePair> pairs = Pairs(0.01);
   int cases = 0;
   for (const auto& [reading, written] : readings) {
@@ -185,7 +189,7 @@ TEST(PoseCheck, NamesAnotherClock) {
 TEST(PoseCheck, ReadsYUpPosesAsTheyWereWritten) {
   const auto flip = [](const Pose3& pose) { return FlipY(pose); };
   const auto given = Given([&](const Pose3& pose) { return flip(WFirst(flip(pose))); });
-  const auto doubt = DoubtOfPoses(Pairs(0.01), kCamera, given, {}, flip);
+  const auto doubt = DoubtOfPoses(Pairs(0.01), kCamera, given, {}, true);
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kWFirst);
 }
@@ -274,8 +278,99 @@ TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {
   EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, {}, {}));
   pairs.resize(5);
   EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(Inverted), {}));
-  // Poses that know of no motion fit no better however they are read.
-  EXPECT_FALSE(DoubtOfPoses(Pairs(0.0), kCamera, Given([](const Pose3&) { return Pose3{}; }), {}));
+}
+
+// Positions of one axis order and rotations of another; a left-handed world.
+TEST(PoseCheck, NamesOtherAxes) {
+  const auto swapped = [](const Pose3& pose) {
+    const Eigen::Vector3d& t = pose.translation;
+    return Pose3{pose.rotation, {t.y(), t.x(), t.z()}};
+  };
+  const auto negated = [](const Pose3& pose) {
+    const Eigen::Vector3d& t = pose.translation;
+    return Pose3{pose.rotation, {-t.x(), -t.y(), t.z()}};
+  };
+  const auto left_handed = [](const Pose3& pose) {
+    const Eigen::Quaterniond& q = pose.rotation;
+    const Eigen::Vector3d& t = pose.translation;
+    return Pose3{Eigen::Quaterniond(q.w(), q.x(), -q.y(), -q.z()), {-t.x(), t.y(), t.z()}};
+  };
+  Eigen::Matrix3d swap_xy;
+  swap_xy << 0, 1, 0, 1, 0, 0, 0, 0, 1;
+  const Eigen::Matrix3d negate_xy = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+  const Eigen::Matrix3d mirror_x = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
+  const std::vector<ImagePair> pairs = Pairs(0.01);
+  const auto expect = [&](const PoseChange& written, PoseReading reading,
+                          const Eigen::Matrix3d& axes) {
+    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    ASSERT_TRUE(doubt);
+    EXPECT_EQ(doubt->reading, reading);
+    EXPECT_EQ(doubt->axes, axes);
+    EXPECT_LT(doubt->better_misfit, 0.02);
+  };
+  expect(swapped, PoseReading::kPositions, swap_xy);
+  expect(negated, PoseReading::kPositions, negate_xy);
+  expect(left_handed, PoseReading::kAxes, mirror_x);
+}
+
+// A camera with negative fy asks for poses of a y that points up, one with positive fy for others.
+TEST(PoseCheck, NamesTheOtherSignOfFy) {
+  const auto flip = [](const Pose3& pose) { return FlipY(pose); };
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  const auto of_y_down = DoubtOfPoses(pairs, kCamera, Given(flip), {}, true);
+  ASSERT_TRUE(of_y_down);
+  EXPECT_EQ(of_y_down->reading, PoseReading::kYDown);
+  const auto of_y_up = DoubtOfPoses(pairs, kCamera, Given(flip), {});
+  ASSERT_TRUE(of_y_up);
+  EXPECT_EQ(of_y_up->reading, PoseReading::kYUp);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs), {}, true));
+}
+
+TEST(PoseCheck, NamesRayLengths) {
+  std::vector<ImagePair> pairs = Pairs(0.002);
+  const auto as_rays = [](const DepthImage& image) {
+    auto rays = std::make_shared<DepthImage>(image);
+    for (int v = 0; v < image.height_px; ++v) {
+      for (int u = 0; u < image.width_px; ++u) {
+        rays->Row(v)[u] *= static_cast<float>(Unproject(kCamera, u, v, 1.0).norm());
+      }
+    }
+    return rays;
+  };
+  for (ImagePair& pair : pairs) {
+    pair.first = as_rays(*pair.first);
+    pair.second = as_rays(*pair.second);
+  }
+  const auto doubt = DoubtOfPoses(pairs, kCamera, Given(AsItIs), {});
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->reading, PoseReading::kRayLengths);
+}
+
+TEST(PoseCheck, SaysOfPosesThatFitInNoReading) {
+  std::vector<ImagePair> pairs = Pairs(0.0);
+  const auto reading = [&](const PoseChange& written) {
+    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    EXPECT_TRUE(doubt);
+    return doubt ? doubt->reading : PoseReading::kWFirst;
+  };
+  EXPECT_EQ(reading([](const Pose3&) { return Pose3{}; }), PoseReading::kStanding);
+  EXPECT_EQ(reading([](const Pose3& pose) {
+              return Pose3{Eigen::Quaterniond::Identity(), pose.translation};
+            }),
+            PoseReading::kUnturned);
+  // Images in another order than their stamps.
+  for (std::size_t i = 0; i < pairs.size() / 2; ++i) {
+    std::swap(pairs[i].first, pairs[pairs.size() - 1 - i].second);
+  }
+  EXPECT_EQ(reading(AsItIs), PoseReading::kNone);
+}
+
+// Half a turn a second: every pair shows two walls, and its poses are right.
+TEST(PoseCheck, ACameraThatTurnsTooFastToTellIsNotDoubted) {
+  const auto whirling = [](double time_s) {
+    return TiltedCamera({0.5, 0.3, kPi * time_s}, 1.0, 0.2, 0.0);
+  };
+  EXPECT_FALSE(DoubtOfPoses(Pairs(0.0, whirling), kCamera, Given(AsItIs, 0.0, whirling), {}));
 }
 
 }  // namespace

@@ -1,0 +1,83 @@
+#include "mapper/io/pose_misfit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/median.h"
+#include "mapper/core/usual_step.h"
+
+namespace depthgrid {
+namespace {
+
+// How far the images of a pair are apart: much of what they show is the same, and the camera has
+// turned by more than SLAM errs.
+constexpr std::size_t kCheckedPairs = 24;
+constexpr double kPairApartS = 0.5;
+// Images that are farther apart than so many times that have a pause of the recording between them,
+// and may show different things.
+constexpr double kMostApart = 2.0;
+
+constexpr int kPointsAcross = 40;  // of an image, looked at
+// Fewer points of one image that the other shows say nothing.
+constexpr double kLeastShared = 0.2;
+
+// From one image to the next; pauses are few.
+double UsualImageStepS(std::span<const RecordedImage> images) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    steps_s.push_back(images[i].stamp_s - images[i - 1].stamp_s);
+  }
+  return UsualStepS(steps_s);
+}
+
+}  // namespace
+
+std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
+  std::vector<RecordedImage> pairs;
+  const double most_apart_s = kMostApart * std::max(kPairApartS, UsualImageStepS(images));
+  const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
+  std::size_t second = 0;
+  for (std::size_t first = 0; first < images.size(); first += every) {
+    const double first_s = images[first].stamp_s;
+    while (second < images.size() && images[second].stamp_s < first_s + kPairApartS) ++second;
+    if (second == images.size()) break;
+    if (images[second].stamp_s - first_s > most_apart_s) continue;
+    pairs.push_back(images[first]);
+    pairs.push_back(images[second]);
+  }
+  return pairs;
+}
+
+double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
+                DepthMeaning meaning) {
+  const DepthImage& first = *pair.first;
+  const DepthImage& second = *pair.second;
+  const int step_px = std::max(1, first.width_px / kPointsAcross);
+  const auto z_m = [&](const DepthImage& image, int u, int v) {
+    const double depth = image.At(u, v);
+    return meaning == DepthMeaning::kZ ? depth : depth / Unproject(camera, u, v, 1.0).norm();
+  };
+  std::vector<double> misfits;
+  int points = 0;
+  for (int v = step_px / 2; v < first.height_px; v += step_px) {
+    for (int u = step_px / 2; u < first.width_px; u += step_px) {
+      const double z = z_m(first, u, v);
+      if (!(z > 0.0)) continue;
+      ++points;
+      const Eigen::Vector3d there = second_from_first * Unproject(camera, u, v, z);
+      if (!(there.z() > 0.0)) continue;
+      const Eigen::Vector2d pixel = Project(camera, there).array().round();
+      const bool inside = pixel.x() >= 0.0 && pixel.x() < second.width_px && pixel.y() >= 0.0 &&
+                          pixel.y() < second.height_px;
+      if (!inside) continue;
+      const double seen = z_m(second, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+      if (seen > 0.0) misfits.push_back(std::abs(there.z() - seen) / seen);
+    }
+  }
+  if (points == 0 || static_cast<double>(misfits.size()) < kLeastShared * points) {
+    return kNothingShared;
+  }
+  return UpperMedian(misfits);
+}
+
+}  // namespace depthgrid
