@@ -192,6 +192,12 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
                 std::vector<std::string>& warnings) {
   const auto ways = ScaleDoubt(run);
   if (!ways) return;
+  constexpr double kStandingM = 1e-3;  // of rounding
+  if (ways->slam_m < kStandingM) {
+    warnings.push_back(fmt::format("{}: the given poses do not move, the map's go {:.1f} m",
+                                   arguments.input, ways->map_m));
+    return;
+  }
   const char* fault = run.camera
                           ? "the depth images' scale (depth_scale of the camera file) or SLAM's"
                           : "the odometry's scale or the laser's";
