@@ -5,6 +5,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/kept_inputs.h"
+#include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
@@ -60,8 +61,19 @@ void PrintDrift(const TrajectoryScore& score) {
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
 }
 
+// Whether the estimate fits best upside down: a mirror image of a level path does, turned in space.
+bool FitsUpsideDown(const std::vector<PosePair>& pairs) {
+  constexpr double kLevelCos = 0.95;  // 18 degrees, more than level worlds differ by
+  const auto fit = Align(pairs, Alignment::kSe3);
+  if (!fit) return false;
+  const Eigen::Vector3d up =
+      fit->reference_from_estimate.rotation * Eigen::Vector3d::UnitZ().eval();
+  return up.z() < -kLevelCos;
+}
+
 // What makes errors say something else than they seem to.
-std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajectoryArguments& of) {
+std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vector<PosePair>& pairs,
+                                  const EvalTrajectoryArguments& of) {
   constexpr double kFewShare = 0.5;    // more are missing than there
   constexpr double kOtherScale = 1.5;  // no SLAM that knows its scale is off by half
   constexpr double kLeastPathM = 1.0;  // of less, noise tells the scale
@@ -92,8 +104,10 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const EvalTrajec
       score.xy_se2->rmse > std::max(kLeastErrorM, kTilted * score.xyz_se3->rmse)) {
     doubts.push_back(fmt::format(
         "{}: fits {} to {:.3f} m in space (SE(3) aligned) but to {:.3f} m in the plane "
-        "(SE(2)): their worlds are tilted against each other, so errors in xy say little",
-        of.estimate, of.reference, score.xyz_se3->rmse, score.xy_se2->rmse));
+        "(SE(2)): {}, so errors in xy say little",
+        of.estimate, of.reference, score.xyz_se3->rmse, score.xy_se2->rmse,
+        FitsUpsideDown(pairs) ? "it is upside down or mirrored (an axis negated, x and y swapped)"
+                              : "their worlds are tilted against each other"));
   }
   return doubts;
 }
@@ -186,7 +200,7 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   if (files.by_row && arguments.max_difference_s >= 0.0) {
     Warn({"--max-difference: has no effect because rows pair in order"});
   }
-  Warn(DoubtsOf(*score, arguments));
+  Warn(DoubtsOf(*score, paired.pairs, arguments));
   if (!arguments.errors.empty()) {
     WriteFile(arguments.errors, ErrorsCsv(paired.pairs, files.has_seconds));
   }

@@ -108,6 +108,21 @@ TEST_F(EvalTrajectory, SaysThatOneWorldIsTilted) {
   EXPECT_EQ(Program("eval trajectory level.txt level.txt").err, "");
 }
 
+// A mirrored level path is the true one upside down, which no level world is tilted to.
+TEST_F(EvalTrajectory, SaysThatALevelPathIsMirrored) {
+  std::string level;
+  std::string mirrored;
+  for (int i = 0; i <= 12; ++i) {
+    level += fmt::format("{} {} {} 1 0 0 0 1\n", i, i, i * i % 5);
+    mirrored += fmt::format("{} {} {} 1 0 0 0 1\n", i, i, -(i * i % 5));
+  }
+  Write("level.txt", level);
+  Write("mirrored.txt", mirrored);
+  const Outcome outcome = Program("eval trajectory level.txt mirrored.txt");
+  EXPECT_THAT(outcome.err, HasSubstr("it is upside down or mirrored"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("tilted")));
+}
+
 // evo takes the nearest stamp within 0.01 s, TUM's scripts within 0.02 s.
 TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
   std::string late;
