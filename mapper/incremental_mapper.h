@@ -83,8 +83,9 @@ class IncrementalMapper {
   // or scan only its pose is corrected; beams and pixels that are no distances say nothing
   // (mapper/scan/frame_scans.h); stamps that repeat or go back tell no speed; a loop with a frame
   // that never came or has no pose counts as rejected.
-  // Mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens of ms, or fill up what is
-  // remembered of all frames, which is then moved: 0.1 s each hour or so. A frame leaves 0.6 kB
+  // Mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens to hundreds of ms and more
+  // with many loops, or fill up what is remembered of all frames, which is then moved: 0.1 s each
+  // hour or so. A frame leaves 0.6 kB
   // behind, 60 MB an hour, and its scan where that is kept (KeepOptions), 3 kB and more.
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses. It takes
