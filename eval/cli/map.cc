@@ -181,8 +181,7 @@ void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const S
   if (!seen_z_m || !MapsFloor(run, *seen_z_m, scan)) return;
   warnings.push_back(
       fmt::format("{}: the floor seen in the images lies at z = {:.2f}, {:g} is taken for it, and "
-                  "so it is drawn "
-                  "as walls: --set mapper.scan.floor_z_m={:.2f} says where it is",
+                  "so it is drawn as walls: --set mapper.scan.floor_z_m={:.2f} says where it is",
                   arguments.poses.empty() ? arguments.input : arguments.poses, *seen_z_m,
                   scan.floor_z_m, *seen_z_m));
 }

@@ -60,8 +60,7 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           PositionsOf(doubt.axes));
     case PoseReading::kYUp:
       return "with poses of a left-handed world and a camera whose y points up; they must be of "
-             "one "
-             "whose y points down, or fy of the camera file negative";
+             "one whose y points down, or fy of the camera file negative";
     case PoseReading::kYDown:
       return "with poses of a camera whose y points down; fy of the camera file must be positive "
              "with them";
@@ -94,8 +93,7 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           doubt.scale);
     case PoseReading::kRayLengths:
       return "with images that hold lengths of rays; they must hold depth along the camera's z "
-             "axis, "
-             "the ray's length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1)";
+             "axis, the ray's length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1)";
     case PoseReading::kShifted:
     case PoseReading::kStanding:
     case PoseReading::kUnturned:

@@ -53,7 +53,7 @@ struct Frame {
   // two poses is a motion only within an epoch, and a jump that is taken for one bends the map for
   // good. A step that the motion before does not lead to (mapper/core/slam_step.h) begins one by
   // itself; corrections of less than 0.1 m go unseen, and of less than 0.1 m + 10 m/s^2 t^2 over a
-  // step that takes t, up to a second; over more, all.
+  // step that takes t, up to a second; over more, all but one back to the origin.
   int slam_epoch = 0;
   // Reported with this frame, to be applied before its pose is used.
   std::vector<LoopClosure> loops;
