@@ -117,7 +117,7 @@ Config Config::Take(const std::string& key) {
   if (node.IsDefined()) {
     if (!node.IsMap())
       throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a map of keys");
-    taken->root = node;
+    taken->root.reset(node);
     taken->overrides = tree_->OverridesBelow(key);
     tree_->root.remove(key);
   }
@@ -140,7 +140,7 @@ std::vector<Config> Config::TakeMaps(const std::string& key) {
     auto taken = std::make_unique<Tree>();
     taken->place = tree_->place;
     taken->subject = tree_->subject;
-    taken->root = YAML::Node(item);
+    taken->root.reset(item);
     maps.push_back(Config(std::move(taken)));
   }
   tree_->root.remove(key);

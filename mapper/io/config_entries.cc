@@ -13,7 +13,7 @@ std::vector<ConfigEntry> Config::Entries() const {
     entry.text = FlowText(item.second);
     if (item.second.IsMap()) {
       auto map = std::make_unique<Tree>();
-      map->root = item.second;
+      map->root.reset(item.second);
       map->place = tree_->place;
       entry.map = Config(std::move(map));
     }
