@@ -10,6 +10,7 @@
 #include "eval/cli/console.h"
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/map_metrics.h"
+#include "eval/metrics/map_turns.h"
 #include "eval/metrics_json.h"
 #include "eval/one_grid.h"
 #include "eval/shell_word.h"
@@ -70,6 +71,7 @@ std::string NoteOf(const std::string& fine, int times, double fine_m, const std:
       fine, times, times, fine_m, coarse_m, coarse);
 }
 
+// `estimate` on the truth's lattice.
 ComparedMaps InOneSize(StateMap truth, OccupancyMap estimate, const EvalMapArguments& paths) {
   const double truth_m = truth.geometry.resolution_m;
   const double estimate_m = estimate.geometry.resolution_m;
@@ -95,9 +97,26 @@ ComparedMaps InOneSize(StateMap truth, OccupancyMap estimate, const EvalMapArgum
   return maps;
 }
 
+// An estimate whose cells lie otherwise than the truth's: what is done about it, and its walls as
+// it has them, between whose cells a shift shows.
+std::string RedrawnNote(const MapFile& estimate, const EvalMapArguments& paths) {
+  const Pose2& off = estimate.world_from_grid;
+  const std::string turned =
+      off.yaw_rad == 0.0 ? "" : fmt::format(", turned by {:.3f} deg", DegFromRad(off.yaw_rad));
+  return fmt::format(
+      "{}: its cells lie off those of {} (by x {:.4f} m, y {:.4f} m{}): each of these takes what "
+      "its centre falls into",
+      paths.estimate, paths.reference, off.x_m, off.y_m, turned);
+}
+
+PlacedWalls WallsOf(const MapFile& estimate) {
+  return {CellsIn(StatesOf(estimate.map), CellState::kOccupied), estimate.world_from_grid};
+}
+
 // The cells a map calls free, in cells of this size: those that hold any.
-CellSet ReadObservable(const std::string& path, double cell_m, const std::string& place_of_cells) {
-  StateMap states = ReadStates(path);
+CellSet ReadObservable(const std::string& path, const Pose2& world_from_frame, double cell_m,
+                       const std::string& place_of_cells) {
+  StateMap states = ReadStates(path, world_from_frame);
   const auto times = TimesLarger(states.geometry.resolution_m, cell_m);
   if (!times) {
     throw InputError(path,
@@ -234,6 +253,29 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
+// A motion is found to the best of what is near, however bad that is.
+std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments,
+                                               const MapQuality& quality, const ScoredMaps& maps,
+                                               const PlacedWalls& walls) {
+  constexpr double kLiesOver = 0.6;
+  if (!quality.registered || !quality.registered->f1_10cm) return std::nullopt;
+  const double f1 = *quality.registered->f1_10cm;
+  if (f1 >= kLiesOver) return std::nullopt;
+  if (const auto turn = TurnOf(maps.truth, walls, maps.scored, f1)) {
+    std::string what = turn->mirrored ? "mirrored" : "";
+    if (turn->quarters > 0) {
+      what += fmt::format("{}turned by {} degrees", turn->mirrored ? " and " : "",
+                          90 * (turn->quarters < 3 ? turn->quarters : -1));
+    }
+    return fmt::format("{}: {}, it lies over {}: are its axes others, or its image's rows?",
+                       arguments.estimate, what, arguments.reference);
+  }
+  return fmt::format(
+      "{}: no motion lays its walls over those of {} (F1 at 10 cm {:.2f} after the best one found, "
+      "of those up to about 0.8 m): farther off, turned, of another place, or wrong",
+      arguments.estimate, arguments.reference, f1);
+}
+
 void PrintTable(const MapScore& score) {
   std::vector<Row> cells = {
       {"cells", "precision", "recall", "F1", "IoU", "free precision", "recall", "F1", "IoU"}};
@@ -255,9 +297,13 @@ void PrintTable(const MapScore& score) {
 void EvalMap(const EvalMapArguments& arguments) {
   RequireNoFolder(arguments.reference, "truth_map.yaml");
   RequireNoFolder(arguments.estimate, "map.yaml");
-  StateMap reference = ReadStates(arguments.reference);
+  // All on the cells of the reference, which is not redrawn.
+  const MapFile reference = ReadMap(arguments.reference);
+  const Pose2& world_from_truth = reference.world_from_grid;
+  const MapFile given = ReadMap(arguments.estimate, world_from_truth);
   const auto [truth, estimate, note] =
-      InOneSize(std::move(reference), AlignedMap(ReadMap(arguments.estimate)), arguments);
+      InOneSize(StatesOf(reference.map), AlignedMap(given), arguments);
+  const bool redrawn = given.world_from_grid != Pose2{};
   const GridGeometry both =
       OneGridAround(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
   std::string observable_path = arguments.observable;
@@ -266,18 +312,32 @@ void EvalMap(const EvalMapArguments& arguments) {
   std::optional<CellSet> observable;
   if (!observable_path.empty()) {
     const double cell_m = truth.geometry.resolution_m;
-    observable = ReadObservable(observable_path, cell_m,
+    observable = ReadObservable(observable_path, world_from_truth, cell_m,
                                 note.empty() ? arguments.reference : "the larger cells compared");
     OneGridAround(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
-  score.quality = ScoreMapQuality(truth, estimate, observable, {});
+  // Cells that were put together have no walls of their own.
+  const bool own = redrawn && note.empty();
+  const PlacedWalls walls =
+      own ? WallsOf(given) : PlacedWalls{CellsIn(StatesOf(estimate), CellState::kOccupied), {}};
+  score.quality = ScoreMapQuality(truth, estimate, observable, {}, walls);
+  if (auto& found = score.quality->registration) {
+    Pose2& motion = found->truth_from_estimate;
+    motion = world_from_truth * motion * Inverse(world_from_truth);
+  }
   if (!note.empty()) score.compared_cell_m = truth.geometry.resolution_m;
-  Warn(DoubtsOf(arguments, score, observable_path));
+  std::vector<std::string> doubts = DoubtsOf(arguments, score, observable_path);
+  const ScoredMaps maps = OnOneGeometry(truth, StatesOf(estimate), observable);
+  if (const auto doubt = DoubtOfRegistration(arguments, *score.quality, maps, walls)) {
+    doubts.push_back(*doubt);
+  }
+  Warn(doubts);
   if (!HoldsProbabilities(estimate)) score.quality->calibration.reset();
   if (arguments.json) {
     fmt::print("{}", MetricsJson({}, &score));
   } else {
+    if (redrawn) fmt::print("{}\n\n", Printable(RedrawnNote(given, arguments)));
     if (!note.empty()) fmt::print("{}\n\n", Printable(note));
     PrintTable(score);
   }

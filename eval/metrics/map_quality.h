@@ -38,8 +38,10 @@ struct MapQuality {
 };
 
 // Over the observable cells, or those whose truth is known when nothing was said about what is
-// observable. Same resolution required of all three.
+// observable. Same resolution required of all three. `own_walls`: those of an estimate that was
+// redrawn on the truth's lattice, as it had them.
 MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
-                           const std::optional<CellSet>& observable, const MetricsOptions& options);
+                           const std::optional<CellSet>& observable, const MetricsOptions& options,
+                           const std::optional<PlacedWalls>& own_walls = std::nullopt);
 
 }  // namespace depthgrid

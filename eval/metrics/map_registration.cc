@@ -23,13 +23,14 @@ struct WallPoints {
 // More points than these only cost time: the walls of a room are about 2,000 cells.
 constexpr std::size_t kMostPoints = 4000;
 
-WallPoints PointsOf(const CellSet& walls) {
-  const std::vector<Eigen::Vector2d> centres_m = CentresOf(walls);
+WallPoints PointsOf(const PlacedWalls& placed) {
+  const std::vector<Eigen::Vector2d> centres_m = CentresOf(placed.walls);
   const std::size_t stride = centres_m.size() / kMostPoints + 1;
   WallPoints points;
   points.centroid.setZero();
   for (std::size_t i = 0; i < centres_m.size(); i += stride) {
-    points.from_centroid.push_back(centres_m[i] / walls.geometry.resolution_m);
+    points.from_centroid.push_back(placed.truth_from_cells * centres_m[i] /
+                                   placed.walls.geometry.resolution_m);
     points.centroid += points.from_centroid.back();
   }
   const auto count = static_cast<double>(points.from_centroid.size());
@@ -46,6 +47,11 @@ struct Correlation {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // x cells, y cells, yaw rad
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
+
+// What a motion costs, so that walls which leave a direction open are not moved along it: by the
+// square of how far it moves the walls, a point's share a cell. At 16 cells a point loses 0.026 of
+// the 0.67 that a true wall gives it, and a wall that shows its place lies 0.003 cells too near.
+constexpr double kCostOfMotion = 1e-4;
 
 Correlation CorrelationAt(const WallPoints& points, const SplineField& field,
                           const Eigen::Vector3d& motion) {
@@ -65,6 +71,11 @@ Correlation CorrelationAt(const WallPoints& points, const SplineField& field,
     sum.hessian(2, 2) += by_yaw.dot(hessian_by_yaw) - at.gradient.dot(turned);
   }
   sum.hessian.bottomLeftCorner<1, 2>() = sum.hessian.topRightCorner<2, 1>().transpose();
+  const Eigen::Vector3d cost = kCostOfMotion * static_cast<double>(points.from_centroid.size()) *
+                               Eigen::Vector3d(1.0, 1.0, points.mean_squared_radius);
+  sum.value -= 0.5 * cost.dot(motion.cwiseAbs2());
+  sum.gradient -= cost.cwiseProduct(motion);
+  sum.hessian.diagonal() -= cost;
   return sum;
 }
 
@@ -129,14 +140,18 @@ CellSet WallFaces(const StateMap& map) {
 
 std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
                                            const CellSet& scored) {
+  return RegisterWalls(truth, {CellsIn(estimate, CellState::kOccupied), {}}, scored);
+}
+
+std::optional<MapRegistration> RegisterWalls(const StateMap& truth, const PlacedWalls& estimate,
+                                             const CellSet& scored) {
   const CellSet true_walls = FacesNear(truth, scored);
-  const CellSet walls = CellsIn(estimate, CellState::kOccupied);
-  if (CentresOf(true_walls).empty() || CentresOf(walls).empty()) return std::nullopt;
-  const WallPoints points = PointsOf(walls);
+  if (CentresOf(true_walls).empty() || CentresOf(estimate.walls).empty()) return std::nullopt;
+  const WallPoints points = PointsOf(estimate);
   const SplineField finest(true_walls, 0);
   const Eigen::Vector3d motion = BestMotion(points, true_walls, finest);
   if (CorrelationAt(points, finest, motion).value <= 0.0) return std::nullopt;
-  const double resolution_m = estimate.geometry.resolution_m;
+  const double resolution_m = truth.geometry.resolution_m;
   // x -> centroid + shift + R (x - centroid), as a pose.
   const Pose2 turn{0.0, 0.0, WrapAngle(motion.z())};
   const Eigen::Vector2d shift_cells = points.centroid + motion.head<2>() - turn * points.centroid;

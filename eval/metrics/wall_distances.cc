@@ -143,13 +143,14 @@ WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& w
   return score;
 }
 
-std::optional<double> DistanceToWallLines(const CellSet& true_walls, const CellSet& walls,
-                                          const CellSet& scored, const Pose2& truth_from_estimate) {
+std::optional<LineDistances> DistancesToWallLines(const CellSet& true_walls, const CellSet& walls,
+                                                  const CellSet& scored,
+                                                  const Pose2& truth_from_estimate) {
   const auto [forth_m, back_m] = DistancesOf(
       true_walls, LinesThrough(true_walls), Moved(truth_from_estimate, CentresOf(walls)),
       Moved(truth_from_estimate, LinesThrough(walls)), scored);
   if (forth_m.empty() || back_m.empty()) return {};
-  return 0.5 * (Summarise(forth_m).mean + Summarise(back_m).mean);
+  return LineDistances{Summarise(forth_m).mean, Summarise(back_m).mean};
 }
 
 }  // namespace depthgrid

@@ -28,16 +28,21 @@ struct WallDistanceScore {
   std::optional<double> f1_10cm;
 };
 
-// The estimate's walls are moved first; those that then lie in scored cells count, and the true
-// ones in scored cells. All on one lattice.
+// The estimate's walls, on a lattice of their own if need be, are moved first; those that then lie
+// in scored cells count, and the true ones in scored cells, which are on one lattice.
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate = {});
 
-// Mean of the two directed mean distances from wall cells, as above, to the other map's walls drawn
-// through as lines from centre to centre: unlike the distance between centres it does not grow when
-// a wall is moved along itself off the lattice. Empty where a direction has none.
-std::optional<double> DistanceToWallLines(const CellSet& true_walls, const CellSet& walls,
-                                          const CellSet& scored,
-                                          const Pose2& truth_from_estimate = {});
+struct LineDistances {
+  double estimate_to_truth_m = 0.0;
+  double truth_to_estimate_m = 0.0;
+};
+
+// Mean distances from wall cells, as above, to the other map's walls drawn through as lines from
+// centre to centre: unlike the distance between centres they do not grow when a wall is moved along
+// itself off the lattice. Empty where a direction has none.
+std::optional<LineDistances> DistancesToWallLines(const CellSet& true_walls, const CellSet& walls,
+                                                  const CellSet& scored,
+                                                  const Pose2& truth_from_estimate = {});
 
 }  // namespace depthgrid

@@ -95,6 +95,30 @@ void Place(const MapYaml& yaml, MapFile& file) {
   }
 }
 
+// Maps whose origins differ by whole cells are on one lattice, however each is printed.
+void PutInto(const Pose2& world_from_frame, const std::string& yaml_path, MapFile& file) {
+  if (world_from_frame == Pose2{}) return;
+  GridGeometry& geometry = file.map.geometry;
+  const double r = geometry.resolution_m;
+  Pose2& pose = file.world_from_grid;
+  pose = Inverse(world_from_frame) * pose;
+  const Eigen::Vector2d corner_m = geometry.OriginM();
+  const double away_cells = (pose * corner_m).norm() / r;
+  if (away_cells > kMaxOriginCells) {
+    throw InputError(yaml_path, fmt::format("lies {:.3g} cells from where the other map has its "
+                                            "zero, at most {:.3g} can be counted",
+                                            away_cells, kMaxOriginCells));
+  }
+  const double reach_m =
+      corner_m.norm() + r * std::hypot(geometry.width_cells, geometry.height_cells);
+  if (std::abs(pose.yaw_rad) * reach_m > kOriginRoundingM) return;
+  const Eigen::Array2d cells = (pose.translation() / r).array().round();
+  geometry.min_cell.x += static_cast<int>(cells.x());
+  geometry.min_cell.y += static_cast<int>(cells.y());
+  pose = {pose.x_m - cells.x() * r, pose.y_m - cells.y() * r, 0.0};
+  if (pose.translation().cwiseAbs().maxCoeff() < kOriginRoundingM) pose = Pose2{};
+}
+
 // The level rectangle around a map that may be turned.
 GridGeometry AlignedGeometry(const MapFile& file) {
   const GridGeometry& source = file.map.geometry;
@@ -115,7 +139,8 @@ GridGeometry AlignedGeometry(const MapFile& file) {
 }
 
 // A long image lies across much that it does not cover.
-void RequireAlignable(const MapFile& file, double yaw_rad, const std::string& yaml_path) {
+void RequireAlignable(const MapFile& file, const std::string& yaml_path) {
+  const double yaw_rad = file.world_from_grid.yaw_rad;
   const GridGeometry aligned = AlignedGeometry(file);
   if (aligned.size() <= kMaxMapCells) return;
   throw InputError(
@@ -133,7 +158,7 @@ const char* NameOf(MapMode mode) {
 
 }  // namespace
 
-MapFile ReadMap(const std::string& yaml_path) {
+MapFile ReadMap(const std::string& yaml_path, const Pose2& world_from_frame) {
   const std::string extension = fs::path(yaml_path).extension().string();
   if (extension == ".pgm" || extension == ".png") {
     throw InputError(yaml_path, "is a map's image; the map is the YAML file that names it");
@@ -149,7 +174,8 @@ MapFile ReadMap(const std::string& yaml_path) {
   Place(yaml, file);
   file.map.geometry.width_cells = image.width_px;
   file.map.geometry.height_cells = image.height_px;
-  if (file.world_from_grid != Pose2{}) RequireAlignable(file, yaml.origin[2], yaml_path);
+  PutInto(world_from_frame, yaml_path, file);
+  if (file.world_from_grid != Pose2{}) RequireAlignable(file, yaml_path);
   file.map.occupied_prob.reserve(file.map.geometry.size());
   for (int v = image.height_px - 1; v >= 0; --v) {
     for (int u = 0; u < image.width_px; ++u) {
@@ -177,7 +203,9 @@ OccupancyMap AlignedMap(const MapFile& file) {
   return aligned;
 }
 
-StateMap ReadStates(const std::string& path) { return StatesOf(AlignedMap(ReadMap(path))); }
+StateMap ReadStates(const std::string& path, const Pose2& world_from_frame) {
+  return StatesOf(AlignedMap(ReadMap(path, world_from_frame)));
+}
 
 CellSet ReadFreeCells(const std::string& path) {
   const StateMap states = ReadStates(path);

@@ -21,19 +21,21 @@ enum class MapMode { kTrinary, kScale, kRaw };
 // 1, unknown ones NaN, so that StatesOf gives the states Nav2 gives.
 struct MapFile {
   OccupancyMap map;
-  // From the frame of the map's cells to the world the file speaks of: the identity unless the
-  // origin has a yaw or is no multiple of the resolution.
+  // From the frame of the map's cells to the world the file speaks of, or to the frame that was
+  // asked for: the identity unless the origin has a yaw there or is no multiple of the resolution.
   Pose2 world_from_grid;
 };
 
 // Throws InputError for a missing, unreadable or contradictory YAML or image (PGM or PNG).
-MapFile ReadMap(const std::string& yaml_path);
+// `world_from_frame`: such as another map's world_from_grid, in whose cells this one is wanted.
+MapFile ReadMap(const std::string& yaml_path, const Pose2& world_from_frame = {});
 
-// The map redrawn on world-aligned cells: each takes the value of the cell its centre falls into.
+// The map redrawn on cells along the world's axes, or the frame's: each takes the value of the cell
+// its centre falls into.
 OccupancyMap AlignedMap(const MapFile& file);
 
 // The states of a map file's cells, on the lattice.
-StateMap ReadStates(const std::string& path);
+StateMap ReadStates(const std::string& path, const Pose2& world_from_frame = {});
 
 // The cells a map file calls free: in observable.yaml those that could be seen.
 CellSet ReadFreeCells(const std::string& path);

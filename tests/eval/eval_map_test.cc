@@ -91,6 +91,61 @@ TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
             "seen\n");
 }
 
+// A room's walls in cells of 0.05 m, 60 x 40, with a wall across.
+std::string RoomPgm() {
+  std::string pgm = "P2 60 40 255\n";
+  for (int row = 0; row < 40; ++row) {
+    for (int x = 0; x < 60; ++x) {
+      const bool wall = row == 0 || row == 39 || x == 0 || x == 59 || (x == 20 && row < 25);
+      pgm += wall ? "0 " : "254 ";
+    }
+    pgm += "\n";
+  }
+  return pgm;
+}
+
+// Of one image at two origins: all that differs is where it lies.
+TEST_F(EvalMap, AShiftIsFoundHoweverTheCellsLie) {
+  Write("room.pgm", RoomPgm());
+  const auto write_at = [&](const std::string& name, const std::string& origin) {
+    Write(name, "image: room.pgm\nresolution: 0.05\norigin: [" + origin + "]\nnegate: 0\n" +
+                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  };
+  int cases = 0;
+  for (const char* yaw : {"0", "0.4"}) {
+    write_at("truth.yaml", std::string("0.0249, -3.2, ") + yaw);
+    for (const auto& [x_m, y_m] : {std::pair(0.0, 0.0), std::pair(0.0002, 0.0),
+                                   std::pair(0.074, -0.1), std::pair(-0.12, 0.13)}) {
+      write_at("est.yaml",
+               std::to_string(0.0249 + x_m) + ", " + std::to_string(-3.2 + y_m) + ", " + yaw);
+      const nlohmann::json scores = Scores("truth.yaml est.yaml");
+      // Shifts of less than half a cell are none.
+      const bool is_shift = std::abs(x_m) > 0.025;
+      EXPECT_NEAR(scores["registered"]["x_m"], is_shift ? -x_m : 0.0, 0.003) << x_m << yaw;
+      EXPECT_NEAR(scores["registered"]["y_m"], is_shift ? -y_m : 0.0, 0.003) << y_m << yaw;
+      EXPECT_NEAR(scores["registered"]["yaw_rad"], 0.0, 0.001);
+      if (!is_shift) EXPECT_EQ(scores["all"]["occupied"]["tolerance_0"]["f1"], 1.0) << x_m << yaw;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 8);
+  EXPECT_THAT(Program("eval map truth.yaml est.yaml").out,
+              HasSubstr("est.yaml: its cells lie off those of truth.yaml (by x"));
+  EXPECT_THAT(Program("eval map truth.yaml truth.yaml").out, Not(HasSubstr("lie off")));
+}
+
+TEST_F(EvalMap, AMapThatIsTurnedIsSaid) {
+  Write("room.pgm", RoomPgm());
+  const auto write_at = [&](const std::string& name, const std::string& origin) {
+    Write(name, "image: room.pgm\nresolution: 0.05\norigin: [" + origin + "]\nnegate: 0\n" +
+                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  };
+  write_at("truth.yaml", "0, 0, 0");
+  write_at("turned.yaml", "2.5, -0.5, 1.5707963267948966");
+  EXPECT_THAT(Program("eval map truth.yaml turned.yaml").err,
+              HasSubstr("turned.yaml: turned by -90 degrees, it lies over truth.yaml"));
+}
+
 TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
   ExpectRefusal("eval map fine.yaml other.yaml",
                 {"other.yaml: resolution is 0.03, must be the 0.05 of fine.yaml, a whole multiple "

@@ -116,6 +116,27 @@ TEST(RegisterMap, StaysWhereTheWallsLeaveItOpen) {
   EXPECT_LT(found->mean_shift_m, 0.01);
 }
 
+// Nor where it lies beside the true wall: it comes straight to it.
+TEST(RegisterMap, GoesStraightToAWallThatIsOpenAlong) {
+  StateMap truth(GridGeometry{0.05, {0, 0}, 240, 60});
+  StateMap estimate = truth;
+  CellSet seen(truth.geometry);
+  for (int x = 5; x < 235; ++x) {
+    truth.states[truth.geometry.Index({x, 30})] = CellState::kOccupied;
+    truth.states[truth.geometry.Index({x, 29})] = CellState::kFree;
+    if (x < 60 || x > 180) continue;
+    estimate.states[estimate.geometry.Index({x, 32})] = CellState::kOccupied;
+    for (int y = 20; y < 40; ++y) seen.members[truth.geometry.Index({x, y})] = 1;
+  }
+  for (const CellSet& scored : {seen, Everywhere(truth.geometry)}) {
+    const auto found = RegisterMap(truth, estimate, scored);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->truth_from_estimate.y_m, -0.10, 0.002);
+    EXPECT_NEAR(found->truth_from_estimate.x_m, 0.0, 0.002);
+    EXPECT_NEAR(found->truth_from_estimate.yaw_rad, 0.0, 1e-3);
+  }
+}
+
 TEST(RegisterMap, NothingToLayOver) {
   const StateMap map = MovedRoom(kWorldFromRoom);
   EXPECT_FALSE(Registered(StateMap(map.geometry), map));
@@ -172,10 +193,11 @@ TEST(WallDistances, HandWorked) {
   EXPECT_NEAR(*moved.estimate_to_truth_m, 0.1 / 3, 1e-12);
   // Lines: where walls that cross half a cell off lie on the other's, centres are half a cell away.
   const StateMap level = DrawnMap({".....", "#####", "....."});
-  EXPECT_NEAR(*DistanceToWallLines(walls(level), walls(level), all, {0.025, 0.0, 0.0}),
-              0.5 * (0.0 + 0.025 / 5), 1e-12);
-  EXPECT_NEAR(*DistanceToWallLines(walls(level), walls(level), all, {0.0, 0.025, 0.0}), 0.025,
-              1e-12);
+  const auto along = DistancesToWallLines(walls(level), walls(level), all, {0.025, 0.0, 0.0});
+  EXPECT_NEAR(along->estimate_to_truth_m + along->truth_to_estimate_m, 0.025 / 5, 1e-12);
+  const auto across = DistancesToWallLines(walls(level), walls(level), all, {0.0, 0.025, 0.0});
+  EXPECT_NEAR(across->estimate_to_truth_m, 0.025, 1e-12);
+  EXPECT_NEAR(across->truth_to_estimate_m, 0.025, 1e-12);
   // Where only true walls are scored there is one direction, and no score of both.
   const auto one_way = ScoreWallDistances(walls(truth), walls(estimate), walls(truth));
   EXPECT_FALSE(one_way.estimate_to_truth_m);
