@@ -16,7 +16,9 @@
 #include "mapper/core/slam_step.h"
 #include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
+#include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/file.h"
+#include "mapper/io/held_poses.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/slam_jumps.h"
 
@@ -36,98 +38,11 @@ double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
          (b.stamp_s - a.stamp_s);
 }
 
-// Where nothing else says when a reading is no return (CarmenLogOptions).
-constexpr double kUsualMaxM = 80.0;
-// Some lasers write a little less than the stated maximum (29.99 of 30.00).
-constexpr double kMaxToleranceM = 0.01, kMaxToleranceShare = 1e-3;
-
-struct LaserReach {
-  double max_m = 0.0;
-  double no_return_m = 0.0;  // readings from here on are no hit
-};
-
-double MostRangeM(const CarmenLogOptions& options) {
-  return options.max_range_m > 0.0 ? options.max_range_m : kUsualMaxM;
-}
-
-LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  const double most_m = MostRangeM(options);
-  const double stated_m = line.max_range_m;
-  if (!(stated_m > 0.0) || stated_m > most_m) return {most_m, most_m};
-  return {stated_m, stated_m - std::max(kMaxToleranceM, kMaxToleranceShare * stated_m)};
-}
-
-Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
-            const CarmenLogOptions& options) {
-  Beam beam;
-  beam.bearing_rad = static_cast<float>(bearing_rad);
-  if (std::isnan(range_m) || range_m < options.min_range_m) return beam;
-  if (range_m >= reach.no_return_m) {
-    beam.clear_to_m = static_cast<float>(std::min(options.no_return_clear_m, reach.max_m));
-    return beam;
-  }
-  beam.hit = true;
-  beam.range_m = static_cast<float>(range_m);
-  beam.clear_to_m = beam.range_m;
-  return beam;
-}
-
-struct Bearings {
-  double first_rad = 0.0;
-  double step_rad = 0.0;
-};
-
-Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  if (line.states_angles || options.fov_deg == 0.0) {
-    return {line.first_bearing_rad, line.bearing_step_rad};
-  }
-  const double fov_rad = RadFromDeg(options.fov_deg);
-  return {-0.5 * fov_rad, fov_rad / static_cast<double>(line.range_m.size() - 1)};
-}
-
 // The second one's camera in the first one's, from the same of the lasers.
 LoopClosure CameraLoop(LoopClosure loop) {
   const Pose3 laser_from_camera = CameraOf(Pose2{}, 0.0);
   loop.first_from_second = Inverse(laser_from_camera) * loop.first_from_second * laser_from_camera;
   return loop;
-}
-
-// Gaps that are too narrow for an opening clear no farther than the hits beside them.
-void NarrowGaps(Scan& scan, double narrowest_m) {
-  std::vector<Beam>& beams = scan.beams;
-  const auto is_gap = [](const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; };
-  for (std::size_t first = 1; first + 1 < beams.size(); ++first) {
-    if (!beams[first - 1].hit || !is_gap(beams[first])) continue;
-    std::size_t after = first;
-    while (after < beams.size() && is_gap(beams[after])) ++after;
-    if (after == beams.size()) return;
-    const Beam& left = beams[after];
-    const Beam& right = beams[first - 1];
-    if (left.hit) {
-      const float nearer_m = std::min(left.range_m, right.range_m);
-      const bool is_narrow = nearer_m * (left.bearing_rad - right.bearing_rad) < narrowest_m;
-      for (std::size_t i = first; is_narrow && i < after; ++i) {
-        beams[i].clear_to_m = std::min(beams[i].clear_to_m, nearer_m);
-      }
-    }
-    first = after - 1;
-  }
-}
-
-Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options) {
-  const LaserReach reach = ReachOf(line, options);
-  const Bearings bearings = BearingsOf(line, options);
-  Scan scan;
-  scan.max_range_m = reach.max_m;
-  scan.beams.reserve(line.range_m.size());
-  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
-    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
-    const double sign = options.upside_down ? -1.0 : 1.0;
-    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
-  }
-  if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
-  NarrowGaps(scan, options.no_return_gap_m);
-  return scan;
 }
 
 class CarmenLogSource : public FrameSource {
@@ -153,7 +68,7 @@ class CarmenLogSource : public FrameSource {
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
     frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
-    frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
+    if (!IsHeld(frame.index)) frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
@@ -181,7 +96,9 @@ class CarmenLogSource : public FrameSource {
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
       if (place_ != Place::kInPart) continue;
-      check.Add(*scan, ReachOf(*scan, options_).no_return_m, line_number_);
+      const double no_return_m = ReachOf(*scan, options_).no_return_m;
+      check.Add(*scan, no_return_m, line_number_);
+      held_.Add(scan->odom_from_laser, scan->range_m, options_.min_range_m, no_return_m);
       if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
     }
@@ -189,6 +106,7 @@ class CarmenLogSource : public FrameSource {
     std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
     WarnOfProblems();
     WarnOfOrder();
+    WarnOfHeldPoses();
     for (std::string& doubt : check.Warnings(path_)) warnings_.push_back(std::move(doubt));
     if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
       warnings_.push_back(fmt::format(
@@ -204,6 +122,22 @@ class CarmenLogSource : public FrameSource {
           fmt::format("{}:{}: {}{}{}", path_, seen.first_line, reason, seen.first_fault,
                       seen.count == 1 ? "" : fmt::format(" ({} such lines)", seen.count)));
     }
+  }
+
+  // Of a frame of the part; those before it were not looked at.
+  bool IsHeld(int index) const {
+    const auto in_part = static_cast<std::size_t>(index) - names_.part.begin;
+    return in_part < held_.held().size() && held_.held()[in_part];
+  }
+  void WarnOfHeldPoses() {
+    if (held_.count() == 0) return;
+    const auto& held = held_.held();
+    const auto first = std::find(held.begin(), held.end(), true) - held.begin();
+    warnings_.push_back(fmt::format(
+        "{}: the odometry gives one pose again and again while the scans move, first in frame {}: "
+        "{} taken for lost",
+        path_, names_.part.begin + static_cast<std::size_t>(first),
+        held_.count() == 1 ? "1 frame is" : fmt::format("{} frames are", held_.count())));
   }
 
   // After Survey().
@@ -350,6 +284,7 @@ class CarmenLogSource : public FrameSource {
   enum class Place { kBeforePart, kInPart, kBehindPart };
   Place place_ = Place::kBeforePart;  // of the scan read last
   std::optional<Pose2> odom_from_last_;
+  HeldPoses held_;  // of the part
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, those of the same stamp aside

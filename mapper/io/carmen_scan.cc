@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/io/carmen_scan_impl.h"
+
+namespace depthgrid {
+namespace {
+
+// Where nothing else says when a reading is no return (CarmenLogOptions).
+constexpr double kUsualMaxM = 80.0;
+// Some lasers write a little less than the stated maximum (29.99 of 30.00).
+constexpr double kMaxToleranceM = 0.01, kMaxToleranceShare = 1e-3;
+
+Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
+            const CarmenLogOptions& options) {
+  Beam beam;
+  beam.bearing_rad = static_cast<float>(bearing_rad);
+  if (std::isnan(range_m) || range_m < options.min_range_m) return beam;
+  if (range_m >= reach.no_return_m) {
+    beam.clear_to_m = static_cast<float>(std::min(options.no_return_clear_m, reach.max_m));
+    return beam;
+  }
+  beam.hit = true;
+  beam.range_m = static_cast<float>(range_m);
+  beam.clear_to_m = beam.range_m;
+  return beam;
+}
+
+struct Bearings {
+  double first_rad = 0.0;
+  double step_rad = 0.0;
+};
+
+Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  if (line.states_angles || options.fov_deg == 0.0) {
+    return {line.first_bearing_rad, line.bearing_step_rad};
+  }
+  const double fov_rad = RadFromDeg(options.fov_deg);
+  return {-0.5 * fov_rad, fov_rad / static_cast<double>(line.range_m.size() - 1)};
+}
+
+// Gaps that are too narrow for an opening clear no farther than the hits beside them.
+void NarrowGaps(Scan& scan, double narrowest_m) {
+  std::vector<Beam>& beams = scan.beams;
+  const auto is_gap = [](const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; };
+  for (std::size_t first = 1; first + 1 < beams.size(); ++first) {
+    if (!beams[first - 1].hit || !is_gap(beams[first])) continue;
+    std::size_t after = first;
+    while (after < beams.size() && is_gap(beams[after])) ++after;
+    if (after == beams.size()) return;
+    const Beam& left = beams[after];
+    const Beam& right = beams[first - 1];
+    if (left.hit) {
+      const float nearer_m = std::min(left.range_m, right.range_m);
+      const bool is_narrow = nearer_m * (left.bearing_rad - right.bearing_rad) < narrowest_m;
+      for (std::size_t i = first; is_narrow && i < after; ++i) {
+        beams[i].clear_to_m = std::min(beams[i].clear_to_m, nearer_m);
+      }
+    }
+    first = after - 1;
+  }
+}
+
+}  // namespace
+
+double MostRangeM(const CarmenLogOptions& options) {
+  return options.max_range_m > 0.0 ? options.max_range_m : kUsualMaxM;
+}
+
+LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  const double most_m = MostRangeM(options);
+  const double stated_m = line.max_range_m;
+  if (!(stated_m > 0.0) || stated_m > most_m) return {most_m, most_m};
+  return {stated_m, stated_m - std::max(kMaxToleranceM, kMaxToleranceShare * stated_m)};
+}
+
+Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options) {
+  const LaserReach reach = ReachOf(line, options);
+  const Bearings bearings = BearingsOf(line, options);
+  Scan scan;
+  scan.max_range_m = reach.max_m;
+  scan.beams.reserve(line.range_m.size());
+  for (std::size_t i = 0; i < line.range_m.size(); ++i) {
+    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
+    const double sign = options.upside_down ? -1.0 : 1.0;
+    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
+  }
+  if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
+  NarrowGaps(scan, options.no_return_gap_m);
+  return scan;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,114 @@
+#include "mapper/io/held_poses.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/rng.h"
+#include "mapper/io/carmen_log.h"
+#include "mapper/io/file.h"
+#include "tests/scratch.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// Half a circle of readings in a room of 4 x 6 m, 2 m from the wall behind, to the millimetre.
+std::vector<double> ReadingsAt(const Pose2& pose, double sigma_m, RandomStream& random) {
+  std::vector<double> range_m;
+  for (int i = 0; i < 180; ++i) {
+    const double angle_rad = pose.yaw_rad + RadFromDeg(i - 89.5);
+    const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    const double x_m = ((c > 0.0 ? 4.0 : -2.0) - pose.x_m) / c;
+    const double y_m = ((s > 0.0 ? 2.0 : -2.0) - pose.y_m) / s;
+    range_m.push_back(std::round((std::min(x_m, y_m) + sigma_m * random.Normal()) * 1e3) * 1e-3);
+  }
+  return range_m;
+}
+
+// Stands for 20 scans, drives for 40, and its odometry stops at scan `stalled`.
+HeldPoses Drive(int stalled, double sigma_m) {
+  RandomStream random(7, RandomStage::kTest);
+  HeldPoses poses;
+  for (int i = 0; i < 60; ++i) {
+    const Pose2 truth{0.05 * std::max(0, i - 20), 0.0, 0.005 * std::max(0, i - 20)};
+    const Pose2 told{0.05 * std::max(0, std::min(i, stalled) - 20), 0.0, 0.0};
+    poses.Add(told, ReadingsAt(truth, sigma_m, random), 0.1, 80.0);
+  }
+  return poses;
+}
+
+TEST(HeldPoses, AreThoseThatStayWhileTheScansMove) {
+  for (const double sigma_m : {0.0, 0.03}) {
+    const HeldPoses poses = Drive(30, sigma_m);
+    for (int i = 0; i < 60; ++i) {
+      // The scan at which they stopped is right; the next ones lie within noise.
+      if (i <= 30) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i << " " << sigma_m;
+      if (i > 34) EXPECT_TRUE(poses.held()[static_cast<std::size_t>(i)]) << i << " " << sigma_m;
+    }
+    EXPECT_GE(poses.count(), 25) << sigma_m;
+  }
+}
+
+TEST(HeldPoses, ARobotThatStandsHoldsNone) {
+  for (const double sigma_m : {0.0, 0.03, 0.1}) EXPECT_EQ(Drive(60, sigma_m).count(), 0) << sigma_m;
+}
+
+// Standing for long with the odometry stopped: only what was driven is held.
+TEST(HeldPoses, WhatStoodIsNotHeld) {
+  const HeldPoses poses = Drive(0, 0.01);
+  for (int i = 0; i <= 20; ++i) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i;
+  EXPECT_GE(poses.count(), 35);
+}
+
+// A log, of which a part is mapped: frames are counted as in the whole.
+TEST(HeldPoses, OfALogHaveNoPose) {
+  RandomStream random(7, RandomStage::kTest);
+  std::string log;
+  for (int i = 0; i < 60; ++i) {
+    const Pose2 truth{0.05 * i, 0.0, 0.0};
+    const double told_m = 0.05 * std::min(i, 40);
+    log += "FLASER 180";
+    for (const double range_m : ReadingsAt(truth, 0.01, random)) log += fmt::format(" {}", range_m);
+    log += fmt::format(" {0} 0 0 {0} 0 0 {1} host {1}\n", told_m, 10.0 + 0.1 * i);
+  }
+  const std::string path = ScratchPath() + ".log";
+  WriteFile(path, log);
+  const CarmenLog opened = OpenCarmenLog(path, {}, {}, {.from_s = 2.0, .to_s = 5.7});
+  int posed = 0, held = 0;
+  while (const auto frame = opened.source->Next()) {
+    if (frame->index <= 40) EXPECT_TRUE(frame->slam_from_camera) << frame->index;
+    if (frame->index > 44) EXPECT_FALSE(frame->slam_from_camera) << frame->index;
+    ++(frame->slam_from_camera ? posed : held);
+  }
+  EXPECT_GE(posed, 21);
+  EXPECT_GE(held, 13);
+  EXPECT_THAT(opened.source->Warnings(),
+              ElementsAre(AllOf(HasSubstr("the odometry gives one pose again and again"),
+                                HasSubstr(fmt::format("first in frame {}", 20 + posed)),
+                                HasSubstr(fmt::format("{} frames are taken for lost", held)))));
+  std::filesystem::remove(path);
+}
+
+// Few readings, and those without a return, tell nothing.
+TEST(HeldPoses, ScansThatSeeNothingTellNothing) {
+  HeldPoses poses;
+  for (int i = 0; i < 20; ++i) {
+    std::vector<double> range_m(180, 81.9 + i);
+    range_m[3] = 1.0 + i;
+    poses.Add({}, range_m, 0.1, 80.0);
+  }
+  EXPECT_EQ(poses.count(), 0);
+}
+
+}  // namespace
+}  // namespace depthgrid
