@@ -52,10 +52,13 @@ PriorMap ReadPriorRun(const std::string& folder) {
   if (matched.size() != drawn.size()) {
     throw InputError(matched_path.string(), "does not belong to scans.bin");
   }
+  std::vector<int> frames;
+  for (const StoredScan& scan : drawn) frames.push_back(scan.frame);
+  const std::vector<int> numbers = PriorNumbers(frames);
   PriorMap prior;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     MappedFrame frame;
-    frame.frame = static_cast<int>(i) - static_cast<int>(drawn.size());
+    frame.frame = numbers[i];
     frame.stamp_s = drawn[i].stamp_s;
     frame.obstacles = drawn[i].scan;
     frame.scan = matched[i].scan;

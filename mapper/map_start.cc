@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "mapper/core/angle.h"
@@ -271,7 +272,11 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options) {
   RequireSound(prior);
   MapDrawing drawing(options.grid);
-  for (const MappedFrame& frame : prior.frames) drawing.Add(*frame.obstacles, frame.map_from_base);
+  int before = 0;
+  for (const MappedFrame& frame : prior.frames) {
+    if (BeginsDrive(std::exchange(before, frame.frame), frame.frame)) drawing.BeginDrive();
+    drawing.Add(*frame.obstacles, frame.map_from_base);
+  }
   const OccupancyMap map = drawing.Map();
   FirstFrames frames(source, options.scan);
   const std::vector<PlacedScan> views = FirstViews(frames);

@@ -84,7 +84,9 @@ std::vector<MappedFrame> IncrementalMapper::CurrentMapped() const {
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
   MapDrawing drawing(options.grid);
+  int before = 0;
   for (const MappedFrame& frame : frames) {
+    if (BeginsDrive(std::exchange(before, frame.frame), frame.frame)) drawing.BeginDrive();
     if (frame.kept()) drawing.Add(*frame.obstacles, frame.map_from_base);
   }
   return drawing.Map();

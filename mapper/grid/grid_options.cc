@@ -11,6 +11,8 @@ void GridOptions::Visit(OptionsVisitor& v) {
   v.Choice("raster", raster, {{RasterRule::kLogOdds, "log_odds"}, {RasterRule::kCounts, "counts"}},
            "how the finished map reads its cells");
   v.Number("hit_weight", hit_weight, {0.1, 100.0}, "counts: what a hit weighs against a miss");
+  v.Number("earlier_scans", earlier_scans, {0, 1000000},
+           "what drives before saw of a cell counts as so many scans at most; 0: all of them");
   v.Number("min_observations", min_observations, {1, 1000},
            "counts: cells seen by fewer scans stay unknown");
   v.Number("clear_margin_cells", clear_margin_cells, {0.0, 10.0},

@@ -24,6 +24,10 @@ struct GridOptions {
   double hit_weight = 5.0;
   // `counts`: cells seen by fewer scans stay unknown.
   int min_observations = 1;
+  // `counts`, of a drive that goes on in a finished map: where it sees a cell again, what drives
+  // before it saw of that counts as so many scans at most, so that what was moved meanwhile comes
+  // and goes. 0: all of them count alike.
+  int earlier_scans = 4;
   // The finished map: a beam stops clearing this many cells before its hit, so that noisy and
   // grazing beams do not carve walls.
   double clear_margin_cells = 0.0;

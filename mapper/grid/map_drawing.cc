@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "mapper/core/error.h"
 #include "mapper/grid/log_odds.h"
@@ -31,6 +32,14 @@ void RequireDrawable(const GridGeometry& seen) {
                               ", " + std::to_string(seen.size()) + " cells, at most " +
                               std::to_string(kMaxMapCells) +
                               ": a pose lies far off, or the resolution is too fine");
+}
+
+// Null where no tile is.
+template <typename Tiles>
+auto RecordIn(const Tiles& tiles, const Cell& cell)
+    -> decltype(tiles.begin()->second->cells.data()) {
+  const auto tile = tiles.find({WordOf(cell.y), WordOf(cell.x)});
+  return tile == tiles.end() ? nullptr : &tile->second->cells[CellInTile(cell)];
 }
 
 // The smallest rectangle around its cells; empty when it has none.
@@ -135,10 +144,58 @@ float MapDrawing::Probability(const CellRecord& cell) const {
   return static_cast<float>(weighted_hits / (weighted_hits + cell.passes));
 }
 
+// A cell's counts and surface as if no more scans had seen it.
+MapDrawing::CellRecord MapDrawing::Limited(const CellRecord& earlier) const {
+  const std::uint32_t seen = earlier.hits + earlier.passes;
+  const auto most = static_cast<std::uint32_t>(options_.earlier_scans);
+  if (seen <= most) return earlier;
+  const double share = static_cast<double>(most) / seen;
+  CellRecord record = earlier;
+  record.hits = static_cast<std::uint32_t>(std::lround(share * earlier.hits));
+  record.passes = most - record.hits;
+  for (float* part : {&record.surface, &record.surface_x, &record.surface_y}) {
+    *part *= static_cast<float>(share);
+  }
+  return record;
+}
+
+// Where this drive saw a cell, what earlier ones saw counts little; elsewhere it is all there is.
+void MapDrawing::AddEarlier(Tiles& tiles) const {
+  for (const auto& [index, tile] : earlier_tiles_) {
+    std::unique_ptr<Tile>& both = tiles[index];
+    if (!both) both = std::make_unique<Tile>();
+    for (std::size_t i = 0; i < tile->cells.size(); ++i) {
+      CellRecord& cell = both->cells[i];
+      const bool seen_now = cell.hits + cell.passes > 0;
+      const CellRecord earlier = seen_now ? Limited(tile->cells[i]) : tile->cells[i];
+      cell.hits += earlier.hits;
+      cell.passes += earlier.passes;
+      cell.surface += earlier.surface;
+      cell.surface_x += earlier.surface_x;
+      cell.surface_y += earlier.surface_y;
+    }
+  }
+}
+
+void MapDrawing::BeginDrive() {
+  // Log odds are clamped, and so make up for what is gone by themselves.
+  if (options_.earlier_scans == 0 || options_.raster == RasterRule::kLogOdds) return;
+  AddEarlier(tiles_);
+  earlier_tiles_ = std::exchange(tiles_, {});
+}
+
 OccupancyMap MapDrawing::Map() const {
   RequireDrawable(seen_);
+  if (earlier_tiles_.empty()) return MapOf(tiles_);
+  Tiles all;
+  for (const auto& [index, tile] : tiles_) all[index] = std::make_unique<Tile>(*tile);
+  AddEarlier(all);
+  return MapOf(all);
+}
+
+OccupancyMap MapDrawing::MapOf(const Tiles& tiles) const {
   OccupancyMap map(seen_);
-  for (const auto& [index, tile] : tiles_) {
+  for (const auto& [index, tile] : tiles) {
     for (int i = 0; i < kWordCells * kWordCells; ++i) {
       const Cell cell = CellOfTile(index.first, index.second, i);
       if (!map.geometry.Contains(cell)) continue;
@@ -146,19 +203,14 @@ OccupancyMap MapDrawing::Map() const {
           Probability(tile->cells[static_cast<std::size_t>(i)]);
     }
   }
-  if (options_.min_surface_share > 0.0) ThinWalls(map);
+  if (options_.min_surface_share > 0.0) ThinWalls(tiles, map);
   return map;
-}
-
-// Null where no tile is.
-const MapDrawing::CellRecord* MapDrawing::RecordOf(const Cell& cell) const {
-  const auto tile = tiles_.find({WordOf(cell.y), WordOf(cell.x)});
-  return tile == tiles_.end() ? nullptr : &tile->second->cells[CellInTile(cell)];
 }
 
 // Looks along the direction a cell was seen from, before and behind it, for the most surface: where
 // the beams that ended here would have ended with other noise.
-MapDrawing::Peak MapDrawing::PeakAlong(const Cell& cell, const CellRecord& record) const {
+MapDrawing::Peak MapDrawing::PeakAlong(const Tiles& tiles, const Cell& cell,
+                                       const CellRecord& record) const {
   Peak peak{record.surface, 0};
   const float longer = std::max(std::abs(record.surface_x), std::abs(record.surface_y));
   if (longer == 0.0F) return peak;
@@ -168,8 +220,9 @@ MapDrawing::Peak MapDrawing::PeakAlong(const Cell& cell, const CellRecord& recor
       static_cast<int>(std::lround(options_.surface_radius_m / options_.resolution_m));
   for (int step = -reach; step <= reach; ++step) {
     const auto along = static_cast<float>(step);
-    const CellRecord* other = RecordOf({cell.x + static_cast<int>(std::lround(along * step_x)),
-                                        cell.y + static_cast<int>(std::lround(along * step_y))});
+    const CellRecord* other =
+        RecordIn(tiles, {cell.x + static_cast<int>(std::lround(along * step_x)),
+                         cell.y + static_cast<int>(std::lround(along * step_y))});
     if (other != nullptr && other->surface > peak.surface) peak = {other->surface, step};
   }
   return peak;
@@ -178,12 +231,12 @@ MapDrawing::Peak MapDrawing::PeakAlong(const Cell& cell, const CellRecord& recor
 // A cell next to a surface that has little of it keeps only what the beams passing it say. Behind
 // the surface, beams that passed because of their noise must not make a free cell: there it takes
 // many.
-void MapDrawing::ThinWalls(OccupancyMap& map) const {
+void MapDrawing::ThinWalls(const Tiles& tiles, OccupancyMap& map) const {
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
     if (!(map.occupied_prob[i] > 0.0F)) continue;
     const Cell cell = map.geometry.CellAt(i);
-    const CellRecord& record = *RecordOf(cell);
-    const Peak peak = PeakAlong(cell, record);
+    const CellRecord& record = *RecordIn(tiles, cell);
+    const Peak peak = PeakAlong(tiles, cell, record);
     if (record.surface >= options_.min_surface_share * peak.surface) continue;
     const bool is_behind = peak.step < 0;
     const double needed = record.hits * (is_behind ? options_.hit_weight : 1.0);

@@ -21,6 +21,8 @@ class MapDrawing {
   // Throws InputError when the map would have more than kMaxMapCells, before it takes memory for
   // them; so does Map() from then on.
   void Add(const Scan& scan, const Pose2& map_from_base);
+  // What was added is of drives before the one whose scans come now (GridOptions::earlier_scans).
+  void BeginDrive();
   // The smallest rectangle around all cells that were seen; empty when none was.
   OccupancyMap Map() const;
 
@@ -43,13 +45,17 @@ class MapDrawing {
     std::array<CellRecord, kWordCells * kWordCells> cells;  // row by row
   };
   using TileIndex = std::pair<int, int>;  // row, column: in units of 64 cells
+  // Ordered: no result depends on addresses.
+  using Tiles = std::map<TileIndex, std::unique_ptr<Tile>>;
 
   Tile& TileAt(const TileIndex& index);
   void AddMask(const CellMask& mask, bool hit);
   void AddSurface(const Scan& scan, const Pose2& map_from_base);
-  const CellRecord* RecordOf(const Cell& cell) const;
-  Peak PeakAlong(const Cell& cell, const CellRecord& record) const;
-  void ThinWalls(OccupancyMap& map) const;
+  void AddEarlier(Tiles& tiles) const;
+  CellRecord Limited(const CellRecord& earlier) const;
+  OccupancyMap MapOf(const Tiles& tiles) const;
+  Peak PeakAlong(const Tiles& tiles, const Cell& cell, const CellRecord& record) const;
+  void ThinWalls(const Tiles& tiles, OccupancyMap& map) const;
   float Probability(const CellRecord& cell) const;
 
   GridOptions options_;
@@ -59,7 +65,8 @@ class MapDrawing {
   int max_units_;
   ScanRasterizer rasterizer_;
   GridGeometry seen_;  // the smallest rectangle around all cells that were seen
-  std::map<TileIndex, std::unique_ptr<Tile>> tiles_;  // ordered: no result depends on addresses
+  Tiles tiles_;
+  Tiles earlier_tiles_;  // of the drives before
 };
 
 }  // namespace depthgrid
