@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "eval/metrics/association.h"
+#include "eval/saturation_check.h"
+#include "mapper/core/counted.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/io/pose_track.h"
@@ -102,6 +104,26 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
   return lines;
 }
 
+std::optional<int> GuessedFrom(const MappingRun& run) {
+  std::optional<int> from;
+  for (const FrameReport& report : run.reports) {
+    if (!report.map_from_camera) continue;  // lost
+    if (!report.guessed) {
+      from.reset();
+    } else if (!from) {
+      from = report.index;
+    }
+  }
+  if (!from) return std::nullopt;
+  const auto& mapped = run.result.mapped;
+  const auto is_before = [&](int i) { return mapped[static_cast<std::size_t>(i)].frame < *from; };
+  const auto& loops = run.result.loops;
+  const bool joined = std::any_of(loops.begin(), loops.end(), [&](const PlanarLoop& loop) {
+    return is_before(loop.first) != is_before(loop.second);
+  });
+  return joined ? std::nullopt : from;
+}
+
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle, const MatchOracle& match_oracle,
@@ -110,13 +132,30 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
   FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
   if (prior) recorder.StartFrom(*prior);
   int done = 0;
+  SaturationCheck saturation;
   while (const std::optional<Frame> frame = source.Next()) {
     recorder.Add(*frame);
+    if (frame->depth && frame->slam_from_camera) {
+      saturation.Add(*frame->depth, *frame->slam_from_camera);
+    }
     if (progress) progress(++done, count);
   }
   MappingRun run = recorder.Finish(final_poses);
   run.warnings = source.Warnings();
   for (std::string& line : MendedPoses(run.reports)) run.warnings.push_back(std::move(line));
+  if (const auto cut = saturation.Found(); cut && cut->z_m < options.scan.max_range_m) {
+    run.warnings.push_back(fmt::format(
+        "depth images: {} hold {:.3f} m, the largest depth, all over whatever is behind: if all "
+        "that is farther is cut to it, it is drawn as walls; --set "
+        "mapper.scan.max_range_m={:.2f} takes it for free",
+        Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
+  }
+  if (const std::optional<int> frame = GuessedFrom(run)) {
+    run.warnings.push_back(fmt::format(
+        "poses: SLAM was lost before frame {}; where the map goes on from there is a guess, that "
+        "nothing seen since confirms",
+        *frame));
+  }
   return run;
 }
 

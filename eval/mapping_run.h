@@ -61,6 +61,10 @@ class FrameRecorder {
 // What the mapper did about poses that were wrong, a line each: slips and losses of SLAM.
 std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 
+// The first frame (Frame::index) after a loss of SLAM whose place to what was mapped before is a
+// guess to the end: nothing seen since confirmed it, and no loop joins the two.
+std::optional<int> GuessedFrom(const MappingRun& run);
+
 // The whole of a source, front to back.
 // `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
 // fusion.mode `oracle` only, `match_oracle` for every match when it is given. With `prior` the run

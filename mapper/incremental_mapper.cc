@@ -42,8 +42,9 @@ void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
 }
 
 void IncrementalMapper::StartFrom(PriorMap prior) {
-  Require(state_->history.records().empty() && !state_->prior_start && state_->mapped.empty(),
-          "a prior map comes before the first frame, once");
+  if (!state_->history.records().empty() || state_->prior_start) {
+    throw InputError("prior map", "must be given before the first frame, once");
+  }
   RequireSound(prior);
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     MappedFrame& frame = prior.frames[i];
@@ -95,6 +96,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   const FusedPose fused = Fuse(prediction, report);
   Insert(scans, prediction, fused, report);
   Relocate(scans, report);
+  report.guessed = relocation.unsettled();
   FindLoops(scans, report);
 }
 

@@ -136,6 +136,7 @@ bool Relocation::Begins(double share, int next_frame) {
   }
   if (IsUsual(share)) return false;
   active_ = true;
+  gave_up_ = false;
   first_frame_ = next_frame;
   lost_s_ = lost_s;
   way_m_ = turn_rad_ = 0.0;
@@ -192,7 +193,8 @@ std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
     active_ = false;
     return found;
   }
-  if (++searches_ >= options_.most_searches) active_ = false;
+  gave_up_ = ++searches_ >= options_.most_searches;
+  active_ = !gave_up_;
   return std::nullopt;
 }
 

@@ -72,6 +72,8 @@ class Relocation {
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   double usual_share() const { return usual_share_; }
   bool active() const { return active_; }
+  // Whether where the last loss led to is a guess still, sought or given up.
+  bool unsettled() const { return active_ || gave_up_; }
   int first_frame() const { return first_frame_; }
 
   // All since first_frame() was moved to another guess.
@@ -97,6 +99,7 @@ class Relocation {
   double unjudged_s_ = 0.0;   // the longest loss since the last scan
   bool unjudged_ = false;     // such that a guess is to be doubted
   bool active_ = false;
+  bool gave_up_ = false;
   int first_frame_ = 0;
   double lost_s_ = 0.0;
   double way_m_ = 0.0;   // since first_frame_

@@ -18,6 +18,7 @@ namespace {
 struct LostRun {
   double final_error_m = 0.0;  // mean since the loss
   int relocated = 0;
+  bool guessed = false;  // to the end
 };
 
 using Path = Pose2 (*)(int frame);
@@ -55,7 +56,9 @@ LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Pat
       frame.scan = std::make_shared<const Scan>(
           ScanOf(is_after ? after : before, truth, laser, 4, static_cast<std::uint32_t>(i)));
     }
-    run.relocated += mapper.AddFrame(frame).relocated ? 1 : 0;
+    const FrameReport report = mapper.AddFrame(frame);
+    run.relocated += report.relocated ? 1 : 0;
+    run.guessed = report.guessed;
   }
   const MapperResult result = mapper.Finish();
   for (int i = 0; i < kBefore + kAfter; ++i) {
@@ -74,6 +77,7 @@ TEST(Relocation, FindsTheCameraInWhatWasSeen) {
   EXPECT_GT(Lose(room, room, RoundTheRoom, elsewhere, false).final_error_m, 0.5);
   const LostRun found = Lose(room, room, RoundTheRoom, elsewhere, true);
   EXPECT_EQ(found.relocated, 1);
+  EXPECT_FALSE(found.guessed);
   EXPECT_LT(found.final_error_m, 0.02);
   const LostRun paper = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kPaper);
   EXPECT_EQ(paper.relocated, 1);
@@ -186,7 +190,9 @@ TEST(Relocation, AnotherRoomIsNotFound) {
   AddRectangle(other, 0.0, 0.9, 0.7, 1.9);
   AddRectangle(other, 3.9, 3.4, 5.2, 4.1);
   const Path elsewhere = [](int frame) { return RoundTheRoom(frame + 100); };
-  EXPECT_EQ(Lose(FurnishedRoom(), other, RoundTheRoom, elsewhere, true).relocated, 0);
+  const LostRun run = Lose(FurnishedRoom(), other, RoundTheRoom, elsewhere, true);
+  EXPECT_EQ(run.relocated, 0);
+  EXPECT_TRUE(run.guessed);
 }
 
 // Along a corridor every place looks alike.

@@ -1,0 +1,47 @@
+#include "eval/saturation_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mapper/core/angle.h"
+
+namespace depthgrid {
+namespace {
+
+Pose3 Turned(double angle_rad) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitY())),
+          Eigen::Vector3d::Zero()};
+}
+
+// A slope from 1 m to 5 m, cut at `cut_m`.
+DepthImage Slope(float cut_m, float shift_m) {
+  DepthImage image(100, 20);
+  for (std::size_t i = 0; i < image.z_m.size(); ++i) {
+    image.z_m[i] =
+        std::min(cut_m, 1.0F + shift_m + 4.0F * static_cast<float>(i) / static_cast<float>(2000));
+  }
+  return image;
+}
+
+TEST(SaturationCheck, FindsTheDepthThatEverythingFartherIsCutTo) {
+  SaturationCheck cut, whole, still;
+  for (int i = 0; i < 20; ++i) {
+    const float shift_m = 0.02F * static_cast<float>(i);
+    cut.Add(Slope(3.0F, shift_m), Turned(0.02 * i));
+    whole.Add(Slope(100.0F, shift_m), Turned(0.02 * i));
+    // A camera that looks at one wall squarely.
+    still.Add(Slope(3.0F, shift_m), Turned(0.0));
+  }
+  ASSERT_TRUE(cut.Found());
+  EXPECT_EQ(cut.Found()->z_m, 3.0F);
+  EXPECT_EQ(cut.Found()->frames, 20);
+  EXPECT_FALSE(whole.Found());
+  EXPECT_FALSE(still.Found());
+  // Once something lies beyond, it was a wall.
+  cut.Add(Slope(4.0F, 0.0F), Turned(0.5));
+  EXPECT_FALSE(cut.Found());
+}
+
+}  // namespace
+}  // namespace depthgrid
