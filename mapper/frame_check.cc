@@ -1,5 +1,6 @@
 #include "mapper/frame_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -70,6 +71,24 @@ void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
   for (const auto& scan : {frame.scan, frame.obstacles}) RequireKept(place, *scan);
 }
 
+// Depths in millimetres would be a map in which all is free. No depth camera measures to 100 m; one
+// value all over is a renderer's far plane.
+void RequireMetres(const Frame& frame, const DepthImage& depth) {
+  constexpr float kBeyondAnyM = 100.0F;
+  constexpr std::size_t kStride = 251;  // prime: no column is looked at over and over
+  float least = INFINITY, most = 0.0F;
+  for (std::size_t i = 0; i < depth.z_m.size(); i += kStride) {
+    const float z_m = depth.z_m[i];
+    if (!(z_m > 0.0F) || !std::isfinite(z_m)) continue;
+    if (z_m < kBeyondAnyM) return;
+    least = std::min(least, z_m);
+    most = std::max(most, z_m);
+  }
+  if (!(least < most)) return;
+  Refuse(frame, "its depths are " + std::to_string(least) + " to " + std::to_string(most) +
+                    ", must be metres: are these millimetres?");
+}
+
 void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera) {
   const auto size_of = [](int width_px, int height_px) {
     return std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels";
@@ -87,6 +106,7 @@ void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera
     Refuse(frame, "its depth image holds " + std::to_string(depth.z_m.size()) +
                       " values, must hold " + std::to_string(wanted));
   }
+  RequireMetres(frame, depth);
 }
 
 void RequireLoop(const Frame& frame, const LoopClosure& loop) {

@@ -37,9 +37,11 @@ using MatchOracle = std::function<Pose2(int frame)>;
 // A map to go on from.
 struct PriorMap {
   // In order of time, at final poses, each with both its scans, which may be one; their `frame` is
-  // below 0 and increases. `mapped` of a result, or of a mapper that runs, becomes this by counting
-  // it -size() to -1; read from files (mapper/io/scan_file.h) frame, stamp, pose and scans are
-  // enough (docs/examples/second_drive.cc).
+  // below 0 and increases, by one within a drive: what a later drive saw counts more
+  // (GridOptions::earlier_scans). `mapped` of a result, or of a mapper that runs, becomes this with
+  // PriorNumbers(), or by counting it -size() to -1 as one drive; read from files
+  // (mapper/io/scan_file.h) frame, stamp, pose and scans are enough
+  // (docs/examples/second_drive.cc).
   std::vector<MappedFrame> frames;
   // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees; FindStart()
   // in mapper/map_start.h finds it. Nothing puts right one that is farther off.
@@ -66,9 +68,10 @@ class IncrementalMapper {
   void SetMatchOracle(MatchOracle oracle);
 
   // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
-  // InputError, and nothing was begun, when a frame's number, pose, stamp or scans are not as
-  // PriorMap wants them, a beam is none that CanBeKept(), or `map_from_slam` is not finite. Method
-  // paper matches against the last two submaps alone: `submap.scans` must be as many as the scans.
+  // InputError, and nothing was begun, when it comes later or again, when a frame's number, pose,
+  // stamp or scans are not as PriorMap wants them, a beam is none that CanBeKept(), or
+  // `map_from_slam` is not finite. Method paper matches against the last two submaps alone:
+  // `submap.scans` must be as many as the scans.
   void StartFrom(PriorMap prior);
 
   // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
@@ -76,7 +79,8 @@ class IncrementalMapper {
   // - its number is below 0 or was given before, or its stamp is not finite;
   // - its pose or a loop is not made of finite numbers: of a unit quaternion (to 0.001) within
   //   10,000 km, a sigma positive;
-  // - its image is not the camera's size, there is no camera, or a scan as well;
+  // - its image is not the camera's size, there is no camera, or a scan as well; or all depths are
+  //   beyond 100 m, as millimetres are;
   // - a scan's max_range_m is negative or not finite, or there is a matched_scan or a stand alone;
   // - the stand is not made of finite numbers, or of a quaternion that is none.
   // What else is amiss is lived with: without a pose nothing is known of the frame, without image

@@ -69,6 +69,14 @@ const std::vector<Case>& Cases() {
          f.depth = image;
        },
        "holds 7 values, must hold 3072"},
+      {[](Frame& f) {
+         auto image = std::make_shared<DepthImage>(*f.depth);
+         for (std::size_t i = 0; i < image->z_m.size(); ++i) {
+           image->z_m[i] = 1500.0F + static_cast<float>(i);
+         }
+         f.depth = image;
+       },
+       "must be metres: are these millimetres?"},
       {[](Frame& f) { f.scan = std::make_shared<Scan>(); }, "a depth image and a scan"},
       {[](Frame& f) { f.matched_scan = std::make_shared<Scan>(); }, "a matched_scan, but no scan"},
       {[](Frame& f) { f.stand = CameraStand{}; }, "a stand, but no scan that it belongs to"},
@@ -114,6 +122,26 @@ TEST(FrameCheck, PosesOfFloatsAndFramesThatLackAllButANumberAreSound) {
   EXPECT_EQ(WhyRefused(Frame{}), "");
   EXPECT_NO_THROW(RequireSound(Frame{}, std::nullopt));
   EXPECT_THROW(RequireSound(frame, std::nullopt), InputError);
+}
+
+// What a renderer draws where nothing is, however far, and one near pixel among far ones.
+TEST(FrameCheck, AFarPlaneIsNoMillimetres) {
+  Frame frame = CheckedFrame(0);
+  auto image = std::make_shared<DepthImage>(*frame.depth);
+  std::fill(image->z_m.begin(), image->z_m.end(), 1000.0F);
+  frame.depth = image;
+  EXPECT_EQ(WhyRefused(frame), "");
+  image->z_m[1] = 1200.0F;
+  EXPECT_EQ(WhyRefused(frame), "");
+}
+
+TEST(FrameCheck, APriorMapIsGivenOnceAndFirst) {
+  IncrementalMapper mapper({}, kCamera);
+  mapper.StartFrom({});
+  EXPECT_THROW(mapper.StartFrom({}), InputError);
+  IncrementalMapper begun({}, kCamera);
+  begun.AddFrame(CheckedFrame(0));
+  EXPECT_THROW(begun.StartFrom({}), InputError);
 }
 
 // The mapper goes on as if the frame had never come.

@@ -173,7 +173,7 @@ std::string WhyNotBegun(const PriorMap& prior) {
     mapper.StartFrom(FinishedRound());
     return error.what();
   }
-  EXPECT_THROW(mapper.StartFrom(prior), std::logic_error);
+  EXPECT_THROW(mapper.StartFrom(prior), InputError);
   return "";
 }
 
