@@ -117,7 +117,7 @@ std::vector<ShownMetric> ShownMetrics(const SweepResults& results) {
     shown.push_back({name, name, target ? Better::kNeither : BetterOf(name), values});
     if (!target) continue;
     shown.push_back({DistanceName(name, *target), name, Better::kLower, values});
-    for (double& value : shown.back().values) value = std::abs(value - *target);
+    for (double& value : shown.back().values) value = DistanceFrom(*target, value);
   }
   return shown;
 }

@@ -16,11 +16,12 @@ double Loss(double value, Better better) { return better == Better::kLower ? val
 std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::uint32_t> seeds,
                    Better better) {
   std::size_t best = 0;
-  double best_sum = INFINITY;
+  double best_sum = 0.0;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     double sum = 0.0;
     for (const std::uint32_t seed : seeds) sum += Loss(runs[k].by_seed[seed], better);
-    if (sum < best_sum) {
+    // Of sums that differ by rounding alone the first is best.
+    if (k == 0 || best_sum - sum > kRoundingShare * std::abs(best_sum)) {
       best_sum = sum;
       best = k;
     }
@@ -47,11 +48,8 @@ std::vector<double> AdjustedAgainst(const std::vector<SettingRuns>& runs, std::s
   std::vector<double> p_values;
   for (std::size_t k = 0; k < runs.size(); ++k) {
     if (k == best) continue;
-    std::vector<double> differences;
-    for (std::size_t i = 0; i < runs[k].by_seed.size(); ++i) {
-      differences.push_back(runs[k].by_seed[i] - runs[best].by_seed[i]);
-    }
-    p_values.push_back(Wilcoxon(differences).p_value);
+    const PairedDifferences differences = DifferencesOf(runs[best].by_seed, runs[k].by_seed);
+    p_values.push_back(WilcoxonOfPairs(differences).p_value);
   }
   std::vector<double> adjusted = HolmAdjusted(p_values);
   adjusted.insert(adjusted.begin() + static_cast<std::ptrdiff_t>(best), 1.0);

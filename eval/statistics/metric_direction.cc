@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -39,6 +40,11 @@ std::optional<double> TargetOf(std::string_view metric) {
     if (metric.ends_with(ending)) return target;
   }
   return std::nullopt;
+}
+
+double DistanceFrom(double target, double score) {
+  const double distance = std::abs(score - target);
+  return distance <= kRoundingShare * std::abs(target) ? 0.0 : distance;
 }
 
 Better BetterOf(std::string_view metric) {

@@ -18,5 +18,7 @@ const char* NameOf(Better better);
 
 // The value that a score should have, such as 1 of a scale or .95 of the share within a 95 % bound.
 std::optional<double> TargetOf(std::string_view metric);
+// 0 where they differ by rounding alone, of which a distance would keep nothing else.
+double DistanceFrom(double target, double score);
 
 }  // namespace depthgrid

@@ -8,17 +8,16 @@ namespace depthgrid {
 
 PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<double>& b,
                                Better better, const Resamples& resamples) {
-  Require(a.size() == b.size() && !a.empty(), "pairs are of as many values on both sides");
-  std::vector<double> differences;
+  Require(!a.empty(), "at least one pair is compared");
+  const PairedDifferences differences = DifferencesOf(a, b);
   PairedComparison result;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    differences.push_back(b[i] - a[i]);
+  for (const double difference : differences.values) {
     if (better == Better::kNeither) continue;
-    const double b_is_worse = better == Better::kLower ? differences[i] : -differences[i];
+    const double b_is_worse = better == Better::kLower ? difference : -difference;
     result.a_wins += b_is_worse > 0.0 ? 1 : 0;
     result.b_wins += b_is_worse < 0.0 ? 1 : 0;
   }
-  const SampleSummary summary = SummariseSample(differences, resamples);
+  const SampleSummary summary = SummariseSample(differences.values, resamples);
   result.pairs = summary.count;
   result.mean_a = Summarise(a).mean;
   result.mean_b = Summarise(b).mean;
@@ -26,7 +25,7 @@ PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<d
   result.median_difference = summary.median;
   result.std_difference = summary.std;
   result.mean_interval = summary.mean_interval;
-  result.wilcoxon = Wilcoxon(differences);
+  result.wilcoxon = WilcoxonOfPairs(differences);
   return result;
 }
 

@@ -24,7 +24,8 @@ struct PairedComparison {
   WilcoxonResult wilcoxon;  // of b - a
 };
 
-// a[i] and b[i] are of the same seed (and whatever else the pair shares); at least one.
+// a[i] and b[i] are of the same seed (and whatever else the pair shares); at least one. What
+// differs by rounding alone is equal, and won by neither.
 PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<double>& b,
                                Better better, const Resamples& resamples);
 

@@ -65,6 +65,12 @@ struct Mean {
   double Value() const { return sum / count; }  // NaN of nothing
 };
 
+// Means of `size` that cancel, as where most scores are 0, leave no more than their rounding.
+double WithoutRounding(double figure, double size) {
+  constexpr double kRounding = 1e-12;
+  return std::abs(figure) < kRounding * size ? 0.0 : figure;
+}
+
 }  // namespace
 
 SeedUnits::SeedUnits(const std::vector<std::vector<std::string>>& seeds) {
@@ -94,6 +100,7 @@ std::vector<double> SeedUnits::Figures(const std::vector<double>& values) const 
     if (std::isfinite(value)) all.Add(value);
   }
   std::vector<double> figures(count_, 0.0);
+  std::vector<double> sizes(count_, 0.0);
   for (std::size_t axis = 0; axis < unit_of_run_.size(); ++axis) {
     Require(values.size() == unit_of_run_[axis].size(), "every run has a value");
     std::vector<Mean> means(count_);
@@ -102,7 +109,11 @@ std::vector<double> SeedUnits::Figures(const std::vector<double>& values) const 
     }
     for (std::size_t unit = 0; unit < count_; ++unit) {
       figures[unit] += axis == 0 ? means[unit].Value() : means[unit].Value() - all.Value();
+      sizes[unit] = std::max(sizes[unit], std::abs(means[unit].Value()));
     }
+  }
+  for (std::size_t unit = 0; unit < count_; ++unit) {
+    figures[unit] = WithoutRounding(figures[unit], sizes[unit]);
   }
   return figures;
 }

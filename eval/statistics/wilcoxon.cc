@@ -11,24 +11,28 @@
 namespace depthgrid {
 namespace {
 
-// Twice the ranks of the sizes of `differences`, in their order: mean ranks of ties are halves, so
+// Twice the ranks of the sizes of differences, in their order: mean ranks of ties are halves, so
 // these are whole numbers. Also the tie correction: the sum of t^3 - t over groups of t equal
 // sizes.
 struct Ranks {
   std::vector<int> doubled;
   double tie_sum = 0.0;
 };
-Ranks RanksOf(const std::vector<double>& differences) {
-  std::vector<std::size_t> order(differences.size());
+Ranks RanksOf(const PairedDifferences& differences) {
+  std::vector<std::size_t> order(differences.values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto size_at = [&](std::size_t i) { return std::abs(differences[i]); };
+  const auto size_at = [&](std::size_t i) { return std::abs(differences.values[i]); };
+  const auto are_tied = [&](std::size_t smaller, std::size_t larger) {
+    return size_at(larger) - size_at(smaller) <=
+           std::max(differences.rounding[smaller], differences.rounding[larger]);
+  };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return size_at(a) < size_at(b); });
   Ranks ranks;
-  ranks.doubled.resize(differences.size());
+  ranks.doubled.resize(order.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
-    while (end < order.size() && size_at(order[end]) == size_at(order[first])) ++end;
+    while (end < order.size() && are_tied(order[first], order[end])) ++end;
     // Ranks first + 1 .. end: twice their mean.
     for (std::size_t i = first; i < end; ++i) {
       ranks.doubled[order[i]] = static_cast<int>(first + 1 + end);
@@ -64,24 +68,24 @@ double NormalPValue(int n, double statistic, double tie_sum) {
   return 2.0 * NormalCdf(-std::abs(statistic - mean) / std::sqrt(variance));
 }
 
-}  // namespace
-
-double LeastWilcoxonP(int pairs) { return std::min(1.0, std::ldexp(2.0, -pairs)); }
-
-WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod method) {
-  std::vector<double> ranked;
-  for (const double d : differences) {
-    Require(std::isfinite(d), "differences are finite");
-    if (d != 0.0) ranked.push_back(d);
+WilcoxonResult Test(const PairedDifferences& differences, WilcoxonMethod method) {
+  PairedDifferences ranked;
+  for (std::size_t i = 0; i < differences.values.size(); ++i) {
+    Require(std::isfinite(differences.values[i]), "differences are finite");
+    if (differences.values[i] == 0.0) continue;
+    ranked.values.push_back(differences.values[i]);
+    ranked.rounding.push_back(differences.rounding[i]);
   }
   WilcoxonResult result;
-  result.pairs = static_cast<int>(ranked.size());
-  result.zeros = static_cast<int>(differences.size() - ranked.size());
-  if (ranked.empty()) return result;
+  result.pairs = static_cast<int>(ranked.values.size());
+  result.zeros = static_cast<int>(differences.values.size() - ranked.values.size());
+  if (ranked.values.empty()) return result;
   const Ranks ranks = RanksOf(ranked);
   // Of 46,341 pairs and more the sums exceed an int.
   double plus = 0.0;
-  for (std::size_t i = 0; i < ranked.size(); ++i) plus += ranked[i] > 0.0 ? ranks.doubled[i] : 0;
+  for (std::size_t i = 0; i < ranked.values.size(); ++i) {
+    plus += ranked.values[i] > 0.0 ? ranks.doubled[i] : 0;
+  }
   const double total = static_cast<double>(result.pairs) * (result.pairs + 1);
   const double smaller = std::min(plus, total - plus);
   result.rank_sum = 0.5 * plus;
@@ -93,6 +97,18 @@ WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod m
                        ? std::min(1.0, 2.0 * ShareUpTo(ranks.doubled, static_cast<int>(smaller)))
                        : NormalPValue(result.pairs, result.statistic, ranks.tie_sum);
   return result;
+}
+
+}  // namespace
+
+double LeastWilcoxonP(int pairs) { return std::min(1.0, std::ldexp(2.0, -pairs)); }
+
+WilcoxonResult Wilcoxon(const std::vector<double>& differences, WilcoxonMethod method) {
+  return Test({differences, std::vector<double>(differences.size(), 0.0)}, method);
+}
+
+WilcoxonResult WilcoxonOfPairs(const PairedDifferences& differences) {
+  return Test(differences, WilcoxonMethod::kAuto);
 }
 
 }  // namespace depthgrid

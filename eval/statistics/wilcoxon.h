@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "eval/statistics/paired_differences.h"
+
 namespace depthgrid {
 
 enum class WilcoxonMethod {
@@ -28,7 +30,11 @@ struct WilcoxonResult {
 // The smallest p-value that so many differences can give: all of one sign, 2 of 2^n.
 double LeastWilcoxonP(int pairs);
 
+// Differences as they are: those that are exactly zero or equally large are zeros and ties.
 WilcoxonResult Wilcoxon(const std::vector<double>& differences,
                         WilcoxonMethod method = WilcoxonMethod::kAuto);
+// Sizes that differ by no more than rounding are ties. So that being tied is one thing for all, a
+// group of ties reaches from its smallest size as far as rounding does, and no further.
+WilcoxonResult WilcoxonOfPairs(const PairedDifferences& differences);
 
 }  // namespace depthgrid

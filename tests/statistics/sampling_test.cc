@@ -81,6 +81,42 @@ TEST(Paired, DifferenceIntervalAndWins) {
 }
 
 // scipy.stats.t.cdf(x, df), t.ppf(.975, df), nct.cdf(x, df, 1.7) at x = -2, .5, 3
+// Shares of 40 plans: of 30 / 40 - 29 / 40 and 36 / 40 - 35 / 40 only the integers tell that they
+// are as large. The p-value is that of the counts' differences, whose ties are exact (the command
+// stands at Wilcoxon.TiesAndZeros).
+TEST(Paired, SharesThatAreTiedAsCountsAreTied) {
+  const std::vector<double> a = {24, 30, 31, 35, 33, 33, 35, 22, 20, 20, 23, 20};
+  const std::vector<double> b = {25, 31, 32, 36, 33, 32, 39, 22, 20, 22, 22, 23};
+  std::vector<double> counts, share_a, share_b;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    counts.push_back(b[i] - a[i]);
+    share_a.push_back(a[i] / 40.0);
+    share_b.push_back(b[i] / 40.0);
+  }
+  const PairedComparison c =
+      ComparePaired(share_a, share_b, Better::kHigher, Resamples(share_a.size()));
+  EXPECT_NEAR(c.wilcoxon.p_value, 0.08984375, 1e-15);
+  EXPECT_EQ(c.wilcoxon.p_value, Wilcoxon(counts).p_value);
+  EXPECT_EQ(c.wilcoxon.rank_sum, Wilcoxon(counts).rank_sum);
+}
+
+TEST(Paired, WhatRoundingLeavesIsNoWin) {
+  const std::vector<double> a(8, 0.07071067811865465), b(8, 0.07071067811865463);
+  const PairedComparison c = ComparePaired(a, b, Better::kLower, Resamples(8));
+  EXPECT_EQ(c.a_wins + c.b_wins, 0);
+  EXPECT_EQ(c.wilcoxon.zeros, 8);
+  EXPECT_EQ(c.mean_difference, 0.0);
+}
+
+TEST(BestSetting, WhatRoundingLeavesMakesNoneTheBest) {
+  const std::vector<SettingRuns> runs = {{0.0, std::vector<double>(8, 0.07071067811865465)},
+                                         {1.0, std::vector<double>(8, 0.07071067811865463)}};
+  const BestSetting best = FindBestSetting(runs, Better::kLower, Resamples(8));
+  EXPECT_EQ(best.index, 0U);  // the first on ties
+  EXPECT_NEAR(best.share_best[0], 1.0, 1e-12);
+  EXPECT_EQ(best.p_as_good[1], 1.0);
+}
+
 TEST(StudentT, AgreesWithSciPy) {
   struct Case {
     double df, central[3], quantile, shifted[3];

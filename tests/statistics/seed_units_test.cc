@@ -48,6 +48,18 @@ TEST(SeedUnits, OfCrossedSeedsThereAreAsManyAsOfOne) {
   EXPECT_THAT(units.Figures({1, 2, 4, 9}), ElementsAre(0, 8));
 }
 
+// Rows 0.1 / 3, columns 0, 0.1, 0, all 0.3 / 9: what 0.1 / 3 - 0.3 / 9 leaves is rounding.
+TEST(SeedUnits, MeansThatCancelLeaveNoRounding) {
+  Seeds seeds;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) seeds.push_back({std::to_string(i), std::to_string(k)});
+  }
+  const auto figures = SeedUnits(seeds).Figures({0, 0.1, 0, 0, 0.1, 0, 0, 0.1, 0});
+  EXPECT_EQ(figures[0], 0.0);
+  EXPECT_NEAR(figures[1], 0.1, 1e-15);
+  EXPECT_EQ(figures[2], 0.0);
+}
+
 // Two seeds with four: the four go to the two in pairs.
 TEST(SeedUnits, TheLongerAxisIsSharedOut) {
   Seeds seeds;

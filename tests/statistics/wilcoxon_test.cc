@@ -94,6 +94,29 @@ TEST(Wilcoxon, NothingToRank) {
   EXPECT_EQ(Wilcoxon({-0.5}).p_value, 1.0);  // one pair can never decide
 }
 
+// Sizes a third of the rounding apart: a group of ties ends one rounding above its smallest size,
+// though each size is tied with its neighbours. Ranks 2.5 of the first four, then 5.5.
+TEST(Wilcoxon, ATieReachesNoFurtherThanRounding) {
+  PairedDifferences differences;
+  for (int i = 0; i < 6; ++i) {
+    differences.values.push_back((i % 2 == 0 ? 1.0 : -1.0) * (1.0 + i * 1.0e-9));
+    differences.rounding.push_back(3.5e-9);
+  }
+  EXPECT_EQ(WilcoxonOfPairs(differences).rank_sum, 2.5 + 2.5 + 5.5);
+  EXPECT_EQ(Wilcoxon(differences.values).rank_sum, 1.0 + 3.0 + 5.0);
+}
+
+TEST(PairedDifferences, OfEqualScoresAreZeroWhateverRoundingLeft) {
+  // The same distance between two cells, and one that went astray beside two that did not.
+  const PairedDifferences d =
+      DifferencesOf({0.07071067811865465, 1e9, 0.1}, {0.07071067811865463, 1e9 + 1.0, 0.1000001});
+  EXPECT_EQ(d.values[0], 0.0);
+  EXPECT_EQ(d.values[1], 0.0);
+  EXPECT_NEAR(d.values[2], 1e-7, 1e-15);
+  EXPECT_NEAR(d.rounding[1], 1.0, 1e-6);
+  EXPECT_NEAR(d.rounding[2], 1e-10, 1e-15);
+}
+
 TEST(Wilcoxon, ExactAgreesWithAllSigns) {
   RandomStream random(3, RandomStage::kTest);
   int compared = 0;
