@@ -41,7 +41,10 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   } else if (asked.empty()) {
     names.assign(kHeadlines.begin(), kHeadlines.end());
   } else {
-    return asked;
+    for (const std::string& name : asked) {  // one asked for twice is one test
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return names;
   }
   std::erase_if(names, [&](const std::string& n) { return !HasMetric(a, n) || !HasMetric(b, n); });
   return names;
@@ -52,21 +55,26 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
 struct UnitFigures {
   std::vector<double> a;
   std::vector<double> b;
+  int undefined_pairs = 0;  // of runs, on one side or the other
 };
 
 UnitFigures FiguresOf(const SweepResults& a, const SweepResults& b, const std::string& name,
                       const RunPairs& pairs) {
   const auto target = TargetOf(name);
-  const auto figure = [&](double value) { return target ? std::abs(value - *target) : value; };
+  const auto figure = [&](double value) { return target ? DistanceFrom(*target, value) : value; };
   std::vector<double> of_a(pairs.a.size(), NAN), of_b(pairs.a.size(), NAN);
+  int undefined_pairs = 0;
   for (std::size_t i = 0; i < pairs.a.size(); ++i) {
     const double value_a = a.Metric(name)[pairs.a[i]];
     const double value_b = b.Metric(name)[pairs.b[i]];
-    if (!std::isfinite(value_a) || !std::isfinite(value_b)) continue;
+    if (!std::isfinite(value_a) || !std::isfinite(value_b)) {
+      ++undefined_pairs;
+      continue;
+    }
     of_a[i] = figure(value_a);
     of_b[i] = figure(value_b);
   }
-  UnitFigures units{pairs.units.Figures(of_a), pairs.units.Figures(of_b)};
+  UnitFigures units{pairs.units.Figures(of_a), pairs.units.Figures(of_b), undefined_pairs};
   std::erase_if(units.a, [](double v) { return std::isnan(v); });
   std::erase_if(units.b, [](double v) { return std::isnan(v); });
   return units;
@@ -82,6 +90,7 @@ std::optional<MetricComparison> CompareMetric(const SweepResults& a, const Sweep
   result.metric = name;
   result.better = BetterOf(name);
   result.target = TargetOf(name);
+  result.undefined_pairs = units.undefined_pairs;
   result.paired =
       ComparePaired(units.a, units.b, result.better, Resamples(units.a.size(), options.bootstrap));
   return result;

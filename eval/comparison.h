@@ -38,7 +38,8 @@ struct MetricComparison {
   Better better = Better::kLower;
   std::optional<double> target;  // of a score that has one; all figures are of the distance from it
   PairedComparison paired;
-  double p_holm = 1.0;  // over the rows that are tested
+  int undefined_pairs = 0;  // of runs, that the score left out, being undefined on either side
+  double p_holm = 1.0;      // over the rows that are tested
   Verdict verdict = Verdict::kNotToldApart;
   // Seeds at which a difference as large as this one would be seen with 80 % power in a table of as
   // many rows, more than there are unless it is seen now; empty where it is zero.

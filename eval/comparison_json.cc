@@ -36,6 +36,7 @@ Json ToJson(const MetricComparison& c) {
   return {{"better", NameOf(c.better)},
           {"distance_from", c.target ? Json(*c.target) : Json()},
           {"pairs", p.pairs},
+          {"undefined_pairs", c.undefined_pairs},
           {"mean_a", p.mean_a},
           {"mean_b", p.mean_b},
           {"mean_difference", p.mean_difference},

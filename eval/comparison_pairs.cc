@@ -128,6 +128,25 @@ std::vector<DifferentSetting> TakeDifferent(const SweepResults& a,
   return different;
 }
 
+std::string NameOfRun(const SweepResults& table, std::size_t row) {
+  return table.run_folders.empty() ? fmt::format("run {}", table.runs[row])
+                                   : table.run_folders[row];
+}
+
+// Two runs of a folder that nothing in the table tells apart, as the cases of a study.
+std::string SamePairText(const SweepResults& table, std::size_t first, std::size_t second,
+                         const std::vector<std::string>& shared) {
+  std::vector<std::string> same;
+  for (const std::string& axis : shared) {
+    const std::string value = ValueAt(table.Parameter(axis), first);
+    if (!value.empty()) same.push_back(fmt::format("{} = {}", axis, value));
+  }
+  return fmt::format(
+      "holds several runs that make the same pair: {} and {} ({}); compare folders of one run "
+      "each, or folders whose runs differ in these",
+      NameOfRun(table, first), NameOfRun(table, second), fmt::join(same, ", "));
+}
+
 std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
                                      const std::vector<std::size_t>& rows,
                                      const std::vector<std::string>& shared) {
@@ -140,7 +159,7 @@ std::map<Key, std::size_t> RowsByKey(const SweepResults& table,
     const std::string differs = WhatDiffers(table, row, found->second);
     throw InputError(table.folder,
                      differs.empty()
-                         ? "holds several runs that make the same pair"
+                         ? SamePairText(table, found->second, row, shared)
                          : fmt::format("its runs differ in {}, which the other side does not have: "
                                        "choose with --where-a or --where-b {}=VALUE",
                                        differs, differs));

@@ -76,6 +76,7 @@ SweepResults ReadRuns(const std::string& folder) {
   for (const fs::path& run : RunFolders(folder)) {
     const int number = static_cast<int>(table.rows());
     table.runs.push_back(number);
+    table.run_folders.push_back(run.string());
     table.points.push_back(0);
     table.failures.emplace_back();
     AddParameters(run, table);

@@ -78,6 +78,23 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
           TextOf(c)};
 }
 
+// Rows that rest on fewer pairs than the table's head says.
+void PrintFewerPairs(const Comparison& comparison) {
+  std::vector<std::string> rows;
+  for (const MetricComparison& c : comparison.metrics) {
+    if (c.undefined_pairs == 0) continue;
+    rows.push_back(fmt::format(
+        "{} ({} of {}{})", c.metric, comparison.pairs - c.undefined_pairs,
+        Counted(comparison.pairs, "pair"),
+        c.paired.pairs < comparison.units && comparison.units < comparison.pairs
+            ? fmt::format(", {} of {}", c.paired.pairs, Counted(comparison.units, "seed"))
+            : ""));
+  }
+  if (rows.empty()) return;
+  fmt::print("\nOf fewer pairs, as the score is not defined on both sides in the others: {}\n",
+             fmt::join(rows, ", "));
+}
+
 void PrintLeftOut(const Comparison& comparison) {
   const auto print = [](const std::vector<std::string>& names, const char* why) {
     if (names.empty()) return;
@@ -140,6 +157,7 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
                                                  "seeds needed", "verdict"}};
   for (const MetricComparison& compared : comparison.metrics) rows.push_back(RowOf(compared));
   fmt::print("\n\n{}", comparison.metrics.empty() ? "" : Table(rows));
+  PrintFewerPairs(comparison);
   PrintLeftOut(comparison);
   PrintTooFew(comparison);
 }

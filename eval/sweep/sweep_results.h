@@ -30,6 +30,7 @@ struct SweepResults {
   std::map<std::string, std::string> environment;
   int planned_runs = 0;                    // rows are the finished ones of these
   std::vector<int> runs;                   // the run's number in the whole sweep, ascending
+  std::vector<std::string> run_folders;    // of runs that are no sweep's; else empty
   std::vector<int> points;                 // runs of one grid point differ only in their seeds
   std::vector<SweepParameter> parameters;  // in the order of the sweep's file
   std::vector<std::string> failures;       // why the run failed; empty when it did not

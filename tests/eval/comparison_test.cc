@@ -1,20 +1,18 @@
-// `depthgrid compare`: runs joined into pairs, and what is said of them.
+// Runs joined into pairs, and what is concluded from them.
 #include "eval/comparison.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
+#include <cmath>
 
+#include "eval/statistics/metric_direction.h"
 #include "mapper/core/error.h"
-#include "tests/eval/program.h"
 
 namespace depthgrid {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // Errors (m) of ten seeds; those of tests/statistics, where SciPy's figures for them stand.
 const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
@@ -162,6 +160,31 @@ TEST(Compare, ScoresWithATargetAndWithoutADirection) {
   EXPECT_TRUE(asked.without_direction.empty());
 }
 
+// 0.9 and 1.1 are as far from 1, though not to the last digit.
+TEST(Compare, ScoresAsFarFromTheirTargetAreEqual) {
+  SweepResults a = Sweep({{"1", std::vector<double>(8, 0.9)}});
+  SweepResults b = Sweep({{"1", std::vector<double>(8, 1.1)}});
+  for (SweepResults* side : {&a, &b}) {
+    side->metrics[0].name = "trajectory.est.sim3_scale";
+    for (std::size_t i = 0; i < 8; ++i) side->metrics[1].values[i] = static_cast<double>(i);
+  }
+  CompareOptions options;
+  options.metrics = {"trajectory.est.sim3_scale"};
+  const Comparison c = Compare(a, b, options);
+  EXPECT_EQ(c.metrics[0].paired.wilcoxon.zeros, 8);
+  EXPECT_EQ(c.metrics[0].paired.a_wins, 0);
+  EXPECT_EQ(c.metrics[0].paired.wilcoxon.p_value, 1.0);
+  EXPECT_EQ(DistanceFrom(1.0, 1.0 + 1e-15), 0.0);
+}
+
+TEST(Compare, AScoreAskedForTwiceIsOneTest) {
+  CompareOptions options;
+  options.metrics = {kError, kError};
+  const Comparison c = Compare(Sweep({{"1", kA}}), Sweep({{"1", kB}}), options);
+  ASSERT_EQ(c.metrics.size(), 1U);
+  EXPECT_EQ(c.metrics[0].p_holm, c.metrics[0].paired.wilcoxon.p_value);
+}
+
 // Rooms of one seed are all that varies.
 TEST(Compare, OfOneSeedEachPairCounts) {
   std::vector<std::pair<std::string, std::vector<double>>> one_a, one_b;
@@ -180,6 +203,8 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   const Comparison c = Compare(a, b, {});
   EXPECT_EQ(c.pairs, 9);
   EXPECT_EQ(c.metrics[0].paired.pairs, 8);
+  EXPECT_EQ(c.metrics[0].undefined_pairs, 1);
+  EXPECT_EQ(c.metrics[1].undefined_pairs, 0);
   EXPECT_EQ(c.metrics[1].paired.pairs, 9);
   // A score that is defined in no pair is named, not only missing.
   a.metrics[0].values.assign(a.rows(), NAN);
@@ -290,109 +315,6 @@ TEST(Compare, WhatIsNotToldApartNeedsMoreThanThereIs) {
       Compare(Sweep({{"1", zero}}), Sweep({{"1", {-.01, 3, 3.1, 3.2, 3.3, 3.4}}}), options);
   EXPECT_EQ(c.metrics[0].verdict, Verdict::kNotToldApart);
   EXPECT_EQ(c.metrics[0].seeds_needed, 7);
-}
-
-// Runs' folders with what is read of them.
-class ProgramCompare : public ProgramTest {
- protected:
-  void WriteRuns(const std::string& folder, const std::vector<double>& errors) const {
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      const std::string run = fmt::format("{}/{}", folder, i);
-      std::filesystem::create_directories(Path(run));
-      Write(run + "/run.yaml",
-            fmt::format("scene: room\ntrajectory: walk\nframes: 9\nseed: {}\n", i + 1));
-      Write(run + "/metrics.json",
-            fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", errors[i]));
-    }
-  }
-  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
-    const Outcome outcome = Program(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    for (const std::string& text : says) EXPECT_THAT(outcome.err, HasSubstr(text));
-    EXPECT_EQ(outcome.out, "");
-  }
-};
-
-TEST_F(ProgramCompare, FoldersOfRuns) {
-  WriteRuns("a", kA);
-  WriteRuns("b", kB);
-  const Outcome table = Program("compare a b");
-  EXPECT_EQ(table.exit_code, 0) << table.err;
-  EXPECT_THAT(table.out, HasSubstr("10 pairs"));
-  EXPECT_THAT(table.out, HasSubstr("B better"));
-  const auto json = nlohmann::json::parse(Program("compare a b --json").out);
-  EXPECT_EQ(json["pairs"], 10);
-  EXPECT_EQ(json["metrics"][kError]["verdict"], "b");
-  EXPECT_NEAR(json["metrics"][kError]["p_value"].get<double>(), 0.009765625, 1e-12);
-  EXPECT_EQ(json["metrics"][kError]["seeds_needed"], 12);
-  // Single runs: the difference alone.
-  const Outcome single = Program("compare a/0 b/0");
-  EXPECT_EQ(single.exit_code, 0) << single.err;
-  EXPECT_THAT(single.out, HasSubstr("too few pairs"));
-  EXPECT_THAT(single.out, HasSubstr("Too few pairs for any verdict: one row takes 6 pairs.\n"));
-}
-
-TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
-  // One large difference outweighs nine small ones in the mean, not in the ranks.
-  WriteRuns("a", {1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
-  WriteRuns("b", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, -20});
-  const std::string metric = std::string(" --metric ") + kError;
-  EXPECT_THAT(Program("compare a b" + metric).out, HasSubstr("not told apart\n"));
-  WriteRuns("b", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2});
-  EXPECT_THAT(Program("compare a b" + metric).out, HasSubstr("A better\n"));
-  WriteRuns("c", std::vector<double>(14, 1.0));
-  WriteRuns("d", {1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2, 2.1, 2.2, 2.3, -20});
-  EXPECT_THAT(Program("compare c d" + metric).out,
-              HasSubstr("A better by ranks, not by the mean\n"));
-  const Outcome same = Program("compare a a --metric all");
-  EXPECT_EQ(same.exit_code, 0) << same.err;
-  EXPECT_THAT(same.err, HasSubstr("A and B are the same runs"));
-  EXPECT_THAT(same.out, HasSubstr("1 score left out, the same on both sides in every pair: "
-                                  "trajectory.est.mean_euclidean_m\n"));
-  EXPECT_THAT(same.out, Not(HasSubstr("want of a partner")));
-  EXPECT_THAT(Program("compare a d" + metric).out,
-              HasSubstr("; left out for want of a partner: 0 runs of A, 4 of B\n"));
-}
-
-TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {
-  const std::string scores =
-      R"({{"trajectory": {{"est": {{"mean_euclidean_m": {0}}}}}, "map": {{"ssim": {0}}}}})";
-  for (int seed = 1; seed <= 6; ++seed) {
-    for (const auto& [side, value] : {std::pair("a", 1.0), std::pair("b", 2.0 + 0.1 * seed)}) {
-      const std::string run = fmt::format("{}/{}", side, seed);
-      std::filesystem::create_directories(Path(run));
-      Write(run + "/run.yaml", fmt::format("scene: room\nseed: {}\n", seed));
-      Write(run + "/metrics.json", fmt::format(fmt::runtime(scores), value));
-    }
-  }
-  const Outcome outcome = Program("compare a b");
-  EXPECT_THAT(outcome.out, HasSubstr("A better"));
-  EXPECT_THAT(
-      outcome.out,
-      HasSubstr("\n6 pairs can tell apart 1 row at once, all 2 rows take 7 pairs; the others "
-                "are not tested. Choose with --metric what is asked, before looking.\n"));
-  const auto json = nlohmann::json::parse(Program("compare a b --json").out);
-  EXPECT_EQ(json["metrics"]["map.ssim"]["verdict"], "not_tested");
-  EXPECT_TRUE(json["metrics"]["map.ssim"]["p_holm"].is_null());
-}
-
-TEST_F(ProgramCompare, Refusals) {
-  WriteRuns("a", kA);
-  WriteRuns("b", {0.1, 0.2});
-  ExpectRefusal("compare a nowhere", {"nowhere", "no such folder"});
-  ExpectRefusal("compare a .", {".", "no run with scores"});
-  ExpectRefusal("compare a b --metric trajectory.est.mean_euclidian_m",
-                {"mean_euclidian_m", "did you mean", kError});
-  ExpectRefusal("compare a b --where seed", {"--where", "key.path=value"});
-  ExpectRefusal("compare a b --where sed=1", {"sed", "'seed'"});
-  ExpectRefusal("compare a b --where-a seed=77", {"seed = 77"});
-  ExpectRefusal("compare a/0 b/1", {"shares no run"});
-  Write("b/0/metrics.json", "{");
-  ExpectRefusal("compare a b", {"b/0/metrics.json"});
-  // Twice the same seed.
-  std::filesystem::copy(Path("a/0"), Path("a/copy"), std::filesystem::copy_options::recursive);
-  ExpectRefusal("compare a a", {"several runs"});
 }
 
 }  // namespace
