@@ -102,6 +102,7 @@ Json ToJson(const TrajectoryScore& score) {
       {"estimate_poses", score.estimate_poses},
       {"matched_poses", score.matched_poses},
       {"reference_path_m", score.reference_path_m},
+      {"time_coverage", score.time_coverage},
       {"xy",
        {{"unaligned", ToJson(score.xy_unaligned)},
         {"origin", ToJson(score.xy_origin)},

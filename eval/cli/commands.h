@@ -92,6 +92,7 @@ struct EvalTrajectoryArguments {
   std::string estimate;
   std::string convention = "evo";
   double max_difference_s = -1.0;  // negative: the convention's
+  double time_offset_s = 0.0;      // to be added to the estimate's stamps
   std::string errors;              // CSV to write; empty: none
   bool force = false;              // though that one is there
   bool json = false;

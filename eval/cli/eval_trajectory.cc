@@ -4,12 +4,15 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/clock_check.h"
 #include "eval/kept_inputs.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/metrics/tum_association.h"
 #include "eval/metrics_json.h"
 #include "eval/output_file.h"
+#include "eval/rotation_check.h"
+#include "eval/trajectory_doubts.h"
 #include "eval/trajectory_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -61,22 +64,13 @@ void PrintDrift(const TrajectoryScore& score) {
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
 }
 
-// Whether the estimate fits best upside down: a mirror image of a level path does, turned in space.
-bool FitsUpsideDown(const std::vector<PosePair>& pairs) {
-  constexpr double kLevelCos = 0.95;  // 18 degrees, more than level worlds differ by
-  const auto fit = Align(pairs, Alignment::kSe3);
-  if (!fit) return false;
-  const Eigen::Vector3d up =
-      fit->reference_from_estimate.rotation * Eigen::Vector3d::UnitZ().eval();
-  return up.z() < -kLevelCos;
-}
-
 // What makes errors say something else than they seem to.
 std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vector<PosePair>& pairs,
                                   const EvalTrajectoryArguments& of) {
-  constexpr double kFewShare = 0.5;    // more are missing than there
-  constexpr double kOtherScale = 1.5;  // no SLAM that knows its scale is off by half
-  constexpr double kLeastPathM = 1.0;  // of less, noise tells the scale
+  constexpr double kPercent = 100.0;
+  constexpr double kFewShare = 0.5;  // more are missing than there
+  constexpr double kMostMissing = 0.2;
+  constexpr double kLeastPathM = 1.0;  // of less, noise tells how worlds are tilted
   // In level worlds the errors in the plane are part of those in space.
   constexpr double kTilted = 2.0;
   constexpr double kLeastErrorM = 0.01;  // of smaller ones, alignment may take any share
@@ -92,13 +86,9 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
                     "of those alone",
                     of.estimate, score.matched_poses, score.estimate_poses, of.reference,
                     score.reference_poses));
-  }
-  if (score.sim3_scale && score.reference_path_m > kLeastPathM &&
-      (*score.sim3_scale > kOtherScale || *score.sim3_scale * kOtherScale < 1.0)) {
-    doubts.push_back(
-        fmt::format("{}: fits {} best {:.4g} times as large: is it in other units, or "
-                    "without scale?",
-                    of.estimate, of.reference, *score.sim3_scale));
+  } else if (score.time_coverage < 1.0 - kMostMissing) {
+    doubts.push_back(fmt::format("{}: covers {:.0f} % of {}'s time; the errors are of that alone",
+                                 of.estimate, kPercent * score.time_coverage, of.reference));
   }
   if (score.xy_se2 && score.xyz_se3 && score.reference_path_m > kLeastPathM &&
       score.xy_se2->rmse > std::max(kLeastErrorM, kTilted * score.xyz_se3->rmse)) {
@@ -108,6 +98,9 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
         of.estimate, of.reference, score.xyz_se3->rmse, score.xy_se2->rmse,
         FitsUpsideDown(pairs) ? "it is upside down or mirrored (an axis negated, x and y swapped)"
                               : "their worlds are tilted against each other"));
+  }
+  for (std::string& doubt : DoubtsOfPairs(pairs, {of.reference, of.estimate})) {
+    doubts.push_back(std::move(doubt));
   }
   return doubts;
 }
@@ -157,6 +150,7 @@ Paired PairByStamps(const Trajectory& reference, const Trajectory& estimate, dou
   if (paired.score) {
     paired.score->reference_poses = static_cast<int>(reference.size());
     paired.score->estimate_poses = static_cast<int>(estimate.size());
+    paired.score->time_coverage = TimeCoverage(reference, paired.pairs);
   }
   return paired;
 }
@@ -168,6 +162,24 @@ Paired PairByRows(const TrajectoryFiles& files) {
   paired.score->by_row = true;
   if (!files.has_seconds) paired.score->drift_over_time.clear();
   return paired;
+}
+
+// When each was, and what brings them together: clocks that are known to differ, or the first
+// poses.
+std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
+                              const EvalTrajectoryArguments& of) {
+  const auto span = [](const Trajectory& t) {
+    return fmt::format("from {:.3f} to {:.3f} s", t.front().stamp_s, t.back().stamp_s);
+  };
+  const auto clock = FindClockOffset(files.reference, files.estimate);
+  const double offset_s =
+      of.time_offset_s +
+      (clock ? clock->offset_s : files.reference.front().stamp_s - files.estimate.front().stamp_s);
+  return fmt::format(
+      "shares no stamp with {} (within {} s): it is {}, that one {}; --max-difference S takes "
+      "stamps further apart, --time-offset {:.3f} {}",
+      of.reference, limit_s, span(files.estimate), span(files.reference), offset_s,
+      clock ? "is where they fit best" : "lays the first of both together");
 }
 
 double LimitOf(const EvalTrajectoryArguments& arguments) {
@@ -183,8 +195,13 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   if (arguments.force && arguments.errors.empty()) {
     Warn({"--force: has no effect without --errors"});
   }
-  const TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
+  TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
   Warn(files.warnings);
+  if (files.by_row && arguments.time_offset_s != 0.0) {
+    Warn({"--time-offset: has no effect because rows pair in order"});
+  } else {
+    for (StampedPose& pose : files.estimate) pose.stamp_s += arguments.time_offset_s;
+  }
   const double limit_s = LimitOf(arguments);
   const Paired paired =
       files.by_row ? PairByRows(files)
@@ -193,14 +210,17 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   if (!score) {
     throw InputError(
         arguments.estimate,
-        files.by_row
-            ? fmt::format("has no pose in a row in which {} has one", arguments.reference)
-            : fmt::format("shares no stamp with {} (within {} s)", arguments.reference, limit_s));
+        files.by_row ? fmt::format("has no pose in a row in which {} has one", arguments.reference)
+                     : NoSharedStampText(files, limit_s, arguments));
   }
   if (files.by_row && arguments.max_difference_s >= 0.0) {
     Warn({"--max-difference: has no effect because rows pair in order"});
   }
   Warn(DoubtsOf(*score, paired.pairs, arguments));
+  if (!files.by_row) {
+    Warn(DoubtsOfClock(files.reference, files.estimate, {arguments.reference, arguments.estimate},
+                       arguments.time_offset_s));
+  }
   if (!arguments.errors.empty()) {
     WriteFile(arguments.errors, ErrorsCsv(paired.pairs, files.has_seconds));
   }

@@ -6,6 +6,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
 #include "eval/metrics/association.h"
+#include "eval/trajectory_doubts.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/trajectory_file.h"
@@ -28,11 +29,14 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
   const Trajectory truth = ReadTrajectory(truth_path, warnings);
   const Trajectory estimate = ReadTrajectory(estimate_path, warnings);
   Warn(warnings);
-  for (const PosePair& pair : Associate(truth, estimate)) {
+  const std::vector<PosePair> pairs = Associate(truth, estimate);
+  for (const PosePair& pair : pairs) {
     run.truth.push_back(pair.reference);
     run.estimate.push_back(pair.estimate);
   }
   if (run.truth.empty()) throw InputError(estimate_path, "shares no stamp with " + truth_path);
+  Warn(DoubtsOfPairs(pairs, {truth_path, estimate_path}));
+  Warn(DoubtsOfClock(truth, estimate, {truth_path, estimate_path}));
   return run;
 }
 

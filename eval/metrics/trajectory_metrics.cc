@@ -1,8 +1,10 @@
 #include "eval/metrics/trajectory_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "eval/metrics/alignment.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -131,6 +133,22 @@ RelativeErrors ErrorsOf(const std::vector<PosePair>& pairs,
   return errors;
 }
 
+double TimeCoverage(const Trajectory& reference, const std::vector<PosePair>& pairs) {
+  constexpr double kLeastNearS = 1.0;
+  constexpr double kNearSteps = 3.0;
+  std::vector<double> stamps_s, steps_s;
+  for (const PosePair& pair : pairs) stamps_s.push_back(pair.reference.stamp_s);
+  for (std::size_t i = 1; i < pairs.size(); ++i) steps_s.push_back(stamps_s[i] - stamps_s[i - 1]);
+  const double step_s = steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
+  const double near_s = std::max(kLeastNearS, kNearSteps * step_s);
+  int covered = 0;
+  for (const StampedPose& pose : reference) {
+    const auto first = std::lower_bound(stamps_s.begin(), stamps_s.end(), pose.stamp_s - near_s);
+    covered += first != stamps_s.end() && *first <= pose.stamp_s + near_s ? 1 : 0;
+  }
+  return static_cast<double>(covered) / static_cast<double>(reference.size());
+}
+
 std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
                                                const Trajectory& estimate,
                                                double max_difference_s) {
@@ -141,6 +159,7 @@ std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
   score.estimate_poses = static_cast<int>(estimate.size());
   score.matched_poses = static_cast<int>(pairs.size());
   score.reference_path_m = ReferencePath(pairs).back();
+  score.time_coverage = TimeCoverage(reference, pairs);
   ScoreAbsolute(pairs, score);
   ScoreRelative(pairs, score);
   ScoreDrift(pairs, score);

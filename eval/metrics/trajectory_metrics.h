@@ -42,6 +42,7 @@ struct TrajectoryScore {
   int matched_poses = 0;
   bool by_row = false;            // rows paired in order: a file had no stamps
   double reference_path_m = 0.0;  // over the matched poses
+  double time_coverage = 0.0;     // TimeCoverage() of the reference
   Statistics xy_unaligned;        // metres; its mean is the paper's Table 1 as we read it
   Statistics xy_origin;           // first bases laid over each other
   std::optional<Statistics> xy_se2;
@@ -59,6 +60,10 @@ struct TrajectoryScore {
   std::vector<Drift> drift_over_time;  // those of kDriftLagsS and
   std::vector<Drift> drift_over_path;  // of kDriftLengthsM that the trajectory is long enough for
 };
+
+// The share of the reference's poses near a matched one in time: within a second, or three of the
+// matched poses' own steps (the median) where those are longer.
+double TimeCoverage(const Trajectory& reference, const std::vector<PosePair>& pairs);
 
 // Empty when no stamps are shared.
 std::optional<TrajectoryScore> ScoreTrajectory(const Trajectory& reference,
