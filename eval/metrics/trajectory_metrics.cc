@@ -134,18 +134,20 @@ RelativeErrors ErrorsOf(const std::vector<PosePair>& pairs,
 }
 
 double TimeCoverage(const Trajectory& reference, const std::vector<PosePair>& pairs) {
-  constexpr double kLeastNearS = 1.0;
-  constexpr double kNearSteps = 3.0;
+  constexpr double kShortGapS = 1.0;
+  constexpr double kShortGapSteps = 3.0;
   std::vector<double> stamps_s, steps_s;
   for (const PosePair& pair : pairs) stamps_s.push_back(pair.reference.stamp_s);
   for (std::size_t i = 1; i < pairs.size(); ++i) steps_s.push_back(stamps_s[i] - stamps_s[i - 1]);
   const double step_s = steps_s.empty() ? 0.0 : UpperMedian(std::move(steps_s));
-  const double near_s = std::max(kLeastNearS, kNearSteps * step_s);
-  int covered = 0;
-  for (const StampedPose& pose : reference) {
-    const auto first = std::lower_bound(stamps_s.begin(), stamps_s.end(), pose.stamp_s - near_s);
-    covered += first != stamps_s.end() && *first <= pose.stamp_s + near_s ? 1 : 0;
-  }
+  const double short_gap_s = std::max(kShortGapS, kShortGapSteps * step_s);
+  const auto is_covered = [&](const StampedPose& pose) {
+    const auto next = std::lower_bound(stamps_s.begin(), stamps_s.end(), pose.stamp_s);
+    if (next == stamps_s.end()) return false;
+    if (*next == pose.stamp_s) return true;
+    return next != stamps_s.begin() && *next - *std::prev(next) <= short_gap_s;
+  };
+  const auto covered = std::count_if(reference.begin(), reference.end(), is_covered);
   return static_cast<double>(covered) / static_cast<double>(reference.size());
 }
 

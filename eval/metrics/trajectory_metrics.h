@@ -61,8 +61,8 @@ struct TrajectoryScore {
   std::vector<Drift> drift_over_path;  // of kDriftLengthsM that the trajectory is long enough for
 };
 
-// The share of the reference's poses near a matched one in time: within a second, or three of the
-// matched poses' own steps (the median) where those are longer.
+// The share of the reference's poses that are matched or between matched ones no further apart than
+// a second, or three of their own steps (the median) where those are longer.
 double TimeCoverage(const Trajectory& reference, const std::vector<PosePair>& pairs);
 
 // Empty when no stamps are shared.
