@@ -296,6 +296,7 @@ class CarmenLogSource : public FrameSource {
 }  // namespace
 
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  RequireInRange(options, "sequence.laser");
   RequireFieldOfView(options.fov_deg);
   RequireSound(line);
   return ScanOfLine(line, options);

@@ -45,8 +45,8 @@ FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options
 
 // What a line's readings mean, or those of any laser's driver (ROS's LaserScan: +infinity is
 // "nothing there", -infinity and NaN are no data): a scan in the laser's own axes. Throws
-// InputError for bearings that are not finite or all the same, and for a maximum that is negative
-// or NaN.
+// InputError for bearings that are not finite or all the same, for a maximum that is negative or
+// NaN, and for options out of range.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that

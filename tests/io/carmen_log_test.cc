@@ -123,6 +123,9 @@ TEST(CarmenLog, ADriversMetadataMustBeSound) {
   CarmenLogOptions narrow;
   narrow.fov_deg = 0.001;
   EXPECT_THROW(ScanOf(sound, narrow), InputError);
+  CarmenLogOptions negative;
+  negative.max_range_m = -1.0;
+  EXPECT_THROW(ScanOf(sound, negative), InputError);
 }
 
 TEST(CarmenLog, ALaserUpsideDownIsReadFromLeftToRight) {
