@@ -6,6 +6,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
+#include "mapper/core/slam_epochs.h"
 
 namespace depthgrid {
 namespace {
@@ -38,19 +39,29 @@ struct Stretch {
   }
 };
 
-// Stretches that are `done`, one after the other; none across a correction of SLAM or where a pose
-// is missing.
+int EpochOf(const FrameReport& report, SlamEpochs& epochs) {
+  Frame frame;
+  frame.stamp_s = report.stamp_s;
+  frame.slam_epoch = report.slam_epoch;
+  frame.slam_from_camera = report.slam_from_camera;
+  return epochs.Of(frame);
+}
+
+// Stretches that are `done`, one after the other; none across a correction of SLAM, poses that
+// begin anew without a word, or where a pose is missing.
 template <typename Done>
 std::vector<Stretch> StretchesOf(const MappingRun& run, Done done) {
   std::vector<Stretch> stretches;
   std::optional<Stretch> stretch;
   Pose2 slam_begin, map_begin, slam_last, map_last;
-  int epoch = 0;
+  SlamEpochs epochs;
+  int last_epoch = 0;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     const auto& slam_pose = run.reports[i].slam_from_camera;
     const auto& map_pose = run.result.map_from_camera[i];
-    if (!slam_pose || !map_pose || run.reports[i].slam_epoch != epoch) stretch.reset();
-    epoch = run.reports[i].slam_epoch;
+    const int epoch = EpochOf(run.reports[i], epochs);
+    if (!slam_pose || !map_pose || epoch != last_epoch) stretch.reset();
+    last_epoch = epoch;
     if (!slam_pose || !map_pose) continue;
     const Pose2 slam = BaseOf(*slam_pose);
     const Pose2 map = BaseOf(*map_pose);

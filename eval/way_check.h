@@ -13,8 +13,8 @@ struct Ways {
   double map_m = 0.0;
 };
 
-// Summed over stretches of at least half a metre of either, none across a correction of SLAM or
-// where a pose is missing.
+// Summed over stretches of at least half a metre of either, none across a correction of SLAM, as
+// SlamEpochs tells it, or where a pose is missing.
 Ways WaysOf(const MappingRun& run);
 
 // The ways, where they differ so much that one of the two scales is wrong: depth images read in

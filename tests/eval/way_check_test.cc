@@ -100,6 +100,20 @@ TEST(WayCheck, TakesNoStretchAcrossACorrectionOrALoss) {
   EXPECT_LT(ways.slam_m, 4.0);
 }
 
+// Wheels that are counted from zero again, without a word: none drove back in one step.
+TEST(WayCheck, TakesNoStretchAcrossPosesThatBeginAnew) {
+  MappingRun run = Straight(81, 1.0);
+  for (std::size_t i = 0; i < 81; ++i) {
+    run.reports[i].stamp_s = 0.1 * static_cast<double>(i);
+    if (i >= 50) run.reports[i].slam_from_camera->translation.x() -= 5.0;
+  }
+  const Ways ways = WaysOf(run);
+  EXPECT_NEAR(ways.slam_m, ways.map_m, 1e-9);
+  EXPECT_GT(ways.slam_m, 6.0);
+  EXPECT_FALSE(ScaleDoubt(run));
+  EXPECT_FALSE(WayDoubt(run));
+}
+
 TEST(WayCheck, DoubtsEitherScale) {
   EXPECT_FALSE(ScaleDoubt(Straight(60, 1.0)));
   EXPECT_FALSE(ScaleDoubt(Straight(60, 1.25)));
