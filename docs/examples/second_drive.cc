@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   PriorMap prior = Load(file);
   const std::vector<Frame> seen(frames.begin(), frames.begin() + kFramesToFindPlace);
   const auto start = FindStart(prior, seen, std::nullopt, options);
-  // Go on collecting, or ask somebody.
+  // Go on collecting, or ask somebody: FindStartNear() takes their word for it.
   if (!start || start->uncertain() || start->contradicted()) return 1;
   prior.map_from_slam = start->place.map_from_slam;
   IncrementalMapper second(options, std::nullopt);

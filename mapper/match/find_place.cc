@@ -267,6 +267,15 @@ Candidate NearGuess(const DistanceField& walls, const Points& coarse_points, con
   return best;
 }
 
+// The next one, unless another within reach is much better: what is known beforehand is kept where
+// little is seen, as along a corridor.
+Candidate NextTo(const DistanceField& walls, const Points& coarse_points, const Points& points,
+                 const Pose2& known) {
+  const Candidate next = Refined(walls, points, known);
+  const Candidate best = NearGuess(walls, coarse_points, points, known);
+  return next.score >= kGuessShare * best.score ? next : best;
+}
+
 bool Elsewhere(const Pose2& a, const Pose2& b) {
   return AreApart(a, b, kElsewhereM, kElsewhereRad);
 }
@@ -317,6 +326,19 @@ UnsureAlong UnsureLine(const DistanceField& walls, const Points& points,
 }
 
 }  // namespace
+
+std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,
+                                        const std::vector<PlacedScan>& scans,
+                                        const Pose2& map_from_slam) {
+  if (scans.empty()) return {};
+  const DistanceField walls(map, kFarthestM);
+  const Points points = PointsOf(scans, kPoints);
+  if (!walls.any() || points.empty()) return {};
+  const Pose2& slam_from_first = scans.front().slam_from_base;
+  const Candidate place =
+      NextTo(walls, PointsOf(scans, kCoarsePoints), points, map_from_slam * slam_from_first);
+  return FoundPlace{place.map_from_first * Inverse(slam_from_first), place.score, 0.0, {}, {}};
+}
 
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
                                     const Pose2& guess) {

@@ -109,6 +109,100 @@ TEST(FindStart, SaysThatTheMapIsOfAnotherPlace) {
   EXPECT_TRUE(start->contradicted()) << start->trial->against;
 }
 
+MapStart StartOf(double score, double second_score, const StartTrial& trial) {
+  MapStart start;
+  start.place.score = score;
+  start.place.second_score = second_score;
+  start.trial = trial;
+  return start;
+}
+
+// As measured: drives that began in the next room or in another building.
+TEST(MapStart, SaysSoWhenLittleAgrees) {
+  EXPECT_TRUE(StartOf(0.65, 0.65, {5, 142, 5.0, 0.65, 0.45, 0.29}).contradicted());
+  const MapStart building = StartOf(0.70, 0.67, {8, 328, 6.0, 0.66, 0.52, 0.07});
+  EXPECT_FALSE(building.contradicted());
+  EXPECT_TRUE(building.fits_badly());
+  EXPECT_TRUE(building.uncertain());
+  // Another building that agrees well by chance, as it fits elsewhere.
+  EXPECT_TRUE(StartOf(0.68, 0.67, {8, 120, 2.5, 0.83, 0.73, 0.06}).uncertain());
+}
+
+TEST(MapStart, IsSureOfRightStarts) {
+  // At the door to a room that the map does not have; among furniture that was moved; of alike
+  // offices; on the way out.
+  for (const MapStart& start : {StartOf(0.66, 0.53, {2, 100, 5.0, 0.89, 0.51, 0.01}),
+                                StartOf(0.88, 0.73, {3, 146, 4.0, 0.81, 0.70, 0.10}),
+                                StartOf(0.98, 0.94, {8, 340, 6.0, 0.91, 0.78, 0.00}),
+                                StartOf(0.69, 0.59, {7, 120, 6.0, 0.83, 0.52, 0.02})}) {
+    EXPECT_FALSE(start.uncertain()) << start.place.score;
+    EXPECT_FALSE(start.contradicted()) << start.place.score;
+  }
+}
+
+TEST(MapStart, AsksForMoreOfARobotThatHardlyMoved) {
+  StartTrial trial{2, 40, 2.0, 0.91, 0.75, 0.0};
+  EXPECT_FALSE(StartOf(0.98, 0.80, trial).uncertain());
+  trial.reach_m = 0.9;
+  EXPECT_TRUE(StartOf(0.98, 0.80, trial).uncertain());
+  trial.agreement_next = 0.6;
+  MapStart start = StartOf(0.98, 0.80, trial);
+  EXPECT_FALSE(start.uncertain());
+  start.place.unsure = UnsureAlong{0.0, 1.0};
+  EXPECT_TRUE(start.uncertain());
+  start.known = true;  // somebody said where
+  EXPECT_FALSE(start.uncertain());
+}
+
+// Before the plain wall of the hall, and it does not move.
+TEST(FindStart, SaysThatARobotThatStandsIsUncertain) {
+  WalkThroughHall walk({15.0, 0.0, 0.5 * kPi}, 0.0);
+  const Frame frame = *walk.Next();
+  std::vector<Frame> frames;
+  for (int i = 0; i < 20; ++i) {
+    frames.push_back(frame);
+    frames.back().index = i;
+    frames.back().stamp_s = 0.1 * i;
+  }
+  const auto start = FindStart(MapOfHall(), frames, {}, MapperOptions{});
+  ASSERT_TRUE(start);
+  EXPECT_TRUE(start->hardly_moved());
+  EXPECT_TRUE(start->uncertain());
+}
+
+// Where it is said to be, though nothing that is seen tells the ends apart.
+TEST(FindStartNear, TakesThePlaceThatIsGiven) {
+  const PriorMap map = MapOfHall();
+  for (const Pose2& begin : {Pose2{24.0, 0.0, kPi}, Pose2{0.0, 0.0, 0.0}}) {
+    WalkThroughHall walk(begin, 1.0);
+    const Pose2 said = begin * Pose2{0.3, -0.2, 0.1};
+    const auto start = FindStartNear(map, said, walk, MapperOptions{});
+    ASSERT_TRUE(start);
+    EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.05, 0.02));
+    EXPECT_TRUE(start->known);
+    EXPECT_FALSE(start->uncertain());
+    EXPECT_FALSE(start->contradicted());
+  }
+}
+
+TEST(FindStartNear, SaysThatAWrongPlaceDoesNotFit) {
+  WalkThroughHall walk({24.0, 0.0, kPi}, 1.0);
+  const auto start = FindStartNear(MapOfHall(), {12.5, 0.0, 0.5 * kPi}, walk, MapperOptions{});
+  ASSERT_TRUE(start);
+  EXPECT_TRUE(start->uncertain() || start->contradicted()) << start->trial->agreement;
+}
+
+TEST(FindStartNear, TakesFramesThatWereCollected) {
+  const Pose2 begin{24.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 1.0);
+  std::vector<Frame> frames;
+  while (auto frame = walk.Next()) frames.push_back(std::move(*frame));
+  const auto start = FindStartNear(MapOfHall(), begin, frames, {}, MapperOptions{});
+  ASSERT_TRUE(start);
+  EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.05, 0.02));
+  EXPECT_FALSE(FindStartNear(MapOfHall(), begin, {}, {}, MapperOptions{}));
+}
+
 TEST(FindStart, TakesFramesThatWereCollected) {
   const Pose2 begin{24.0, 0.0, kPi};
   WalkThroughHall walk(begin, 12.0);
