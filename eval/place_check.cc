@@ -9,14 +9,17 @@
 #include <vector>
 
 #include "mapper/core/counted.h"
+#include "mapper/grid/map_drawing.h"
+#include "mapper/map_start.h"
+#include "mapper/match/distance_field.h"
+#include "mapper/place_watch.h"
 
 namespace depthgrid {
 namespace {
 
-// Of 46 starts in two furnished rooms the frames of those that were found had 0.36 and more of what
-// they saw on the map, those of a wrong place or another room 0.05 and less.
-constexpr double kLeastExplained = 0.2;
 constexpr int kOneOf = 10;
+// Those that a match counts for: hardly anything is seen by less.
+constexpr double kLeastExplained = 0.2;
 // So many frames on the map, and as many off it, are no accident.
 constexpr int kStretchFrames = 30;
 // A match is this sure along a line that it has seen the end of, rather than its noise.
@@ -40,6 +43,14 @@ std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_los
   return {};
 }
 
+// The first so many of them, but for a tenth.
+template <typename Iterator>
+bool IsOnMap(Iterator begin, Iterator end) {
+  if (end - begin < kStretchFrames) return false;
+  const auto is_lost = [](const std::pair<int, bool>& frame) { return frame.second; };
+  return std::count_if(begin, begin + kStretchFrames, is_lost) * kOneOf <= kStretchFrames;
+}
+
 }  // namespace
 
 std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
@@ -47,35 +58,51 @@ std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
   count.localised = localised;
   std::vector<std::pair<int, bool>> index_and_lost;
   for (const FrameReport& report : run.reports) {
-    if (!report.map_from_camera || report.beams == 0) continue;
-    const double explained = report.match.found ? report.match.score : 0.0;
-    const bool lost = explained < kLeastExplained;
-    count.lost += lost ? 1 : 0;
+    const auto lost = IsOffMap(report);
+    if (!lost) continue;
+    count.lost += *lost ? 1 : 0;
     ++count.frames;
-    index_and_lost.emplace_back(report.index, lost);
+    index_and_lost.emplace_back(report.index, *lost);
     if (!localised) break;
   }
   if (count.lost == 0 || count.lost * kOneOf < count.frames) return {};
   count.left_at = LeftAt(index_and_lost);
+  count.comes_back = IsOnMap(index_and_lost.begin(), index_and_lost.end()) &&
+                     IsOnMap(index_and_lost.rbegin(), index_and_lost.rend());
   return count;
 }
 
 std::string TextOf(const LostFrames& lost) {
   if (!lost.localised) {
     return "lost: of what the first frame sees, which was placed by this map alone, hardly "
-           "anything "
-           "lies on it; the sequence is of another place or begins elsewhere in it";
+           "anything lies on it; the sequence is of another place or begins elsewhere in it";
   }
-  const std::string why =
-      lost.left_at ? fmt::format(
-                         "from frame {} on it leaves the map, where poses are SLAM's motion "
-                         "alone (without --localise they extend it), or it is of another place",
-                         *lost.left_at)
-                   : "the sequence is of another place, begins elsewhere in it or leaves it";
+  const std::string leaves = lost.left_at ? fmt::format("from frame {} on it leaves", *lost.left_at)
+                                          : "in between it leaves";
+  std::string why = "the sequence is of another place, begins elsewhere in it or leaves it";
+  if (lost.left_at || lost.comes_back) {
+    why = leaves +
+          " the map, where poses are SLAM's motion alone (without --localise they extend it), ";
+    why += lost.comes_back ? "and comes back" : "or it is of another place";
+  }
   return fmt::format(
       "lost: in {} of the {} that were placed and see something hardly anything that is seen lies "
       "on the map; {}",
       lost.lost, Counted(lost.frames, "frame"), why);
+}
+
+std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {
+  MapDrawing before(grid);
+  for (const MappedFrame& frame : run.result.mapped) {
+    if (frame.frame < 0) before.Add(*frame.obstacles, frame.map_from_base);
+  }
+  const DistanceField walls(before.Map(), kOffWallM + grid.resolution_m);
+  MapAgreement agreement;
+  for (const MappedFrame& frame : run.result.mapped) {
+    if (frame.frame >= 0) Compare(*frame.obstacles, frame.map_from_base, walls, agreement);
+  }
+  if (agreement.share_against() <= kMuchAgainst) return {};
+  return agreement;
 }
 
 bool SeesAlong(const MappingRun& run, const UnsureAlong& line) {

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 
+#include "eval/hash.h"
 #include "eval/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
+#include "mapper/io/file.h"
 #include "mapper/io/scan_file.h"
 
 namespace depthgrid {
@@ -66,6 +68,15 @@ PriorMap ReadPriorRun(const std::string& folder) {
     prior.frames.push_back(std::move(frame));
   }
   return prior;
+}
+
+std::string HashOfPriorRun(const std::string& folder) {
+  ContentHash hash;
+  for (const char* name : {"scans.bin", "matched.bin"}) {
+    const fs::path path = fs::path(folder) / name;
+    if (fs::exists(path)) hash.Text(ReadFile(path.string()));
+  }
+  return hash.Hex();
 }
 
 std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,

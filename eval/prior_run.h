@@ -15,6 +15,9 @@ constexpr int kAllScansInOneSubmap = 1'000'000;
 // also for settings in its run.yaml that no map can have been made with.
 PriorMap ReadPriorRun(const std::string& folder);
 
+// Of the scans of that folder: what a run that goes on from there depends on.
+std::string HashOfPriorRun(const std::string& folder);
+
 // Where that run's map was made with other settings than it goes on with: the mapper's method, its
 // grid, and with `images` the scans; others may differ.
 std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,

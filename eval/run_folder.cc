@@ -126,7 +126,9 @@ std::string Provenance(const World* world) {
 
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   const Trajectory* truth = record.truth != nullptr ? &record.truth->trajectory : nullptr;
-  WriteFile(folder.File("run.yaml"), record.settings + Provenance(record.world));
+  std::string provenance = Provenance(record.world);
+  if (!record.map_hash.empty()) provenance += fmt::format("  map_hash: {}\n", record.map_hash);
+  WriteFile(folder.File("run.yaml"), record.settings + provenance);
   WriteFile(folder.File("warnings.txt"), Lines(record.warnings));
   WriteMap(folder.File("map.yaml"), MapToWrite(record.mapping->result.map), record.map_mode);
   WriteMapPicture(folder, record);

@@ -22,6 +22,7 @@ struct RunRecord {
   const World* world = nullptr;  // nothing for recorded data
   ScanOptions scan;              // the mapper's
   MapMode map_mode = MapMode::kTrinary;
+  std::string map_hash;  // of the finished map that it went on from; empty: none
   double wall_s_total = 0.0;
   double cpu_s_total = 0.0;
 };

@@ -58,6 +58,7 @@ struct MapArguments {
   std::string camera;
   std::string world_up;
   std::string map;        // a run's folder to go on from; empty: none
+  std::string start;      // the base's place in that map, "X,Y,YAW_DEG"; empty: it is found
   bool localise = false;  // in that map, without changing it
   OutputArguments output;
   CommonArguments common;

@@ -106,6 +106,11 @@ void AddMap(Program& program) {
          "--map", arguments->map,
          "Go on in the finished map of this run's folder: its scans stay, new ones are added")
       ->type_name("DIR");
+  app->add_option("--start", arguments->start,
+                  "With --map: where in that map it begins, m and degrees, to 1.5 m and 12 "
+                  "degrees; without it the place is looked for")
+      ->type_name("X,Y,YAW_DEG")
+      ->check(RefusalUnlessPlace);
   app->add_flag("--localise", arguments->localise,
                 "With --map: find the poses in that map and leave it as it is")
       ->needs("--map");

@@ -7,12 +7,12 @@
 #include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/finished_map.h"
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
 #include "eval/floor_check.h"
 #include "eval/mapping_run.h"
-#include "eval/place_check.h"
 #include "eval/prior_run.h"
 #include "eval/run_folder.h"
 #include "eval/view_check.h"
@@ -22,7 +22,6 @@
 #include "mapper/core/error.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
-#include "mapper/map_start.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -93,68 +92,13 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   return sequence;
 }
 
-// The finished map to go on from.
-std::optional<PriorMap> OpenPrior(const MapArguments& arguments) {
-  if (arguments.map.empty()) return {};
-  PriorMap prior = ReadPriorRun(arguments.map);
-  prior.fixed = arguments.localise;
-  return prior;
-}
-
-// Where in the finished map the sequence begins.
-FoundPlace FindStartIn(PriorMap& prior, const MapArguments& arguments, MapSettings& settings,
-                       std::vector<std::string>& warnings) {
-  // The paper's chain reads the last two submaps only: here one holds everything. Elsewhere this
-  // only says over how many frames motions are told, and how many scans are at hand.
-  if (settings.mapper.method == MapperMethod::kPaper) {
-    settings.mapper.submap.scans = kAllScansInOneSubmap;
-  }
-  const auto slam = ReadSlam(arguments, settings.sequence);
-  Sequence sequence = OpenSequence(arguments.input, settings.sequence,
-                                   slam ? std::optional(slam->slam) : std::nullopt);
-  const auto start = FindStart(prior, *sequence.source, settings.mapper);
-  if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
-  const FoundPlace& place = start->place;
-  prior.map_from_slam = place.map_from_slam;
-  fmt::print(
-      "{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}, "
-      "elsewhere {:.2f}\n",
-      arguments.map, Counted(prior.frames.size(), "scan"),
-      sequence.source->Camera() ? "SLAM's" : "odometry's", Number(place.map_from_slam.x_m, 2),
-      Number(place.map_from_slam.y_m, 2), Number(DegFromRad(place.map_from_slam.yaw_rad), 1),
-      place.score, place.second_score);
-  if (start->trial && start->trial->places > 1) {
-    fmt::print(
-        "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "
-        "{:.2f}\n",
-        start->trial->places, Counted(start->trial->frames, "frame"), start->trial->agreement,
-        start->trial->agreement_next);
-  }
-  if (start->contradicted()) {
-    warnings.push_back(fmt::format(
-        "{}: where the sequence fits it best, {:.0f} % of what its first metres show there is free "
-        "or behind a wall in it: it is of another place, or much has changed",
-        arguments.map, 100.0 * start->trial->against));
-  } else if (start->uncertain()) {
-    warnings.push_back(arguments.map +
-                       ": where in it the sequence begins is uncertain, another place "
-                       "fits nearly as well");
-  }
-  return place;
-}
-
-// A place in a finished map is a guess until what is seen there says the same.
-void CheckPlace(const MapArguments& arguments, const FoundPlace& start, const FusionOptions& fusion,
-                const MappingRun& run, std::vector<std::string>& warnings) {
-  if (fusion.TrustsSlamAlone()) return;
-  if (const auto lost = FramesLost(run, arguments.localise)) {
-    warnings.push_back(arguments.map + ": " + TextOf(*lost));
-  } else if (start.unsure && !SeesAlong(run, *start.unsure)) {
-    warnings.push_back(fmt::format(
-        "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
-        "off: nothing that was seen ends there",
-        arguments.map, DegFromRad(start.unsure->direction_rad), start.unsure->reach_m));
-  }
+MapStart BeginAnew(PriorMap& prior, MapRequest& request, std::vector<std::string>& warnings) {
+  const MapArguments& arguments = request.arguments;
+  const SequenceOptions& options = request.settings.sequence;
+  const auto slam = ReadSlam(arguments, options);
+  const Sequence sequence =
+      OpenSequence(arguments.input, options, slam ? std::optional(slam->slam) : std::nullopt);
+  return BeginIn(prior, request, *sequence.source, request.settings.mapper, warnings);
 }
 
 void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
@@ -249,15 +193,6 @@ void CheckMatches(const MapArguments& arguments, const MapSettings& settings, co
   warnings.push_back(arguments.input + ": no scan could be matched, the poses are those given");
 }
 
-// What was only localised in stays as it is, byte for byte.
-void KeepMap(const std::string& from, const OutputFolder& folder) {
-  namespace fs = std::filesystem;
-  for (const char* name : {"map.yaml", "map.pgm", "map.scale.png", "scans.bin", "matched.bin"}) {
-    fs::remove(folder.File(name));
-    if (fs::exists(fs::path(from) / name)) fs::copy_file(fs::path(from) / name, folder.File(name));
-  }
-}
-
 void SayResult(const MappingRun& run, bool localised) {
   int posed = 0, well_seen = 0;
   for (const FrameReport& report : run.reports) {
@@ -294,7 +229,7 @@ void SayResult(const MappingRun& run, bool localised) {
 
 // What may be wrong with what was mapped; `begin`: in a finished map, where.
 std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest& request,
-                                     const Sequence& input, const std::optional<FoundPlace>& begin,
+                                     const Sequence& input, const std::optional<MapStart>& begin,
                                      const MappingRun& run) {
   const MapArguments& arguments = request.arguments;
   const MapSettings& settings = request.settings;
@@ -311,12 +246,12 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   if (!begin) return warnings;
   const auto doubt = DoubtOfPrior(arguments.map, settings.mapper, run.camera.has_value());
   if (doubt) warnings.push_back(*doubt);
-  CheckPlace(arguments, *begin, settings.mapper.fusion, run, warnings);
+  for (std::string& line : DoubtsOfPlace(request, *begin, run)) warnings.push_back(std::move(line));
   return warnings;
 }
 
 // All but the time that it took.
-RunRecord RecordOf(const MapRequest& request, const MappingRun& run,
+RunRecord RecordOf(const MapRequest& request, const MappingRun& run, const std::string& map_hash,
                    const std::vector<std::string>& warnings) {
   MapSettings settings = request.settings;
   settings.sequence.camera = FromEverywhere(settings.sequence.camera);
@@ -326,6 +261,7 @@ RunRecord RecordOf(const MapRequest& request, const MappingRun& run,
   record.mapping = &run;
   record.scan = settings.mapper.scan;
   record.map_mode = request.arguments.output.map_mode;
+  record.map_hash = map_hash;
   return record;
 }
 
@@ -336,18 +272,25 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   const std::vector<std::string> inputs = InputsOf(given, request);
   RequireVideoFile(arguments.output, arguments.common, inputs);
   OutputFolder folder = OpenOutput(arguments.common, ResultKind::kMap, inputs);
-  std::optional<PriorMap> prior = OpenPrior(arguments);
+  std::optional<PriorMap> prior = OpenPrior(request);
+  const std::string map_hash = prior ? HashOfPriorRun(arguments.map) : "";
   std::vector<std::string> warnings;
   const Sequence input = OpenInput(arguments, request.config, settings, warnings);
-  std::optional<FoundPlace> begin;
-  if (prior) begin = FindStartIn(*prior, arguments, settings, warnings);
+  const auto another_map = DoubtOfMapRecord(given, request, map_hash);
+  if (another_map) warnings.push_back(*another_map);
+  std::optional<MapStart> begin;
+  if (prior) begin = BeginAnew(*prior, request, warnings);
   ProgressBar bar("mapping");
   const MappingRun run =
       MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-  RunRecord record = RecordOf(request, run, warnings);
+  if (arguments.localise) {
+    const std::vector<std::string> of_map = DoubtsOfKeptMap(request, run.result.map);
+    warnings.insert(warnings.end(), of_map.begin(), of_map.end());
+  }
+  RunRecord record = RecordOf(request, run, map_hash, warnings);
   record.wall_s_total =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();

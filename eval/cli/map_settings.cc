@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "eval/idle_settings.h"
+#include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -31,6 +35,7 @@ Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& o
   set("sequence.format", "--format", arguments.format);
   set("sequence.camera", "--camera", arguments.camera);
   set("sequence.world_up", "--up", arguments.world_up);
+  set("start", "--start", arguments.start);
   for (const std::string& assignment : overrides) config.Set(assignment);
   return config;
 }
@@ -47,7 +52,8 @@ void RequireOptionsFor(const std::vector<std::string>& overrides) {
   for (const Named& named :
        {Named{"input", "the input is the command's argument"}, Named{"poses", "give --poses FILE"},
         Named{"final_poses", "give --final-poses FILE"}, Named{"loops", "give --loops FILE"},
-        Named{"map", "give --map DIR"}, Named{"localise", "give --map DIR --localise"}}) {
+        Named{"map", "give --map DIR"}, Named{"start", "give --map DIR --start X,Y,YAW_DEG"},
+        Named{"localise", "give --map DIR --localise"}}) {
     if (!config.Has(named.key)) continue;
     throw InputError(config.PlaceOfKey(named.key),
                      fmt::format("is for a map's run.yaml as input; {}", named.instead));
@@ -66,7 +72,45 @@ MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
   return arguments;
 }
 
+// What only a finished map can mean.
+void RequireMapFor(const MapRequest& request) {
+  const MapArguments& arguments = request.arguments;
+  const auto refuse = [&](const char* key, const std::string& what) {
+    throw InputError(request.config.PlaceOfKey(key), what + " (--map DIR)");
+  };
+  if (arguments.map.empty() && arguments.localise) {
+    refuse("localise", "localise is true, must be false without a map to localise in");
+  }
+  const std::string& start = request.settings.start;
+  if (start.empty()) return;
+  if (!request.start) refuse("start", fmt::format("start is '{}', {}", start, kPlaceRule));
+  if (arguments.map.empty()) {
+    refuse("start", fmt::format("start is '{}', must be empty without a map to begin in", start));
+  }
+}
+
+// It would be of no use: that map stays as it is.
+void RefuseMapMode(const MapArguments& arguments) {
+  if (!arguments.localise || arguments.output.map_mode == MapMode::kTrinary) return;
+  const char* mode = arguments.output.map_mode == MapMode::kScale ? "scale" : "raw";
+  throw InputError(fmt::format("--map-mode {}", mode),
+                   "is for a map that is drawn; with --localise that of --map stays as it is");
+}
+
 }  // namespace
+
+std::optional<Pose2> PlaceOf(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto number = ParseNumber(text.substr(begin, end - begin));
+    if (!number || !std::isfinite(*number)) return {};
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3) return {};
+  return Pose2{numbers[0], numbers[1], WrapAngle(RadFromDeg(numbers[2]))};
+}
 
 std::string FromEverywhere(const std::string& path) {
   namespace fs = std::filesystem;
@@ -79,6 +123,7 @@ void MapSettings::Visit(OptionsVisitor& v) {
   v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
   v.Text("loops", loops, "SLAM's events");
   v.Text("map", map, "the finished run it went on from");
+  v.Text("start", start, "where in that map it began, X,Y,YAW_DEG; empty: that was found");
   v.Flag("localise", localise, "whether that map was left as it is");
   v.Group("sequence", sequence, "how the recorded sequence is read");
   v.Group("mapper", mapper, "the mapper");
@@ -88,16 +133,18 @@ MapRequest ReadMapRequest(const MapArguments& given) {
   MapRequest request;
   if (!IsSettingsFile(given.input)) RequireOptionsFor(given.common.set);
   request.config = ConfigOf(given, given.common.set);
+  if (IsSettingsFile(given.input)) {
+    request.provenance = Config::FromFile(given.input).Take("provenance");
+  }
   MapSettings& settings = request.settings;
   request.config.Read(settings);
   RequireInRange(settings, "",
                  [&](const std::string& key) { return PlaceOfKey({&request.config}, key); });
   request.arguments = WithFilesOf(settings, given);
   const MapArguments& arguments = request.arguments;
-  if (arguments.localise && arguments.map.empty()) {
-    throw InputError(request.config.PlaceOfKey("localise"),
-                     "localise is true, must be false without a map to localise in (--map DIR)");
-  }
+  request.start = PlaceOf(settings.start);
+  RequireMapFor(request);
+  RefuseMapMode(arguments);
   settings.input = FromEverywhere(arguments.input);
   settings.poses = FromEverywhere(arguments.poses);
   settings.final_poses = FromEverywhere(arguments.final_poses);

@@ -2,10 +2,12 @@
 // input, which makes that map again.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/cli/commands.h"
+#include "mapper/core/pose2.h"
 #include "mapper/io/config.h"
 #include "mapper/io/sequence.h"
 #include "mapper/mapper_options.h"
@@ -18,6 +20,7 @@ struct MapSettings {
   std::string final_poses;
   std::string loops;
   std::string map;
+  std::string start;  // X,Y,YAW_DEG
   bool localise = false;
   SequenceOptions sequence;
   MapperOptions mapper;
@@ -31,8 +34,15 @@ struct MapRequest {
   // Files by absolute paths, so that run.yaml means the same from everywhere; sequence.camera as it
   // is given until it was read, for messages.
   MapSettings settings;
+  // Where in the finished map the base is at first, where that is known.
+  std::optional<Pose2> start;
+  Config provenance;  // of a run.yaml
 };
 MapRequest ReadMapRequest(const MapArguments& given);
+
+// "1.5,-2,90" is 1.5 m, -2 m and 90 degrees; nothing for what is not three finite numbers.
+constexpr const char* kPlaceRule = "must be three finite numbers: X,Y,YAW_DEG";
+std::optional<Pose2> PlaceOf(const std::string& text);
 
 // A file's absolute path; none stays none.
 std::string FromEverywhere(const std::string& path);

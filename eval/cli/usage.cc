@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eval/cli/commands.h"
+#include "eval/cli/map_settings.h"
 #include "mapper/io/config.h"
 #include "mapper/io/number_rows.h"
 
@@ -110,6 +111,10 @@ std::string RefusalUnlessPositive(const std::string& text) {
 std::string RefusalIfNegative(const std::string& text) {
   const auto value = FiniteNumber(text);
   return value && *value >= 0.0 ? "" : "is '" + text + "', must be a number, 0 or more";
+}
+
+std::string RefusalUnlessPlace(const std::string& text) {
+  return PlaceOf(text) ? "" : fmt::format("is '{}', {}", text, kPlaceRule);
 }
 
 std::string RefusalUnlessSeed(const std::string& text) {

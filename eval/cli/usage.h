@@ -14,6 +14,9 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error);
 std::string RefusalUnlessPositive(const std::string& text);
 std::string RefusalIfNegative(const std::string& text);
 
+// For check(): a place in a map, "X,Y,YAW_DEG".
+std::string RefusalUnlessPlace(const std::string& text);
+
 // For check(): CLI11 reads -3 as 2^64 - 3 and takes what is too large for the largest number.
 std::string RefusalUnlessSeed(const std::string& text);
 

@@ -24,6 +24,28 @@ TEST_F(MapSettingsTest, LocalisingNeedsAMap) {
   ExpectRefusal("map mine.yaml -o out", {"mine.yaml:", "localise is true, must be false"});
 }
 
+TEST_F(MapSettingsTest, AStartIsThreeNumbersInAMap) {
+  Succeed("map one.log -o m");
+  for (const std::string start : {"1,2", "1,2,3,4", "1,2,x", "1,nan,3", "1,2,", "''"}) {
+    ExpectRefusal("map one.log --map m -o out --start " + start,
+                  {"must be three finite numbers: X,Y,YAW_DEG"});
+  }
+  ExpectRefusal("map one.log -o out --start 1,2,3",
+                {"--start 1,2,3: start is '1,2,3', must be empty without a map to begin in"});
+  ExpectRefusal("map one.log --map m --set start=1,2,3 -o out", {"--start X,Y,YAW_DEG"});
+  std::string yaml = ReadFile(Path("m/run.yaml"));
+  const std::string none = "start: \"\"";
+  yaml.replace(yaml.find(none), none.size(), "start: 1,2");
+  Write("mine.yaml", yaml);
+  ExpectRefusal("map mine.yaml --map m -o out", {"mine.yaml:", "start is '1,2', must be three"});
+}
+
+TEST_F(MapSettingsTest, AMapThatIsNotDrawnHasNoMode) {
+  Succeed("map one.log -o m");
+  ExpectRefusal("map one.log --map m --localise --map-mode raw -o out",
+                {"--map-mode raw: is for a map that is drawn"});
+}
+
 TEST_F(MapSettingsTest, WhatHasAnOptionIsNoSettingOfAPlainInput) {
   ExpectRefusal("map one.log --set poses=slam.txt -o out",
                 {"--set poses=slam.txt: is for a map's run.yaml as input; give --poses FILE"});

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/kept_scan.h"
 #include "mapper/core/level.h"
 
 namespace depthgrid {
@@ -54,6 +58,58 @@ TEST(FramesLost, ALongStretchAfterGoodFramesIsWhereTheMapWasLeft) {
   EXPECT_EQ(FramesLost(run, true)->left_at, 60);
   for (std::size_t i = 0; i < 12; ++i) run.reports[i].match.score = 0.0;
   EXPECT_FALSE(FramesLost(run, true)->left_at);  // it was hardly ever on it
+}
+
+// Out of the map and back: it is of no other place.
+TEST(FramesLost, SaysThatItComesBack) {
+  MappingRun run = RunOf(200, 0.6);
+  for (std::size_t i = 60; i < 100; ++i) run.reports[i].match.score = 0.0;
+  const auto lost = FramesLost(run, true);
+  ASSERT_TRUE(lost);
+  EXPECT_TRUE(lost->comes_back);
+  EXPECT_THAT(TextOf(*lost),
+              testing::EndsWith("; from frame 60 on it leaves the map, where poses are SLAM's "
+                                "motion alone (without --localise they extend it), and comes "
+                                "back"));
+  run = RunOf(200, 0.6);
+  for (std::size_t i = 60; i < 120; i += 2) run.reports[i].match.score = 0.0;
+  EXPECT_THAT(TextOf(*FramesLost(run, true)), testing::HasSubstr("; in between it leaves the map"));
+  run = RunOf(200, 0.6);
+  for (std::size_t i = 150; i < 200; ++i) run.reports[i].match.score = 0.0;
+  EXPECT_FALSE(FramesLost(run, true)->comes_back);
+  EXPECT_THAT(TextOf(*FramesLost(run, true)), testing::EndsWith("or it is of another place"));
+}
+
+// A room seen from its middle at every tenth frame, and then another one.
+MappingRun TwoRooms(double second_width_m) {
+  MappingRun run;
+  ScanArchive archive;
+  for (int i = -20; i < 20; ++i) {
+    Scan scan;
+    scan.max_range_m = 8.0;
+    for (int k = 0; k < 360; ++k) {
+      const double bearing = RadFromDeg(k - 180.0);
+      const double half_m = i < 0 ? 2.0 : 0.5 * second_width_m;
+      const auto range = static_cast<float>(
+          half_m / std::max(std::abs(std::cos(bearing)), std::abs(std::sin(bearing))));
+      scan.beams.push_back({static_cast<float>(bearing), range, 0.0F, range, true});
+    }
+    MappedFrame frame;
+    frame.frame = i;
+    frame.obstacles = frame.scan = archive.Keep(scan);
+    run.result.mapped.push_back(frame);
+  }
+  return run;
+}
+
+TEST(Contradiction, IsWhatAnExtendedRunShowsOfTheMapBefore) {
+  EXPECT_FALSE(Contradiction(TwoRooms(4.0), {}));
+  const auto contradiction = Contradiction(TwoRooms(2.5), {});  // walls where it was free
+  ASSERT_TRUE(contradiction);
+  EXPECT_GT(contradiction->share_against(), 0.9);
+  MappingRun alone = TwoRooms(2.5);
+  alone.result.mapped.resize(20);  // nothing was added
+  EXPECT_FALSE(Contradiction(alone, {}));
 }
 
 TEST(FramesLost, WithoutAPoseOrAReturnNothingIsSaid) {

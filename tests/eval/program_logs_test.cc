@@ -211,5 +211,91 @@ TEST_F(ProgramLogs, WhereARunBeginsIsFoundWithPosesThatDrift) {
   EXPECT_LT(worst_m, 0.05);
 }
 
+// The room looks the same from either end, but somebody knows.
+TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
+  Write("robot.log", ThereAndBack(1.0));
+  Succeed("map robot.log -o first");
+  const auto begin_of = [&](const std::string& out) {
+    return ReadTrajectory(Path(out + "/trajectory_est.txt")).front().world_from_camera.translation;
+  };
+  const Outcome outcome =
+      Program("map robot.log --map first --localise --start 5.1,2.9,176 -o out");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr(" where it is said to begin, agreement 0."));
+  EXPECT_LT((begin_of("out") - Eigen::Vector3d(5.0, 3.0, 0.0)).norm(), 0.1);
+  Succeed("map out/run.yaml -o again");
+  ExpectSameBytes("out", "again");
+  Succeed("map robot.log --map first --localise --start 1,1,0 -o near");
+  EXPECT_LT((begin_of("near") - Eigen::Vector3d(1.0, 1.0, 0.0)).norm(), 0.1);
+  EXPECT_THAT(Program("map robot.log --map first --start 3,2,90 -o wrong").err,
+              HasSubstr("first: where it is said to begin, "));
+  Succeed("map robot.log --map first --start -40,-2.5,90 -o far");  // no option of its own
+}
+
+// A key of first/map.yaml, with another value.
+void SetInMap(const std::string& path, const std::string& key, const std::string& value) {
+  std::string yaml = ReadFile(path);
+  const std::size_t at = yaml.find(key + ":");
+  yaml.replace(at, yaml.find('\n', at) - at, key + ": " + value);
+  WriteFile(path, yaml);
+}
+
+TEST_F(ProgramLogs, AMapThatIsNoLongerWhatItsScansGive) {
+  Write("robot.log", ThereAndBack(1.0));
+  Succeed("map robot.log -o first");
+  const std::string localise = "map robot.log --map first --localise --start 1,1,0 --force -o out";
+  EXPECT_EQ(Program(localise).err, "");
+  EXPECT_TRUE(SameFile("out/map.yaml", "first/map.yaml"));
+  const std::string drawn = ReadFile(Path("out/map.yaml"));
+  SetInMap(Path("first/map.yaml"), "origin", "[1, 2, 0]");
+  EXPECT_THAT(Program(localise).err,
+              AllOf(HasSubstr("first/map.yaml: has 1"), HasSubstr(" cells from (1.00, 2.00) on, "),
+                    HasSubstr("the poses are in the frame of first/scans.bin")));
+  EXPECT_TRUE(SameFile("out/map.yaml", "first/map.yaml"));
+  SetInMap(Path("first/map.yaml"), "resolution", "0.1");
+  EXPECT_THAT(Program(localise).err, HasSubstr("has cells of 0.1 m, they are of 0.05 m"));
+  // A drive that goes on redraws it.
+  Succeed("map robot.log --map first --start 1,1,0 -o more");
+  EXPECT_THAT(ReadFile(Path("more/map.yaml")), HasSubstr("resolution: 0.05"));
+  SetInMap(Path("first/map.yaml"), "image", "floor.pgm");
+  std::filesystem::rename(Path("first/map.pgm"), Path("first/floor.pgm"));
+  EXPECT_THAT(Program(localise).err,
+              HasSubstr("first/map.yaml: image is floor.pgm, must be map.pgm or map.scale.png to "
+                        "be kept: the map handed on is drawn of its scans\n"));
+  EXPECT_TRUE(ReadFile(Path("out/map.yaml")) == drawn);
+  EXPECT_TRUE(SameFile("out/map.pgm", "first/floor.pgm"));
+  std::filesystem::remove(Path("first/map.yaml"));
+  EXPECT_THAT(Program(localise).err, HasSubstr("first/map.yaml: no such file: the map handed on"));
+  EXPECT_TRUE(ReadFile(Path("out/map.yaml")) == drawn);
+}
+
+TEST_F(ProgramLogs, ARunIsAnotherOneInAMapThatWasMadeAgain) {
+  Write("robot.log", ThereAndBack(1.0));
+  Succeed("map robot.log -o first");
+  Succeed("map robot.log --map first --start 1,1,0 -o out");
+  EXPECT_EQ(Program("map out/run.yaml -o same").err, "");
+  Succeed("map robot.log -o first --force --set sequence.to_s=30");
+  EXPECT_THAT(Program("map out/run.yaml -o other").err,
+              AllOf(HasSubstr("warning: out/run.yaml: map_hash is "), HasSubstr("first is "),
+                    HasSubstr(" now: this run is another one\n")));
+  EXPECT_EQ(Program("map out/run.yaml --map first -o chosen").err, "");
+}
+
+// Its wheels are counted from zero again in the middle.
+TEST_F(ProgramLogs, OdometryThatBeginsAnewIsOfNoOtherScale) {
+  std::string log;
+  for (int i = 0; i <= 80; ++i) {
+    const double x_m = 1.0 + 0.05 * i;
+    log += "FLASER 181";
+    for (int k = 0; k <= 180; ++k) {
+      log += fmt::format(" {:.3f}", RangeM(x_m, 1.0, (k - 90) * kPi / 180.0));
+    }
+    const double odometry_m = i < 70 ? x_m : x_m - 4.5;
+    log += fmt::format(" {0:.3f} 0 0 {0:.3f} 0 0 {1:.1f} host 0\n", odometry_m, 0.1 * i);
+  }
+  Write("robot.log", log);
+  EXPECT_THAT(Program("map robot.log -o out").err, Not(HasSubstr("over the same stretches")));
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -1,0 +1,187 @@
+#include "eval/cli/finished_map.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "eval/cli/console.h"
+#include "eval/place_check.h"
+#include "eval/prior_run.h"
+#include "eval/run_folder.h"
+#include "mapper/core/angle.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Why a place that was found is a guess.
+std::string WhyUncertain(const MapStart& start) {
+  if (start.fits_badly()) {
+    return "little of what is seen lies on it: it may be of another place or begin outside of the "
+           "map";
+  }
+  if (start.hardly_moved()) return "it was seen from one place only: another one may fit as well";
+  return "another place fits nearly as well";
+}
+
+std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& start) {
+  if (start.contradicted()) {
+    return fmt::format(
+        "{}: {}, {:.0f} % of what the sequence's first metres show there is free "
+        "or behind a wall in it: it is of another place, begins {}, or much has "
+        "changed",
+        map, start.known ? "where it is said to begin" : "where it fits it best",
+        100.0 * start.trial->against, start.known ? "elsewhere" : "outside of the map");
+  }
+  if (!start.uncertain()) return {};
+  if (start.known) {
+    return fmt::format(
+        "{}: where it is said to begin, little of what the sequence's first metres "
+        "show lies on it: it begins elsewhere, or much has changed",
+        map);
+  }
+  return fmt::format("{}: where in it the sequence begins is uncertain, {} (--start says where)",
+                     map, WhyUncertain(start));
+}
+
+void SayStart(const std::string& map, const PriorMap& prior, const MapStart& start, bool camera) {
+  const Pose2& at = start.place.map_from_slam;
+  fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}", map,
+             Counted(prior.frames.size(), "scan"), camera ? "SLAM's" : "odometry's",
+             Number(at.x_m, 2), Number(at.y_m, 2), Number(DegFromRad(at.yaw_rad), 1),
+             start.place.score);
+  if (start.known) {
+    fmt::print(" where it is said to begin");
+    if (start.trial) fmt::print(", agreement {:.2f}", start.trial->agreement);
+  } else {
+    fmt::print(", elsewhere {:.2f}", start.place.second_score);
+  }
+  fmt::print("\n");
+  if (!start.trial || start.trial->places < 2) return;
+  fmt::print(
+      "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "
+      "{:.2f}\n",
+      start.trial->places, Counted(start.trial->frames, "frame"), start.trial->agreement,
+      start.trial->agreement_next);
+}
+
+std::string YamlOf(const std::string& map) { return (fs::path(map) / "map.yaml").string(); }
+
+// Nothing where it can be handed on under the names that a run's folder has.
+std::optional<std::string> WhyNotKept(const std::string& map) {
+  const std::string yaml = YamlOf(map);
+  try {
+    ReadMap(yaml);
+    const std::string image = Config::FromFile(yaml).Text("image");
+    if (image == "map.pgm" || image == "map.scale.png") return {};
+    return fmt::format("{}: image is {}, must be map.pgm or map.scale.png to be kept", yaml, image);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// Of the map from that of the scans. Empty where there is none.
+std::string Difference(const MapFile& file, const GridGeometry& drawn) {
+  const GridGeometry& g = file.map.geometry;
+  if (g.resolution_m != drawn.resolution_m) {
+    return fmt::format("has cells of {:g} m, they are of {:g} m", g.resolution_m,
+                       drawn.resolution_m);
+  }
+  if (file.world_from_grid != Pose2{}) return "is turned or lies between their cells";
+  if (g == drawn) return "";
+  const auto text = [](const GridGeometry& of) {
+    const Eigen::Vector2d origin_m = of.OriginM();
+    return fmt::format("{} x {} cells from ({}, {}) on", of.width_cells, of.height_cells,
+                       Number(origin_m.x(), 2), Number(origin_m.y(), 2));
+  };
+  return fmt::format("has {}, theirs {}", text(g), text(drawn));
+}
+
+}  // namespace
+
+std::optional<PriorMap> OpenPrior(const MapRequest& request) {
+  const MapArguments& arguments = request.arguments;
+  if (arguments.map.empty()) return {};
+  PriorMap prior = ReadPriorRun(arguments.map);
+  prior.fixed = arguments.localise;
+  return prior;
+}
+
+MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source,
+                 MapperOptions& options, std::vector<std::string>& warnings) {
+  const MapArguments& arguments = request.arguments;
+  // The paper's chain reads the last two submaps only: here one holds everything. Elsewhere this
+  // only says over how many frames motions are told, and how many scans are at hand.
+  if (options.method == MapperMethod::kPaper) options.submap.scans = kAllScansInOneSubmap;
+  auto start = request.start ? FindStartNear(prior, *request.start, source, options)
+                             : FindStart(prior, source, options);
+  if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
+  prior.map_from_slam = start->place.map_from_slam;
+  SayStart(arguments.map, prior, *start, source.Camera().has_value());
+  if (const auto doubt = DoubtOfStart(arguments.map, *start)) warnings.push_back(*doubt);
+  return *std::move(start);
+}
+
+// A place in a finished map is a guess until what is seen there says the same.
+std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
+                                       const MappingRun& run) {
+  const std::string& map = request.arguments.map;
+  const MapperOptions& options = request.settings.mapper;
+  if (options.fusion.TrustsSlamAlone()) return {};
+  if (const auto lost = FramesLost(run, request.arguments.localise)) {
+    return {map + ": " + TextOf(*lost)};
+  }
+  const auto contradiction = Contradiction(run, options.grid);
+  if (contradiction && !start.contradicted()) {
+    return {
+        fmt::format("{}: of what the sequence shows of the map as it was, {:.0f} % is free or "
+                    "behind a wall in it: it was laid onto another place of it, went astray on "
+                    "the way, or much has changed",
+                    map, 100.0 * contradiction->share_against())};
+  }
+  const auto& unsure = start.place.unsure;
+  if (!unsure || SeesAlong(run, *unsure)) return {};
+  return {fmt::format(
+      "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
+      "off: nothing that was seen ends there",
+      map, DegFromRad(unsure->direction_rad), unsure->reach_m)};
+}
+
+void KeepMap(const std::string& map, const OutputFolder& folder) {
+  const auto give_way = [&](const char* name) {
+    fs::remove(folder.File(name));
+    const fs::path kept = fs::path(map) / name;
+    if (fs::exists(kept)) fs::copy_file(kept, folder.File(name));
+  };
+  for (const char* name : {"scans.bin", "matched.bin"}) give_way(name);
+  if (WhyNotKept(map)) return;
+  for (const char* name : {"map.yaml", "map.pgm", "map.scale.png"}) give_way(name);
+}
+
+std::vector<std::string> DoubtsOfKeptMap(const MapRequest& request, const OccupancyMap& drawn) {
+  const std::string& map = request.arguments.map;
+  if (const auto why = WhyNotKept(map)) {
+    return {*why + ": the map handed on is drawn of its scans"};
+  }
+  // Of other settings' cells that is no surprise, and is said.
+  if (DoubtOfPrior(map, request.settings.mapper, false)) return {};
+  const std::string difference = Difference(ReadMap(YamlOf(map)), MapToWrite(drawn).geometry);
+  if (difference.empty()) return {};
+  return {fmt::format("{}: {}: it was edited, and the poses are in the frame of {}", YamlOf(map),
+                      difference, (fs::path(map) / "scans.bin").string())};
+}
+
+std::optional<std::string> DoubtOfMapRecord(const MapArguments& given, const MapRequest& request,
+                                            const std::string& hash) {
+  if (!given.map.empty() || !request.provenance.Has("map_hash")) return {};
+  const std::string recorded = request.provenance.Text("map_hash", hash);
+  if (recorded == hash) return {};
+  return fmt::format(
+      "{}: map_hash is {}, but that of the map in {} is {} now: this run is another "
+      "one",
+      given.input, recorded, request.arguments.map, hash);
+}
+
+}  // namespace depthgrid::cli
