@@ -1,7 +1,5 @@
 #include "eval/map_video.h"
 
-#include <utility>
-
 #include "eval/map_picture.h"
 #include "eval/video_writer.h"
 #include "mapper/grid/map_drawing.h"
@@ -31,12 +29,10 @@ void WriteMapVideo(const std::string& path, const MappingRun& run, const GridOpt
   RgbImage picture;
   const std::size_t every = run.reports.size() / kMaxFrames + 1;
   auto next = mapped.begin();
-  int before = 0;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     // With the first frame also what the run went on in: its frames have numbers below 0.
     for (; next != mapped.end() && next->frame <= run.reports[i].index; ++next) {
-      if (BeginsDrive(std::exchange(before, next->frame), next->frame)) drawing.BeginDrive();
-      drawing.Add(*next->obstacles, next->map_from_base);
+      drawing.Add(next->frame, *next->obstacles, next->map_from_base);
     }
     if (const auto& pose = run.result.map_from_camera[i]) {
       estimate.poses.push_back({run.reports[i].stamp_s, *pose});

@@ -94,7 +94,7 @@ std::string TextOf(const LostFrames& lost) {
 std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {
   MapDrawing before(grid);
   for (const MappedFrame& frame : run.result.mapped) {
-    if (frame.frame < 0) before.Add(*frame.obstacles, frame.map_from_base);
+    if (frame.frame < 0) before.Add(frame.frame, *frame.obstacles, frame.map_from_base);
   }
   const DistanceField walls(before.Map(), kOffWallM + grid.resolution_m);
   MapAgreement agreement;

@@ -267,10 +267,8 @@ std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
                                 const MapperOptions& options, PlaceOf place_of) {
   RequireSound(prior);
   MapDrawing drawing(options.grid);
-  int before = 0;
   for (const MappedFrame& frame : prior.frames) {
-    if (BeginsDrive(std::exchange(before, frame.frame), frame.frame)) drawing.BeginDrive();
-    drawing.Add(*frame.obstacles, frame.map_from_base);
+    drawing.Add(frame.frame, *frame.obstacles, frame.map_from_base);
   }
   const OccupancyMap map = drawing.Map();
   FirstFrames frames(source, options.scan);

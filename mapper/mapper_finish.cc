@@ -84,10 +84,8 @@ std::vector<MappedFrame> IncrementalMapper::CurrentMapped() const {
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
   MapDrawing drawing(options.grid);
-  int before = 0;
   for (const MappedFrame& frame : frames) {
-    if (BeginsDrive(std::exchange(before, frame.frame), frame.frame)) drawing.BeginDrive();
-    if (frame.kept()) drawing.Add(*frame.obstacles, frame.map_from_base);
+    if (frame.kept()) drawing.Add(frame.frame, *frame.obstacles, frame.map_from_base);
   }
   return drawing.Map();
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/core/drives.h"
 #include "mapper/core/kept_scan.h"
 #include "mapper/frame_report.h"
 #include "mapper/fuse/motion_noise.h"
@@ -36,16 +37,6 @@ struct MappedFrame {
 inline const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
   return frames[static_cast<std::size_t>(i)];
 }
-
-// Whether a frame is the first of another drive than the one before it, by their numbers: those of
-// a prior map count up one by one within a drive.
-constexpr bool BeginsDrive(int before, int frame) {
-  return before < 0 && (frame >= 0 || frame != before + 1);
-}
-
-// The numbers that frames of a map get when it is gone on in, from those they have: up to -1, one
-// left out between two drives.
-std::vector<int> PriorNumbers(const std::vector<int>& frames);
 
 // A loop between two mapped frames, already projected to the plane.
 struct PlanarLoop {

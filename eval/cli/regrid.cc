@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <utility>
 
 #include "eval/cli/commands.h"
 #include "eval/output_file.h"
@@ -62,10 +61,8 @@ void Regrid(const RegridArguments& arguments) {
   const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
   if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
   MapDrawing drawing(options);
-  int before = 0;
   for (const StoredScan& stored : scans) {
-    if (BeginsDrive(std::exchange(before, stored.frame), stored.frame)) drawing.BeginDrive();
-    drawing.Add(*stored.scan, stored.map_from_base);
+    drawing.Add(stored.frame, *stored.scan, stored.map_from_base);
   }
   const std::string replaced = ImageOfMap(map.string());
   WriteMap(map.string(), drawing.Map(), arguments.map_mode);

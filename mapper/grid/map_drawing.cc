@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mapper/core/drives.h"
 #include "mapper/core/error.h"
 #include "mapper/grid/log_odds.h"
 
@@ -175,6 +176,11 @@ void MapDrawing::AddEarlier(Tiles& tiles) const {
       cell.surface_y += earlier.surface_y;
     }
   }
+}
+
+void MapDrawing::Add(int frame, const Scan& scan, const Pose2& map_from_base) {
+  if (BeginsDrive(std::exchange(last_frame_, frame), frame)) BeginDrive();
+  Add(scan, map_from_base);
 }
 
 void MapDrawing::BeginDrive() {

@@ -21,6 +21,8 @@ class MapDrawing {
   // Throws InputError when the map would have more than kMaxMapCells, before it takes memory for
   // them; so does Map() from then on.
   void Add(const Scan& scan, const Pose2& map_from_base);
+  // Of a mapped frame of this number (MappedFrame::frame): where BeginsDrive(), it begins one.
+  void Add(int frame, const Scan& scan, const Pose2& map_from_base);
   // What was added is of drives before the one whose scans come now (GridOptions::earlier_scans).
   void BeginDrive();
   // The smallest rectangle around all cells that were seen; empty when none was.
@@ -67,6 +69,7 @@ class MapDrawing {
   GridGeometry seen_;  // the smallest rectangle around all cells that were seen
   Tiles tiles_;
   Tiles earlier_tiles_;  // of the drives before
+  int last_frame_ = 0;
 };
 
 }  // namespace depthgrid

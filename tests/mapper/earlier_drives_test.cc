@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mapper/core/drives.h"
 #include "mapper/grid/map_drawing.h"
-#include "mapper/reference_map.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {

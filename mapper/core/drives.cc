@@ -1,4 +1,4 @@
-#include "mapper/reference_map.h"
+#include "mapper/core/drives.h"
 
 namespace depthgrid {
 
