@@ -246,7 +246,7 @@ bool MapStart::uncertain() const {
   const bool fits_elsewhere = place.second_score > kUncertainShare * place.score;
   if (!trial) return fits_elsewhere;
   if (fits_badly()) return true;
-  if (known) return false;
+  if (known) return place.score < kUncertainShare * place.second_score;
   if (fits_elsewhere && trial->agreement < kSureAgreement) return true;
   if (hardly_moved() && (place.unsure || trial->agreement < kSureAgreement)) return true;
   const double share = hardly_moved() ? kShortUncertainShare : kUncertainShare;
@@ -298,7 +298,15 @@ std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_fr
   const auto place_of = [&](const OccupancyMap& map,
                             const std::vector<PlacedScan>& views) -> std::optional<FoundPlace> {
     if (views.empty()) return {};
-    return FindPlaceNear(map, views, map_from_base * Inverse(views.front().slam_from_base));
+    const Pose2& slam_from_base = views.front().slam_from_base;
+    const Pose2 map_from_slam = map_from_base * Inverse(slam_from_base);
+    auto near = FindPlaceNear(map, views, map_from_slam);
+    const auto any = FindPlace(map, views, map_from_slam);
+    if (!near || !any) return {};
+    const bool is_elsewhere =
+        IsElsewhere(near->map_from_slam * slam_from_base, any->map_from_slam * slam_from_base);
+    near->second_score = is_elsewhere ? any->score : any->second_score;
+    return near;
   };
   auto start = StartAt(prior, source, options, place_of);
   if (start) start->known = true;

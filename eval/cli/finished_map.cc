@@ -37,10 +37,11 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
   }
   if (!start.uncertain()) return {};
   if (start.known) {
+    const char* why = start.fits_badly()
+                          ? "little of what the sequence's first metres show lies on it"
+                          : "the sequence's first views fit worse than at another place";
     return fmt::format(
-        "{}: where it is said to begin, little of what the sequence's first metres "
-        "show lies on it: it begins elsewhere, or much has changed",
-        map);
+        "{}: where it is said to begin, {}: it begins elsewhere, or much has changed", map, why);
   }
   return fmt::format("{}: where in it the sequence begins is uncertain, {} (--start says where)",
                      map, WhyUncertain(start));
@@ -48,17 +49,11 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
 
 void SayStart(const std::string& map, const PriorMap& prior, const MapStart& start, bool camera) {
   const Pose2& at = start.place.map_from_slam;
-  fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}", map,
+  fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}{}, ", map,
              Counted(prior.frames.size(), "scan"), camera ? "SLAM's" : "odometry's",
              Number(at.x_m, 2), Number(at.y_m, 2), Number(DegFromRad(at.yaw_rad), 1),
-             start.place.score);
-  if (start.known) {
-    fmt::print(" where it is said to begin");
-    if (start.trial) fmt::print(", agreement {:.2f}", start.trial->agreement);
-  } else {
-    fmt::print(", elsewhere {:.2f}", start.place.second_score);
-  }
-  fmt::print("\n");
+             start.place.score, start.known ? " where it is said to begin" : "");
+  fmt::print("elsewhere {:.2f}\n", start.place.second_score);
   if (!start.trial || start.trial->places < 2) return;
   fmt::print(
       "{} places tried on {}: the one taken agrees with the map by {:.2f}, the best other by "

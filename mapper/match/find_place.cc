@@ -276,10 +276,6 @@ Candidate NextTo(const DistanceField& walls, const Points& coarse_points, const 
   return next.score >= kGuessShare * best.score ? next : best;
 }
 
-bool Elsewhere(const Pose2& a, const Pose2& b) {
-  return AreApart(a, b, kElsewhereM, kElsewhereRad);
-}
-
 // Those that may be the place too, best first.
 std::vector<Pose2> OthersThan(const Candidate& best, std::vector<Candidate> candidates) {
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -303,7 +299,7 @@ UnsureAlong UnsureLine(const DistanceField& walls, const Points& points,
   UnsureAlong widest;
   for (const Candidate& other : candidates) {
     if (other.score < kUnsureShare * best.score) continue;
-    if (Elsewhere(other.map_from_first, best.map_from_first)) continue;
+    if (IsElsewhere(other.map_from_first, best.map_from_first)) continue;
     const Eigen::Vector2d off =
         other.map_from_first.translation() - best.map_from_first.translation();
     if (off.norm() <= widest.reach_m) continue;
@@ -326,6 +322,10 @@ UnsureAlong UnsureLine(const DistanceField& walls, const Points& points,
 }
 
 }  // namespace
+
+bool IsElsewhere(const Pose2& map_from_base, const Pose2& map_from_other) {
+  return AreApart(map_from_base, map_from_other, kElsewhereM, kElsewhereRad);
+}
 
 std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,
                                         const std::vector<PlacedScan>& scans,
@@ -365,7 +365,7 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
   const UnsureAlong unsure = UnsureLine(walls, points, candidates, best);
   if (unsure.reach_m >= kLeastUnsureM) found.unsure = unsure;
   for (const Candidate& candidate : candidates) {
-    if (Elsewhere(candidate.map_from_first, best.map_from_first)) {
+    if (IsElsewhere(candidate.map_from_first, best.map_from_first)) {
       found.second_score = std::max(found.second_score, candidate.score);
     }
   }

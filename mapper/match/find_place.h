@@ -42,6 +42,9 @@ struct FoundPlace {
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
                                     const Pose2& guess);
 
+// Whether two places are so far apart.
+bool IsElsewhere(const Pose2& map_from_base, const Pose2& map_from_other);
+
 // Where it is known already, to 1.5 m and 12 degrees: the best place next to it. Nothing is said of
 // others, nor how sure it is.
 std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,

@@ -152,6 +152,9 @@ TEST(MapStart, AsksForMoreOfARobotThatHardlyMoved) {
   EXPECT_TRUE(start.uncertain());
   start.known = true;  // somebody said where
   EXPECT_FALSE(start.uncertain());
+  start.place.second_score = 1.0;
+  start.place.score = 0.84;
+  EXPECT_TRUE(start.uncertain());
 }
 
 // Before the plain wall of the hall, and it does not move.
