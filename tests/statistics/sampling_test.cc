@@ -9,12 +9,10 @@
 #include "eval/statistics/sample_size.h"
 #include "eval/statistics/sample_summary.h"
 #include "mapper/core/angle.h"
+#include "tests/statistics/ten_runs.h"
 
 namespace depthgrid {
 namespace {
-
-const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
-const std::vector<double> kB = {.312, .340, .301, .305, .344, .290, .377, .401, .262, .350};
 
 // np.mean, np.median, np.std(ddof=1); the interval from 200,000 resamples (SciPy 1.10.1):
 //   scipy.stats.bootstrap((a,), np.mean, n_resamples=200000, method='percentile', random_state=1)

@@ -7,6 +7,7 @@
 
 #include "eval/statistics/holm.h"
 #include "mapper/core/rng.h"
+#include "tests/statistics/ten_runs.h"
 
 namespace depthgrid {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 //   d = (np.array([.312,.340,.301,.305,.344,.290,.377,.401,.262,.350])
 //     - np.array([.407,.361,.455,.298,.512,.333,.420,.389,.275,.468]))
 //   wilcoxon(d, mode='exact'), wilcoxon(d, mode='approx')
-const std::vector<double> kA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
-const std::vector<double> kB = {.312, .340, .301, .305, .344, .290, .377, .401, .262, .350};
 
 std::vector<double> Differences() {
   std::vector<double> differences;
