@@ -8,12 +8,17 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "mapper/core/error.h"
 #include "sim/dae_counts.h"
+#include "sim/gltf_check.h"
+#include "sim/mesh_streams_impl.h"
 #include "sim/ply_file.h"
 #include "sim/scene_limits.h"
+#include "sim/stl_check.h"
 
 namespace depthgrid {
 namespace {
@@ -156,8 +161,31 @@ MeshFile ReadPlyFile(const std::string& path, double scale, UpAxis up) {
   return {Transformed(ReadPly(path), WorldFromFile(scale, up)), {Material{}}};
 }
 
+// What assimp takes as it is, whatever is wrong with it.
+void RequireSoundFile(const std::string& path) {
+  const std::string extension = LowerCaseExtension(path);
+  if (extension == ".dae") RequireSoundCounts(path);
+  if (extension == ".stl") RequireWholeStl(path);
+  if (IsGltf(path)) RequireKnownExtensions(path);
+}
+
+// As read: joining vertices drops those that are not even equal to themselves.
+void RequireFiniteVertices(const aiScene& scene, const std::string& path) {
+  std::size_t index = 0;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& part = *scene.mMeshes[i];
+    for (unsigned k = 0; k < part.mNumVertices; ++k, ++index) {
+      const aiVector3D& v = part.mVertices[k];
+      if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
+      throw InputError(path, fmt::format("vertex {} is not finite", index));
+    }
+  }
+}
+
 MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
+  RequireSoundFile(path);
   Assimp::Importer importer;
+  importer.SetIOHandler(std::make_unique<MeshStreams>().release());  // the importer's own
   // Only positions matter here; without the rest, vertices that differ in nothing else join.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
@@ -165,10 +193,13 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   const bool is_dae = LowerCaseExtension(path) == ".dae";
-  if (is_dae) RequireSoundCounts(path);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kAuto);
-  const aiScene* scene = importer.ReadFile(
-      path, aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene != nullptr) {
+    RequireFiniteVertices(*scene, path);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_RemoveComponent |
+                                         aiProcess_JoinIdenticalVertices);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr) {
     if (IsOfMemory(importer.GetErrorString())) {
       throw InputError(path, "needs more memory to be read than there is");
