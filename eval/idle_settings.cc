@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "eval/default_values.h"
 
 namespace depthgrid {
 namespace {
@@ -40,13 +43,8 @@ std::string SettingText(const std::string& yaml, const std::string& key) {
   return fmt::format("{}", fmt::join(Config::FromText(yaml, "").List(key), ", "));
 }
 
-// "GROUP.KEY is VALUE" of one of the options' own keys.
-template <typename Options>
-std::string Stands(const Options& options, const std::string& group, const std::string& key) {
-  return fmt::format("{}.{} is {}", group, key, ValueOf(options, key));
-}
-
-bool Drifts(const SlamOptions& slam) {
+// Were it not for the scale.
+bool WouldDrift(const SlamOptions& slam) {
   return slam.walk_translation_m > 0.0 || slam.walk_rotation_deg > 0.0 ||
          slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
 }
@@ -55,51 +53,108 @@ bool Jumps(const SlamOptions& slam) { return slam.jump_rate_hz > 0.0; }
 
 bool IsEverLost(const SlamOptions& slam) { return slam.lost_rate_hz > 0.0; }
 
-SlamOptions WithoutIdleSettings(SlamOptions slam) {
-  const SlamOptions usual = ProfileOptions(SlamProfile::kGroundTruth);
-  slam.profile = usual.profile;  // its values are all there
-  if (!Drifts(slam)) slam.drift_scale = usual.drift_scale;
+bool ClosesLoops(const SlamOptions& slam) { return slam.loops.recall > 0.0; }
+
+bool HasBias(const SlamOptions& slam) {
+  return slam.bias_translation_m > 0.0 || slam.bias_rotation_deg > 0.0;
+}
+
+// Jitter is not tilted.
+bool TurnsBesideJitter(const SlamOptions& slam) {
+  return slam.bias_rotation_deg > 0.0 || (Jumps(slam) && slam.jump_rotation_deg > 0.0) ||
+         (IsEverLost(slam) && slam.relocalisation_rotation_deg > 0.0) ||
+         (slam.drift_scale > 0.0 && (slam.walk_rotation_deg > 0.0 || slam.drift_turn_dps > 0.0));
+}
+
+void AddSlamLoops(const SlamLoopOptions& loops, IdleSettingList& idle) {
+  if (loops.recall > 0.0) {
+    if (loops.precision < 1.0) return;
+    idle.push_back({"slam.loops.follow_false", Stands(loops, "slam.loops", "precision")});
+    return;
+  }
+  const bool is_none = loops.scenario == LoopScenario::kNone;
+  for (const std::string& key : KeyPathsOf(loops)) {
+    if (key == "scenario" || key == "recall") continue;
+    idle.push_back(
+        {"slam.loops." + key, Stands(loops, "slam.loops", is_none ? "scenario" : "recall")});
+  }
+}
+
+// `exact`: why all of its poses are the true ones; empty where they are not.
+void AddSlam(const SlamOptions& slam, const std::string& exact, IdleSettingList& idle) {
+  const auto add = [&](std::initializer_list<const char*> keys, const std::string& reason) {
+    for (const char* key : keys) {
+      idle.push_back({std::string("slam.") + key, exact.empty() ? reason : exact});
+    }
+  };
+  const auto stands = [&](const char* key) { return Stands(slam, "slam", key); };
+  if (!WouldDrift(slam)) {
+    add({"drift_scale"}, "SLAM does not drift");
+  } else if (slam.drift_scale == 0.0) {
+    for (const char* key : {"walk_translation_m", "walk_rotation_deg", "drift_speed_mps",
+                            "drift_turn_dps", "drift_time_s"}) {
+      idle.push_back({std::string("slam.") + key, stands("drift_scale")});
+    }
+  }
+  if (slam.drift_speed_mps == 0.0 && slam.drift_turn_dps == 0.0) {
+    add({"drift_time_s"}, "slam.drift_speed_mps and slam.drift_turn_dps are 0");
+  }
+  if (!HasBias(slam)) {
+    add({"bias_time_s"}, "slam.bias_translation_m and slam.bias_rotation_deg are 0");
+  }
+  if (!TurnsBesideJitter(slam)) {
+    if (slam.jitter_rotation_deg == 0.0) add({"pivot_m"}, "SLAM's poses have no error of rotation");
+    add({"tilt_share"}, "SLAM's poses have no error of rotation but jitter");
+  }
   if (!Jumps(slam)) {
-    slam.jump_translation_m = usual.jump_translation_m;
-    slam.jump_rotation_deg = usual.jump_rotation_deg;
+    for (const char* key : {"jump_translation_m", "jump_rotation_deg"}) {
+      idle.push_back({std::string("slam.") + key, stands("jump_rate_hz")});
+    }
   }
   if (!IsEverLost(slam)) {
-    slam.lost_mean_s = usual.lost_mean_s;
-    slam.relocalisation_translation_m = usual.relocalisation_translation_m;
-    slam.relocalisation_rotation_deg = usual.relocalisation_rotation_deg;
+    for (const char* key :
+         {"lost_mean_s", "relocalisation_translation_m", "relocalisation_rotation_deg"}) {
+      idle.push_back({std::string("slam.") + key, stands("lost_rate_hz")});
+    }
   }
+  AddSlamLoops(slam.loops, idle);
+}
+
+IsOneOfKeys KeysIn(const IdleSettingList& idle) {
+  return [&idle](const std::string& key) { return Find(idle, key) != nullptr; };
+}
+
+// What presets or scales others at its default: a preset's values are all there, and what a scale
+// of 0 takes away is idle.
+SlamOptions WithoutPresets(SlamOptions slam) {
+  const SlamOptions usual;
+  slam.profile = usual.profile;
+  if (!ClosesLoops(slam)) slam.loops.scenario = usual.loops.scenario;
+  if (slam.drift_scale == 0.0) slam.drift_scale = usual.drift_scale;
   return slam;
 }
 
 // Why SLAM's errors are the same for every seed; empty where they are not.
 std::string WhyExact(const SlamOptions& slam) {
   const SlamOptions truth = ProfileOptions(SlamProfile::kGroundTruth);
-  if (ToYaml(WithoutIdleSettings(slam)) != ToYaml(truth)) return "";
+  IdleSettingList idle;
+  AddSlam(slam, "", idle);
+  const SlamOptions used = WithDefaults(WithoutPresets(slam), "slam", KeysIn(idle));
+  if (ToYaml(used) != ToYaml(truth)) return "";
   return slam.profile == truth.profile ? Stands(slam, "slam", "profile")
                                        : "SLAM's poses are the true ones";
 }
 
-// The same of the depth images.
-std::string WhyClean(const SensorOptions& sensor) {
-  const bool noisy = sensor.noise != DepthNoiseModel::kNone || sensor.flying_pixels > 0.0;
-  return noisy ? "" : Stands(sensor, "sensor", "noise");
+bool LimitIsSoft(const SensorOptions& sensor) {
+  return sensor.grazing_softness_deg > 0.0 && sensor.grazing_limit_deg < kNoGrazingLimitDeg;
 }
 
-void AddSlam(const SlamOptions& slam, IdleSettingList& idle) {
-  const auto add = [&](std::initializer_list<const char*> keys, const std::string& reason) {
-    for (const char* key : keys) idle.push_back({std::string("slam.") + key, reason});
-  };
-  if (!Drifts(slam)) {
-    const std::string exact = WhyExact(slam);
-    add({"drift_scale"}, exact.empty() ? "SLAM does not drift" : exact);
-  }
-  if (!Jumps(slam)) {
-    add({"jump_translation_m", "jump_rotation_deg"}, Stands(slam, "slam", "jump_rate_hz"));
-  }
-  if (!IsEverLost(slam)) {
-    add({"lost_mean_s", "relocalisation_translation_m", "relocalisation_rotation_deg"},
-        Stands(slam, "slam", "lost_rate_hz"));
-  }
+// The same of the depth images.
+std::string WhyClean(const SensorOptions& sensor) {
+  if (sensor.flying_pixels > 0.0) return "";
+  if (sensor.noise == DepthNoiseModel::kNone) return Stands(sensor, "sensor", "noise");
+  if (sensor.noise_scale > 0.0 || LimitIsSoft(sensor)) return "";
+  return Stands(sensor, "sensor", "noise_scale");
 }
 
 bool HasFocalLengths(const SensorOptions& sensor) {
@@ -111,35 +166,26 @@ void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
   if (HasFocalLengths(sensor)) {
     idle.push_back({"sensor.hfov_deg", "sensor.fx and sensor.fy are set"});
   }
-  if (sensor.noise != DepthNoiseModel::kNone) return;
+  if (sensor.noise != DepthNoiseModel::kNone) {
+    if (sensor.grazing_limit_deg >= kNoGrazingLimitDeg) {
+      idle.push_back(
+          {"sensor.grazing_softness_deg", Stands(sensor, "sensor", "grazing_limit_deg")});
+    }
+    if (sensor.noise_scale == 0.0) {
+      idle.push_back({"sensor.noise_correlation_px", Stands(sensor, "sensor", "noise_scale")});
+    }
+    return;
+  }
   for (const char* key :
        {"noise_scale", "noise_correlation_px", "grazing_limit_deg", "grazing_softness_deg"}) {
     idle.push_back({std::string("sensor.") + key, Stands(sensor, "sensor", "noise")});
   }
 }
 
-SensorOptions WithoutIdleSettings(SensorOptions sensor) {
-  const SensorOptions usual;
-  if (HasFocalLengths(sensor)) sensor.hfov_deg = usual.hfov_deg;
-  if (sensor.noise != DepthNoiseModel::kNone) return sensor;
-  sensor.noise_scale = usual.noise_scale;
-  sensor.noise_correlation_px = usual.noise_correlation_px;
-  sensor.grazing_limit_deg = usual.grazing_limit_deg;
-  sensor.grazing_softness_deg = usual.grazing_softness_deg;
-  return sensor;
-}
-
-// What the profile is taken for, all but the choice itself.
-void AddSlamNoise(const FusionOptions& fusion, IdleSettingList& idle) {
-  if (fusion.slam_noise.source != SlamNoiseSource::kProfile) return;
-  const std::string group = "mapper.fusion.slam_noise";
-  for (const std::string& key : KeyPathsOf(fusion.slam_noise)) {
-    if (key == "source") continue;
-    idle.push_back({group + "." + key, Stands(fusion.slam_noise, group, "source")});
-  }
-}
-
 void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
+  if (options.trajectory.find('/') != std::string::npos) {
+    idle.push_back({"trajectory_seed", "the path is a file's"});
+  }
   const std::string exact = WhyExact(options.slam);
   const std::string clean = WhyClean(options.sensor);
   if (!exact.empty()) idle.push_back({"slam_seed", exact});
@@ -150,55 +196,22 @@ void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
   if (!depth.empty() && !slam.empty()) idle.push_back({"seed", depth + " and " + slam});
 }
 
-// What only the other method reads. (The report's pictures are of submaps with either.)
-void AddOtherMethod(const MapperOptions& mapper, IdleSettingList& idle) {
-  const std::string chosen = Stands(mapper, "mapper", "method");
-  const bool is_surfel = mapper.method == MapperMethod::kSurfel;
-  idle.push_back({is_surfel ? "mapper.match" : "mapper.surfel", chosen});
-  idle.push_back({is_surfel ? "mapper.graph" : "mapper.rounds", chosen});
-}
-
-MapperOptions WithoutOtherMethod(MapperOptions mapper) {
-  const MapperOptions usual;
-  if (mapper.method == MapperMethod::kSurfel) {
-    mapper.match = usual.match;
-    mapper.graph = usual.graph;
-  } else {
-    mapper.surfel = usual.surfel;
-    mapper.rounds = usual.rounds;
-  }
-  return mapper;
-}
-
 }  // namespace
-
-IdleSettingList IdleSettings(const MapperOptions& mapper) {
-  const FusionOptions& fusion = mapper.fusion;
-  IdleSettingList idle;
-  AddOtherMethod(mapper, idle);
-  const auto add = [&](const char* key) {
-    idle.push_back({key, Stands(fusion, "mapper.fusion", "mode")});
-  };
-  if (fusion.mode != FusionMode::kFixed && fusion.mode != FusionMode::kAdaptive) {
-    add("mapper.fusion.gain");
-  }
-  if (fusion.mode != FusionMode::kAdaptive) add("mapper.fusion.adaptive_rate");
-  if (fusion.mode != FusionMode::kLearned) {
-    for (const char* key : {"mapper.fusion.judge_innovations", "mapper.rounds.again"}) add(key);
-  }
-  AddSlamNoise(fusion, idle);
-  if (mapper.scan.mode != ScanMode::kRowBand) {
-    idle.push_back({"mapper.scan.band_rows", Stands(mapper.scan, "mapper.scan", "mode")});
-  }
-  return idle;
-}
 
 IdleSettingList IdleSettings(const ExperimentOptions& options) {
   IdleSettingList idle = IdleSettings(options.mapper);
-  AddSlam(options.slam, idle);
+  AddSlam(options.slam, WhyExact(options.slam), idle);
   AddSensor(options.sensor, idle);
   AddSeeds(options, idle);
   idle.push_back({"mapper.scan.floor_z_m", "the scene's floor_z_m is taken"});
+  if (!ClosesLoops(options.slam)) {
+    for (const char* key : {"mapper.loops.use", "mapper.loops.verify"}) {
+      idle.push_back({key, Stands(options.slam, "slam", "loops.recall")});
+    }
+  }
+  if (!options.metrics.navigation) {
+    idle.push_back({"metrics.navigability", Stands(options.metrics, "metrics", "navigation")});
+  }
   return idle;
 }
 
@@ -234,33 +247,15 @@ IdleSettingList InBoth(const IdleSettingList& a, const IdleSettingList& b) {
 
 ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   const IdleSettingList idle = IdleSettings(options);
-  const auto is_idle = [&](const char* key) { return Find(idle, key) != nullptr; };
-  options.slam_seed = is_idle("slam_seed") ? 0 : options.SlamSeed();
-  options.depth_seed = is_idle("depth_seed") ? 0 : options.DepthSeed();
-  options.seed = 0;  // the two are all it is for
-  options.slam = WithoutIdleSettings(options.slam);
-  options.sensor = WithoutIdleSettings(options.sensor);
-  options.mapper = WithoutOtherMethod(options.mapper);
-  if (is_idle("mapper.scan.band_rows")) {
-    options.mapper.scan.band_rows = MapperOptions{}.scan.band_rows;
-  }
-  options.mapper.scan.floor_z_m = MapperOptions{}.scan.floor_z_m;
-  FusionOptions& fusion = options.mapper.fusion;
-  if (const auto source = fusion.slam_noise.source; source == SlamNoiseSource::kProfile) {
-    fusion.slam_noise = {};
-    fusion.slam_noise.source = source;
-  }
-  if (is_idle("mapper.fusion.gain")) fusion.gain = FusionOptions{}.gain;
-  if (is_idle("mapper.fusion.adaptive_rate")) {
-    fusion.adaptive_rate = FusionOptions{}.adaptive_rate;
-  }
-  if (is_idle("mapper.fusion.judge_innovations")) {
-    fusion.judge_innovations = FusionOptions{}.judge_innovations;
-  }
-  if (is_idle("mapper.rounds.again")) {
-    options.mapper.rounds.again = RoundOptions{}.again;
-  }
-  return options;
+  const IsOneOfKeys is_idle = KeysIn(idle);
+  const std::uint64_t slam_seed = is_idle("slam_seed") ? 0 : options.SlamSeed();
+  const std::uint64_t depth_seed = is_idle("depth_seed") ? 0 : options.DepthSeed();
+  options.slam = WithoutPresets(options.slam);
+  ExperimentOptions used = WithDefaults(std::move(options), "", is_idle);
+  used.slam_seed = slam_seed;
+  used.depth_seed = depth_seed;
+  used.seed = 0;  // the two are all it is for
+  return used;
 }
 
 std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,

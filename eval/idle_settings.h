@@ -18,6 +18,12 @@ struct IdleSetting {
 };
 using IdleSettingList = std::vector<IdleSetting>;
 
+// "GROUP.KEY is VALUE" of one of the options' own keys.
+template <typename Options>
+std::string Stands(const Options& options, const std::string& group, const std::string& key) {
+  return group + "." + key + " is " + ValueOf(options, key);
+}
+
 IdleSettingList IdleSettings(const MapperOptions& mapper);
 IdleSettingList IdleSettings(const ExperimentOptions& options);
 // Of a recording of this kind. `input_is` is the reason that the kind gives: "seq is a TUM RGB-D

@@ -125,8 +125,9 @@ std::vector<std::string> DoubtsOfImages(const std::string& name,
   const std::vector<std::string> of_camera = DoubtsOfCamera(options.sensor);
   doubts.insert(doubts.end(), of_camera.begin(), of_camera.end());
   IdleSettingList idle = IdleSettings(options);
-  std::erase_if(idle,
-                [](const IdleSetting& setting) { return !setting.key.starts_with("sensor."); });
+  std::erase_if(idle, [](const IdleSetting& setting) {
+    return !setting.key.starts_with("sensor.") && !setting.key.ends_with("seed");
+  });
   AddIdle(name, set, idle, doubts);
   return doubts;
 }

@@ -25,7 +25,8 @@ bool IsExperiment(const std::string& name);
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set);
 
-// Of these what concerns the images, also where `name` is that of a scene or a mesh.
+// Of these what concerns the images, and seeds of what never varies, also where `name` is that of a
+// scene or a mesh.
 std::vector<std::string> DoubtsOfImages(const std::string& name,
                                         const std::vector<std::string>& set);
 

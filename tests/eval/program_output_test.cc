@@ -179,7 +179,7 @@ TEST_F(ProgramOutput, AnImageOfAnotherShapeThanItsCamerasIsWarnedOf) {
   EXPECT_EQ(said(" --set sensor.fx=300 --set sensor.fy=480"), "");
 }
 
-// Of the settings that images have; the others may be meant for what comes after.
+// Of the settings that images have, and of seeds; the others may be meant for what comes after.
 TEST_F(ProgramOutput, RenderSaysWhatHasNoEffectOnImages) {
   const auto said = [&](const std::string& arguments) {
     return Program("render " + arguments + " --no-colour -o seq --force --set frames=2").err;
@@ -188,6 +188,10 @@ TEST_F(ProgramOutput, RenderSaysWhatHasNoEffectOnImages) {
             "depthgrid: warning: --set sensor.noise_scale=2: has no effect because sensor.noise is "
             "none\n");
   EXPECT_EQ(said("./room.yaml --set sensor.noise_scale=2 --set sensor.noise=d435"), "");
+  EXPECT_EQ(said("./room.yaml --set slam_seed=2"),
+            "depthgrid: warning: --set slam_seed=2: has no effect because slam.profile is "
+            "ground_truth\n");
+  EXPECT_EQ(said("./room.yaml --set slam_seed=2 --set slam.profile=orb_slam2"), "");
   Write("idle.yaml", "scene: room.yaml\nsensor: {grazing_limit_deg: 60}\n");
   EXPECT_EQ(said("./idle.yaml"),
             "depthgrid: warning: ./idle.yaml:2: sensor.grazing_limit_deg has no effect because "
