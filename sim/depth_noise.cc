@@ -1,6 +1,7 @@
 #include "sim/depth_noise.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "mapper/core/angle.h"
@@ -71,6 +72,14 @@ void Measure(DepthNoiseModel model, const DepthSamples& clean, const Values& the
       return AddAxial(clean, theta, normal, scale, measured,
                       [](float z, float) { return noise::AzureSigma(z); });
   }
+}
+
+// Incidences beyond it are lost; at a right angle none, however soft the limit is.
+float GrazingLimitRad(const SensorOptions& options) {
+  if (options.grazing_limit_deg >= kNoGrazingLimitDeg) {
+    return std::numeric_limits<float>::infinity();
+  }
+  return static_cast<float>(RadFromDeg(options.grazing_limit_deg));
 }
 
 std::vector<float> InverseOf(const DepthImage& depth) {
@@ -146,7 +155,7 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
   const auto scale = static_cast<float>(options_.noise_scale);
   const auto focal_px = static_cast<float>(camera_.fx_px);
   const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
-  const auto limit = static_cast<float>(RadFromDeg(options_.grazing_limit_deg));
+  const float limit = GrazingLimitRad(options_);
   const auto softness = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
   const std::size_t pixels = lit.z_m.size();
   DepthImage noisy(lit.width_px, lit.height_px);

@@ -37,6 +37,8 @@ enum class DepthNoiseModel {
 // makes some such pictures.
 constexpr int kMaxImageSidePx = 8192;
 
+constexpr double kNoGrazingLimitDeg = 90.0;  // as grazing_limit_deg: no pixel is lost
+
 struct SensorOptions {
   CameraPreset camera = CameraPreset::kIclNuim;  // the paper's data set
   // Overrides of the preset; 0 keeps it. A new size alone scales the intrinsics, so that the field
@@ -60,6 +62,7 @@ struct SensorOptions {
   double max_range_m = 0.0;
   // Pixels meeting the surface more obliquely are lost: Handa's 82 degrees, which no other model's
   // source contradicts. With softness the limit is drawn for each pixel, normal about the first.
+  // kNoGrazingLimitDeg: none is lost, softness or not.
   double grazing_limit_deg = 82.0;
   double grazing_softness_deg = 0.0;
   // Share of the pixels at a depth edge that measure a mix of both sides, as time of flight does.

@@ -324,6 +324,9 @@ TEST(DepthNoise, GrazingPixelsAreLost) {
   EXPECT_NEAR(kept_share(70.0), 0.5, 0.005);
   EXPECT_NEAR(kept_share(65.0), 0.8413, 0.005);
   EXPECT_NEAR(kept_share(80.0), 0.0228, 0.005);
+  options.grazing_limit_deg = kNoGrazingLimitDeg;
+  options.grazing_softness_deg = 30.0;
+  EXPECT_EQ(kept_share(80.0), 1.0);
 }
 
 TEST(DepthNoise, WhatWasNotSeenStaysUnseen) {
