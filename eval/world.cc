@@ -183,6 +183,12 @@ Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d&
 // A camera's own housing keeps its middle this far from everything.
 constexpr double kLeastClearanceM = 0.05;
 
+Occlusion OcclusionIn(const RayScene& rays) {
+  return [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return rays.Occluded(from.cast<float>(), to.cast<float>());
+  };
+}
+
 std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Scene& scene,
                                        const RayScene& rays, const ExperimentOptions& options) {
   constexpr float kFarM = 10.0F;
@@ -190,9 +196,7 @@ std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Scene
                             [&](const Eigen::Vector3d& point) -> double {
                               return rays.DistanceToSurface(point.cast<float>(), kFarM);
                             },
-                            [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-                              return rays.Occluded(from.cast<float>(), to.cast<float>());
-                            }};
+                            OcclusionIn(rays)};
   const auto doubt = DoubtOfPath(trajectory, around, kLeastClearanceM);
   if (!doubt) return {};
   return options.trajectory + ": " + *doubt;
@@ -263,6 +267,7 @@ void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, cons
   };
   CheckInside(trajectory, SpaceOf(scene), path.place);
   CheckClearance(trajectory, distance_m, path.clearance_m - kFloatSlackM, path.place);
+  CheckWay(trajectory, OcclusionIn(rays), path.place);
 }
 
 void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,

@@ -1,5 +1,7 @@
 #include "sim/mover_scene.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "mapper/core/angle.h"
@@ -67,22 +69,56 @@ double MoverScene::DistanceM(const MoverPlace& place, const Eigen::Vector3d& poi
   return mover.rays.DistanceToSurface(as_float, static_cast<float>(limit_m));
 }
 
+bool MoverScene::Passes(const MoverPlace& before, const Eigen::Vector3d& camera_before,
+                        const MoverPlace& now, const Eigen::Vector3d& camera_now) const {
+  const Eigen::Vector3d from = Inverse(before.world_from_mover) * camera_before;
+  const Eigen::Vector3d to = Inverse(now.world_from_mover) * camera_now;
+  return movers_[now.mover].rays.Occluded(from.cast<float>(), to.cast<float>());
+}
+
+namespace {
+
+std::optional<MoverPlace> PlaceOf(std::size_t mover, const std::vector<MoverPlace>& places) {
+  for (const MoverPlace& place : places) {
+    if (place.mover == mover) return place;
+  }
+  return {};
+}
+
+// The first frame before which the mover passes through the camera, if there is one.
+std::optional<std::string> PassingText(const Trajectory& trajectory, std::size_t mover,
+                                       const MoverScene& movers, const std::string& what) {
+  std::optional<MoverPlace> before;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d& at = trajectory[i].world_from_camera.translation;
+    const std::optional<MoverPlace> now = PlaceOf(mover, movers.At(trajectory, i));
+    if (before && now &&
+        movers.Passes(*before, trajectory[i - 1].world_from_camera.translation, *now, at)) {
+      return fmt::format(
+          "frame {} at ({:.2f}, {:.2f}, {:.2f}): {} has gone through the camera "
+          "since the frame before",
+          i, at.x(), at.y(), at.z(), what);
+    }
+    before = now;
+  }
+  return {};
+}
+
+}  // namespace
+
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m) {
   // A limit passes through single precision, so it is no answer to compare with the clearance.
   const double limit_m = clearance_m + 0.1;
   for (std::size_t i = 0; i < movers.size(); ++i) {
     const auto distance_m = [&](std::size_t frame) {
-      double nearest_m = limit_m;
-      for (const MoverPlace& place : movers.At(trajectory, frame)) {
-        if (place.mover != i) continue;
-        nearest_m =
-            movers.DistanceM(place, trajectory[frame].world_from_camera.translation, limit_m);
-      }
-      return nearest_m;
+      const auto place = PlaceOf(i, movers.At(trajectory, frame));
+      if (!place) return limit_m;
+      return movers.DistanceM(*place, trajectory[frame].world_from_camera.translation, limit_m);
     };
     const std::string what = "mover '" + scene.movers[i].name + "'";
     if (auto near = NearText(trajectory, distance_m, clearance_m, what)) return near;
+    if (auto passing = PassingText(trajectory, i, movers, what)) return passing;
   }
   return {};
 }

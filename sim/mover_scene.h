@@ -29,6 +29,10 @@ class MoverScene {
   // From a point to the nearest surface of a mover, or `limit_m` when none is nearer; 0 inside it.
   double DistanceM(const MoverPlace& place, const Eigen::Vector3d& point_in_world,
                    double limit_m) const;
+  // Whether a mover that goes from one place to the other passes through a camera that moves
+  // meanwhile: whether its surface lies between the camera's two points as it has them.
+  bool Passes(const MoverPlace& before, const Eigen::Vector3d& camera_before, const MoverPlace& now,
+              const Eigen::Vector3d& camera_now) const;
   const RayScene& RaysOf(std::size_t mover) const { return movers_[mover].rays; }
 
  private:
@@ -42,8 +46,8 @@ class MoverScene {
   double floor_z_m_;
 };
 
-// Where a path comes nearer to one of the scene's movers than clearance_m, as NearText says it;
-// nothing where none does.
+// Where a path comes nearer to one of the scene's movers than clearance_m, as NearText says it, or
+// where one passes through the camera between two frames; nothing where none does.
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m);
 

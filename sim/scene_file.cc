@@ -236,6 +236,7 @@ class SceneReader {
     TriangleMesh whole;
     for (Config& config : items) {
       const BuiltItem built = BuildItem(config, depth);
+      RequireStepsCounted(config);
       const std::size_t total =
           whole.triangles.size() +
           built.mesh.triangles.size() * static_cast<std::size_t>(built.item.count);
@@ -247,6 +248,14 @@ class SceneReader {
       }
     }
     return whole;
+  }
+
+  // One alone takes no step.
+  static void RequireStepsCounted(const Config& item) {
+    for (const char* key : {"step", "step_yaw_deg"}) {
+      if (!item.Has(key) || item.Has("count")) continue;
+      throw InputError(item.PlaceOfKey(key), fmt::format("{} needs count", key));
+    }
   }
 
   // The item in its own axes, its materials set.

@@ -57,11 +57,27 @@ void TrajectoryOptions::Visit(OptionsVisitor& v) {
   v.Number("laps", laps, {0.1, 100.0}, "closed: how often it goes round");
 }
 
+namespace {
+
+// A hand-held path has its heights and pitches from its waypoints.
+void RequirePlanarKeysOnPlanarPaths(const Config& spec, TrajectoryKind kind) {
+  if (kind == TrajectoryKind::kPlanar) return;
+  for (const char* key : {"height_m", "pitch_deg"}) {
+    if (!spec.Has(key)) continue;
+    throw InputError(spec.PlaceOfKey(key), fmt::format("{} is for planar paths only: kind is "
+                                                       "'handheld'",
+                                                       key));
+  }
+}
+
+}  // namespace
+
 TrajectoryOptions ReadTrajectoryOptions(Config spec) {
   TrajectoryOptions options;
   options.place = spec.Place();
   const std::vector<Config> waypoints = spec.TakeMaps("waypoints");
   spec.Read(options);
+  RequirePlanarKeysOnPlanarPaths(spec, options.kind);
   const bool planar = options.kind == TrajectoryKind::kPlanar;
   for (const Config& entry : waypoints) {
     Waypoint waypoint;
@@ -154,6 +170,9 @@ void CheckClearance(const Trajectory& trajectory,
 
 namespace {
 
+constexpr const char* kBehindSurface =
+    "behind a surface as seen from the frame before: the path goes through it";
+
 std::string OutsideText(int frame, const Eigen::Vector3d& position_m,
                         const Eigen::AlignedBox3d& bounds) {
   return fmt::format(
@@ -178,7 +197,7 @@ std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathS
     const std::string near =
         fmt::format("{} is {:.3f} m from geometry", Shown(frame, position_m), distance);
     if (i > 0 && scene.occluded(trajectory[i - 1].world_from_camera.translation, position_m)) {
-      return near + ", behind a surface as seen from the frame before: the path goes through it";
+      return fmt::format("{}, {}", near, kBehindSurface);
     }
     if (distance < clearance_m) return near + ", nearer than a camera can be";
     if (!scene.space.Contains(position_m)) {
@@ -186,6 +205,15 @@ std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathS
     }
   }
   return {};
+}
+
+void CheckWay(const Trajectory& trajectory, const Occlusion& occluded, const std::string& place) {
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d& position_m = trajectory[i].world_from_camera.translation;
+    if (!occluded(trajectory[i - 1].world_from_camera.translation, position_m)) continue;
+    throw InputError(
+        place, fmt::format("{} is {}", Shown(static_cast<int>(i), position_m), kBehindSurface));
+  }
 }
 
 void CheckInside(const Trajectory& trajectory, const CameraSpace& space, const std::string& place) {

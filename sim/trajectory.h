@@ -80,16 +80,23 @@ struct CameraSpace {
   bool Contains(Eigen::Vector3d position_m) const;
 };
 
+// Whether a surface lies between the two points.
+using Occlusion = std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)>;
+
 struct PathScene {
   CameraSpace space;
   std::function<double(const Eigen::Vector3d&)> distance_m;
-  std::function<bool(const Eigen::Vector3d& from, const Eigen::Vector3d& to)> occluded;
+  Occlusion occluded;
 };
 
 // Of a path that was not made for this scene: its first frame nearer to geometry than clearance_m,
 // behind a surface as the one before sees it, or beside the scene, with its position.
 std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
                                        double clearance_m);
+
+// Throws InputError naming the first frame that a surface hides from the one before: the path goes
+// through it, be it that no frame is near.
+void CheckWay(const Trajectory& trajectory, const Occlusion& occluded, const std::string& place);
 
 // Throws InputError naming the first frame outside the scene.
 void CheckInside(const Trajectory& trajectory, const CameraSpace& space, const std::string& place);

@@ -34,6 +34,33 @@ TEST_F(SceneFacts, SaysSizeFloorAndPathsWithWhatIsWrong) {
   EXPECT_THAT(outcome.out, testing::Not(HasSubstr("'short'")));
 }
 
+// Each of its frames may be far enough from a wall that it goes through between two of them.
+TEST_F(SceneFacts, PathsAndMoversGoThroughNothingBetweenFrames) {
+  Write("thin.yaml",
+        "shapes:\n"
+        "  - {shape: box, size: [8, 8, 0.1], at: [0, 0, -0.1]}\n"
+        "  - {shape: wall, from: [0.52, -4], to: [0.52, 4], thickness_m: 0.02}\n"
+        "movers:\n"
+        "  tent:\n"
+        "    shapes: [{shape: box, size: [0.02, 3, 2.5]}]\n"
+        "    speed_mps: 10\n"
+        "    waypoints: [{at: [-3.45, 0]}, {at: [0.4, 0]}]\n"
+        "trajectories:\n"
+        "  still: {kind: planar, clearance_m: 0.01, waypoints: [{at: [-2, 0]}, {at: [-1.5, 0]}]}\n"
+        "  fast: {kind: planar, clearance_m: 0, speed_mps: 9, waypoints: [{at: [-2, 0]}, {at: [3, "
+        "0]}]}\n");
+  EXPECT_THAT(
+      Program("scenes ./thin.yaml").out,
+      testing::ContainsRegex(
+          "refused: .*thin.yaml:11: trajectory 'fast': frame [0-9]+ at \\(0\\.[5-8]., 0.00, "
+          "0.60\\) is behind a surface as seen from the frame before: the path goes through "
+          "it"));
+  Write("thin_run.yaml", "{scene: ./thin.yaml, trajectory: still, movers: tent}\n");
+  ExpectRefusal("run ./thin_run.yaml -o out",
+                {"thin.yaml:10: trajectory 'still': frame ",
+                 ": mover 'tent' has gone through the camera since the frame before"});
+}
+
 TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   Succeed("scenes ./hall.yaml --plan plan.png");
   const RgbImage plan = DecodeRgbPng(ReadFile(Path("plan.png")), "plan.png");

@@ -122,6 +122,39 @@ TEST(MoverScene, SaysWhereItMeetsTheCamera) {
   EXPECT_THAT(*inside, HasSubstr("frame 6 at (0.00, 0.00, 1.00) is 0.000 m from mover 'walker'"));
 }
 
+TEST(MoverScene, SaysWhereItPassesThroughTheCamera) {
+  // A screen of 2 cm across its way: half a metre before the camera, then half a metre behind it.
+  Scene scene = RoomWith(MakeBox({0.02, 3.0, 1.8}));
+  scene.movers[0].options.waypoints = {{{0.0, -2.75}}, {{0.0, 3.0}}};
+  const MoverScene movers(scene, RayIsa::kAvx2);
+  const auto text = NearMoverText(Standing(11), scene, movers, 0.1);
+  ASSERT_TRUE(text.has_value());
+  EXPECT_EQ(*text,
+            "frame 6 at (0.00, 0.00, 1.00): mover 'walker' has gone through the camera since the "
+            "frame before");
+  EXPECT_FALSE(NearMoverText(Standing(6), scene, movers, 0.1).has_value());
+  // Lower than the camera.
+  scene.movers[0].mesh = MakeBox({0.02, 3.0, 0.8});
+  EXPECT_FALSE(
+      NearMoverText(Standing(11), scene, MoverScene(scene, RayIsa::kAvx2), 0.1).has_value());
+}
+
+// The camera goes through a screen that stands, its pose turned.
+TEST(MoverScene, PassesIsToldInItsOwnAxes) {
+  const Scene scene = RoomWith(MakeBox({0.02, 3.0, 1.8}));
+  const MoverScene movers(scene, RayIsa::kAvx2);
+  MoverPlace place = movers.At(Standing(1), 0)[0];
+  const Eigen::Vector3d forward = place.world_from_mover.rotation * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d at = place.world_from_mover.translation + Eigen::Vector3d(0, 0, 1);
+  EXPECT_TRUE(movers.Passes(place, at - 0.3 * forward, place, at + 0.3 * forward));
+  EXPECT_FALSE(movers.Passes(place, at - 0.3 * forward, place, at - 0.1 * forward));
+  // Both move alike.
+  MoverPlace next = place;
+  next.world_from_mover.translation += forward;
+  EXPECT_FALSE(movers.Passes(place, at - 0.3 * forward, next, at + 0.7 * forward));
+  EXPECT_TRUE(movers.Passes(place, at + 0.3 * forward, next, at + 0.7 * forward));
+}
+
 int DifferingPixels(const RgbImage& a, const RgbImage& b) {
   int differing = 0;
   for (int v = 0; v < a.height_px; ++v) {

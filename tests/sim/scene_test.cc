@@ -266,6 +266,17 @@ TEST_F(SceneFiles, ScenesOfInsaneSizeAreRefused) {
               HasSubstr("more than 20000000 triangles"));
 }
 
+TEST_F(SceneFiles, StepsNeedACount) {
+  const auto with = [&](const std::string& keys) {
+    return ErrorOf("groups:\n  g:\n    - {shape: box, " + keys +
+                   "}\nshapes:\n  - {shape: use, group: g}\n" + kFloor);
+  };
+  EXPECT_EQ(with("step: [0, 2, 0]"), "~/s.yaml:3: step needs count");
+  EXPECT_EQ(with("step_yaw_deg: 20"), "~/s.yaml:3: step_yaw_deg needs count");
+  EXPECT_EQ(with("count: 2, step: [0, 2, 0], step_yaw_deg: 20"), "no error");
+  EXPECT_EQ(with("count: 1, step: [0, 2, 0]"), "no error");
+}
+
 TEST_F(SceneFiles, AFloorIsStatedOrFound) {
   EXPECT_EQ(Load("shapes:\n" + kFloor).floor_z_m, 0.0);
   EXPECT_EQ(ErrorOf("floor_z_m: 0.3\nshapes:\n" + kFloor),

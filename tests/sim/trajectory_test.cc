@@ -245,6 +245,13 @@ TEST(Trajectory, RefusesWhatItCannotDo) {
                                   far + "]}]"),
                 HasSubstr("the path takes more than 33333 s to the waypoint at (2.00, "));
   }
+  const std::string hand_held =
+      "waypoints: [{at: [0, 0, 1], look_at: [3, 0, 1]}, {at: [0, 1, 1], "
+      "look_at: [3, 0, 1]}]\n";
+  for (const std::string key : {"height_m", "pitch_deg"}) {
+    EXPECT_EQ(TrajectoryRefusal(hand_held + key + ": 0.6"),
+              "scene.yaml:2: " + key + " is for planar paths only: kind is 'handheld'");
+  }
   EXPECT_THAT(TrajectoryRefusal("speed_mp: 3\nwaypoints: []"),
               HasSubstr("did you mean 'speed_mps'?"));
 }
@@ -291,6 +298,20 @@ TEST(DoubtOfPath, IsOfTheFirstFrameAtOrBehindASurface) {
   EXPECT_EQ(doubt({2.0, 3.0, 3.5, 3.25}),
             "frame 2 at (3.50, 1.00, 1.20) is 0.250 m from geometry, behind a surface as seen from "
             "the frame before: the path goes through it");
+}
+
+TEST(CheckWay, RefusesWhatGoesThroughASurfaceBetweenFrames) {
+  const auto occluded = [](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    return (from.x() < 3.25) != (to.x() < 3.25);
+  };
+  const auto error = [&](std::initializer_list<double> xs) {
+    return RefusalOf([&] { CheckWay(Line(xs), occluded, "path"); });
+  };
+  EXPECT_EQ(error({0.0, 2.0, 3.0, 1.0}), "no error");
+  EXPECT_EQ(error({4.0, 5.0}), "no error");
+  EXPECT_EQ(error({0.0, 2.0, 5.0, 1.0}),
+            "path: frame 2 at (5.00, 1.00, 1.20) is behind a surface as seen from the frame "
+            "before: the path goes through it");
 }
 
 TEST(CameraSpace, EndsAtTheFloorAndAtACeiling) {
