@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "sim/face_triangles.h"
 #include "sim/ply_header.h"
 #include "sim/scene_limits.h"
 
@@ -36,7 +38,7 @@ class PlyParser {
         for (std::size_t i = 0; i < element.count; ++i) Skip(element);
       }
     }
-    CheckFaces();
+    CutFaces();
     return std::move(mesh_);
   }
 
@@ -167,17 +169,12 @@ class PlyParser {
 
   void ReadPolygon(const PlyProperty& property) {
     const std::size_t corners = ListLength(property);
-    if (mesh_.triangles.size() + corners > kMaxSceneTriangles) {
+    triangles_ += std::max<std::size_t>(corners, 2) - 2;
+    if (triangles_ > kMaxSceneTriangles) {
       Fail(fmt::format("has more than {} triangles", kMaxSceneTriangles));
     }
-    std::uint32_t first = 0;
-    std::uint32_t before = 0;
-    for (std::size_t k = 0; k < corners; ++k) {
-      const std::uint32_t corner = VertexIndex(Number(property.value));
-      if (k >= 2) mesh_.AddTriangle(first, before, corner);
-      if (k == 0) first = corner;
-      before = corner;
-    }
+    faces_.push_back(static_cast<std::uint32_t>(corners));
+    for (std::size_t k = 0; k < corners; ++k) faces_.push_back(VertexIndex(Number(property.value)));
   }
 
   std::uint32_t VertexIndex(double number) const {
@@ -188,20 +185,39 @@ class PlyParser {
   }
 
   // At the end: faces may come before vertices.
-  void CheckFaces() const {
-    for (const auto& triangle : mesh_.triangles) {
-      for (const auto vertex : triangle) {
-        if (vertex >= mesh_.vertices.size()) {
-          Fail(fmt::format("a face uses vertex {} of {}", vertex, mesh_.vertices.size()));
-        }
-      }
+  void CutFaces() {
+    for (std::size_t at = 0; at < faces_.size();) {
+      const std::size_t corners = faces_[at];
+      CutFace(std::span(faces_).subspan(at + 1, corners));
+      at += 1 + corners;
     }
+  }
+
+  void CutFace(std::span<const std::uint32_t> face) {
+    for (const std::uint32_t vertex : face) {
+      if (vertex < mesh_.vertices.size()) continue;
+      Fail(fmt::format("a face uses vertex {} of {}", vertex, mesh_.vertices.size()));
+    }
+    if (face.size() < 3) return;
+    if (face.size() == 3) return mesh_.AddTriangle(face[0], face[1], face[2]);
+    std::vector<Eigen::Vector3d> corners;
+    for (const std::uint32_t vertex : face) {
+      corners.push_back(mesh_.vertices[vertex].cast<double>());
+    }
+    const auto triangles = TrianglesOfFace(corners);
+    if (!triangles) {
+      Fail(fmt::format("a face that is not convex has {} corners, must have at most {}",
+                       face.size(), kMostConcaveCorners));
+    }
+    for (const auto& [a, b, c] : *triangles) mesh_.AddTriangle(face[a], face[b], face[c]);
   }
 
   std::string path_;
   std::string text_;
   std::size_t at_ = 0;
   PlyEncoding encoding_ = PlyEncoding::kAscii;
+  std::vector<std::uint32_t> faces_;  // of each the number of its corners, and they
+  std::size_t triangles_ = 0;         // of all faces
   TriangleMesh mesh_;
 };
 

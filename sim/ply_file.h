@@ -8,8 +8,8 @@
 
 namespace depthgrid {
 
-// The vertices' x, y, z and the faces' polygons, cut into fans; all else is passed over. Throws
-// InputError for anything that is not a whole PLY file.
+// The vertices' x, y, z and the faces' polygons, cut into triangles; all else is passed over.
+// Throws InputError for anything that is not a whole PLY file.
 TriangleMesh ReadPly(const std::string& path);
 
 }  // namespace depthgrid
