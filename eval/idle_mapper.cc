@@ -33,7 +33,9 @@ void AddGrid(const GridOptions& grid, IdleSettingList& idle) {
         {"mapper.grid.surface_radius_m", Stands(grid, "mapper.grid", "min_surface_share")});
   }
   if (counts) return;
-  idle.push_back({"mapper.grid.min_observations", Stands(grid, "mapper.grid", "raster")});
+  for (const char* key : {"mapper.grid.min_observations", "mapper.grid.earlier_scans"}) {
+    idle.push_back({key, Stands(grid, "mapper.grid", "raster")});
+  }
   // Thinning walls reads it too.
   if (keeps_walls) {
     idle.push_back({"mapper.grid.hit_weight", Stands(grid, "mapper.grid", "raster")});

@@ -71,6 +71,7 @@ TEST(IdleSettings, AreThoseThatNothingReads) {
       {"mapper.keep.place_m", "mapper: {keep: {first_frames: 0}}", "{}"},
       {"mapper.grid.surface_radius_m", "mapper: {grid: {min_surface_share: 0}}", "{}"},
       {"mapper.grid.min_observations", "mapper: {grid: {raster: log_odds}}", "{}"},
+      {"mapper.grid.earlier_scans", "mapper: {grid: {raster: log_odds}}", "{}"},
       {"mapper.grid.hit_weight", "mapper: {grid: {raster: log_odds, min_surface_share: 0}}",
        "mapper: {grid: {raster: log_odds}}"},
       {"mapper.match.search", "mapper: {method: paper, match: {stages: least_squares}}",
