@@ -256,10 +256,10 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
 // A motion is found to the best of what is near, however bad that is.
 std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments,
                                                const MapQuality& quality, const ScoredMaps& maps,
-                                               const PlacedWalls& walls) {
+                                               const PlacedWalls& walls, bool is_doubted) {
   constexpr double kLiesOver = 0.6;
-  if (!quality.registered || !quality.registered->f1_10cm) return std::nullopt;
-  const double f1 = *quality.registered->f1_10cm;
+  if (!quality.walls.chamfer_m) return std::nullopt;  // none, or none to compare with
+  const double f1 = quality.registered ? quality.registered->f1_10cm.value_or(0.0) : 0.0;
   if (f1 >= kLiesOver) return std::nullopt;
   if (const auto turn = TurnOf(maps.truth, walls, maps.scored, f1)) {
     std::string what = turn->mirrored ? "mirrored" : "";
@@ -270,6 +270,7 @@ std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments
     return fmt::format("{}: {}, it lies over {}: are its axes others, or its image's rows?",
                        arguments.estimate, what, arguments.reference);
   }
+  if (is_doubted) return std::nullopt;
   return fmt::format(
       "{}: no motion lays its walls over those of {} (F1 at 10 cm {:.2f} after the best one found, "
       "of those up to about 0.8 m): farther off, turned, of another place, or wrong",
@@ -329,7 +330,8 @@ void EvalMap(const EvalMapArguments& arguments) {
   if (!note.empty()) score.compared_cell_m = truth.geometry.resolution_m;
   std::vector<std::string> doubts = DoubtsOf(arguments, score, observable_path);
   const ScoredMaps maps = OnOneGeometry(truth, StatesOf(estimate), observable);
-  if (const auto doubt = DoubtOfRegistration(arguments, *score.quality, maps, walls)) {
+  if (const auto doubt =
+          DoubtOfRegistration(arguments, *score.quality, maps, walls, !doubts.empty())) {
     doubts.push_back(*doubt);
   }
   Warn(doubts);
