@@ -91,12 +91,12 @@ TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
             "seen\n");
 }
 
-// A room's walls in cells of 0.05 m, 60 x 40, with a wall across.
+// A room's walls in cells of 0.05 m, 60 x 20, with a wall across.
 std::string RoomPgm() {
-  std::string pgm = "P2 60 40 255\n";
-  for (int row = 0; row < 40; ++row) {
+  std::string pgm = "P2 60 20 255\n";
+  for (int row = 0; row < 20; ++row) {
     for (int x = 0; x < 60; ++x) {
-      const bool wall = row == 0 || row == 39 || x == 0 || x == 59 || (x == 20 && row < 25);
+      const bool wall = row == 0 || row == 19 || x == 0 || x == 59 || (x == 20 && row < 12);
       pgm += wall ? "0 " : "254 ";
     }
     pgm += "\n";
@@ -141,7 +141,7 @@ TEST_F(EvalMap, AMapThatIsTurnedIsSaid) {
                     "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
   };
   write_at("truth.yaml", "0, 0, 0");
-  write_at("turned.yaml", "2.5, -0.5, 1.5707963267948966");
+  write_at("turned.yaml", "2, -1, 1.5707963267948966");
   EXPECT_THAT(Program("eval map truth.yaml turned.yaml").err,
               HasSubstr("turned.yaml: turned by -90 degrees, it lies over truth.yaml"));
 }
