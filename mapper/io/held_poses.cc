@@ -36,6 +36,7 @@ void HeldPoses::Add(const Pose2& odom_from_laser, std::vector<double> range_m, d
   held_.push_back(false);
   const std::size_t scan = held_.size() - 1;
   if (!pose_ || *pose_ != odom_from_laser) {
+    moves_ = pose_.has_value();
     pose_ = odom_from_laser;
     first_m_ = range_m;
     moved_from_ = scan + 1;
@@ -44,7 +45,7 @@ void HeldPoses::Add(const Pose2& odom_from_laser, std::vector<double> range_m, d
     const double since_last_m = DifferenceM(last_m_, range_m);
     const double moved_m = kMovedM + kTimesNoise * since_last_m;
     if (since_first_m < kBegunShare * moved_m) moved_from_ = scan + 1;
-    if (since_first_m > moved_m) {
+    if (moves_ && since_first_m > moved_m) {
       for (std::size_t i = moved_from_; i <= scan; ++i) held_[i] = true;
     }
   }

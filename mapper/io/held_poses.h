@@ -20,12 +20,13 @@ class HeldPoses {
 
   // For each scan added: whether its pose, to the last bit that of the scan before, was held while
   // half of what the scan shows moved. Somebody who fills the view of a robot that stands is such a
-  // motion as well.
+  // motion as well. None in a log whose poses have not moved yet, as there is no odometry.
   const std::vector<bool>& held() const { return held_; }
   int count() const { return static_cast<int>(std::count(held_.begin(), held_.end(), true)); }
 
  private:
   std::optional<Pose2> pose_;
+  bool moves_ = false;           // there was another pose before
   std::vector<double> first_m_;  // the readings where this pose came first
   std::vector<double> last_m_;
   std::size_t moved_from_ = 0;  // scans from here to the last one show that they moved

@@ -35,10 +35,12 @@ std::vector<double> ReadingsAt(const Pose2& pose, double sigma_m, RandomStream& 
   return range_m;
 }
 
-// Stands for 20 scans, drives for 40, and its odometry stops at scan `stalled`.
-HeldPoses Drive(int stalled, double sigma_m) {
+// Stands for 20 scans, drives for 40, and its odometry stops at scan `stalled`. `before`: of
+// another place, where it was before.
+HeldPoses Drive(int stalled, double sigma_m, bool before = false) {
   RandomStream random(7, RandomStage::kTest);
   HeldPoses poses;
+  if (before) poses.Add({0.5, 0.0, 0.0}, ReadingsAt({0.5, 0.0, 0.0}, sigma_m, random), 0.1, 80.0);
   for (int i = 0; i < 60; ++i) {
     const Pose2 truth{0.05 * std::max(0, i - 20), 0.0, 0.005 * std::max(0, i - 20)};
     const Pose2 told{0.05 * std::max(0, std::min(i, stalled) - 20), 0.0, 0.0};
@@ -65,10 +67,13 @@ TEST(HeldPoses, ARobotThatStandsHoldsNone) {
 
 // Standing for long with the odometry stopped: only what was driven is held.
 TEST(HeldPoses, WhatStoodIsNotHeld) {
-  const HeldPoses poses = Drive(0, 0.01);
-  for (int i = 0; i <= 20; ++i) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i;
+  const HeldPoses poses = Drive(0, 0.01, true);
+  for (int i = 0; i <= 21; ++i) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i;
   EXPECT_GE(poses.count(), 35);
 }
+
+// A log without odometry.
+TEST(HeldPoses, PosesThatNeverMoveAreNoOdometry) { EXPECT_EQ(Drive(0, 0.01).count(), 0); }
 
 // A log, of which a part is mapped: frames are counted as in the whole.
 TEST(HeldPoses, OfALogHaveNoPose) {
