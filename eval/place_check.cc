@@ -94,12 +94,12 @@ std::string TextOf(const LostFrames& lost) {
 std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {
   MapDrawing before(grid);
   for (const MappedFrame& frame : run.result.mapped) {
-    if (frame.frame < 0) before.Add(frame.frame, *frame.obstacles, frame.map_from_base);
+    if (frame.of_prior_map()) before.Add(frame.frame, *frame.obstacles, frame.map_from_base);
   }
   const DistanceField walls(before.Map(), kOffWallM + grid.resolution_m);
   MapAgreement agreement;
   for (const MappedFrame& frame : run.result.mapped) {
-    if (frame.frame >= 0) Compare(*frame.obstacles, frame.map_from_base, walls, agreement);
+    if (!frame.of_prior_map()) Compare(*frame.obstacles, frame.map_from_base, walls, agreement);
   }
   if (agreement.share_against() <= kMuchAgainst) return {};
   return agreement;

@@ -11,6 +11,7 @@
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/rotation_check.h"
 #include "mapper/core/angle.h"
+#include "mapper/core/level.h"
 
 namespace depthgrid {
 namespace {
@@ -52,7 +53,7 @@ Doubt DoubtOfDirection(const std::vector<PosePair>& pairs, const TrajectoryNames
 }
 
 // A robot base's axes are x forward, y left, z up; a camera's x right, y down, z forward.
-Eigen::Quaterniond BaseFromCamera() { return {0.5, -0.5, 0.5, -0.5}; }
+Eigen::Quaterniond BaseFromCamera() { return CameraOf(Pose2{}, 0.0).rotation; }
 
 double AngleOf(const Eigen::Quaterniond& rotation) {
   return rotation.angularDistance(Eigen::Quaterniond::Identity());

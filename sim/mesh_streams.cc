@@ -1,12 +1,14 @@
 #include <assimp/MemoryIOWrapper.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <fstream>
 #include <string_view>
 
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 #include "sim/mesh_file.h"
 #include "sim/mesh_streams_impl.h"
 #include "sim/scene_limits.h"
@@ -14,16 +16,13 @@
 namespace depthgrid {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // Formats that are text alone: in others these bytes may be anything.
 bool BeginsWithMark(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   if (extension != ".obj" && extension != ".mtl" && extension != ".gltf") return false;
-  std::string begin(kByteOrderMark.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return begin == kByteOrderMark;
+  std::array<char, 3> begin = {};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return WithoutByteOrderMark({begin.data(), begin.size()}).empty();
 }
 
 }  // namespace
@@ -54,7 +53,8 @@ bool MeshStreams::Exists(const char* path) const {
 Assimp::IOStream* MeshStreams::Open(const char* path, const char* mode) {
   const std::string name = NameOnDisk(path);
   if (!BeginsWithMark(name)) return DefaultIOSystem::Open(name.c_str(), mode);
-  const std::string text = ReadFile(name, kMaxMeshFileBytes).substr(kByteOrderMark.size());
+  const std::string whole_text = ReadFile(name, kMaxMeshFileBytes);
+  const std::string_view text = WithoutByteOrderMark(whole_text);
   auto* const bytes = new std::uint8_t[text.size()];  // the stream's own from here on
   std::copy(text.begin(), text.end(), bytes);
   return new Assimp::MemoryIOStream(bytes, text.size(), true);

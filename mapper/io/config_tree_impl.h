@@ -21,7 +21,7 @@ struct ConfigOverride {
 
 struct Config::Tree {
   // Becomes part of another tree by reset(): an assignment copies the list of all nodes there are,
-  // and reading a scene item by item took half a second.
+  // and took half of the time that reading a scene item by item takes.
   YAML::Node root{YAML::NodeType::Map};
   std::string place;
   std::string subject;  // what errors name behind file and line; may be empty
