@@ -1,5 +1,7 @@
 #include "eval/run_collection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -19,8 +21,20 @@ namespace fs = std::filesystem;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
+// A run's own file of scores, or those that `eval trajectory --json` and `eval map --json` print of
+// another mapper's.
+std::vector<std::string> ScoreFiles(const fs::path& run) {
+  const std::string all = (run / "metrics.json").string();
+  if (fs::exists(all)) return {all};
+  std::vector<std::string> files;
+  for (const char* name : {"trajectory.json", "map.json"}) {
+    if (fs::exists(run / name)) files.push_back((run / name).string());
+  }
+  return files;
+}
+
 bool IsRun(const fs::path& folder) {
-  return fs::exists(folder / "metrics.json") && fs::exists(folder / "run.yaml");
+  return fs::exists(folder / "run.yaml") && !ScoreFiles(folder).empty();
 }
 
 std::vector<fs::path> RunFolders(const std::string& folder) {
@@ -32,7 +46,9 @@ std::vector<fs::path> RunFolders(const std::string& folder) {
   }
   std::sort(runs.begin(), runs.end());
   if (runs.empty()) {
-    throw InputError(folder, "holds no sweep and no run with scores (run.yaml and metrics.json)");
+    throw InputError(folder,
+                     "holds no sweep and no run with scores (run.yaml and metrics.json, or "
+                     "trajectory.json, map.json)");
   }
   return runs;
 }
@@ -51,9 +67,16 @@ void AddParameters(const fs::path& run, SweepResults& table) {
   }
 }
 
-// The row's figures; columns met for the first time are empty for the rows before.
-void AddMetrics(const fs::path& run, SweepResults& table) {
-  const std::string file = (run / "metrics.json").string();
+// What no run states tells none apart.
+void DropUnstated(SweepResults& table) {
+  std::erase_if(table.parameters, [](const SweepParameter& parameter) {
+    return std::all_of(parameter.texts.begin(), parameter.texts.end(),
+                       [](const std::string& text) { return text.empty(); });
+  });
+}
+
+// Figures of the last row; columns met for the first time are empty for the rows before.
+void AddMetrics(const std::string& file, SweepResults& table) {
   const std::size_t row = table.rows() - 1;
   for (const auto& [name, value] : MetricColumns(ReadFile(file), file)) {
     auto column = std::find_if(table.metrics.begin(), table.metrics.end(),
@@ -61,10 +84,12 @@ void AddMetrics(const fs::path& run, SweepResults& table) {
     if (column == table.metrics.end()) {
       column = table.metrics.insert(table.metrics.end(), {name, {}});
     }
+    if (column->values.size() > row) {
+      throw InputError(file, fmt::format("has {}, which another file of the run has too", name));
+    }
     column->values.resize(row, kNothing);
     column->values.push_back(value);
   }
-  for (SweepColumn& column : table.metrics) column.values.resize(table.rows(), kNothing);
 }
 
 }  // namespace
@@ -80,8 +105,10 @@ SweepResults ReadRuns(const std::string& folder) {
     table.points.push_back(0);
     table.failures.emplace_back();
     AddParameters(run, table);
-    AddMetrics(run, table);
+    for (const std::string& file : ScoreFiles(run)) AddMetrics(file, table);
+    for (SweepColumn& column : table.metrics) column.values.resize(table.rows(), kNothing);
   }
+  DropUnstated(table);
   table.planned_runs = static_cast<int>(table.rows());
   return table;
 }

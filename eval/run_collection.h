@@ -7,8 +7,10 @@
 
 namespace depthgrid {
 
-// Runs that are no sweep's have as parameters what tells which of two runs belong together: scene,
-// trajectory, frames and the seeds of their run.yaml. Throws InputError when the folder holds none.
+// Runs that are no sweep's have as parameters what tells which of two runs belong together: of
+// scene, trajectory, frames and the seeds what their run.yaml states. The scores of a run are its
+// metrics.json, or, as of another mapper, trajectory.json and map.json with what `eval trajectory
+// --json` and `eval map --json` print. Throws InputError when the folder holds none.
 SweepResults ReadRuns(const std::string& folder);
 
 }  // namespace depthgrid

@@ -119,6 +119,25 @@ TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {
   EXPECT_TRUE(json["metrics"]["map.ssim"]["p_holm"].is_null());
 }
 
+TEST_F(ProgramCompare, AnotherMappersRunsArePairedByWhatTheyState) {
+  WriteRuns("a", kErrorsOfA);
+  for (std::size_t i = 0; i < kErrorsOfB.size(); ++i) {
+    const std::string run = fmt::format("other/{}", i);
+    std::filesystem::create_directories(Path(run));
+    Write(run + "/run.yaml", fmt::format("seed: {}\n", i + 1));
+    Write(run + "/trajectory.json",
+          fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", kErrorsOfB[i]));
+    Write(run + "/map.json", R"({"map": {"chamfer_m": 0.1}})");
+  }
+  const Outcome table = Program("compare a other");
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("10 pairs, paired by seed\n"));
+  EXPECT_THAT(table.out, HasSubstr("B better"));
+  Write("other/3/map.json", R"({"trajectory": {"est": {"mean_euclidean_m": 0.2}}})");
+  ExpectRefusal("compare a other",
+                {"other/3/map.json", kComparedScore, "which another file of the run has too"});
+}
+
 TEST_F(ProgramCompare, Refusals) {
   WriteRuns("a", kErrorsOfA);
   WriteRuns("b", {0.1, 0.2});
