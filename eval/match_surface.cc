@@ -1,5 +1,6 @@
 #include "eval/match_surface.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -19,16 +20,24 @@ MatchPoints EveryNth(const MatchPoints& points, int most) {
   return thinned;
 }
 
-double RmsResidual(const MatchPoints& points, const ProbabilityView& view,
-                   const Pose2& map_from_base) {
+// Root mean square of 1 - M over points turned already, moved by `offset_m`.
+double RmsResidual(const std::vector<Eigen::Vector2d>& turned, const ProbabilityView& view,
+                   const Eigen::Vector2d& offset_m) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    const Eigen::Vector2d point_in_map =
-        map_from_base * Eigen::Vector2d(points.x_m[i], points.y_m[i]);
-    const double residual = 1.0 - SampleBicubic(view, point_in_map).value;
+  for (const Eigen::Vector2d& point : turned) {
+    const double residual = 1.0 - BicubicValue(view, offset_m + point);
     sum += residual * residual;
   }
-  return points.size() > 0 ? std::sqrt(sum / points.size()) : 0.0;
+  return turned.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(turned.size()));
+}
+
+std::vector<Eigen::Vector2d> Turned(const MatchPoints& points, double yaw_rad) {
+  const Eigen::Rotation2Dd rotation(yaw_rad);
+  std::vector<Eigen::Vector2d> turned;
+  for (std::size_t i = 0; i < points.x_m.size(); ++i) {
+    turned.push_back(rotation * Eigen::Vector2d(points.x_m[i], points.y_m[i]));
+  }
+  return turned;
 }
 
 }  // namespace
@@ -39,21 +48,20 @@ MatchSurface MatchSurfaceAround(const MatchPoints& points, const ProbabilityView
   MatchSurface surface;
   surface.step_m = options.step_m;
   surface.half_steps = static_cast<int>(std::lround(options.half_window_m / options.step_m));
-  Pose2 pose = map_from_base;
+  const auto turned = Turned(thinned, map_from_base.yaw_rad);
   for (int y = -surface.half_steps; y <= surface.half_steps; ++y) {
     for (int x = -surface.half_steps; x <= surface.half_steps; ++x) {
-      pose.x_m = map_from_base.x_m + x * options.step_m;
-      pose.y_m = map_from_base.y_m + y * options.step_m;
-      surface.residual.push_back(RmsResidual(thinned, view, pose));
+      const Eigen::Vector2d offset_m(x * options.step_m, y * options.step_m);
+      surface.residual.push_back(RmsResidual(turned, view, map_from_base.translation() + offset_m));
     }
   }
   surface.yaw_step_rad = options.yaw_step_rad;
   const int half_yaws =
       static_cast<int>(std::lround(options.half_window_rad / options.yaw_step_rad));
   for (int i = -half_yaws; i <= half_yaws; ++i) {
-    surface.yaw_residual.push_back(RmsResidual(
-        thinned, view,
-        {map_from_base.x_m, map_from_base.y_m, map_from_base.yaw_rad + i * options.yaw_step_rad}));
+    const double yaw_rad = map_from_base.yaw_rad + i * options.yaw_step_rad;
+    surface.yaw_residual.push_back(
+        RmsResidual(Turned(thinned, yaw_rad), view, map_from_base.translation()));
   }
   return surface;
 }

@@ -23,21 +23,32 @@ SplineWeights CatmullRom(double t) {
           {-3.0 * t + 2.0, 9.0 * t - 5.0, -9.0 * t + 4.0, 3.0 * t - 1.0}};
 }
 
-}  // namespace
+// The 4 x 4 cells that a point's value is made of.
+struct Neighbours {
+  Cell first;
+  SplineWeights x;
+  SplineWeights y;
+};
 
-BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
+Neighbours NeighboursOf(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
   const double r = view.geometry.resolution_m;
   const double u = point_in_map.x() / r - 0.5;  // values sit at cell centres
   const double v = point_in_map.y() / r - 0.5;
   const double u0 = std::floor(u);
   const double v0 = std::floor(v);
-  const SplineWeights wx = CatmullRom(u - u0);
-  const SplineWeights wy = CatmullRom(v - v0);
+  return {
+      {static_cast<int>(u0) - 1, static_cast<int>(v0) - 1}, CatmullRom(u - u0), CatmullRom(v - v0)};
+}
+
+}  // namespace
+
+BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
+  const double r = view.geometry.resolution_m;
+  const auto [first, wx, wy] = NeighboursOf(view, point_in_map);
   BicubicSample sample;
-  for (std::size_t j = 0; j < 4; ++j) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double p = view.At({static_cast<int>(u0) - 1 + static_cast<int>(i),
-                                static_cast<int>(v0) - 1 + static_cast<int>(j)});
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      const double p = view.At({first.x + i, first.y + j});
       sample.value += wx.value[i] * wy.value[j] * p;
       sample.dx += wx.first[i] * wy.value[j] * p / r;
       sample.dy += wx.value[i] * wy.first[j] * p / r;
@@ -47,6 +58,17 @@ BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& 
     }
   }
   return sample;
+}
+
+double BicubicValue(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
+  const auto [first, wx, wy] = NeighboursOf(view, point_in_map);
+  double value = 0.0;
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      value += wx.value[i] * wy.value[j] * view.At({first.x + i, first.y + j});
+    }
+  }
+  return value;
 }
 
 }  // namespace depthgrid

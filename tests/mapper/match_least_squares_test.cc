@@ -54,6 +54,7 @@ TEST(Bicubic, DerivativesAreThoseOfTheValue) {
     const Eigen::Vector2d ex{h, 0.0};
     const Eigen::Vector2d ey{0.0, h};
     const BicubicSample m = SampleBicubic(view, p);
+    EXPECT_EQ(BicubicValue(view, p), m.value);
     const BicubicSample xp = SampleBicubic(view, p + ex), xm = SampleBicubic(view, p - ex);
     const BicubicSample yp = SampleBicubic(view, p + ey), ym = SampleBicubic(view, p - ey);
     EXPECT_NEAR(m.dx, (xp.value - xm.value) / (2 * h), 1e-5);
