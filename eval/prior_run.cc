@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
+#include <utility>
 
+#include "eval/csv_table.h"
 #include "eval/hash.h"
 #include "eval/run_files.h"
 #include "mapper/core/error.h"
+#include "mapper/core/median.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/scan_file.h"
@@ -97,6 +101,20 @@ std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperO
   if (there.empty()) return {};
   return fmt::format("{}: the map was made with {}, and here it is {}: give the same --set", path,
                      fmt::join(there, ", "), fmt::join(here, ", "));
+}
+
+std::optional<double> CameraHeightOfPrior(const std::string& folder) {
+  const fs::path run(folder);
+  const std::string frames = (run / "frames.csv").string();
+  if (Config::FromFile((run / "run.yaml").string()).Text("localise") == "true") return {};
+  if (!fs::exists(frames)) return {};
+  const CsvTable table = ReadCsv(frames);
+  const auto column = table.columns.find("camera_height_m");
+  if (column == table.columns.end()) return {};
+  std::vector<double> heights_m = column->second;
+  std::erase_if(heights_m, [](double height_m) { return std::isnan(height_m); });
+  if (heights_m.empty()) return {};
+  return UpperMedian(std::move(heights_m));
 }
 
 }  // namespace depthgrid

@@ -46,6 +46,10 @@ std::string MotionCells(const FrameReport& report) {
   return fmt::format("{},{}", report.motion_from, CovarianceCells(report.motion_covariance));
 }
 
+std::string HeightCell(const FrameReport& report) {
+  return report.stand ? fmt::format("{:.4f}", report.stand->height_m) : "";
+}
+
 constexpr const char* kFrameColumns =
     "frame,stamp_s,slam_epoch,slam_x_m,slam_y_m,slam_yaw_rad,map_x_m,map_y_m,map_yaw_rad,"
     "match_x_m,match_y_m,match_yaw_rad,gain_forward,gain_left,gain_yaw,"
@@ -53,8 +57,8 @@ constexpr const char* kFrameColumns =
     "innovation_chi2,innovation_directions,match_score,match_iterations,innovation_rejected,cov_xx,"
     "cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
     "cov_yawyaw,motion_from,motion_cov_xx,motion_cov_xy,motion_cov_xyaw,motion_cov_yy,"
-    "motion_cov_yyaw,motion_cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,slam_error_m,"
-    "map_error_m\n";
+    "motion_cov_yyaw,motion_cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,"
+    "camera_height_m,slam_error_m,map_error_m\n";
 
 }  // namespace
 
@@ -67,11 +71,11 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
   for (const FrameReport& r : run.reports) {
     const auto true_pose = truth_at.find(r.stamp_s);
     const Pose3* true_camera = true_pose == truth_at.end() ? nullptr : true_pose->second;
-    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    r.index, r.stamp_s, r.slam_epoch, BaseCells(r.slam_from_camera),
                    BaseCells(r.map_from_camera), MatchCells(r), CovarianceCells(r.covariance),
                    MotionCells(r), r.beams, r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0,
-                   ErrorCell(r.slam_from_camera, true_camera),
+                   HeightCell(r), ErrorCell(r.slam_from_camera, true_camera),
                    ErrorCell(r.map_from_camera, true_camera));
   }
   return csv;

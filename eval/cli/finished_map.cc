@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "eval/cli/console.h"
@@ -10,6 +11,7 @@
 #include "eval/run_folder.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -142,6 +144,24 @@ std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart
       "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
       "off: nothing that was seen ends there",
       map, DegFromRad(unsure->direction_rad), unsure->reach_m)};
+}
+
+std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run) {
+  const std::string& map = request.arguments.map;
+  const auto of_map_m = CameraHeightOfPrior(map);
+  std::vector<double> heights_m;
+  for (const FrameReport& report : run.reports) {
+    if (report.stand) heights_m.push_back(report.stand->height_m);
+  }
+  if (!of_map_m || heights_m.empty()) return {};
+  const double height_m = UpperMedian(std::move(heights_m));
+  // Then nothing is in both slices.
+  const double slice_m = 2.0 * request.settings.mapper.scan.slice_half_height_m;
+  if (slice_m == 0.0 || std::abs(height_m - *of_map_m) <= slice_m) return {};
+  return fmt::format(
+      "{}: made with the camera {:.2f} m above the floor, which is {:.2f} m here: what is matched "
+      "is what stands at the camera's height, of furniture something else, so poses are less sure",
+      map, *of_map_m, height_m);
 }
 
 void KeepMap(const std::string& map, const OutputFolder& folder) {

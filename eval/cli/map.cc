@@ -246,6 +246,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   if (!begin) return warnings;
   const auto doubt = DoubtOfPrior(arguments.map, settings.mapper, run.camera.has_value());
   if (doubt) warnings.push_back(*doubt);
+  if (const auto height = DoubtOfHeight(request, run)) warnings.push_back(*height);
   for (std::string& line : DoubtsOfPlace(request, *begin, run)) warnings.push_back(std::move(line));
   return warnings;
 }

@@ -36,6 +36,20 @@ TEST_F(ProgramView, AnEmptyMapIsSaidWithItsCause) {
   EXPECT_EQ(said("map seq"), "");
 }
 
+TEST_F(ProgramView, AMapOfACameraAtAnotherHeightIsWarnedOf) {
+  const auto said = [&](const std::string& heights) {
+    Write("first/frames.csv", heights);
+    return Program("map seq --map first --localise -o out --force").err;
+  };
+  const auto says = HasSubstr("first: made with the camera 0.70 m above the floor, which is 1.1");
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Succeed("map seq -o first");
+  EXPECT_THAT(Program("map seq --map first --localise -o out").err, Not(HasSubstr("height")));
+  EXPECT_THAT(said("frame,camera_height_m\n0,0.8\n1,0.6\n2,\n3,0.7\n"), says);
+  EXPECT_THAT(said("frame,camera_height_m\n0,0.95\n1,\n"), Not(HasSubstr("height")));
+  EXPECT_THAT(said("frame\n0\n"), Not(HasSubstr("height")));  // of an earlier version
+}
+
 // Three rows of an image make an obstacle, but no slice of so few pixels has them.
 TEST_F(ProgramView, ThatNothingCanBeMatchedIsSaidWithItsCause) {
   const std::string said =
