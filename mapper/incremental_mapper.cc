@@ -96,8 +96,8 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   const FusedPose fused = Fuse(prediction, report);
   Insert(scans, prediction, fused, report);
   Relocate(scans, report);
-  report.guessed = relocation.unsettled();
   FindLoops(scans, report);
+  report.guessed = relocation.unsettled();
 }
 
 void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
@@ -154,6 +154,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
       loop_closer.Close(frame.loops, history, frames, provisional, *reference, errors.Mapped());
   report.loops_accepted = outcome.accepted;
   report.loops_rejected = outcome.rejected;
+  relocation.Joined(outcome.held);
   if (!outcome.adjusted) return;
   const Pose2 newest = outcome.map_from_base.back();
   outcome.map_from_base.resize(mapped.all().size());
@@ -183,6 +184,7 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
   report.loops_accepted += outcome.accepted;
   report.loops_rejected += outcome.rejected;
   loop_search->Forget();
+  relocation.Joined(outcome.held);
   if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
 }
 

@@ -6,6 +6,17 @@
 #include "mapper/mapped_frames.h"
 
 namespace depthgrid {
+namespace {
+
+std::vector<PlanarLoop> Held(const std::vector<PlanarLoop>& loops, const Adjustment& adjustment) {
+  std::vector<PlanarLoop> held;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (adjustment.loop_accepted[i]) held.push_back(loops[i]);
+  }
+  return held;
+}
+
+}  // namespace
 
 void LoopOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether SLAM's loops correct the map");
@@ -45,6 +56,7 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     outcome.adjusted = true;
     outcome.map_from_base = std::move(adjustment.map_from_base);
     outcome.covariance = std::move(adjustment.covariance);
+    outcome.held = Held(loops_, adjustment);
     for (std::size_t i = known; i < loops_.size(); ++i) {
       outcome.accepted += adjustment.loop_accepted[i] ? 1 : 0;
     }
@@ -86,6 +98,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
   outcome.covariance = adjustment.covariance;
   outcome.accepted = static_cast<int>(loops_.size() - known.size());
   outcome.rejected -= outcome.accepted;
+  outcome.held = Held(loops_, adjustment);
   for (PlanarLoop& loop : loops_) loop.on_trial = false;
   return outcome;
 }

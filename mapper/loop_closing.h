@@ -39,6 +39,7 @@ class LoopCloser {
     Eigen::MatrixXd covariance;        // as of Adjustment, of the frames asked for
     int accepted = 0;                  // of the new events
     int rejected = 0;
+    std::vector<PlanarLoop> held;  // all that the adjustment was made with, old ones included
   };
   // `frames` are the mapped frames; the newest input frame may be the last of them, provisionally,
   // to be placed by its loops.

@@ -149,6 +149,13 @@ bool Relocation::Begins(double share, int next_frame) {
   return true;
 }
 
+void Relocation::Joined(const std::vector<PlanarLoop>& loops) {
+  for (const PlanarLoop& loop : loops) {
+    const auto [earlier, later] = std::minmax(loop.first, loop.second);
+    if (earlier < first_frame_ && later >= first_frame_) active_ = gave_up_ = false;
+  }
+}
+
 void Relocation::GuessMoved() {
   recent_share_ = 0.0;
   waiting_.reset();

@@ -76,6 +76,10 @@ class Relocation {
   bool unsettled() const { return active_ || gave_up_; }
   int first_frame() const { return first_frame_; }
 
+  // After an adjustment with these loops: one that joins frames before and after the loss says where
+  // the latter are.
+  void Joined(const std::vector<PlanarLoop>& loops);
+
   // All since first_frame() was moved to another guess.
   void GuessMoved();
 

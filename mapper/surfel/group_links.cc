@@ -10,6 +10,15 @@ Pose2 RelativePose(const GroupLink& link, const std::vector<Pose2>& map_from_gro
                  map_from_group[static_cast<std::size_t>(link.second)]);
 }
 
+double WeightOf(const GroupLink& link, double sigmas) {
+  const double huber = link.huber_sigmas;
+  const double cauchy = link.cauchy_sigmas;
+  double weight = 1.0;
+  if (huber > 0.0 && sigmas > huber) weight *= huber / sigmas;
+  if (cauchy > 0.0) weight /= 1.0 + sigmas * sigmas / (cauchy * cauchy);
+  return weight;
+}
+
 }  // namespace
 
 Eigen::Vector3d LinkError(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
@@ -28,9 +37,8 @@ Eigen::Matrix3d ErrorByFirst(const GroupLink& link, const std::vector<Pose2>& ma
 void AddLink(const GroupLink& link, const std::vector<Pose2>& map_from_group, PoseMatrix& h,
              Eigen::VectorXd& g) {
   const Eigen::Vector3d error = LinkError(link, map_from_group);
-  Eigen::Vector3d weight = link.sigma.cwiseProduct(link.sigma).cwiseInverse();
-  const double sigmas = LinkSigmas(link, map_from_group);
-  if (link.huber_sigmas > 0.0 && sigmas > link.huber_sigmas) weight *= link.huber_sigmas / sigmas;
+  const Eigen::Vector3d weight = WeightOf(link, LinkSigmas(link, map_from_group)) *
+                                 link.sigma.cwiseProduct(link.sigma).cwiseInverse();
   const Eigen::Matrix3d by_first = ErrorByFirst(link, map_from_group);
   const Eigen::Matrix3d weighted = weight.asDiagonal() * by_first;
   const Eigen::Matrix3d first_block = by_first.transpose() * weighted;

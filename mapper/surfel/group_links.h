@@ -15,6 +15,7 @@ struct GroupLink {
   Pose2 first_from_second;                          // measured
   Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // of its error, in axes of `second`
   double huber_sigmas = 0.0;                        // larger errors count linearly; 0: never
+  double cauchy_sigmas = 0.0;                       // larger errors count ever less; 0: never
   bool on_trial = false;                            // as of PlanarLoop
 };
 

@@ -6,6 +6,7 @@
 
 #include "mapper/reference_map.h"
 #include "mapper/surfel/landmarks.h"
+#include "mapper/surfel/loop_jury.h"
 #include "mapper/surfel/motion_persistence.h"
 #include "mapper/surfel/motion_sigma.h"
 #include "mapper/surfel/skyline_matrix.h"
@@ -19,10 +20,15 @@ namespace {
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
 // And how well a prior map's adjustment has: it had all that was seen, and loops.
 const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
-// Across a gap in SLAM's motion groups lie as the online estimate has them, robustly: what ties
-// them together where both see nothing in common.
+// Across a gap in SLAM's motion groups lie as the online estimate has them, or as loops have bent
+// it: what ties them together where both see nothing in common.
 constexpr double kGapHuberSigmas = 2.0;
-constexpr int kLoopIterations = 5;
+// To loops it gives way entirely. If it pulled on however far it is off, a loop that turns what lies
+// beyond would lose (docs/math.md, "Epochs").
+constexpr double kGapCauchySigmas = 2.0;
+// A gap of 20 m takes ten steps, what has none three.
+constexpr int kLoopIterations = 20;
+constexpr double kLoopsClosed = 1e-4;  // m and rad of the last step
 // Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where
 // they were and are known to be wrong.
 constexpr double kSettledShare = 0.7;
@@ -77,34 +83,35 @@ bool Factor(PoseMatrix& h) {
   return h.Factor();
 }
 
-// Solves for small motions of all groups and applies them.
-void Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
-          std::vector<Pose2>& map_from_group) {
+// Solves for small motions of all groups and applies them. Returns the largest, m or rad.
+double Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
+            std::vector<Pose2>& map_from_group) {
   const Eigen::VectorXd step = factored.Solve(g);
   for (std::size_t i = 0; i < map_from_group.size(); ++i) {
     const Eigen::Vector3d motion = step.segment<3>(3 * static_cast<Eigen::Index>(i));
     map_from_group[i] = map_from_group[i] * Pose2::FromVector(motion);
   }
+  return step.lpNorm<Eigen::Infinity>();
 }
 
-// From the group before, across a gap.
-GroupLink GapLink(const Problem& problem, std::size_t group) {
+// From the group before, across a gap, as these poses have it.
+GroupLink GapLink(std::size_t group, const std::vector<Pose2>& map_from_group) {
   const int second = static_cast<int>(group);
-  return {second - 1, second,
-          Between(problem.groups[group - 1].map_from_group, problem.groups[group].map_from_group),
-          kEpochSigma, kGapHuberSigmas};
+  return {second - 1, second, Between(map_from_group[group - 1], map_from_group[group]),
+          kEpochSigma};
 }
 
 // What is known of groups apart from SLAM's motion: ties to earlier ones than the one before, and
-// how the groups of a prior map lie.
-std::vector<GroupLink> SettledLinks(const Problem& problem) {
+// how the groups of a prior map lie. `before`: the poses before surfels move them.
+std::vector<GroupLink> SettledLinks(const Problem& problem, const std::vector<Pose2>& before) {
   std::vector<GroupLink> links;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
     const GroupMotion& motion = problem.motions[g];
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
     if (!motion.known) {
-      links.push_back(GapLink(problem, g));
+      links.push_back(GapLink(g, before));
+      links.back().huber_sigmas = kGapHuberSigmas;
       continue;
     }
     if (!motion.of_prior_map) continue;
@@ -121,7 +128,8 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     const int second = static_cast<int>(g);
     const GroupMotion& motion = problem.motions[g];
     if (!motion.known && !motion.tie) {
-      links.push_back(GapLink(problem, g));
+      links.push_back(GapLink(g, map_from_group));
+      links.back().cauchy_sigmas = kGapCauchySigmas;
       continue;
     }
     const int first = motion.tie ? motion.tie->first : second - 1;
@@ -134,7 +142,7 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     Eigen::VectorXd g = Eigen::VectorXd::Zero(h->size());
     for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
     if (!Factor(*h)) return;
-    Step(*h, g, map_from_group);
+    if (Step(*h, g, map_from_group) < kLoopsClosed) return;
   }
 }
 
@@ -196,15 +204,15 @@ std::vector<Eigen::Vector3d> FirstShares(const Problem& problem,
 
 // One Gauss-Newton step of everything: landmarks are found anew at the current poses, and what is
 // known of the prior afterwards. False when nothing could be solved.
-bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops, double gate_m,
-                JointResult& result) {
+bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops,
+                const std::vector<Pose2>& before, double gate_m, JointResult& result) {
   result.factored.reset();  // two would be twice the memory
   std::vector<Pose2>& map_from_group = result.map_from_group;
   const JointOptions& options = problem.options;
   const AssociationGate gate{kAlongShare * options.landmark_m, gate_m,
                              std::cos(RadFromDeg(options.max_angle_deg))};
   const Landmarks landmarks(problem.groups, map_from_group, gate);
-  std::vector<GroupLink> links = SettledLinks(problem);
+  std::vector<GroupLink> links = SettledLinks(problem, before);
   links.insert(links.end(), loops.begin(), loops.end());
   std::vector<int> first =
       ChainEnvelope(problem.groups.size(), options.learn_persistence ? 2 : 1, links);
@@ -244,12 +252,13 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
   result.motion_sigma = MotionSigma(unit, result.map_from_group, FirstShares(problem, unit));
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
+  const std::vector<Pose2> before = result.map_from_group;
   bool settled = true;
   for (int round = 0;
        round < problem.options.rounds || (!settled && round < problem.options.most_rounds);
        ++round) {
     const Eigen::Vector3d sigma_before = result.motion_sigma;
-    if (!AdjustOnce(problem, loops, GateOf(round, problem.options), result)) break;
+    if (!AdjustOnce(problem, loops, before, GateOf(round, problem.options), result)) break;
     settled = (result.motion_sigma.array() >= kSettledShare * sigma_before.array()).all();
   }
   return result;
@@ -295,31 +304,19 @@ JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
                           const std::vector<GroupMotion>& motions,
                           const std::vector<GroupLink>& loops, const JointOptions& options) {
   const Problem problem{groups, motions, options};
-  std::vector<bool> accepted(loops.size(), true);
+  LoopJury jury(loops, options.max_loop_sigmas);
   while (true) {
-    std::vector<GroupLink> used;
+    std::vector<GroupLink> believed;
     for (std::size_t i = 0; i < loops.size(); ++i) {
       const bool joins_two = loops[i].first != loops[i].second;
-      if (!accepted[i] || !joins_two) continue;
-      used.push_back(loops[i]);
-      used.back().huber_sigmas = options.loop_huber_sigmas;
+      if (!jury.accepted()[i] || !joins_two) continue;
+      believed.push_back(loops[i]);
+      believed.back().huber_sigmas = options.loop_huber_sigmas;
     }
-    JointResult result = Adjust(problem, used);
-    // The worst false loop is taken out first: it may be what made true ones look wrong.
-    double worst = options.max_loop_sigmas;
-    std::size_t worst_loop = loops.size();
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (!accepted[i]) continue;
-      const double sigmas = LinkSigmas(loops[i], result.map_from_group);
-      if (sigmas <= worst) continue;
-      worst = sigmas;
-      worst_loop = i;
-    }
-    if (worst_loop < loops.size()) accepted[worst_loop] = false;
-    if (worst_loop == loops.size() || loops[worst_loop].on_trial) {
-      result.loop_accepted = accepted;
-      return result;
-    }
+    JointResult result = Adjust(problem, believed);
+    if (jury.Changes(result.map_from_group)) continue;
+    result.loop_accepted = jury.accepted();
+    return result;
   }
 }
 

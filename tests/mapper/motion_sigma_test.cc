@@ -194,8 +194,11 @@ TEST(MotionGrowth, IsWhereSlamErrsByFarMoreThanElsewhere) {
   const std::vector<Eigen::Vector3d> growth = MotionGrowth(unit, believed, poses, shares, sigma);
   for (int i = 0; i < 60; ++i) {
     const double forward = growth[static_cast<std::size_t>(i)].x();
-    if (i >= 32 && i < 38) EXPECT_NEAR(forward, 100.0 * 1.4826 / std::sqrt(0.5), 1.0) << i;
-    if (i < 28 || i > 42) EXPECT_EQ(forward, 1.0) << i;
+    if (i >= 32 && i < 38) {
+      EXPECT_NEAR(forward, 100.0 * 1.4826 / std::sqrt(0.5), 1.0) << i;
+    } else if (i < 28 || i > 42) {
+      EXPECT_EQ(forward, 1.0) << i;
+    }
     EXPECT_EQ(growth[static_cast<std::size_t>(i)].z(), 1.0) << i;
   }
   // One wrong motion alone says nothing of its neighbours.
