@@ -82,6 +82,14 @@ MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
   return std::move(run_);
 }
 
+std::vector<double> TimesOfMappedFrames(const MappingRun& run) {
+  std::vector<double> frames_us;
+  for (const FrameReport& report : run.reports) {
+    if (report.slam_from_camera) frames_us.push_back(report.times.total_us);
+  }
+  return frames_us;
+}
+
 std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
   const auto add = [&](bool FrameReport::*happened, const char* what,
                        std::vector<std::string>& lines) {

@@ -58,6 +58,9 @@ class FrameRecorder {
   MappingRun run_;
 };
 
+// CPU time a frame, of those with a pose: the others are not mapped.
+std::vector<double> TimesOfMappedFrames(const MappingRun& run);
+
 // What the mapper did about poses that were wrong, a line each: slips and losses of SLAM.
 std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 

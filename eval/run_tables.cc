@@ -46,6 +46,11 @@ std::string MotionCells(const FrameReport& report) {
   return fmt::format("{},{}", report.motion_from, CovarianceCells(report.motion_covariance));
 }
 
+// Of a frame without a pose there may be no scan, and then there is no number.
+std::string BeamsCell(const FrameReport& report) {
+  return report.slam_from_camera || report.beams > 0 ? fmt::format("{}", report.beams) : "";
+}
+
 std::string HeightCell(const FrameReport& report) {
   return report.stand ? fmt::format("{:.4f}", report.stand->height_m) : "";
 }
@@ -74,8 +79,8 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
     fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                    r.index, r.stamp_s, r.slam_epoch, BaseCells(r.slam_from_camera),
                    BaseCells(r.map_from_camera), MatchCells(r), CovarianceCells(r.covariance),
-                   MotionCells(r), r.beams, r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0,
-                   HeightCell(r), ErrorCell(r.slam_from_camera, true_camera),
+                   MotionCells(r), BeamsCell(r), r.loops_accepted, r.loops_rejected,
+                   r.inserted ? 1 : 0, HeightCell(r), ErrorCell(r.slam_from_camera, true_camera),
                    ErrorCell(r.map_from_camera, true_camera));
   }
   return csv;
@@ -92,8 +97,7 @@ std::string TimingCsv(const MappingRun& run) {
 }
 
 std::string TimingJson(const MappingRun& run, double wall_s_total, double cpu_s_total) {
-  std::vector<double> totals_us;
-  for (const FrameReport& r : run.reports) totals_us.push_back(r.times.total_us);
+  const std::vector<double> totals_us = TimesOfMappedFrames(run);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   constexpr double kP95 = 0.95;

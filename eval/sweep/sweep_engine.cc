@@ -41,8 +41,7 @@ struct Group {
 
 NamedValues TimesOf(const MappingRun& run, double cpu_s, double wall_s) {
   constexpr double kP95 = 0.95;
-  std::vector<double> frames_us;
-  for (const FrameReport& report : run.reports) frames_us.push_back(report.times.total_us);
+  const std::vector<double> frames_us = TimesOfMappedFrames(run);
   NamedValues times = {{"time_cpu_s", cpu_s}, {"time_wall_s", wall_s}};
   if (!frames_us.empty()) {
     times.emplace_back("cpu_us_per_frame_median", Percentile(frames_us, 0.5));
