@@ -22,9 +22,7 @@ using Json = ReportJson;
 
 Json PageJson(const Json& ablation, const std::string& settings, const Config& config) {
   Json json;
-  std::vector<std::string> keys = config.Keys();
-  std::erase(keys, "seed");  // the first one's
-  json["of"] = MainSettings(config.Only(keys));
+  json["of"] = MeasuredSettings(config, {"seed"});
   json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(config), ", "));
   json["seeds"] = ablation.at("seeds");
   json["scores"] = ablation.at("scores");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
@@ -120,22 +121,39 @@ std::string PoseSourceOf(const Config& run_yaml) {
   return ToYaml(options.slam) == ToYaml(exact) ? profile : "own settings over " + profile;
 }
 
-std::string MainSettings(const Config& run_yaml) {
+namespace {
+
+std::string MainSettingsBut(const Config& run_yaml, const std::set<std::string>& left_out) {
   std::string text;
   const auto add_value = [&](const char* name, const std::string& value) {
     if (!value.empty()) text += fmt::format(", {} {}", name, value);
   };
   const auto add = [&](const char* name, const char* key) {
-    add_value(name, SettingOf(run_yaml, key));
+    if (!left_out.contains(key)) add_value(name, SettingOf(run_yaml, key));
   };
   add("trajectory", "trajectory");
-  add_value("SLAM", PoseSourceOf(run_yaml));
+  if (!left_out.contains("slam.profile")) add_value("SLAM", PoseSourceOf(run_yaml));
   add("depth noise", "sensor.noise");
   add("seed", "seed");
   add("mapper", "mapper.method");
   add("fusion", "mapper.fusion.mode");
   if (SettingOf(run_yaml, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
   return text;
+}
+
+}  // namespace
+
+std::string MainSettings(const Config& run_yaml) { return MainSettingsBut(run_yaml, {}); }
+
+std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied) {
+  std::vector<std::string> parts;
+  const std::string scene = varied.contains("scene") ? "" : SettingOf(experiment, "scene");
+  if (!scene.empty()) parts.push_back(std::filesystem::path(scene).stem().string());
+  const std::string frames = varied.contains("frames") ? "" : SettingOf(experiment, "frames");
+  if (!frames.empty() && frames != "0") parts.push_back(frames + " frames");  // 0: the whole path
+  const std::string rest = MainSettingsBut(experiment, varied);
+  if (!rest.empty()) parts.push_back(rest.substr(2));  // after its first comma
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 }  // namespace depthgrid

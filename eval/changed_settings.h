@@ -2,6 +2,7 @@
 // of its page would otherwise look for among hundreds of keys.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,9 @@ std::string PoseSourceOf(const Config& run_yaml);
 
 // What a page's first line says: ", trajectory handheld, SLAM orb_slam2, ...", of what there is.
 std::string MainSettings(const Config& run_yaml);
+
+// What runs of one experiment measure, the keys that they differ in left out: "living_room, 240
+// frames, trajectory handheld, ...".
+std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied);
 
 }  // namespace depthgrid

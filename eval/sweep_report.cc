@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
+#include <set>
 
+#include "eval/changed_settings.h"
 #include "eval/json_text_impl.h"
 #include "eval/metric_columns.h"
 #include "eval/metrics/statistics.h"
@@ -266,6 +268,15 @@ std::string TextOf(const SweepResults& results, const char* key) {
   return found != results.environment.end() ? found->second : "";
 }
 
+// What all runs have in common, as far as a head can say it.
+std::string MeasuredBy(const SweepResults& results) {
+  std::set<std::string> varied;
+  for (const SweepParameter& parameter : results.parameters) varied.insert(parameter.key);
+  const std::string experiment = TextOf(results, "experiment");
+  if (experiment.empty()) return "";
+  return MeasuredSettings(Config::FromText(experiment, results.folder), varied);
+}
+
 // What every run starts from: the keys given for it, so that an axis over a preset (slam.profile)
 // sets what it set in the sweep. A sweep of an earlier version knows every effective key alone.
 std::string ExperimentYaml(const SweepResults& results) {
@@ -290,6 +301,7 @@ void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   const std::string title = TextOf(results, "title");
   Json json = SweepJson(results, GridOf(results));
   json["back"] = place.back;
+  json["of"] = MeasuredBy(results);
   WriteFile(place.into + "/report.html",
             FillPage("sweep.html", title.empty() ? "Sweep" : title, JsonText(json)));
 }

@@ -30,7 +30,11 @@ function barOf(score, stage, name, at) {
 
 // Over the bars: where none and all of the error is.
 function scaleHead(at) {
-  const labels = [[0, "0"], [1, "100 %"]].map(([share, text]) => svg("text", { x: Math.min(Math.max(at(share), 4), BAR_WIDTH - 22), y: 15, "text-anchor": "middle" }, text));
+  // In the letters of a narrow page, which are wider on the bar's scale.
+  const [HALF_ZERO, HALF_ALL, GAP] = [6, 26, 6];
+  const all = Math.min(Math.max(at(1), HALF_ALL + 2 * HALF_ZERO + GAP), BAR_WIDTH - HALF_ALL);
+  const none = Math.min(Math.max(at(0), HALF_ZERO), all - HALF_ALL - GAP - HALF_ZERO);
+  const labels = [[none, "0"], [all, "100 %"]].map(([x, text]) => svg("text", { x, y: 15, "text-anchor": "middle" }, text));
   return svg("svg", { class: "share", viewBox: `0 0 ${BAR_WIDTH} ${BAR_HEIGHT}`, role: "img", "aria-label": "share of the error" }, ...labels);
 }
 
@@ -58,7 +62,7 @@ function initStages() {
 }
 
 initTheme();
-byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? " (fewer than 6 prove nothing)" : ""}${ABLATION.of}`;
+byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? " (fewer than 6 prove nothing)" : ""}${ABLATION.of ? `: ${ABLATION.of}` : ""}`;
 if (ABLATION.changed) byId("changed").textContent = `Not the default: ${ABLATION.changed}`;
 initStages();
 initScores();

@@ -171,7 +171,19 @@ TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
               HasSubstr("truth for; share; 0100 %; error (mm); owned (mm); 95 % interval (mm); p"));
   EXPECT_THAT(heads_of("1 − map.observable.occupied.f1"),
               HasSubstr("error; owned; 95 % interval; p"));
+  EXPECT_THAT(browser.Evaluate("document.getElementById('subtitle').textContent"),
+              HasSubstr("prove nothing): room, 12 frames, SLAM orb_slam2, "));
   browser.Open(Path("out/report.html"), 400);
+  // The labels of each scale lie on it, and apart, wherever 0 and all of the error are.
+  EXPECT_EQ(
+      browser.Evaluate(
+          "[0, 1, 9, 20, 150, 239].flatMap((zero) => [zero + 1, 30, 120, 239].map((all) => { "
+          "const s = scaleHead((share) => share ? all : zero); "
+          "document.body.append(s); const box = s.getBoundingClientRect(); const [a, b] = "
+          "[...s.querySelectorAll('text')].map((t) => t.getBoundingClientRect()); s.remove(); "
+          "return a.right < b.left && a.left >= box.left && b.right <= box.right; "
+          "})).includes(false)"),
+      false);
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
 
