@@ -22,8 +22,10 @@ function svg(tag, attributes, ...children) {
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
+// To so many significant digits; of thousands to whole numbers, lest rounded ones look like exact counts.
+const rounded = (value, digits) => (Math.abs(value) >= 10 ** (digits - 1) && Math.abs(value) < 1e6 ? Math.round(value) : Number(value.toPrecision(digits)));
 // As many digits as tell something: 4 significant ones, no trailing zeros.
-const compact = (value) => (isNumber(value) ? String(Number(value.toPrecision(4))) : "–");
+const compact = (value) => (isNumber(value) ? String(rounded(value, 4)) : "–");
 // Metres as a person says them.
 function metres(value) {
   if (!isNumber(value)) return "–";
@@ -33,11 +35,9 @@ function metres(value) {
   return `${fixed(value, 2)} m`;
 }
 // The unit is the end of a metric's name.
-function unitOf(name) {
-  if (name.endsWith("_us")) return "µs";
-  const found = name.match(/_(m|rad|deg|s|mib|cells)$/);
-  return found ? { m: "m", rad: "rad", deg: "°", s: "s", mib: "MiB", cells: "cells" }[found[1]] : "";
-}
+const UNITS = { m_per_s: "m/s", m_per_m: "m/m", m: "m", rad: "rad", deg: "°", s: "s", us: "µs", mib: "MiB", cells: "cells" };
+const UNIT_END = new RegExp(`_(${Object.keys(UNITS).join("|")})$`);
+const unitOf = (name) => UNITS[name.match(UNIT_END)?.[1]] ?? "";
 // The unit that suits most of the values: millimetres or centimetres where lengths are small, degrees for radians.
 // `label` is the name without a unit that they are not in.
 function suitedUnit(name, values) {
@@ -45,9 +45,9 @@ function suitedUnit(name, values) {
   const sizes = values.filter(isNumber).map(Math.abs).sort((a, b) => a - b);
   const usual = sizes[Math.floor((sizes.length - 1) / 2)] ?? 0;
   let [factor, shown] = [1, unit];
-  if (unit === "m" && usual < 1) [factor, shown] = usual < 0.01 ? [1000, "mm"] : [100, "cm"];
+  if (/^m(\/|$)/.test(unit) && usual < 1) [factor, shown] = usual < 0.01 ? [1000, `m${unit}`] : [100, `c${unit}`];
   if (unit === "rad") [factor, shown] = [180 / Math.PI, "°"];
-  return { factor, unit: shown, label: shown === unit ? name : name.replace(/_[a-z]+$/, "") };
+  return { factor, unit: shown, label: shown === unit ? name : name.replace(UNIT_END, "") };
 }
 const percent = (value) => (isNumber(value) ? `${fixed(value * 100, 1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
@@ -216,11 +216,12 @@ function openLegendToKeys(u, title) {
   });
 }
 
-function zoomPlot(u, x, factor) {
+// The part of x that is left by a zoom about the cursor.
+function zoomed(u, x, factor) {
   const { min, max } = u.scales.x;
   const at = u.cursor.idx != null ? x[u.cursor.idx] : (min + max) / 2;
   const [all_min, all_max] = [x[0], x[x.length - 1]];
-  u.setScale("x", { min: Math.max(all_min, at - (at - min) * factor), max: Math.min(all_max, at + (max - at) * factor) });
+  return { min: Math.max(all_min, at - (at - min) * factor), max: Math.min(all_max, at + (max - at) * factor) };
 }
 
 // With its middle left out where it is longer: names of one kind differ at their ends.
@@ -243,13 +244,23 @@ function logTicks(x, low, high) {
   return inside.length > 2 ? inside : [...new Set(x)].filter((v) => v >= low && v <= high);
 }
 
+// Of a linear axis, with the decimals that its ticks have.
+function linearLabels(u, ticks, k, space, step) {
+  let decimals = 0;
+  while (decimals < 12 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) ++decimals;
+  return ticks.map((v) => fixed(v, decimals));
+}
+// Ticks that an axis leaves out are null.
+const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)));
+
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash,
-// digits, unit, points, weights (of points), notes (behind the values), low, high (ends of intervals)}. Lines stop where a value is null. Plots of
-// one `sync` key share their cursor. `xNames` replaces the numbers of the x axis, one a value of x.
+// digits, unit, points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}. Lines stop where a value is null. Plots of
+// one `sync` key share their cursor. `caption`: what a file says besides the
+// title. `xNames` replaces the numbers of the x axis, one a value of x.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
-function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
+function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
-  const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
+  const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, caption ? `${title} (${caption})` : title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
   container.append(box);
   let plot = null;
@@ -271,8 +282,9 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
           ...(xNames ? { splits: () => x, values: (u) => xNames.map((name) => shortened(name, Math.floor(u.bbox.width / devicePixelRatio / xNames.length / TEXT_WIDTH))) } : {}),
-          ...(logX ? { splits: (u, k, low, high) => logTicks(x, low, high), values: (u, ticks) => ticks.map(compact), filter: (u, ticks) => ticks } : {}) },
-        { ...axis, label: yLabel, labelSize: yLabel ? 18 : 0, labelGap: 2, size: 52 }],
+          ...(logX ? { splits: (u, k, low, high) => logTicks(x, low, high), values: logLabels, filter: (u, ticks) => ticks } : xNames ? {} : { values: linearLabels }) },
+        { ...axis, label: yLabel, labelSize: yLabel ? 18 : 0, labelGap: 2, values: logY ? logLabels : linearLabels,
+          size: (u, labels) => Math.max(52, 17 + TEXT_WIDTH * Math.max(0, ...(labels ?? []).map((text) => text?.length ?? 0))) }],
       series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map(seriesOf)],
       hooks: {
         setCursor: onCursor ? [(u) => { if (!quiet && u.cursor.event && u.cursor.idx != null) { shown = u.cursor.idx; onCursor(shown); } }] : [],
@@ -282,10 +294,19 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
     };
   };
   const draw = () => {
+    // Drawn anew in other colours or for paper it shows what it showed.
+    const before = plot && state();
     if (plot) plot.destroy();
-    plot = new uPlot(options(), [x, ...series.map((s) => s.values)], box);
+    const settings = options();
+    if (before) settings.series.forEach((s, k) => { s.show = before.shown[k]; });
+    plot = new uPlot(settings, [x, ...series.map((s) => s.values)], box);
+    if (before) setRange(before);
     openLegendToKeys(plot, title);
   };
+  const state = () => ({ min: plot.scales.x.min, max: plot.scales.x.max, shown: plot.series.map((s) => s.show) });
+  const setRange = ({ min, max }) => plot.setScale("x", { min, max });
+  // As a drag does, of all plots that share the cursor.
+  const zoomTo = (range) => { for (const other of allPlots) if (other.box === box || (sync && other.sync === sync)) other.setRange(range); };
   let shown = null;
   const show = (i) => {
     if (!isNumber(x[i])) return;
@@ -302,14 +323,14 @@ function drawPlot(container, { title, x, xLabel, yLabel, series, height = 190, s
       const i = Math.max(0, Math.min(x.length - 1, (shown ?? plot.cursor.idx ?? 0) + step));
       show(i);
       if (onCursor) onCursor(i);
-    } else if (event.key === "+" || event.key === "=") zoomPlot(plot, x, 0.7);
-    else if (event.key === "-") zoomPlot(plot, x, 1 / 0.7);
-    else if (event.key === "0") plot.setScale("x", { min: x[0], max: x[x.length - 1] });
+    } else if (event.key === "+" || event.key === "=") zoomTo(zoomed(plot, x, 0.7));
+    else if (event.key === "-") zoomTo(zoomed(plot, x, 1 / 0.7));
+    else if (event.key === "0") zoomTo({ min: x[0], max: x[x.length - 1] });
     else return;
     event.preventDefault();
   });
   themeListeners.push(draw);
   new ResizeObserver(() => plot.setSize({ width: width(), height })).observe(container);
-  allPlots.push({ box, show });
+  allPlots.push({ box, show, sync, setRange, state });
   return box;
 }

@@ -49,6 +49,7 @@ function headline() {
       add(String(RUN.prior_scans), "scans in that map, none added");
     } else {
       add(String(frameCount), "frames");
+      if (posed < frameCount) add(`${frameCount - posed} of ${frameCount}`, `frames without a pose: ${RUN.input_poses} was lost`);
       add(String(RUN.own_scans), RUN.prior_scans ? `frames added to the finished map's ${RUN.prior_scans}` : "frames mapped");
     }
     add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
@@ -109,6 +110,20 @@ function furtherMapNumbers(map) {
   return rows;
 }
 
+// Of each path: headings, relative errors, drift, and how much of it was compared.
+const degrees = (rad) => (isNumber(rad) ? `${fixed(rad * 180 / Math.PI, 3)}°` : "–");
+const FURTHER_OF_PATHS = [
+  ["heading, mean, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.mean)],
+  ["heading, rmse, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.rmse)],
+  ["relative turn a frame, rmse", (s) => degrees(s.rpe_frame_rmse_rad)],
+  ["relative turn a metre, rmse", (s) => degrees(s.rpe_metre_rmse_rad)],
+  ["drift a second, over 10 s", (s) => (isNumber(s.drift_m_per_s) ? `${metres(s.drift_m_per_s)}/s` : "–")],
+  ["drift a metre", (s) => percent(s.drift_m_per_m)],
+  ["ATE rmse in xyz, Sim(3) aligned", (s) => metres(s.ate_rmse_sim3_m)],
+  ["scale of that alignment", (s) => fixed(s.sim3_scale, 4)],
+  ["share of the true poses that it covers", (s) => percent(s.time_coverage)],
+];
+
 function initNumbers() {
   const m = RUN.metrics;
   if (!m) { byId("numbers-section").remove(); return; }
@@ -125,6 +140,8 @@ function initNumbers() {
     row("relative error a frame, rmse", (s) => s.rpe_frame_rmse_m),
     row("relative error a metre, rmse", (s) => s.rpe_metre_rmse_m),
   ])));
+  const told = FURTHER_OF_PATHS.map(([label, say]) => [label, ...names.map(([n]) => say(t[n]))]).filter(([, ...cells]) => cells.some((cell) => cell !== "–"));
+  byId("numbers").append(make("h3", {}, "Trajectory, further"), make("div", { class: "scroll" }, tableOf(["", ...names.map(([, label]) => label)], told)));
   const sure = [["each match against the prediction (NIS)", "nis"], ["each motion over a submap's frames (NEES)", "nees"]]
     .map(([label, name]) => [label, m.consistency?.[name]]).filter(([, c]) => c && c.mean !== null);
   if (sure.length) {
@@ -151,7 +168,7 @@ function initNumbers() {
   if (bins.length > 1) {
     drawPlot(byId("numbers"), {
       title: "Calibration: share of cells truly occupied against the map's probability; a dot's area is its number of cells", x: bins.map((bin) => bin.mean_prob), xLabel: "probability in the map", yLabel: "share occupied",
-      series: [{ label: "truly occupied", values: bins.map((bin) => bin.occupied_share), colour: "est", points: true, onlyPoints: true, weights: bins.map((bin) => bin.cells), notes: bins.map((bin) => `of ${bin.cells} ${bin.cells === 1 ? "cell" : "cells"}`) }, { label: "ideal", values: bins.map((bin) => bin.mean_prob), colour: "muted", dash: [4, 4] }],
+      series: [{ label: "truly occupied", values: bins.map((bin) => bin.occupied_share), colour: "est", points: true, onlyPoints: true, weights: bins.map((bin) => bin.cells), weighedBy: "cells", notes: bins.map((bin) => `of ${bin.cells} ${bin.cells === 1 ? "cell" : "cells"}`) }, { label: "ideal", values: bins.map((bin) => bin.mean_prob), colour: "muted", dash: [4, 4] }],
     });
   }
 }

@@ -4,6 +4,9 @@ const canvas = byId("map");
 const images = {};
 const view = { zoom: 1, x: 0, y: 0, whole: true };  // pan in canvas pixels
 
+const STRIP_PX = 26;  // below the map, so that the scale bar hides no wall
+const mapHeight = () => canvas.height - STRIP_PX * devicePixelRatio;
+
 function cellSize() { return (canvas.width / RUN.map.width) * view.zoom; }
 function toCanvas(x, y) {
   const size = cellSize();
@@ -30,16 +33,15 @@ function drawPath(context, name, path, stroke) {
   context.globalAlpha = 1;
 }
 
+// The corners of an arrowhead, tip first.
+function arrowhead(u, v, yaw, length) {
+  return [[0, length], [2.5, length * 0.8], [-2.5, length * 0.8]].map(([angle, reach]) => [u + reach * Math.cos(yaw + angle), v - reach * Math.sin(yaw + angle)]);
+}
+
 function drawPose(context, path, i, fill) {
   if (!path || path.x[i] === null) return;
-  const [u, v] = toCanvas(path.x[i], path.y[i]);
-  const yaw = path.yaw[i];
-  const length = 11 * devicePixelRatio;
-  const corner = (angle, reach) => [u + reach * Math.cos(yaw + angle), v - reach * Math.sin(yaw + angle)];
   context.beginPath();
-  context.moveTo(...corner(0, length));
-  context.lineTo(...corner(2.5, length * 0.8));
-  context.lineTo(...corner(-2.5, length * 0.8));
+  for (const corner of arrowhead(...toCanvas(path.x[i], path.y[i]), path.yaw[i], 11 * devicePixelRatio)) context.lineTo(...corner);
   context.closePath();
   context.fillStyle = fill;
   context.fill();
@@ -58,16 +60,27 @@ function scanNear(i, path) {
   return best < 0 ? null : RUN.scans[best];
 }
 
-function drawScan(context, scan, path, fill) {
-  if (!scan || path.x[scan.row] === null) return;
+// The hits of the scan that is drawn with the chosen frame, on the map.
+const scannedPath = () => RUN.paths.est ?? RUN.paths.online;
+function shownHits() {
+  const path = scannedPath();
+  const scan = shownPaths.has("scan") ? scanNear(currentFrame, path) : null;
+  if (!scan || path.x[scan.row] === null) return [];
   const c = Math.cos(path.yaw[scan.row]);
   const s = Math.sin(path.yaw[scan.row]);
-  const radius = 1.8 * devicePixelRatio;
-  context.fillStyle = fill;
+  const hits = [];
   for (let k = 0; k + 1 < scan.cm.length; k += 2) {
-    const forward = scan.cm[k] / 100;
-    const left = scan.cm[k + 1] / 100;
-    const [u, v] = toCanvas(path.x[scan.row] + c * forward - s * left, path.y[scan.row] + s * forward + c * left);
+    const [forward, left] = [scan.cm[k] / 100, scan.cm[k + 1] / 100];
+    hits.push([path.x[scan.row] + c * forward - s * left, path.y[scan.row] + s * forward + c * left]);
+  }
+  return hits;
+}
+
+function drawScan(context) {
+  const radius = 1.8 * devicePixelRatio;
+  context.fillStyle = MAP_COLOURS.scan;
+  for (const hit of shownHits()) {
+    const [u, v] = toCanvas(...hit);
     context.fillRect(u - radius, v - radius, 2 * radius, 2 * radius);
   }
 }
@@ -84,15 +97,18 @@ function scaleBar() {
 function drawScaleBar(context) {
   const { pixels, text } = scaleBar();
   const d = devicePixelRatio;
-  const left = 12 * d;
-  const bottom = canvas.height - 14 * d;
-  context.fillStyle = "rgba(255,255,255,0.85)";
-  context.fillRect(left - 6 * d, bottom - 22 * d, pixels + 12 * d, 30 * d);
+  const middle = mapHeight() + (STRIP_PX / 2) * d;
+  context.fillStyle = "#fff";
+  context.fillRect(0, mapHeight(), canvas.width, STRIP_PX * d);
   context.fillStyle = "#111";
-  context.fillRect(left, bottom, pixels, 3 * d);
+  context.fillRect(12 * d, middle - 1.5 * d, pixels, 3 * d);
   context.font = `${13 * d}px system-ui, sans-serif`;
-  context.fillText(text, left, bottom - 6 * d);
+  context.fillText(text, 20 * d + pixels, middle + 5 * d);
 }
+
+// Of the difference, cells that could not be seen are paler: so is all beyond the pictures.
+const isTwofold = () => currentLayer === "difference" && Boolean(RUN.map.layers.observable);
+const beyondColour = () => (isTwofold() ? "#e6e6e6" : "#cdcdcd");
 
 let drawPending = false;
 function requestDraw() {
@@ -104,26 +120,25 @@ function requestDraw() {
 function drawMap() {
   const context = canvas.getContext("2d");
   context.imageSmoothingEnabled = false;
-  context.fillStyle = "#cdcdcd";
+  context.fillStyle = beyondColour();
   context.fillRect(0, 0, canvas.width, canvas.height);
   const image = images[currentLayer];
   if (image?.complete) context.drawImage(image, view.x, view.y, RUN.map.width * cellSize(), RUN.map.height * cellSize());
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPath(context, name, RUN.paths[name], MAP_COLOURS[tone]);
-  const scanned = RUN.paths.est ?? RUN.paths.online;
-  if (shownPaths.has("scan")) drawScan(context, scanNear(currentFrame, scanned), scanned, MAP_COLOURS.scan);
+  drawScan(context);
   for (const [name, , tone] of PATHS) if (shownPaths.has(name)) drawPose(context, RUN.paths[name], currentFrame, MAP_COLOURS[tone]);
   drawScaleBar(context);
 }
 
-// The part of the map and the trajectories that are shown, without what belongs to the chosen frame.
+// What the map shows, with a key of all that is on it.
 function mapSvg() {
   const size = cellSize();
-  const height = Math.round((FIGURE_WIDTH * canvas.height) / canvas.width);
   const pixel = canvas.width / FIGURE_WIDTH;  // of the figure, in the canvas' own
-  const at = (x, y) => toCanvas(x, y).map((v) => (v / pixel).toFixed(2)).join();
+  const height = Math.round(mapHeight() / pixel);
+  const at = (x, y) => toCanvas(x, y).map((v) => v / pixel);
   const pathOf = (path) => {
     const known = [...path.x.keys()].filter((i) => path.x[i] !== null);
-    return known.map((i, k) => `${k && known[k - 1] === i - 1 ? "L" : "M"}${at(path.x[i], path.y[i])}`).join("");
+    return known.map((i, k) => `${k && known[k - 1] === i - 1 ? "L" : "M"}${pointText(at(path.x[i], path.y[i]))}`).join("");
   };
   const shown = PATHS.filter(([name]) => shownPaths.has(name));
   const pen = (name, tone) => ({ stroke: MAP_COLOURS[tone], width: name === "truth" ? 6 : 1.6, opacity: name === "truth" ? 0.5 : 1 });
@@ -131,30 +146,47 @@ function mapSvg() {
     const { stroke, width, opacity } = pen(name, tone);
     return svg("path", { d: pathOf(RUN.paths[name]), fill: "none", stroke, "stroke-width": width, "stroke-opacity": opacity, "stroke-linejoin": "round" });
   });
-  const legend = legendOf(shown.map(([name, label, tone]) => ({ label, ...pen(name, tone) })), height + 4);
-  const { pixels, text } = scaleBar();
+  const hits = shownHits().map((hit) => at(...hit)).map(([u, v]) => svg("rect", { x: (u - 1.2).toFixed(2), y: (v - 1.2).toFixed(2), width: 2.4, height: 2.4, fill: MAP_COLOURS.scan }));
+  const heads = shown.map(([name, , tone]) => [RUN.paths[name], MAP_COLOURS[tone]]).filter(([path]) => path.x[currentFrame] !== null).map(([path, fill]) =>
+    svg("polygon", { points: arrowhead(...at(path.x[currentFrame], path.y[currentFrame]), path.yaw[currentFrame], 8).map(pointText).join(" "), fill, stroke: "#fff", "stroke-width": 0.7 }));
   const image = svg("image", { href: RUN.map.layers[currentLayer], x: view.x / pixel, y: view.y / pixel, width: (RUN.map.width * size) / pixel, height: (RUN.map.height * size) / pixel, style: "image-rendering: pixelated" });
-  return figureSvg(height + 4 + legend.height, svg("svg", { width: FIGURE_WIDTH, height }, svg("rect", { width: FIGURE_WIDTH, height, fill: "#cdcdcd" }), image, ...lines,
-    svg("rect", { x: 6, y: height - 34, width: pixels / pixel + 12, height: 28, fill: "#fff", "fill-opacity": 0.85 }), svg("rect", { x: 12, y: height - 14, width: pixels / pixel, height: 3, fill: "#111" }),
-    svg("text", { x: 12, y: height - 20, fill: "#111" }, text)), ...legend.elements);
+  const { pixels, text } = scaleBar();
+  const bar = [svg("rect", { x: 12, y: height + 11, width: pixels / pixel, height: 3, fill: "#111" }), svg("text", { x: 20 + pixels / pixel, y: height + 17, fill: "#111" }, text)];
+  const legend = legendOf([...layerEntries(), ...shown.map(([name, label, tone]) => ({ label, ...pen(name, tone) })), ...frameEntries(hits.length, heads.length)], height + 26);
+  return figureSvg(height + 26 + legend.height, svg("svg", { width: FIGURE_WIDTH, height }, svg("rect", { width: FIGURE_WIDTH, height, fill: beyondColour() }), image, ...lines, ...hits, ...heads), ...bar, ...legend.elements);
+}
+const pointText = (point) => point.map((v) => v.toFixed(2)).join();
+
+// ---- entries of the saved map's key ----
+function layerEntries() {
+  const square = (fill, x, y) => svg("rect", { x, y: y - 5, width: 10, height: 10, fill, stroke: "#8a8a8a", "stroke-width": 0.7 });
+  return [...LAYER_KEYS[currentLayer].map(([tones, label]) => ({ label, mark: (x, y) => tonesOf(tones).map((tone, k) => square(tone, x + (isTwofold() ? 0 : 4) + 10 * k, y)) })),
+    ...(isTwofold() ? [{ label: TWOFOLD, mark: () => [] }] : [])];
+}
+
+function frameEntries(hits, heads) {
+  const label = `of frame ${frames.frame[currentFrame]}`;
+  const dots = (x, y) => [3, 9, 15].map((dx) => svg("rect", { x: x + dx - 1.2, y: y - 1.2, width: 2.4, height: 2.4, fill: MAP_COLOURS.scan }));
+  const head = (x, y) => [svg("polygon", { points: arrowhead(x + 8, y, 0, 8).map(pointText).join(" "), fill: "#5b6570" })];
+  return [...(hits ? [{ label: `scan ${label}`, mark: dots }] : []), ...(heads ? [{ label: `poses ${label}`, mark: head }] : [])];
 }
 
 function resizeMap() {
   const width = canvas.clientWidth * devicePixelRatio;
-  const middle = [(canvas.width / 2 - view.x) / cellSize(), (canvas.height / 2 - view.y) / cellSize()];
+  const middle = [(canvas.width / 2 - view.x) / cellSize(), (mapHeight() / 2 - view.y) / cellSize()];
   const most = Math.max(320, window.innerHeight * 0.85) * devicePixelRatio;
   canvas.width = Math.round(width);
-  canvas.height = Math.round(Math.min(most, width * RUN.map.height / RUN.map.width));
+  canvas.height = Math.round(Math.min(most, width * RUN.map.height / RUN.map.width) + STRIP_PX * devicePixelRatio);
   canvas.style.aspectRatio = `${canvas.width} / ${canvas.height}`;
   if (view.whole) { resetView(); return; }
   // What was in the middle stays there.
   view.x = canvas.width / 2 - middle[0] * cellSize();
-  view.y = canvas.height / 2 - middle[1] * cellSize();
+  view.y = mapHeight() / 2 - middle[1] * cellSize();
   requestDraw();
 }
 function resetView() {
   view.whole = true;
-  view.zoom = Math.min(1, (canvas.height / canvas.width) * (RUN.map.width / RUN.map.height));
+  view.zoom = Math.min(1, (mapHeight() / canvas.width) * (RUN.map.width / RUN.map.height));
   view.x = (canvas.width - RUN.map.width * cellSize()) / 2;
   view.y = 0;
   requestDraw();
@@ -182,8 +214,8 @@ function moveByKey(event) {
   const step = 0.1 * canvas.width;
   const move = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
   if (move) pan(...move);
-  else if (event.key === "+" || event.key === "=") zoomAt(canvas.width / 2, canvas.height / 2, 1.4);
-  else if (event.key === "-") zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4);
+  else if (event.key === "+" || event.key === "=") zoomAt(canvas.width / 2, mapHeight() / 2, 1.4);
+  else if (event.key === "-") zoomAt(canvas.width / 2, mapHeight() / 2, 1 / 1.4);
   else if (event.key === "0") resetView();
   else return;
   event.preventDefault();
@@ -233,8 +265,8 @@ function initMap() {
   canvas.addEventListener("keydown", moveByKey);
   window.addEventListener("resize", resizeMap);
   const zoomButtons = make("div", { class: "no-print map-buttons" },
-    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1.4) }, "Zoom in"), " ",
-    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, canvas.height / 2, 1 / 1.4) }, "Zoom out"), " ",
+    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, mapHeight() / 2, 1.4) }, "Zoom in"), " ",
+    make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, mapHeight() / 2, 1 / 1.4) }, "Zoom out"), " ",
     make("button", { type: "button", onclick: resetView }, "Whole map"), saveButtons("map", pictureKinds(mapSvg)), make("span", { id: "map-position", class: "muted" }));
   byId("map-note").before(zoomButtons);
   byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. ${RUN.scans.length ? "Red dots: the scan of the chosen frame at its final pose; arrowheads" : "Arrowheads"}: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
@@ -252,15 +284,16 @@ const LAYER_KEYS = {
   ],
   observable: [["#fff", "could be seen"], ["#cdcdcd", "could not"]],
 };
+const TWOFOLD = "right: the same in cells that could not be seen";
+const tonesOf = (tones) => [tones].flat().slice(0, isTwofold() ? 2 : 1);
 function selectLayer(name) {
   currentLayer = name;
   const input = byId(`layer-${name}`);
   if (input) input.checked = true;
   canvas.dataset.layer = name;
-  const twofold = name === "difference" && RUN.map.layers.observable;
-  const swatches = (tones) => [tones].flat().slice(0, twofold ? 2 : 1).map((tone) => make("i", { style: `background:${tone}` }));
+  const swatches = (tones) => tonesOf(tones).map((tone) => make("i", { style: `background:${tone}` }));
   byId("legend").replaceChildren(...LAYER_KEYS[name].map(([tones, text]) => make("div", {}, ...swatches(tones), text)),
-    ...(twofold ? [make("div", {}, "right: the same in cells that could not be seen")] : []));
+    ...(isTwofold() ? [make("div", {}, TWOFOLD)] : []));
   requestDraw();
 }
 
@@ -271,6 +304,7 @@ function selectFrame(i) {
   const row = (name, value) => make("tr", {}, make("td", {}, name), make("td", {}, value));
   const at = (column) => (frames[column] ? frames[column][currentFrame] : null);
   const rows = [row("frame", String(frames.frame[currentFrame])), row("time", `${fixed(frames.stamp_s[currentFrame] - frames.stamp_s[0], 2)} s`)];
+  if (!hasPose(currentFrame)) rows.push(row("no pose", `${RUN.input_poses} was lost`));
   if (frames.slam_error_m) rows.push(row("SLAM's error", metres(at("slam_error_m"))), row("error at the time", metres(at("map_error_m"))), row("error at the end", metres(at("est_error_m"))));
   if (at("match_score") !== null) rows.push(row("match score", fixed(at("match_score"), 2)));
   if (at("innovation_forward_m") !== null) {

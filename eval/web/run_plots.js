@@ -37,10 +37,10 @@ function initPlots() {
       column("forward", "gain_forward", "est", 1, 3),
       column("left", "gain_left", "slam", 1, 3),
       column("yaw", "gain_yaw", "truth", 1, 3),
-    ]);
+    ].map((s, k) => ({ ...s, width: [5.6, 3.6, 1.6][k] })));  // those beneath show on both sides where axes have one gain
   }
   if (hasColumn("match_score")) add("Match score: share of the beams that the map explains", "share", [column("score", "match_score", "est", 1, 3)]);
-  if (hasColumn("beams")) add("Beams with a hit", "beams", [column("beams", "beams", "est", 1, 0)]);
+  if (hasColumn("beams")) add("Beams with a hit", "beams", [{ ...column("beams", "beams", "est", 1, 0), values: whereMapped(frames.beams) }]);
 }
 
 // ---- stage times: timing.js, beside this page, so that the page is the same bytes every time ----
@@ -56,14 +56,16 @@ function initTimes() {
   const ordered = (values) => [...values].sort((a, b) => a - b);
   const at = (values, share) => values[Math.min(values.length - 1, Math.floor(share * values.length))];
   const row = (label, values) => {
-    const sorted = ordered(values);
+    const sorted = ordered(whereMapped(values).filter(isNumber));
     const sum = values.reduce((a, b) => a + b, 0);
     return [label, fixed(at(sorted, 0.5), 0), fixed(at(sorted, 0.95), 0), fixed(at(sorted, 1), 0), fixed(sum / 1e6, 2)];
   };
   const shown = STAGES.filter(([name]) => measured[`${name}_us`].some((v) => v > 0));
+  const lost = times.filter((t, i) => !hasPose(i)).length;
+  if (lost) byId("times").append(make("p", { class: "muted" }, `Without the ${lost} ${lost === 1 ? "frame" : "frames"} that have no pose and are not mapped; the sums are of all.`));
   byId("times").append(make("div", { class: "scroll" }, tableOf(
     ["CPU time a frame", "median µs", "95 % µs", "longest µs", "sum s"],
     [...shown.map(([name, label]) => row(label, measured[`${name}_us`])), row("whole frame", measured.total_us)])));
   addPlot(byId("times"), "CPU time of each stage", "ms", shown.map(([name, label, tone]) =>
-    ({ label, values: scaled(measured[`${name}_us`], 1e-3), colour: tone, digits: 3, unit: "ms" })));
+    ({ label, values: scaled(whereMapped(measured[`${name}_us`]), 1e-3), colour: tone, digits: 3, unit: "ms" })));
 }

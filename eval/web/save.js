@@ -87,19 +87,22 @@ function wrapped(text, most) {
   return lines;
 }
 
-// Names beside a piece of their line, in rows from `top` down: {elements, height}.
+// Names beside a piece of their line, or what `mark` draws in its place, in rows from `top` down: {elements, height}.
 function legendOf(entries, top) {
   const ROW = 18;
   let [x, y] = [10, top + ROW / 2];
-  const elements = entries.flatMap(({ label, stroke, width, opacity }) => {
+  const elements = entries.flatMap(({ label, stroke, width, opacity, dash, mark }) => {
     const length = 40 + TEXT_WIDTH * label.length;
     if (x > 10 && x + length > FIGURE_WIDTH) [x, y] = [10, y + ROW];
     const at = x;
     x += length;
-    return [svg("line", { x1: at, x2: at + 18, y1: y, y2: y, stroke, "stroke-width": width ?? 3, "stroke-opacity": opacity ?? 1 }), svg("text", { x: at + 24, y: y + 4, fill: INK }, label)];
+    const line = () => [svg("line", { x1: at, x2: at + 18, y1: y, y2: y, stroke, "stroke-width": width ?? 3, "stroke-opacity": opacity ?? 1, ...dashed(dash) })];
+    return [...(mark ?? line)(at, y), svg("text", { x: at + 24, y: y + 4, fill: INK }, label)];
   });
   return { elements, height: y + ROW / 2 - top };
 }
+
+const dashed = (dash) => (dash ? { "stroke-dasharray": dash.join(" ") } : {});
 
 // ---- plots ----
 // What a plot shows, as a figure: `options` are those of a plot of the size that it is called with.
@@ -139,10 +142,16 @@ function tracedPlot(u, series, xLabel, yLabel) {
     ...labelled(u.axes[1]).flatMap(([y, words]) => [svg("line", { x1: left - 4, x2: right, y1: py(y), y2: py(y), stroke: colour("grid") }), text(left - 8, py(y) + 4, "end", words)])];
   const clip = svg("clipPath", { id: "plot" }, svg("rect", { x: left - 6, y: top - 6, width: width + 12, height: height + 12 }));
   const lines = svg("g", { "clip-path": "url(#plot)" }, ...series.flatMap((s, k) => (u.series[k + 1].show ? seriesSvg(u.data[0], s, px, py, (k - (series.length - 1) / 2) * 2) : [])));
-  const legend = legendOf(series.filter((s, k) => u.series[k + 1].show).map((s) => ({ label: s.label, stroke: colour(s.colour) })), bottom + 42);
+  const legend = legendOf(series.filter((s, k) => u.series[k + 1].show).map(legendEntry), bottom + 42);
   const parts = [svg("defs", {}, clip), ...grid, svg("path", { d: `M${left},${top}V${bottom}H${right}`, fill: "none", stroke: INK }), lines,
     text((left + right) / 2, bottom + 36, "middle", xLabel), text(0, 0, "middle", yLabel ?? "", { transform: `translate(13,${(top + bottom) / 2}) rotate(-90)` }), ...legend.elements];
   return { height: bottom + 46 + legend.height, parts };
+}
+
+// Dots where there is no line.
+function legendEntry(s) {
+  const dot = (x, y) => [svg("circle", { class: "key", cx: x + 9, cy: y, r: 4, fill: colour(s.colour) })];
+  return { label: s.label, stroke: colour(s.colour), dash: s.dash, mark: s.onlyPoints ? dot : undefined };
 }
 
 // Line, dots and whiskers, these moved aside as on the page.
@@ -152,7 +161,7 @@ function seriesSvg(x, s, px, py, aside) {
   const parts = [];
   if (!s.onlyPoints) {
     const d = known.map((i, k) => `${k && (s.spanGaps || known[k - 1] === i - 1) ? "L" : "M"}${px(x[i])},${py(s.values[i])}`).join("");
-    parts.push(svg("path", { d, fill: "none", stroke, "stroke-width": s.width ?? 1.6, "stroke-linejoin": "round" }));
+    parts.push(svg("path", { d, fill: "none", stroke, "stroke-width": s.width ?? 1.6, "stroke-linejoin": "round", ...dashed(s.dash) }));
   }
   const most = s.weights && Math.max(...s.weights);
   if (s.points) for (const i of known) parts.push(svg("circle", { cx: px(x[i]), cy: py(s.values[i]), r: most ? Math.max(1.5, 10 * Math.sqrt(s.weights[i] / most)) : 3, fill: stroke }));
@@ -164,9 +173,9 @@ function seriesSvg(x, s, px, py, aside) {
   return parts;
 }
 
-// A column a series, and the ends of its intervals.
+// A column a series, the ends of its intervals, and what its dots' areas stand for.
 function csvOfPlot(x, series, xLabel, xNames) {
   const inUnit = (s, words) => `${s.label}${words}${s.unit ? ` (${s.unit})` : ""}`;
-  const columns = series.flatMap((s) => [[inUnit(s, ""), s.values], ...(s.low ? [[inUnit(s, ", 95 % low"), s.low], [inUnit(s, ", 95 % high"), s.high]] : [])]);
+  const columns = series.flatMap((s) => [[inUnit(s, ""), s.values], ...(s.low ? [[inUnit(s, ", 95 % low"), s.low], [inUnit(s, ", 95 % high"), s.high]] : []), ...(s.weights ? [[s.weighedBy, s.weights]] : [])]);
   return csvText([[xLabel, ...columns.map(([name]) => name)], ...[...x.keys()].map((i) => [xNames ? xNames[x.indexOf(x[i])] : x[i], ...columns.map(([, values]) => values[i])])]);
 }

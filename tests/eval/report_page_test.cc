@@ -33,6 +33,16 @@ TEST_F(ReportPage, OfARun) {
   browser_->Press("ArrowDown", 40);  // the layers are one group of radio buttons
   EXPECT_EQ(browser_->Evaluate("currentLayer"), "observable");
 
+  // Beyond the pictures nothing could be seen; the scale bar has a strip of its own.
+  browser_->Evaluate("selectLayer('difference'); zoomAt(0, 0, 0.5); drawMap()");
+  const auto grey_at = [&](const char* y) {
+    return browser_->Evaluate("canvas.getContext('2d').getImageData(canvas.width - 2, " +
+                              std::string(y) + ", 1, 1).data[0]");
+  };
+  EXPECT_EQ(grey_at("mapHeight() - 2"), 0xe6);
+  EXPECT_EQ(grey_at("canvas.height - 2"), 0xff);
+  browser_->Evaluate("resetView()");
+
   browser_->Evaluate("document.getElementById('frame').focus()");
   browser_->Press("Home", 36);
   browser_->Press("ArrowRight", 39);
@@ -49,8 +59,21 @@ TEST_F(ReportPage, OfARun) {
   browser_->Press("0");
   EXPECT_EQ(PixelsOf("#map"), whole);
 
+  // A zoom is that of all plots over time; other colours, and paper, leave it and hidden lines.
+  browser_->Evaluate(
+      "window.plots = () => allPlots.filter((p) => p.sync === 'frames').map((p) => p.state())");
+  browser_->Evaluate("document.querySelector('#plots .u-legend tr:nth-child(2) th').click()");
+  browser_->Evaluate("document.querySelector('.plot').focus()");
+  browser_->Press("+");
+  browser_->WaitFor("plots().every((p) => p.max - p.min < 0.75 * times.at(-1))");
+  const nlohmann::json zoomed = browser_->Evaluate("plots()");
+  EXPECT_EQ(zoomed[0]["shown"][1], false);
   browser_->Click("#theme");
   EXPECT_EQ(browser_->Evaluate("document.documentElement.dataset.theme"), "dark");
+  browser_->WaitFor("plots().every((p) => p.max !== null)");
+  EXPECT_EQ(browser_->Evaluate("plots()"), zoomed);
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('numbers').textContent"),
+              ::testing::HasSubstr("heading, mean, not aligned"));
   ExpectEveryPlotIsDrawn();
   EXPECT_THAT(browser_->problems(), IsEmpty());
   browser_->Open(Path("out/report.html"), 400);
@@ -88,14 +111,32 @@ TEST_F(ReportPage, OfFramesThatSlamLostNoScanIsShown) {
   EXPECT_GT(frames("true", "true"), 0);
   EXPECT_GT(frames("false", "false"), 0);
   EXPECT_EQ(frames("true", "false") + frames("false", "true"), 0);
+  const auto panel = [&](const char* lost) {
+    return browser_->Evaluate(
+        "selectFrame(RUN.paths.est.x.findIndex((x) => (x === null) === " + std::string(lost) +
+        ")), document.getElementById('frame-values').textContent");
+  };
+  EXPECT_THAT(panel("true"), ::testing::HasSubstr("no poseSLAM was lost"));
+  EXPECT_THAT(panel("false"), ::testing::Not(::testing::HasSubstr("no pose")));
 }
 
 TEST_F(ReportPage, OfASequenceWithoutTruth) {
   Succeed("render ./small.yaml -o seq");
-  Succeed("map seq --poses seq/groundtruth.txt -o out");
+  Trajectory poses = ReadTrajectory(Path("seq/groundtruth.txt"));
+  poses.erase(poses.begin() + 4, poses.begin() + 7);
+  WriteTrajectory(Path("gap.txt"), poses);
+  Succeed("map seq --poses gap.txt -o out");
   browser_->Open(Path("out/report.html"));
   EXPECT_THAT(browser_->problems(), IsEmpty());
   ExpectEveryPlotIsDrawn();
+  // What has no pose is no frame that saw nothing and took no time.
+  EXPECT_EQ(browser_->Evaluate("frames.beams.map((n) => n === null).join()"),
+            browser_->Evaluate("RUN.paths.slam.x.map((x) => x === null).join()"));
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('headline').textContent"),
+              ::testing::HasSubstr("3 of 12frames without a pose: SLAM was lost"));
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('times').textContent"),
+              ::testing::HasSubstr("Without the 3 frames that have no pose"));
+  EXPECT_EQ(browser_->Evaluate("whereMapped(RUN_TIMES.total_us).filter(isNumber).length"), 9);
   EXPECT_GT(ColoursOf("#map"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#layers input').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.getElementById('numbers-section')"), nullptr);
