@@ -9,12 +9,13 @@ function subtitle() {
   const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [SWEEP.seed_keys.length > 1 ? `${seeds} of ${SWEEP.seed_keys.join(", ")}` : `${seeds} seeds`] : [])].join(" x ");
   const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} ${SWEEP.finished === 1 ? "run" : "runs"}` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
   byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
+  byId("of").textContent = SWEEP.of;
 }
 
 function headline() {
   const card = (value, text) => make("div", { class: "card" }, make("b", {}, value), make("span", {}, text));
   const best = metric.better === "neither" ? -1 : metric.mean.reduce((found, value, i) => (isNumber(value) && (found < 0 || isBetter(value, metric.mean[found])) ? i : found), -1);
-  const rough = (value, unit = true) => (unit ? withUnit : compact)(Number(value.toPrecision(3)));
+  const rough = (value, unit = true) => (unit ? withUnit : compact)(rounded(value, 3));
   const cards = [];
   if (best >= 0) {
     const place = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${shortKey(axis.key)} ${axis.labels[POINTS[best].values[AXES.indexOf(axis)]]}`);

@@ -90,6 +90,7 @@ function holders(prefix, held, free, redraw) {
     return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
   });
 }
+const heldTexts = (held, free) => free.filter((i) => held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[held[i]]}`);
 const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[i] === held[i]);
 
 // The lines of the grid along an axis, as the statistics see them: those that have a best value, or all.

@@ -66,8 +66,8 @@ function bestOfColumns(cells) {
 // The better the yellower; of what has no better side, the more.
 const heatColour = (share) => (metric.better === "lower" ? 1 - share : share);
 
-// `scale`: of a file's picture, in which no cell is chosen.
-function heatPicture(cells, best, width, scale) {
+// What paints it: {height, paint(context), cellAt(x, y)}. In a file no cell is chosen.
+function heatPainting(cells, best, width, inFile) {
   const [columns, rows] = [cells.length, cells[0].length];
   const longest = Math.max(...HEAT_AXES[heat.y].labels.map((t) => t.length));
   const means = cells.flat().filter(Boolean).map((c) => c.mean);
@@ -88,14 +88,15 @@ function heatPicture(cells, best, width, scale) {
       context.fillRect(u(c), v(r), Math.ceil(w), Math.ceil(h));
       if (!cell) crossOut(context, u(c), v(r), w, h);
     }));
-    // Marks at a cell's right, its number at the left and above the line from mark to mark.
-    const beside = w >= 64;
-    drawBestMarks(context, best, (c) => (beside ? u(c) + w - 12 : u(c) + w / 2), (r) => v(r) + h / 2);
+    // Marks stand over their column's value, and so in the middle; numbers give way to them.
+    drawBestMarks(context, best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
     cells.forEach((column, c) => column.forEach((cell, r) => {
       if (!cell || w < 44 || h < 16) return;
       const [red, green, blue] = shade(cell.mean);
-      const text = String(Number(cell.mean.toPrecision(3)));
-      const place = [u(c) + (beside ? 8 : w / 2), h >= 30 ? v(r) + 13 : v(r) + h / 2 + 4];
+      const text = String(rounded(cell.mean, 3));
+      const beside = 6 + TEXT_WIDTH * text.length + 8 <= w / 2;
+      if (!beside && h < 30 && best[c]?.row === r) return;
+      const place = [u(c) + (beside ? 6 : w / 2), !beside && h >= 30 ? v(r) + 12 : v(r) + h / 2 + 4];
       context.textAlign = beside ? "left" : "center";
       context.strokeStyle = rgb([red, green, blue]);
       context.lineWidth = 4;
@@ -105,7 +106,7 @@ function heatPicture(cells, best, width, scale) {
     }));
     context.strokeStyle = colour("ink");
     context.lineWidth = 2;
-    if (!scale) context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
+    if (!inFile) context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
     context.fillStyle = colour("muted");
     context.textAlign = "center";
     // Of numbers so many are left out that they fit; names are shortened.
@@ -124,13 +125,23 @@ function heatPicture(cells, best, width, scale) {
     drawHeatKey(context, ...key, keyTexts);
     if (cells.flat().includes(null)) sayCrossedOut(context, key[0], key[1] + key[2] + 14);
   };
-  if (scale) {
-    const onPaper = (context) => { context.fillStyle = "#fff"; context.fillRect(0, 0, width, height); paint(context); };
-    return canvasPainted(make("canvas"), scale, width, height, onPaper);
-  }
-  const canvas = paintedCanvas(width, height, `${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}. Arrow keys move the chosen cell.`, paint);
-  canvas.cellAt = (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)];
-  return canvas;
+  return { height, paint, cellAt: (x, y) => [Math.floor((x - edge.left) / w), rows - 1 - Math.floor((y - edge.top) / h)] };
+}
+const heatTitle = (label) => `${label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}`;
+
+function heatPicture(cells, best, width) {
+  const { height, paint, cellAt } = heatPainting(cells, best, width, false);
+  return Object.assign(paintedCanvas(width, height, `${heatTitle(metric.label)}. Arrow keys move the chosen cell.`, paint), { cellAt });
+}
+
+function heatSvg(cells, best, free) {
+  return inLight(() => {
+    const { height, paint } = heatPainting(cells, best, FIGURE_WIDTH, true);
+    const context = new SvgContext();
+    paint(context);
+    const held = heldTexts(heat.held, free);
+    return titledFigure(`${heatTitle(metricLabel())}${held.length ? `, at ${held.join(", ")}` : ""}${SWEEP.of ? ` (${SWEEP.of})` : ""}.${heatKeyNote(best)}`, { height, parts: context.parts });
+  });
 }
 
 // Where no run gave a value.
@@ -182,7 +193,7 @@ function drawBestMarks(context, best, u, v) {
 
 // Least, middle and most; `sorted` by size.
 const heatKeyValues = (sorted) => [0, 0.5, 1].map((share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0);
-const heatKeyText = (value) => withUnit(Number(value.toPrecision(3)));
+const heatKeyText = (value) => withUnit(rounded(value, 3));
 
 function drawHeatKey(context, left, top, height, texts) {
   for (let i = 0; i < height; ++i) {
@@ -204,19 +215,24 @@ function spreadOf(point) {
   return `${interval}, ${runs} ${runs === 1 ? "run" : "runs"}`;
 }
 
+function heatKeyNote(best) {
+  const bars = best.some((b) => b && isNumber(b.low) && b.low !== b.high);
+  return `${best.some(Boolean) ? ` Red: the best ${AXES[heat.y].key} of each column${bars ? ", the bar its 95 % interval" : ""}.` : ""} Colours by rank, yellow is ${metric.better === "neither" ? "more" : "better"}.`;
+}
+
 function sayCell(cells, best) {
   const [c, r] = heat.cell;
   const cell = cells[c]?.[r];
   const place = `${AXES[heat.x].key} ${HEAT_AXES[heat.x].labels[c]}, ${AXES[heat.y].key} ${HEAT_AXES[heat.y].labels[r]}: `;
   const value = !cell ? "no result" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points` : `${withUnit(cell.mean)}${spreadOf(cell.point)}`;
   const line = best[c] ? ` Best there: ${HEAT_AXES[heat.y].labels[best[c].row]}.` : "";
-  byId("heat-note").textContent = `${place}${value}.${line}${best.some(Boolean) ? ` Red: the best ${AXES[heat.y].key} of each column${best.some((b) => b && isNumber(b.low) && b.low !== b.high) ? ", the bar its 95 % interval" : ""}.` : ""} Colours by rank, yellow is ${metric.better === "neither" ? "more" : "better"}.`;
+  byId("heat-note").textContent = `${place}${value}.${line}${heatKeyNote(best)}`;
 }
 
-function heatButtons(cells, best) {
+function heatButtons(cells, best, free) {
   const rows = () => HEAT_AXES[heat.y].labels.map((label, r) => [label, ...cells.map((column) => column[r]?.mean)]);
-  return saveButtons(`${metric.label} over ${AXES[heat.x].key} and ${AXES[heat.y].key}`, {
-    PNG: () => pngOfCanvas(inLight(() => heatPicture(cells, best, FIGURE_WIDTH, PNG_SCALE))),
+  return saveButtons(heatTitle(metric.label), {
+    ...pictureKinds(() => heatSvg(cells, best, free)),
     CSV: () => csvText([[`${metricLabel()}: ${AXES[heat.y].key} down, ${AXES[heat.x].key} across`, ...HEAT_AXES[heat.x].labels], ...rows()]),
   });
 }
@@ -254,7 +270,7 @@ function drawHeat() {
     choose(heat.cell[0] + step[0], heat.cell[1] + step[1]);
   });
   byId("heat").replaceChildren(canvas);
-  byId("heat-controls").append(heatButtons(cells, best));
+  byId("heat-controls").append(heatButtons(cells, best, free));
   if (hadFocus) canvas.focus();
   sayCell(cells, best);
 }

@@ -78,9 +78,9 @@ function drawAlong() {
   if (positiveValues) checkbox("plot-log-values", "logY", "logarithmic values");
   keepFocus(byId("plot-controls"), controls);
   const { x, series } = plotSeries(free);
-  const held = free.filter((i) => along.held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[along.held[i]]}`);
+  const held = heldTexts(along.held, free);
   drawPlot(byId("plot"), {
-    title: `${metric.label} along ${axis.key}${held.length ? `, at ${held.join(", ")}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
+    title: `${metric.label} along ${axis.key}${held.length ? `, at ${held.join(", ")}` : ""}`, caption: SWEEP.of, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
   const seeds = Math.max(...POINTS.map((p) => p.counting));
@@ -108,10 +108,18 @@ function heldText(line) {
   return parts.filter(Boolean).join(", ") || "all";
 }
 
-// Why values have no part in it, or there is none: runs that fail leave no figure to compare.
+// Why these points have no figure: runs failed, or the score has no value where it can have none.
+function whyMissing(points) {
+  if (!SWEEP.runs) return "";  // of so many it is not on the page
+  const failed = new Set(Object.keys(SWEEP.runs.failures).map((row) => SWEEP.runs.point[row]));
+  const some = points.filter((i) => failed.has(i)).length;
+  return some === 0 ? " (no run failed: the score has no value there)" : some === points.length ? " (see Failed runs)" : " (see Failed runs; elsewhere the score has no value)";
+}
+
+// Which values have no part in it, or why there is none.
 function missingText(axis) {
   const all = allLinesAlong(along.axis);
-  const why = SWEEP.failed ? " (see Failed runs)" : "";
+  const why = (lines) => whyMissing(lines.flatMap((line) => line.left_out));
   const labels = (points) => points.map((i) => axis.labels[POINTS[i].values[along.axis]]).join(", ");
   const where = (line) => (heldText(line) === "all" ? "" : ` (${heldText(line)})`);
   const few = all.filter((line) => line.points.length < 2);
@@ -119,8 +127,8 @@ function missingText(axis) {
   const cut = all.filter((line) => line.best !== undefined && line.left_out.length);
   const list = (lines, text) => someOf(lines.map((line) => `${text(line)}${where(line)}`));
   return [
-    cut.length ? `Left out, as no run there gave a figure${why}: ${list(cut, (line) => labels(line.left_out))}.` : "",
-    few.length ? `No best value where fewer than two values have a figure${why}: ${list(few, (line) => (line.points.length ? `only ${labels(line.points)}` : "none"))}.` : "",
+    cut.length ? `Left out, as no run there gave a figure${why(cut)}: ${list(cut, (line) => labels(line.left_out))}.` : "",
+    few.length ? `No best value where fewer than two values have a figure${why(few)}: ${list(few, (line) => (line.points.length ? `only ${labels(line.points)}` : "none"))}.` : "",
     apart.length ? `No best value where no seed gave a figure at every value: ${list(apart, (line) => labels(line.points))}.` : "",
   ].filter(Boolean).join(" ");
 }
@@ -152,7 +160,7 @@ function drawBest() {
       percent(line.share_best[line.best]),
       `${mean} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
       !canTell(line, line.seeds) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
-      compact(Number((line.regret_of_seed[line.best] * metric.factor).toPrecision(3))), String(line.seeds)];
+      compact(rounded(line.regret_of_seed[line.best] * metric.factor, 3)), String(line.seeds)];
   });
   const inUnit = metric.unit ? `, ${metric.unit}` : "";
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
@@ -168,7 +176,7 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss to the best value of each ${EACH}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss to the best value of each ${EACH}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
     series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0

@@ -29,7 +29,11 @@ function columnsOf(what) {
     }))];
 }
 
-// "0.5", "<0.1", ">= 3", "0.2..0.4" for numbers; part of the text for texts, and for anything else.
+// As a cell shows it.
+const shownText = (column, row) => column.text?.(row) ?? (column.numeric ? compact(column.at(row)) : String(column.at(row) ?? "–"));
+
+// "0.5", "<0.1", ">= 3", "0.2..0.4" for numbers, where a number is also found as it is shown; part of the text for texts,
+// and for anything else. Gives what tests a value and its shown text.
 function matcher(text, numeric) {
   const wanted = text.trim();
   if (!wanted) return () => true;
@@ -38,8 +42,8 @@ function matcher(text, numeric) {
   if (numeric && range) return (v) => isNumber(v) && v >= Number(range[1]) && v <= Number(range[2]);
   if (numeric && comparison) {
     const limit = Number(comparison[2]);
-    const rule = { "<": (v) => v < limit, "<=": (v) => v <= limit, ">": (v) => v > limit, ">=": (v) => v >= limit, "=": (v) => v === limit }[comparison[1] ?? "="];
-    return (v) => isNumber(v) && rule(v);
+    const rule = { "<": (v) => v < limit, "<=": (v) => v <= limit, ">": (v) => v > limit, ">=": (v) => v >= limit, "=": (v, shown) => v === limit || shown === comparison[2] }[comparison[1] ?? "="];
+    return (v, shown) => isNumber(v) && rule(v, shown);
   }
   return (v) => String(v ?? "").toLowerCase().includes(wanted.toLowerCase());
 }
@@ -65,7 +69,7 @@ function linkCell(row, text) {
 function rowsShown(columns) {
   const count = table.what === "points" ? POINTS.length : SWEEP.runs.run.length;
   const tests = columns.map((column, k) => matcher(table.filters[k] ?? "", column.numeric));
-  const rows = [...Array(count).keys()].filter((row) => columns.every((column, k) => tests[k](column.at(row))));
+  const rows = [...Array(count).keys()].filter((row) => columns.every((column, k) => tests[k](column.at(row), shownText(column, row))));
   const { at, numeric } = columns[table.sort] ?? columns[0];
   const sign = table.down ? -1 : 1;
   // Missing values last, whichever way.
@@ -79,9 +83,7 @@ function rowsShown(columns) {
 function drawRows(columns, body) {
   const rows = rowsShown(columns);
   body.replaceChildren(...rows.slice(0, table.most).map((row) => make("tr", {}, ...columns.map((column) => {
-    const value = column.at(row);
-    const text = () => column.text?.(row) ?? (column.numeric ? compact(value) : String(value ?? "–"));
-    return make("td", {}, column.link ? linkCell(row, value) : text());
+    return make("td", {}, column.link ? linkCell(row, column.at(row)) : shownText(column, row));
   }))));
   const heads = columns.map((column) => `${column.title}${column.unit ? ` (${column.unit})` : ""}`);
   const written = () => csvText([heads, ...rows.map((row) => columns.map((column) => (column.link ? commandOf(row) : column.numeric ? column.at(row) : column.text?.(row) ?? column.at(row))))]);

@@ -85,6 +85,7 @@ TEST_F(SavedFigures, OfASweep) {
   EXPECT_EQ(Count("g g > path"), 8);  // two lines, six whiskers
   EXPECT_THAT(plot.text, HasSubstr(">drift_scale 2</text>"));
   EXPECT_THAT(plot.text, HasSubstr(">cm</text>"));
+  EXPECT_THAT(plot.text, HasSubstr("(living_room)"));  // what was measured
   EXPECT_EQ(browser_->Evaluate("document.documentElement.dataset.theme"), "dark");
   EXPECT_THAT(
       Save("#plot", "PNG").text,
@@ -101,6 +102,12 @@ TEST_F(SavedFigures, OfASweep) {
   EXPECT_THAT(
       Save("#heat-controls", "PNG").text,
       ::testing::AllOf(StartsWith("1920x"), HasSubstr("many, corner " + std::string(kWhitePixel))));
+  const Saved heat = Save("#heat-controls", "SVG");
+  EXPECT_EQ(Count("circle, parsererror"), 0);
+  EXPECT_EQ(Count("g > rect[fill^=rgb]"), 2 * 3 + 160);
+  EXPECT_THAT(heat.text, HasSubstr("trajectory.est.mean_euclidean (cm) over slam.drift_scale"));
+  EXPECT_THAT(heat.text, HasSubstr("(living_room)"));
+  EXPECT_THAT(heat.text, HasSubstr("Red: "));
   EXPECT_THAT(Save("#heat-controls", "CSV").text,
               HasSubstr("mapper.fusion.gain down, slam.drift_scale across\",1,2\n0,3.35,6.35\n"));
   EXPECT_THAT(Save("#best-note", "CSV").text, HasSubstr("\ndrift_scale 1,0.5,0.5,100.0 %,"));
@@ -121,12 +128,33 @@ TEST_F(SavedFigures, OfARun) {
   EXPECT_EQ(Count("svg svg > path"), 3);  // truth, SLAM, estimate
   EXPECT_THAT(map.text, HasSubstr(">Estimate at the end</text>"));
   EXPECT_THAT(map.text, HasSubstr(">1 m</text>"));
+  // The key tells all that is shown: the layer, the chosen frame's scan and poses.
+  for (const char* entry : {"occupied", "free", "unknown", "scan of frame ", "poses of frame "}) {
+    EXPECT_THAT(map.text, HasSubstr(">" + std::string(entry)));
+  }
+  EXPECT_EQ(Count("svg svg > polygon"), 3);
+  EXPECT_GT(Count("svg svg > rect"), 5);
+  browser_->Evaluate("selectLayer('difference')");
+  EXPECT_THAT(Save(".map-buttons", "SVG").text, HasSubstr(">wall, missed</text>"));
   EXPECT_THAT(Save(".map-buttons", "PNG").text, StartsWith("1920x"));
   Save("#plots .plot", "SVG");
   EXPECT_EQ(Count("g g > path"), 3);
   EXPECT_THAT(
       Save("#plots .plot", "CSV").text,
       StartsWith("time (s),SLAM (cm),estimate at the time (cm),estimate at the end (cm)\n"));
+  // One gain of all axes hides none of the lines.
+  EXPECT_EQ(browser_->Evaluate("[...document.querySelectorAll('.plot h3')].some((h) => "
+                               "h.textContent.startsWith('Gain') && (h.parentElement.id = "
+                               "'gain'))"),
+            true);
+  Save("#gain", "SVG");
+  EXPECT_EQ(Count("g g > path[stroke-width=\"5.6\"], g g > path[stroke-width=\"1.6\"]"), 2);
+  // Of the calibration: dots of so many cells, and a dashed line.
+  Save("#numbers .plot", "SVG");
+  EXPECT_EQ(Count("path[stroke-dasharray], line[stroke-dasharray]"), 2);
+  EXPECT_EQ(Count("circle.key"), 1);
+  EXPECT_THAT(Save("#numbers .plot", "CSV").text,
+              StartsWith("probability in the map,truly occupied,cells,ideal\n"));
   EXPECT_THAT(browser_->problems(), IsEmpty());
 }
 

@@ -57,6 +57,21 @@ TEST_F(SweepPage, OfASweep) {
   EXPECT_GT(ColoursOf("#heat canvas"), 20);
   EXPECT_EQ(browser_->Evaluate("metric.name"), "trajectory.est.mean_euclidean_m");
   EXPECT_EQ(browser_->Evaluate("plotSeries([]).series.filter((s) => s.onlyPoints).length"), 0);
+  EXPECT_EQ(browser_->Evaluate("document.getElementById('of').textContent"), "living_room");
+  EXPECT_EQ(browser_->Evaluate(
+                "['a.drift_m_per_s', 'a.drift_m_per_m'].map((m) => suitedUnit(m, [0.003, 0.02, "
+                "0.05])).map(({label, unit}) => `${label} ${unit}`).join()"),
+            "a.drift cm/s,a.drift cm/m");
+  EXPECT_EQ(browser_->Evaluate("suitedUnit('a.drift_m_per_s', [0.003]).unit"), "mm/s");
+  EXPECT_EQ(browser_->Evaluate("[10897, 9108.3, 0.123456, 1234567].map(compact).join()"),
+            "10897,9108,0.1235,1235000");
+  // The best of a column is marked in its middle, where its value is.
+  EXPECT_EQ(browser_->Evaluate(
+                "(() => { let at; drawBestMarks = (context, best, u) => { at = u; }; const p = "
+                "heatPainting(heatCells([]), [], 1000, true); p.paint(new SvgContext()); const "
+                "half = (at(1) - at(0)) / 2; return [0, 1].every((c) => p.cellAt(at(c) - 0.99 * "
+                "half, 50)[0] === c && p.cellAt(at(c) + 0.99 * half, 50)[0] === c); })()"),
+            true);
   // 60 runs, one failed; at half the noise no gain is best, at twice the noise all of it.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#best tbody tr').length"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody tr:last-child td:nth-child(2)')"
@@ -97,6 +112,10 @@ TEST_F(SweepPage, OfASweep) {
   browser_->Click("#table th input");
   for (const char* key : {"<", "1", "0"}) browser_->Press(key);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table tbody tr').length"), 10);
+  // A number is found as it is shown, too.
+  EXPECT_EQ(browser_->Evaluate("['3.162', '<3.1622', '3.16'].map((text) => matcher(text, "
+                               "true)(3.16228, '3.162')).join()"),
+            "true,false,false");
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#table a').getAttribute('href')"),
             "runs/9/report.html");
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table .failed').length"), 1);
@@ -227,6 +246,13 @@ TEST_F(SweepPage, LogarithmicAxesAreLabelledWhereTheyAreShort) {
   EXPECT_EQ(ticks("[0.1, 1, 10], 0.09, 11"), "0.1,0.2,0.5,1,2,5,10");
   EXPECT_EQ(ticks("[0.1, 1000], 0.09, 1100"), "0.1,1,10,100,1000");
   EXPECT_EQ(ticks("[110, 120, 120, 130], 109, 131"), "110,120,130");
+  // No two ticks of a linear axis have one label.
+  const auto labels = [&](const std::string& arguments) {
+    return browser_->Evaluate("linearLabels(null, " + arguments + ").join()");
+  };
+  EXPECT_EQ(labels("[0.003, 0.0035, 0.004], 1, 30, 0.0005"), "0.0030,0.0035,0.0040");
+  EXPECT_EQ(labels("[0.99995, 1, 1.00005], 1, 30, 0.00005"), "0.99995,1.00000,1.00005");
+  EXPECT_EQ(labels("[9000, 9500, 10000], 1, 30, 500"), "9000,9500,10000");
 }
 
 // Nothing random: one measurement, made four times, has no interval.
@@ -301,6 +327,10 @@ TEST_F(SweepPage, OfASweepWhoseFirstValueFails) {
   EXPECT_THAT(browser_->Evaluate(missing),
               ::testing::StartsWith(too_few + "only 6 (gain 0, drift_scale 1), only 6"));
   EXPECT_EQ(browser_->Evaluate("document.getElementById('best-section').hidden"), false);
+  // Points 0 and 2 failed; a score that 1 lacks has no value there.
+  EXPECT_EQ(browser_->Evaluate("whyMissing([0, 2])"), " (see Failed runs)");
+  EXPECT_EQ(browser_->Evaluate("whyMissing([1])"),
+            " (no run failed: the score has no value there)");
 }
 
 }  // namespace
