@@ -96,11 +96,16 @@ function furtherMapNumbers(map) {
   if (registered) rows.push(["registration to the truth", `${metres(registered.x_m)}, ${metres(registered.y_m)}, ${fixed(registered.yaw_rad * 180 / Math.PI, 2)}°`]);
   add("it moves a wall by, mean", registered?.mean_shift_m, metres);
   add("chamfer distance once registered", registered?.chamfer_m, metres);
+  add("Hausdorff 95 % once registered", registered?.hausdorff95_m, metres);
   add("F1 within 5 cm once registered", registered?.f1_5cm, plain);
   if (map.wall_thickness) rows.push(["thickness of walls, mean (truth)", `${metres(map.wall_thickness.mean_m)} (${metres(map.true_wall_thickness?.mean_m)})`]);
+  if (map.wall_thickness) rows.push(["their 95 % (truth)", `${metres(map.wall_thickness.p95_m)} (${metres(map.true_wall_thickness?.p95_m)})`]);
   add("double walls", map.double_wall_rate, percent);
   add("probabilities: Brier score", calibration?.brier, plain);
+  add("probabilities: log loss", calibration?.log_loss, plain);
   add("probabilities: calibration error", calibration?.calibration_error, plain);
+  add("correlation (MCC) of walls, observable cells", map.observable?.occupied_mcc, plain);
+  add("correlation (MCC) of free cells, observable cells", map.observable?.free_mcc, plain);
   add("structural similarity (SSIM)", map.ssim, plain);
   if (truthless) rows.push(["occupied share, corners, enclosed areas (truth)", `${percent(truthless.occupied_share)}, ${truthless.corners}, ${truthless.enclosed_areas} (${percent(trueTruthless?.occupied_share)}, ${trueTruthless?.corners}, ${trueTruthless?.enclosed_areas})`]);
   add("ways planned on the map and free in truth", ways?.success_rate, percent);

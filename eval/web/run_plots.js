@@ -37,7 +37,7 @@ function initPlots() {
       column("forward", "gain_forward", "est", 1, 3),
       column("left", "gain_left", "slam", 1, 3),
       column("yaw", "gain_yaw", "truth", 1, 3),
-    ].map((s, k) => ({ ...s, width: [5.6, 3.6, 1.6][k] })));  // those beneath show on both sides where axes have one gain
+    ].map((s, k) => ({ ...s, width: [4.2, 2.9, 1.6][k] })));  // those beneath show on both sides where axes have one gain
   }
   if (hasColumn("match_score")) add("Match score: share of the beams that the map explains", "share", [column("score", "match_score", "est", 1, 3)]);
   if (hasColumn("beams")) add("Beams with a hit", "beams", [{ ...column("beams", "beams", "est", 1, 0), values: whereMapped(frames.beams) }]);

@@ -49,5 +49,16 @@ TEST(MappingRun, SaysWhereAGuessWasNeverConfirmed) {
   EXPECT_FALSE(GuessedFrom(run));
 }
 
+TEST(MappingRun, TimesAreThoseOfFramesWithAPose) {
+  MappingRun run;
+  run.reports.resize(3);
+  run.reports[0].slam_from_camera = Pose3{};
+  run.reports[0].times.total_us = 500.0;
+  run.reports[1].times.total_us = 9.0;  // lost
+  run.reports[2].slam_from_camera = Pose3{};
+  run.reports[2].times.total_us = 600.0;
+  EXPECT_THAT(TimesOfMappedFrames(run), ElementsAre(500.0, 600.0));
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -73,7 +73,8 @@ TEST_F(ReportPage, OfARun) {
   browser_->WaitFor("plots().every((p) => p.max !== null)");
   EXPECT_EQ(browser_->Evaluate("plots()"), zoomed);
   EXPECT_THAT(browser_->Evaluate("document.getElementById('numbers').textContent"),
-              ::testing::HasSubstr("heading, mean, not aligned"));
+              ::testing::AllOf(::testing::HasSubstr("heading, mean, not aligned"),
+                               ::testing::HasSubstr("log loss"), ::testing::HasSubstr("(MCC)")));
   ExpectEveryPlotIsDrawn();
   EXPECT_THAT(browser_->problems(), IsEmpty());
   browser_->Open(Path("out/report.html"), 400);

@@ -148,7 +148,7 @@ TEST_F(SavedFigures, OfARun) {
                                "'gain'))"),
             true);
   Save("#gain", "SVG");
-  EXPECT_EQ(Count("g g > path[stroke-width=\"5.6\"], g g > path[stroke-width=\"1.6\"]"), 2);
+  EXPECT_EQ(Count("g g > path[stroke-width=\"4.2\"], g g > path[stroke-width=\"1.6\"]"), 2);
   // Of the calibration: dots of so many cells, and a dashed line.
   Save("#numbers .plot", "SVG");
   EXPECT_EQ(Count("path[stroke-dasharray], line[stroke-dasharray]"), 2);
