@@ -23,8 +23,8 @@ const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
 // Across a gap in SLAM's motion groups lie as the online estimate has them, or as loops have bent
 // it: what ties them together where both see nothing in common.
 constexpr double kGapHuberSigmas = 2.0;
-// To loops it gives way entirely. If it pulled on however far it is off, a loop that turns what lies
-// beyond would lose (docs/math.md, "Epochs").
+// To loops it gives way entirely. If it pulled on however far it is off, a loop that turns what
+// lies beyond would lose (docs/math.md, "Epochs").
 constexpr double kGapCauchySigmas = 2.0;
 // A gap of 20 m takes ten steps, what has none three.
 constexpr int kLoopIterations = 20;
