@@ -69,7 +69,8 @@ struct FrameReport {
   int loops_rejected = 0;
   bool slipped = false;    // SLAM's motion to here did not fit what is seen: it was put right
   bool relocated = false;  // what was mapped since a loss of SLAM was moved to where it belongs
-  // Since a loss of SLAM: where the frame lies to what was mapped before is a guess.
+  // Since a loss of SLAM: where the frame lies to what was mapped before is a guess. It ends where
+  // the place is found, and where a loop is accepted that joins both.
   bool guessed = false;
   bool inserted = false;             // its scan is kept for the map
   bool well_seen = false;            // its place was seen enough: the frame moves with another's

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   MapperOptions options;
+  options.scan.beams = kCamera.width_px;  // not more than there are columns
   options.scan.min_range_m = 0.3;
   IncrementalMapper mapper(options, kCamera);
   std::vector<double> stamps_s;  // of the frames that it took: the result has a pose for each

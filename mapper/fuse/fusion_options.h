@@ -14,7 +14,9 @@ enum class PriorMode {
 
 enum class SlamNoiseSource {
   kSetting,  // the values beside it
-  kProfile,  // worked out from the profile that SLAM was disturbed with; a run's, not a recording's
+  // Worked out from the profile that SLAM was disturbed with, and put there, by an experiment's
+  // run; the mapper itself takes the values as they are.
+  kProfile,
 };
 
 enum class FusionMode {

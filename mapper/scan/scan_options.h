@@ -20,7 +20,9 @@ enum class FloorSource {
 
 struct ScanOptions {
   ScanMode mode = ScanMode::kFull;
-  int beams = 640;  // over the camera's horizontal field of view, uniform in angle
+  // Over the camera's horizontal field of view, uniform in angle. More than the image has columns
+  // tell nothing more: those that share a column share its error.
+  int beams = 640;
   // The obstacle band above the floor. The lower edge is above the noise of the floor at 6 m
   // (Kinect: sigma 50 mm in depth at 10 degrees is 9 mm in height) and what wheels roll over; the
   // upper edge is above a person's shoulders and below door lintels.
