@@ -107,11 +107,12 @@ std::optional<double> CameraHeightOfPrior(const std::string& folder) {
   const fs::path run(folder);
   const std::string frames = (run / "frames.csv").string();
   if (Config::FromFile((run / "run.yaml").string()).Text("localise") == "true") return {};
-  if (!fs::exists(frames)) return {};
-  const CsvTable table = ReadCsv(frames);
-  const auto column = table.columns.find("camera_height_m");
-  if (column == table.columns.end()) return {};
-  std::vector<double> heights_m = column->second;
+  std::vector<double> heights_m;
+  try {
+    heights_m = ReadCsv(frames).Column("camera_height_m");
+  } catch (const InputError&) {
+    return {};  // missing, damaged or of an earlier version: nothing else needs it
+  }
   std::erase_if(heights_m, [](double height_m) { return std::isnan(height_m); });
   if (heights_m.empty()) return {};
   return UpperMedian(std::move(heights_m));

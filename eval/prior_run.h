@@ -23,8 +23,8 @@ std::string HashOfPriorRun(const std::string& folder);
 std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,
                                         bool images);
 
-// How high the camera was above the floor in the median frame of the drive that made the map; none
-// of a laser's, of a run that was only localised, and where the folder does not tell.
+// How high the camera was above the floor in the median frame of the last drive that added to the
+// map; none of a laser's, of a run that was only localised, and where the folder does not tell.
 std::optional<double> CameraHeightOfPrior(const std::string& folder);
 
 }  // namespace depthgrid

@@ -148,6 +148,8 @@ std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart
 
 std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run) {
   const std::string& map = request.arguments.map;
+  const MapperOptions& options = request.settings.mapper;
+  if (options.fusion.TrustsSlamAlone() || options.scan.mode != ScanMode::kFull) return {};
   const auto of_map_m = CameraHeightOfPrior(map);
   std::vector<double> heights_m;
   for (const FrameReport& report : run.reports) {
@@ -156,7 +158,7 @@ std::optional<std::string> DoubtOfHeight(const MapRequest& request, const Mappin
   if (!of_map_m || heights_m.empty()) return {};
   const double height_m = UpperMedian(std::move(heights_m));
   // Then nothing is in both slices.
-  const double slice_m = 2.0 * request.settings.mapper.scan.slice_half_height_m;
+  const double slice_m = 2.0 * options.scan.slice_half_height_m;
   if (slice_m == 0.0 || std::abs(height_m - *of_map_m) <= slice_m) return {};
   return fmt::format(
       "{}: made with the camera {:.2f} m above the floor, which is {:.2f} m here: what is matched "

@@ -253,9 +253,9 @@ function linearLabels(u, ticks, k, space, step) {
 // Ticks that an axis leaves out are null.
 const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)));
 
-// A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash,
-// digits, unit, points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}. Lines stop where a value is null. Plots of
-// one `sync` key share their cursor. `caption`: what a file says besides the
+// A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
+// points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}.
+// Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption`: what a file says besides the
 // title. `xNames` replaces the numbers of the x axis, one a value of x.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
 function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
@@ -298,7 +298,12 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
     const before = plot && state();
     if (plot) plot.destroy();
     const settings = options();
-    if (before) settings.series.forEach((s, k) => { s.show = before.shown[k]; });
+    if (before) {
+      settings.series.forEach((s, k) => { s.show = before.shown[k]; });
+      // The range shown has its room already.
+      const { range } = settings.scales.x;
+      if (range) settings.scales.x.range = (u, low, high) => (low === before.min && high === before.max ? [low, high] : range(u, low, high));
+    }
     plot = new uPlot(settings, [x, ...series.map((s) => s.values)], box);
     if (before) setRange(before);
     openLegendToKeys(plot, title);

@@ -313,7 +313,7 @@ function selectFrame(i) {
     rows.push(row("gain forward, left, yaw", `${fixed(at("gain_forward"), 2)}, ${fixed(at("gain_left"), 2)}, ${fixed(at("gain_yaw"), 2)}`));
   }
   byId("frame-values").replaceChildren(...rows);
-  for (const plot of allPlots) plot.show(currentFrame);
+  for (const plot of allPlots) if (plot.sync === "frames") plot.show(currentFrame);
   requestDraw();
 }
 

@@ -10,6 +10,7 @@ function subtitle() {
   const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} ${SWEEP.finished === 1 ? "run" : "runs"}` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
   byId("subtitle").textContent = `${state}${size ? `: ${size}` : ""}${SWEEP.failed ? `; ${SWEEP.failed} failed` : ""}`;
   byId("of").textContent = SWEEP.of;
+  byId("of").hidden = !SWEEP.of;
 }
 
 function headline() {

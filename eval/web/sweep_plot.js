@@ -110,9 +110,8 @@ function heldText(line) {
 
 // Why these points have no figure: runs failed, or the score has no value where it can have none.
 function whyMissing(points) {
-  if (!SWEEP.runs) return "";  // of so many it is not on the page
-  const failed = new Set(Object.keys(SWEEP.runs.failures).map((row) => SWEEP.runs.point[row]));
-  const some = points.filter((i) => failed.has(i)).length;
+  if (!SWEEP.runs) return SWEEP.failed ? " (see Failed runs)" : "";  // of so many it is not on the page
+  const some = points.filter((i) => POINTS[i].runs === 0).length;
   return some === 0 ? " (no run failed: the score has no value there)" : some === points.length ? " (see Failed runs)" : " (see Failed runs; elsewhere the score has no value)";
 }
 

@@ -68,8 +68,9 @@ function linkCell(row, text) {
 
 function rowsShown(columns) {
   const count = table.what === "points" ? POINTS.length : SWEEP.runs.run.length;
-  const tests = columns.map((column, k) => matcher(table.filters[k] ?? "", column.numeric));
-  const rows = [...Array(count).keys()].filter((row) => columns.every((column, k) => tests[k](column.at(row), shownText(column, row))));
+  const filters = columns.map((column, k) => ({ column, text: table.filters[k] ?? "" })).filter(({ text }) => text.trim())
+    .map(({ column, text }) => ({ column, test: matcher(text, column.numeric) }));
+  const rows = [...Array(count).keys()].filter((row) => filters.every(({ column, test }) => test(column.at(row), shownText(column, row))));
   const { at, numeric } = columns[table.sort] ?? columns[0];
   const sign = table.down ? -1 : 1;
   // Missing values last, whichever way.

@@ -134,7 +134,8 @@ bool Relocation::Begins(double share, int next_frame) {
     lost_s_ += lost_s;
     return false;
   }
-  if (IsUsual(share)) return false;
+  // A loop that came with the frame itself says where it is.
+  if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
   active_ = true;
   gave_up_ = false;
   first_frame_ = next_frame;
@@ -149,11 +150,16 @@ bool Relocation::Begins(double share, int next_frame) {
   return true;
 }
 
-void Relocation::Joined(const std::vector<PlanarLoop>& loops) {
-  for (const PlanarLoop& loop : loops) {
+bool Relocation::IsJoinedAt(int frame) const {
+  return std::any_of(held_.begin(), held_.end(), [&](const PlanarLoop& loop) {
     const auto [earlier, later] = std::minmax(loop.first, loop.second);
-    if (earlier < first_frame_ && later >= first_frame_) active_ = gave_up_ = false;
-  }
+    return earlier < frame && later >= frame;
+  });
+}
+
+void Relocation::Joined(const std::vector<PlanarLoop>& loops) {
+  held_ = loops;
+  if (IsJoinedAt(first_frame_)) active_ = gave_up_ = false;
 }
 
 void Relocation::GuessMoved() {

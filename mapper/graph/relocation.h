@@ -76,8 +76,8 @@ class Relocation {
   bool unsettled() const { return active_ || gave_up_; }
   int first_frame() const { return first_frame_; }
 
-  // After an adjustment with these loops: one that joins frames before and after the loss says where
-  // the latter are.
+  // After an adjustment with these loops: one that joins frames before and after the loss says
+  // where the latter are (of two losses in a row, for all since the first).
   void Joined(const std::vector<PlanarLoop>& loops);
 
   // All since first_frame() was moved to another guess.
@@ -90,6 +90,7 @@ class Relocation {
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
 
  private:
+  bool IsJoinedAt(int frame) const;
   bool IsElsewhere(double duration_s, const Pose2& step) const;
   bool GuessIsRight(const std::vector<MappedFrame>& frames,
                     const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
@@ -105,6 +106,7 @@ class Relocation {
   bool active_ = false;
   bool gave_up_ = false;
   int first_frame_ = 0;
+  std::vector<PlanarLoop> held_;  // of the last adjustment with loops
   double lost_s_ = 0.0;
   double way_m_ = 0.0;   // since first_frame_
   double next_m_ = 0.0;  // when to search again: way, or turn

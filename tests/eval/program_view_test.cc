@@ -48,6 +48,7 @@ TEST_F(ProgramView, AMapOfACameraAtAnotherHeightIsWarnedOf) {
   EXPECT_THAT(said("frame,camera_height_m\n0,0.8\n1,0.6\n2,\n3,0.7\n"), says);
   EXPECT_THAT(said("frame,camera_height_m\n0,0.95\n1,\n"), Not(HasSubstr("height")));
   EXPECT_THAT(said("frame\n0\n"), Not(HasSubstr("height")));  // of an earlier version
+  EXPECT_THAT(said(""), Not(HasSubstr("frames.csv")));  // damaged, and needed for nothing else
 }
 
 // Three rows of an image make an obstacle, but no slice of so few pixels has them.
