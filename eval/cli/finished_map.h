@@ -25,7 +25,7 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
 std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
                                        const MappingRun& run);
 
-// Where the drive that made the map had its camera at another height.
+// Where the last drive that added to the map had its camera at another height.
 std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run);
 
 // What was only localised in is handed on as it is, byte for byte: the map in `folder`, and its

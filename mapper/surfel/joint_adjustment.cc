@@ -26,7 +26,8 @@ constexpr double kGapHuberSigmas = 2.0;
 // To loops it gives way entirely. If it pulled on however far it is off, a loop that turns what
 // lies beyond would lose (docs/math.md, "Epochs").
 constexpr double kGapCauchySigmas = 2.0;
-// A gap of 20 m takes ten steps, what has none three.
+// Measured: two steps where nothing has to move, 8 over a gap of 24 m, 12 to 20 and more where it
+// is off by a few sigmas only, so that it gives way slowly.
 constexpr int kLoopIterations = 20;
 constexpr double kLoopsClosed = 1e-4;  // m and rad of the last step
 // Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where

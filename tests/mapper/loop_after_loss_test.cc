@@ -1,7 +1,7 @@
 // A loop that SLAM closes after it was lost and came back in a world of its own.
 #include <gtest/gtest.h>
 
-#include <utility>
+#include <cmath>
 
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
@@ -18,9 +18,9 @@ Pose2 RoundTheTable(int frame) {
 
 // Until SLAM closes a loop: then it is known where the part seen since the loss lies.
 TEST(LoopAfterLoss, EndsTheGuess) {
-  constexpr int kLost = 240, kBack = 330, kFrames = 500;
+  constexpr int kLost = 240, kBack = 330, kLoopAt = 460, kFrames = 500;
   const auto turned = [](int frame) { return RoundTheTable(frame) * Pose2{0.0, 0.0, kPi}; };
-  for (const auto& [gives_up, loop_at] : {std::pair(false, 460), {true, 460}, {false, kBack}}) {
+  for (const bool gives_up : {false, true}) {
     MapperOptions options;
     options.loops.relocation.most_searches = gives_up ? 1 : 1000;
     options.loops.relocation.min_score = 1.0;  // none is found
@@ -37,7 +37,7 @@ TEST(LoopAfterLoss, EndsTheGuess) {
       const Pose2 off = i < kBack ? Pose2{} : Pose2{4.0, 1.0, 0.9};
       frame.slam_epoch = i < kBack ? 0 : 1;
       if (i < kLost || i >= kBack) frame.slam_from_camera = CameraOf(off * truth, 1.0);
-      if (i == loop_at) {
+      if (i == kLoopAt) {
         LoopClosure loop;
         loop.reported_at_frame = loop.second_frame = i;
         loop.first_frame = (i + 120) % 240;  // across the table, looking the same way
@@ -46,12 +46,45 @@ TEST(LoopAfterLoss, EndsTheGuess) {
         frame.loops = {loop};
       }
       const FrameReport report = mapper.AddFrame(frame);
-      if (i == loop_at) {
+      if (i == kLoopAt) {
         EXPECT_EQ(report.loops_accepted, 1);
       }
       if (i >= kBack) {
-        ASSERT_EQ(report.guessed, i < loop_at) << i;
+        ASSERT_EQ(report.guessed, i < kLoopAt) << i;
       }
+    }
+  }
+}
+
+// The other half of a room, never seen before, and a loop with its first frame.
+TEST(LoopAfterLoss, OfTheVeryFrameLeavesNoGuess) {
+  constexpr int kBack = 90, kFrames = 120;
+  for (const bool with_loop : {false, true}) {
+    MapperOptions options;
+    options.loops.verify = false;  // the two see nothing in common
+    IncrementalMapper mapper(options, std::nullopt);
+    for (int i = 0; i < kFrames; ++i) {
+      const bool is_back = i >= kBack;
+      const Pose2 truth{3.0 + 0.3 * std::sin(0.05 * i), 1.7, is_back ? kPi : 0.0};
+      Frame frame;
+      frame.index = i;
+      frame.stamp_s = i / 30.0 + (is_back ? 5.0 : 0.0);
+      frame.slam_epoch = is_back ? 1 : 0;
+      frame.slam_from_camera = CameraOf((is_back ? Pose2{4.0, 1.0, 0.9} : Pose2{}) * truth, 1.0);
+      const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+      frame.scan = std::make_shared<const Scan>(
+          ScanOf(FurnishedRoom(), truth, laser, 4, static_cast<std::uint32_t>(i)));
+      if (with_loop && i == kBack) {
+        LoopClosure loop;
+        loop.reported_at_frame = loop.second_frame = i;
+        loop.first_from_second = Between(CameraOf(Pose2{3.0, 1.7, 0.0}, 1.0), CameraOf(truth, 1.0));
+        frame.loops = {loop};
+      }
+      const FrameReport report = mapper.AddFrame(frame);
+      if (i == kBack) {
+        EXPECT_EQ(report.loops_accepted, with_loop ? 1 : 0);
+      }
+      ASSERT_EQ(report.guessed, is_back && !with_loop) << i;
     }
   }
 }
