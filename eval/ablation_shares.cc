@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -125,7 +124,7 @@ std::string AblationCsv(const std::vector<AblationRun>& runs) {
   for (const auto& [name, value] : runs.front().metrics) csv += "," + name;
   csv += "\n";
   for (const AblationRun& run : runs) {
-    fmt::format_to(std::back_inserter(csv), "{},{}", run.variant, run.seed);
+    csv += fmt::format("{},{}", run.variant, run.seed);
     for (const auto& column : runs.front().metrics) {
       const double value = ValueOf(run, column.first);
       csv += std::isnan(value) ? "," : fmt::format(",{}", value);

@@ -7,6 +7,7 @@
 #include "eval/metrics/trajectory_metrics.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
+#include "mapper/core/symmetric_eigen.h"
 
 namespace depthgrid {
 namespace {
@@ -33,8 +34,7 @@ Eigen::Vector3d ExtentsOf(const std::vector<PosePair>& pairs) {
     const Eigen::Vector3d offset = pair.reference.world_from_camera.translation - mean;
     covariance += offset * offset.transpose() / n;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
-  return axes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return EigenOf(covariance).values.cwiseMax(0.0).cwiseSqrt();
 }
 
 // What lays the worlds over each other by the positions alone, where those fit and tell how the

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -76,12 +75,12 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
   for (const FrameReport& r : run.reports) {
     const auto true_pose = truth_at.find(r.stamp_s);
     const Pose3* true_camera = true_pose == truth_at.end() ? nullptr : true_pose->second;
-    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                   r.index, r.stamp_s, r.slam_epoch, BaseCells(r.slam_from_camera),
-                   BaseCells(r.map_from_camera), MatchCells(r), CovarianceCells(r.covariance),
-                   MotionCells(r), BeamsCell(r), r.loops_accepted, r.loops_rejected,
-                   r.inserted ? 1 : 0, HeightCell(r), ErrorCell(r.slam_from_camera, true_camera),
-                   ErrorCell(r.map_from_camera, true_camera));
+    csv += fmt::format("{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.stamp_s,
+                       r.slam_epoch, BaseCells(r.slam_from_camera), BaseCells(r.map_from_camera),
+                       MatchCells(r), CovarianceCells(r.covariance), MotionCells(r), BeamsCell(r),
+                       r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0, HeightCell(r),
+                       ErrorCell(r.slam_from_camera, true_camera),
+                       ErrorCell(r.map_from_camera, true_camera));
   }
   return csv;
 }
@@ -89,9 +88,9 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
 std::string TimingCsv(const MappingRun& run) {
   std::string csv = "frame,scan_us,match_us,fuse_us,insert_us,loops_us,total_us\n";
   for (const FrameReport& r : run.reports) {
-    fmt::format_to(std::back_inserter(csv), "{},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f}\n",
-                   r.index, r.times.scan_us, r.times.match_us, r.times.fuse_us, r.times.insert_us,
-                   r.times.loops_us, r.times.total_us);
+    csv += fmt::format("{},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f}\n", r.index, r.times.scan_us,
+                       r.times.match_us, r.times.fuse_us, r.times.insert_us, r.times.loops_us,
+                       r.times.total_us);
   }
   return csv;
 }

@@ -5,6 +5,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "mapper/core/pose3.h"
 #include "sim/corner_cutting.h"
 
 namespace depthgrid {
@@ -32,7 +33,7 @@ std::vector<Vector3d> TransportedNormals(const std::vector<Vector3d>& tangents, 
   const std::size_t n = tangents.size();
   std::vector<Vector3d> normals = {tangents[0].unitOrthogonal()};
   const auto carried = [](const Vector3d& normal, const Vector3d& from, const Vector3d& to) {
-    const Vector3d turned = Eigen::Quaterniond::FromTwoVectors(from, to) * normal;
+    const Vector3d turned = RotationBetween(from, to) * normal;
     return Vector3d((turned - to * to.dot(turned)).normalized());
   };
   for (std::size_t i = 1; i < n; ++i) {

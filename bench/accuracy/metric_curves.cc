@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "bench/guarded_main.h"
 #include "mapper/io/file.h"
 
@@ -24,7 +22,7 @@ std::string Csv(const std::vector<Curve>& curves) {
   csv += "\n";
   for (const Curve& curve : curves) {
     for (std::size_t i = 0; i < curve.amounts.size(); ++i) {
-      fmt::format_to(std::back_inserter(csv), "{},{}", curve.disturbance, curve.amounts[i]);
+      csv += fmt::format("{},{}", curve.disturbance, curve.amounts[i]);
       for (const auto& column : curve.points[i]) {
         csv += std::isnan(column.second) ? "," : fmt::format(",{}", column.second);
       }
@@ -51,9 +49,9 @@ std::string Panel(const Curve& curve, const std::string& score, double highest, 
   const std::vector<double> values = curve.Of(score);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
-    fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ",
-                   left + kPlotWidth * curve.amounts[i] / curve.amounts.back(),
-                   top + kPlotHeight * (1.0 - values[i] / highest));
+    points +=
+        fmt::format("{:.1f},{:.1f} ", left + kPlotWidth * curve.amounts[i] / curve.amounts.back(),
+                    top + kPlotHeight * (1.0 - values[i] / highest));
   }
   return fmt::format(
       "<rect x='{0}' y='{1}' width='{2}' height='{3}' fill='#f6f7f9' stroke='#c4c9d0'/>\n"

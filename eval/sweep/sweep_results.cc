@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "eval/sweep/sql_values_impl.h"
 #include "eval/sweep/sweep_database.h"
@@ -78,7 +77,7 @@ std::string ResultsCsv(const SweepResults& results) {
     cells.emplace_back(results.failures[row].empty() ? "0" : "1");
     for (const SweepColumn& column : results.metrics) cells.push_back(CsvCell(column.values[row]));
     for (const SweepColumn& column : results.times) cells.push_back(CsvCell(column.values[row]));
-    fmt::format_to(std::back_inserter(csv), "{}\n", fmt::join(cells, ","));
+    csv += fmt::format("{}\n", fmt::join(cells, ","));
   }
   return csv;
 }

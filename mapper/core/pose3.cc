@@ -19,6 +19,11 @@ Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
   return (2.0 * std::atan2(sine, sign * rotation.w()) / sine * sign) * rotation.vec();
 }
 
+// Eigen's own takes some ten seconds to compile wherever it is used: once, here.
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 Pose3 Lift(const Pose2& a_from_b) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(a_from_b.yaw_rad, Eigen::Vector3d::UnitZ())),
           {a_from_b.x_m, a_from_b.y_m, 0.0}};

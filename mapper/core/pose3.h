@@ -39,6 +39,10 @@ inline Pose3 Between(const Pose3& world_from_i, const Pose3& world_from_j) {
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation);
 
+// The smallest rotation that takes the direction of `from` to that of `to`, neither being zero;
+// about any axis across them where they are opposite.
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 // A rotation about z and a shift in xy, as the 6-DoF pose that does the same.
 Pose3 Lift(const Pose2& a_from_b);
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/symmetric_eigen.h"
+
 namespace depthgrid {
 namespace {
 
@@ -28,25 +30,22 @@ Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
   constexpr double kPlain = 1e6;  // condition
   const Eigen::Matrix3d plain = scaled.inverse();
   if (scaled.norm() * plain.norm() < kPlain) return unit.asDiagonal() * plain * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scaled);
+  const SymmetricEigen axes = EigenOf(scaled);
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double value = solver.eigenvalues()[i];
-    if (value > kUnseen * solver.eigenvalues()[2]) inverse[i] = 1.0 / value;
+    if (axes.values[i] > kUnseen * axes.values[2]) inverse[i] = 1.0 / axes.values[i];
   }
-  const Eigen::Matrix3d vectors = unit.asDiagonal() * solver.eigenvectors();
+  const Eigen::Matrix3d vectors = unit.asDiagonal() * axes.vectors;
   return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
 SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information) {
   constexpr double kUnseen = 1e-6;  // of the largest eigenvalue
   const Eigen::Vector3d& unit = kMotionUnit;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(unit.asDiagonal() * information *
-                                                              unit.asDiagonal());
-  const Eigen::Vector3d& values = solver.eigenvalues();  // in ascending order
+  const auto [values, vectors] = EigenOf(unit.asDiagonal() * information * unit.asDiagonal());
   int unseen = 0;
   while (unseen < 3 && values[unseen] <= std::max(kUnseen * values[2], 0.0)) ++unseen;
-  return unit.cwiseInverse().asDiagonal() * solver.eigenvectors().rightCols(3 - unseen);
+  return unit.cwiseInverse().asDiagonal() * vectors.rightCols(3 - unseen);
 }
 
 InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,

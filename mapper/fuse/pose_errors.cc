@@ -1,10 +1,10 @@
 #include "mapper/fuse/pose_errors.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "mapper/core/error.h"
+#include "mapper/core/symmetric_eigen.h"
 #include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
@@ -18,12 +18,6 @@ constexpr double kNoiseAge = 0.4;
 
 Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& adjoint) {
   return adjoint * covariance * adjoint.transpose();
-}
-
-Eigen::Matrix3d PositivePart(const Eigen::Matrix3d& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() *
-         solver.eigenvectors().transpose();
 }
 
 // How long ago the map in view was drawn, frames.
@@ -204,7 +198,7 @@ PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matr
   const double noise_share = ShareOfMapNoise(parts);
   const Eigen::Matrix3d noise = Turned(SeenInverse(information), OriginFromBase(step.predicted));
   auto map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
-  map_noise += PositivePart(noise_share * noise - map_noise);
+  map_noise += WithEigenvaluesAtLeast(noise_share * noise - map_noise, 0.0);
   for (const int slot : shared_) {
     const Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
     knots_with_match_.noalias() += covariance_.middleCols<3>(3 * slot) * share.transpose();

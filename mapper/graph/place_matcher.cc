@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "mapper/core/symmetric_eigen.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/graph/place_search.h"
 #include "mapper/surfel/surfel_map.h"
@@ -133,11 +134,10 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
   if (match.explained < options_.min_explained) return false;
   // A direction that nothing is seen of has an infinite one, or of rounding alone a huge one: from
   // the eigenvalues, since an inverse may then be negative.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> known(match.information / kOverconfidence);
-  if (known.eigenvalues()[0] <= 0.0) return false;
-  const Eigen::Matrix3d covariance = known.eigenvectors() *
-                                     known.eigenvalues().cwiseInverse().asDiagonal() *
-                                     known.eigenvectors().transpose();
+  const SymmetricEigen known = EigenOf(match.information / kOverconfidence);
+  if (known.values[0] <= 0.0) return false;
+  const Eigen::Matrix3d covariance =
+      known.vectors * known.values.cwiseInverse().asDiagonal() * known.vectors.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar;
   planar.computeDirect(covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   const double sigma_m = std::sqrt(planar.eigenvalues()[1]);

@@ -1,6 +1,5 @@
 #include "mapper/io/gravity.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +10,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
+#include "mapper/core/symmetric_eigen.h"
 
 namespace depthgrid {
 namespace {
@@ -140,8 +140,7 @@ PlaneFit FitNear(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector
 }
 
 Eigen::Vector3d NormalOf(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d normal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  const Eigen::Vector3d normal = EigenOf(scatter).vectors.col(0);
   return normal.dot(up) < 0.0 ? Eigen::Vector3d(-normal) : normal;
 }
 

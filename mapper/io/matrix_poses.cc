@@ -160,8 +160,8 @@ std::string MatrixPosesText(const Trajectory& trajectory) {
     const Eigen::Matrix3d rotation = stamped.world_from_camera.rotation.toRotationMatrix();
     const Eigen::Vector3d& translation = stamped.world_from_camera.translation;
     for (int row = 0; row < 3; ++row) {
-      fmt::format_to(std::back_inserter(text), "{} {} {} {}{}", rotation(row, 0), rotation(row, 1),
-                     rotation(row, 2), translation[row], row == 2 ? "\n" : " ");
+      text += fmt::format("{} {} {} {}{}", rotation(row, 0), rotation(row, 1), rotation(row, 2),
+                          translation[row], row == 2 ? "\n" : " ");
     }
   }
   return text;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <unordered_set>
 
@@ -111,8 +110,8 @@ std::string TrajectoryText(const Trajectory& trajectory) {
   for (const auto& [stamp_s, pose] : trajectory) {
     const auto& t = pose.translation;
     const auto& q = pose.rotation;
-    fmt::format_to(std::back_inserter(text), "{:.6f} {} {} {} {} {} {} {}\n", stamp_s, t.x(), t.y(),
-                   t.z(), q.x(), q.y(), q.z(), q.w());
+    text += fmt::format("{:.6f} {} {} {} {} {} {} {}\n", stamp_s, t.x(), t.y(), t.z(), q.x(), q.y(),
+                        q.z(), q.w());
   }
   return text;
 }

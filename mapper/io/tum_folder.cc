@@ -236,7 +236,7 @@ void TumFolderWriter::Finish(const std::vector<double>& stamps_s, bool with_colo
   const auto write_list = [&](const std::string& kind, const char* title) {
     std::string text = fmt::format("# {}\n# timestamp filename\n", title);
     for (const double stamp_s : stamps_s) {
-      fmt::format_to(std::back_inserter(text), "{:.6f} {}\n", stamp_s, ImageName(kind, stamp_s));
+      text += fmt::format("{:.6f} {}\n", stamp_s, ImageName(kind, stamp_s));
     }
     WriteFile(Joined(folder_, kind + ".txt"), text);
   };

@@ -53,7 +53,7 @@ Eigen::Quaterniond LevelFromWorld(const Eigen::Vector3d& up) {
   if (up == Eigen::Vector3d::UnitZ()) return Eigen::Quaterniond::Identity();
   // Half a turn has no single smallest axis.
   if (up == Eigen::Vector3d(-Eigen::Vector3d::UnitZ())) return {0.0, 1.0, 0.0, 0.0};
-  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).normalized();
+  return RotationBetween(up, Eigen::Vector3d::UnitZ()).normalized();
 }
 
 SlamOutput Rotated(SlamOutput slam, const Eigen::Quaterniond& level_from_world) {

@@ -1,8 +1,8 @@
 #include "mapper/match/match_information.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "mapper/core/symmetric_eigen.h"
 #include "mapper/match/bicubic.h"
 
 namespace depthgrid {
@@ -16,18 +16,11 @@ constexpr double kRounding = 1e-9;
 // told from its error.
 Eigen::Matrix3d Debiased(const Eigen::Matrix3d& curvature, const Eigen::Matrix3d& noise) {
   constexpr double kNoiseLevels = 3.0;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> pencil(curvature, noise);
+  const SymmetricEigen pencil = GeneralizedEigenOf(curvature, noise);
   // With V^T noise V = I: curvature = B diag(lambda) B^T, B = noise V.
-  const Eigen::Matrix3d back = noise * pencil.eigenvectors();
-  const Eigen::Vector3d kept = (pencil.eigenvalues().array() - kNoiseLevels).max(0.0).matrix();
+  const Eigen::Matrix3d back = noise * pencil.vectors;
+  const Eigen::Vector3d kept = (pencil.values.array() - kNoiseLevels).max(0.0).matrix();
   return back * kept.asDiagonal() * back.transpose();
-}
-
-// Away from a minimum a wall can count negatively; here it must be positive definite.
-Eigen::Matrix3d MadePositive(const Eigen::Matrix3d& matrix, double least) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(matrix);
-  return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).asDiagonal() *
-         axes.eigenvectors().transpose();
 }
 
 // Unit eigenvector of a symmetric 2 x 2 matrix for its larger eigenvalue.
@@ -44,11 +37,9 @@ Eigen::Vector2d LargestAxis(const Eigen::Matrix2d& matrix) {
 
 // Eigenvectors and eigenvalues per square metre of an information, a radian of yaw being
 // `scale_m.z()` metres.
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> AxesOf(const Eigen::Matrix3d& information,
-                                                      const Eigen::Vector3d& scale_m) {
+SymmetricEigen AxesOf(const Eigen::Matrix3d& information, const Eigen::Vector3d& scale_m) {
   const Eigen::Vector3d unscale = scale_m.cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(unscale.asDiagonal() * information *
-                                                        unscale.asDiagonal());
+  return EigenOf(unscale.asDiagonal() * information * unscale.asDiagonal());
 }
 
 }  // namespace
@@ -134,14 +125,16 @@ Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_f
   const double size = sums.curvature.cwiseAbs().maxCoeff();
   if (sums.explained == 0 || !(size > 0.0)) return Eigen::Matrix3d::Zero();
   const double sigma2 = options.wall_direction_sigma_rad * options.wall_direction_sigma_rad;
-  const Eigen::Matrix3d noise = MadePositive(sigma2 * sums.curvature_along_walls, kRounding * size);
+  // Away from a minimum a wall can count negatively; here both must be positive definite.
+  const Eigen::Matrix3d noise =
+      WithEigenvaluesAtLeast(sigma2 * sums.curvature_along_walls, kRounding * size);
   const Eigen::Matrix3d curvature = Debiased(sums.curvature, noise);
   // The sandwich: an error of the gradient with covariance V moves the minimum by H^-1 of it, so
   // the inverse covariance is H V^-1 H.
   const double variance = sums.gradient_covariance.trace();
   if (!(variance > 0.0)) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix3d gradient_covariance =
-      MadePositive(sums.gradient_covariance, kRounding * variance);
+      WithEigenvaluesAtLeast(sums.gradient_covariance, kRounding * variance);
   const Eigen::Matrix3d in_map =
       curvature * gradient_covariance.inverse() * curvature / options.covariance_scale;
   const Eigen::Matrix3d axes = MapFromBaseAxes(map_from_base.yaw_rad);
@@ -154,10 +147,10 @@ Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double
   const Eigen::Vector3d scale{1.0, 1.0, arm_m};
   const auto axes = AxesOf(information, scale);
   const double least = 1.0 / (max_sigma_m * max_sigma_m);
-  if (axes.eigenvalues()(0) >= least) return information;
-  const Eigen::Vector3d kept = (axes.eigenvalues().array() < least).select(0.0, axes.eigenvalues());
-  return scale.asDiagonal() * axes.eigenvectors() * kept.asDiagonal() *
-         axes.eigenvectors().transpose() * scale.asDiagonal();
+  if (axes.values[0] >= least) return information;
+  const Eigen::Vector3d kept = (axes.values.array() < least).select(0.0, axes.values);
+  return scale.asDiagonal() * axes.vectors * kept.asDiagonal() * axes.vectors.transpose() *
+         scale.asDiagonal();
 }
 
 Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
@@ -168,8 +161,8 @@ Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& ma
       scale.cwiseProduct(Between(matched_map_from_base, predicted_map_from_base).vector());
   Eigen::Vector3d undetermined = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (axes.eigenvalues()(i) > kRounding * axes.eigenvalues()(2)) continue;
-    const Eigen::Vector3d axis = axes.eigenvectors().col(i);
+    if (axes.values[i] > kRounding * axes.values[2]) continue;
+    const Eigen::Vector3d axis = axes.vectors.col(i);
     undetermined += axis * axis.dot(to_predicted);
   }
   if (undetermined.isZero(0.0)) return matched_map_from_base;

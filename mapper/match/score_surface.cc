@@ -1,10 +1,10 @@
 #include "mapper/match/score_surface.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/symmetric_eigen.h"
 #include "mapper/match/match_information.h"
 
 namespace depthgrid {
@@ -75,21 +75,20 @@ Eigen::Matrix3d SurfaceInformation(const ScoreSurface& surface, double sharpness
   const Eigen::Matrix3d relative = unit.cwiseInverse().asDiagonal() *
                                    WeightedCovariance(surface, sharpness) *
                                    unit.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(relative + rounding);
+  const SymmetricEigen spread = EigenOf(relative + rounding);
   // 1 / c is the information of scores and window together, 1 that of the window; a direction is
   // determined when the scores halve the window's spread.
   constexpr double kDeterminedVariance = 0.25;
   Eigen::Vector3d information = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double variance = spread.eigenvalues()(i);
+    const double variance = spread.values[i];
     if (variance < kDeterminedVariance) information(i) = 1.0 / variance - 1.0;
   }
   const Eigen::Vector3d per_unit(1.0 / (unit.x() * lattice.resolution_m),
                                  1.0 / (unit.y() * lattice.resolution_m),
                                  1.0 / (unit.z() * lattice.yaw_step_rad));
-  const Eigen::Matrix3d in_map = per_unit.asDiagonal() * spread.eigenvectors() *
-                                 information.asDiagonal() * spread.eigenvectors().transpose() *
-                                 per_unit.asDiagonal();
+  const Eigen::Matrix3d in_map = per_unit.asDiagonal() * spread.vectors * information.asDiagonal() *
+                                 spread.vectors.transpose() * per_unit.asDiagonal();
   const Eigen::Matrix3d axes = MapFromBaseAxes(lattice.predicted_map_from_base.yaw_rad);
   return axes.transpose() * in_map * axes;
 }

@@ -38,8 +38,7 @@ constexpr double kMorePoints = 1.1;
 }  // namespace
 
 CameraStand FloorTracker::StandOver(const Floor& floor, const Pose3& slam_from_camera) const {
-  const Eigen::Quaterniond level_from_slam =
-      Eigen::Quaterniond::FromTwoVectors(floor.up, Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond level_from_slam = RotationBetween(floor.up, Eigen::Vector3d::UnitZ());
   const Pose3 turned{(level_from_slam * slam_from_camera.rotation).normalized(),
                      slam_from_camera.translation};
   return {LevelFromCamera(turned), floor.up.dot(slam_from_camera.translation) + floor.offset_m};

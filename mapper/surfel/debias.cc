@@ -1,7 +1,8 @@
 #include "mapper/surfel/debias.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+
+#include "mapper/core/symmetric_eigen.h"
 
 namespace depthgrid {
 
@@ -18,15 +19,15 @@ NormalEquations Debiased(const NormalEquations& equations, double threshold) {
   // With v = L^-T y the problem is symmetric: L^-1 h L^-T y = lambda y.
   const Eigen::Matrix3d half = lower.solve(equations.h);
   const Eigen::Matrix3d whole = lower.solve(half.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (whole + whole.transpose()));
+  const SymmetricEigen axes = EigenOf(0.5 * (whole + whole.transpose()));
   const Eigen::Vector3d g = lower.solve(equations.g);
   NormalEquations debiased;
   debiased.false_h = equations.false_h;
   for (int i = 0; i < 3; ++i) {
-    const double lambda = solver.eigenvalues()[i];
+    const double lambda = axes.values[i];
     if (lambda <= threshold) continue;
     const double share = 1.0 - threshold / lambda;
-    const Eigen::Vector3d y = solver.eigenvectors().col(i);
+    const Eigen::Vector3d y = axes.vectors.col(i);
     const Eigen::Vector3d row = l * y;  // false_h v
     debiased.h += share * lambda * row * row.transpose();
     debiased.g += share * y.dot(g) * row;

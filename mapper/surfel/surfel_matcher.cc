@@ -1,9 +1,10 @@
 #include "mapper/surfel/surfel_matcher.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "mapper/core/symmetric_eigen.h"
 
 namespace depthgrid {
 namespace {
@@ -40,13 +41,13 @@ Eigen::Vector3d SeenStep(const NormalEquations& equations) {
   const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d h = unit.asDiagonal() * equations.h * unit.asDiagonal();
   const Eigen::Vector3d g = unit.cwiseProduct(equations.g);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(h);
+  const SymmetricEigen axes = EigenOf(h);
   constexpr double kUnseen = 1e-9;  // of the largest eigenvalue
   Eigen::Vector3d step = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const double value = solver.eigenvalues()[i];
-    if (value <= kUnseen * solver.eigenvalues()[2]) continue;
-    const Eigen::Vector3d direction = solver.eigenvectors().col(i);
+    const double value = axes.values[i];
+    if (value <= kUnseen * axes.values[2]) continue;
+    const Eigen::Vector3d direction = axes.vectors.col(i);
     step += std::clamp(direction.dot(g) / value, -kFarthestM, kFarthestM) * direction;
   }
   step = unit.cwiseProduct(step);
@@ -145,9 +146,9 @@ std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double f
     if (i >= kStepsBeforeJudging) solution.evaluation = Judged(solution.evaluation);
     Step(prior, solution);
     if (i > 0) continue;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> share(
-        solution.seen.h + prior.information, with_all.seen.h + prior.information);
-    if (share.eigenvalues()[0] < kLeastShareWithoutYoung) return std::nullopt;
+    const SymmetricEigen share = GeneralizedEigenOf(solution.seen.h + prior.information,
+                                                    with_all.seen.h + prior.information);
+    if (share.values[0] < kLeastShareWithoutYoung) return std::nullopt;
   }
   return solution;
 }

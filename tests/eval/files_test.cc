@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <regex>
 
 #include "eval/base64.h"
 #include "eval/csv_table.h"
@@ -80,8 +79,9 @@ TEST(FillPage, NothingEndsAScriptEarly) {
   EXPECT_EQ(opened, closed);
   EXPECT_EQ(page.find("{{"), std::string::npos);
   // The page opens offline: no address but SVG's namespace, which is a name.
-  const std::regex address("http://(?!www\\.w3\\.org/2000/svg\")");
-  EXPECT_FALSE(std::regex_search(page, address));
+  for (std::size_t at = 0; (at = page.find("http://", at)) != std::string::npos; ++at) {
+    EXPECT_EQ(page.substr(at, 27), "http://www.w3.org/2000/svg\"");
+  }
 }
 
 }  // namespace

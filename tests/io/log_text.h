@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -30,17 +29,16 @@ class TextFile {
 inline std::string RobotLaserLine(const CarmenScan& scan) {
   const auto steps = static_cast<double>(scan.range_m.size() - 1);
   std::string line;
-  const auto out = std::back_inserter(line);
-  fmt::format_to(out, "ROBOTLASER1 0 {:.9f} {:.9f} {:.12f} {:.3f} 0.01 0 {}",
-                 scan.first_bearing_rad, scan.bearing_step_rad * steps, scan.bearing_step_rad,
-                 scan.max_range_m, scan.range_m.size());
-  for (const double range_m : scan.range_m) fmt::format_to(out, " {:.4f}", range_m);
+  line += fmt::format("ROBOTLASER1 0 {:.9f} {:.9f} {:.12f} {:.3f} 0.01 0 {}",
+                      scan.first_bearing_rad, scan.bearing_step_rad * steps, scan.bearing_step_rad,
+                      scan.max_range_m, scan.range_m.size());
+  for (const double range_m : scan.range_m) line += fmt::format(" {:.4f}", range_m);
   const Pose2& pose = scan.odom_from_laser;
-  fmt::format_to(out, " 0");
+  line += " 0";
   for (int i = 0; i < 2; ++i) {  // laser and robot coincide
-    fmt::format_to(out, " {:.9f} {:.9f} {:.9f}", pose.x_m, pose.y_m, pose.yaw_rad);
+    line += fmt::format(" {:.9f} {:.9f} {:.9f}", pose.x_m, pose.y_m, pose.yaw_rad);
   }
-  fmt::format_to(out, " 0 0 0 0 0 {0:.6f} sim {0:.6f}", scan.stamp_s);
+  line += fmt::format(" 0 0 0 0 0 {0:.6f} sim {0:.6f}", scan.stamp_s);
   return line;
 }
 
