@@ -1,11 +1,12 @@
 // Reads every #include and fails on one that points the wrong way (docs/conventions.md, "Rooms").
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -139,14 +140,17 @@ TEST(Arrows, NoFileIsLongerThan400Lines) {
   }
 }
 
-// What a line begins to define: a type in a namespace, not one of templates or within another.
+// The type that a line begins to define at a namespace's own level, nothing where it is a forward
+// declaration or one of a specialisation.
 std::string DefinedType(const std::string& line) {
-  std::istringstream words(line);
-  std::string keyword, name;
-  words >> keyword >> name;
-  const bool defines = (line.starts_with("struct ") || line.starts_with("class ")) &&
-                       line.find(" {") != std::string::npos;
-  return defines && name != "{" && name.find_first_of("<:;") == std::string::npos ? name : "";
+  if (!line.starts_with("struct ") && !line.starts_with("class ")) return "";
+  if (line.find(" {") == std::string::npos) return "";
+  const std::size_t begin = line.find(' ') + 1;
+  const std::size_t end = line.find(' ', begin);
+  const std::string name = line.substr(begin, end - begin);
+  return std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0; })
+             ? name
+             : "";
 }
 
 // Two types of one name in one namespace share the instances of every template made with them
