@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "bench/bench_table.h"
 #include "mapper/core/level.h"
 #include "sim/depth_noise.h"
 #include "tests/mapper/analytic_room.h"
@@ -68,6 +69,21 @@ const LaserWalk& LaserWalkOf(int beams) {
   const auto [walk, is_new] = walks.try_emplace(beams);
   if (is_new) walk->second = MakeLaserWalk(beams);
   return walk->second;
+}
+
+std::string AddCopyFloor(int width_px) {
+  const std::string name =
+      std::to_string(width_px) + "x" + std::to_string(width_px * 3 / 4) + " image copied";
+  AddFloor(name, [=](benchmark::State& state) {
+    const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
+    std::size_t k = 0;
+    DepthImage copy = walk.noisy[0];
+    for (auto _ : state) {
+      copy.z_m = walk.noisy[k++ % walk.noisy.size()].z_m;
+      benchmark::ClobberMemory();
+    }
+  });
+  return name;
 }
 
 }  // namespace depthgrid::bench

@@ -1,6 +1,7 @@
 // What the benchmarks work on, made once a run.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mapper/core/camera.h"
@@ -20,6 +21,9 @@ struct DepthWalk {
 };
 // ICL-NUIM's field of view at this many pixels.
 const DepthWalk& DepthWalkOf(int width_px, int height_px);
+// Adds the floor of a depth image of this width copied, the fastest anything can read and write it,
+// and returns its name.
+std::string AddCopyFloor(int width_px);
 
 // A laser or levelled camera walking a closed round in a furnished room of 6 x 5 m: 1 % noise.
 struct LaserWalk {

@@ -123,16 +123,7 @@ void AddCameraCase(int width_px, int triangles, RayIsa isa, bool incidence, bool
 }
 
 void AddNoiseCase(const std::string& name, const SensorOptions& options) {
-  AddFloor("640x480 image copied", [](benchmark::State& state) {
-    const DepthWalk& walk = DepthWalkOf(640, 480);
-    std::size_t k = 0;
-    DepthImage copy = walk.noisy[0];
-    for (auto _ : state) {
-      copy.z_m = walk.noisy[k++ % walk.noisy.size()].z_m;
-      benchmark::ClobberMemory();
-    }
-  });
-  AddCase({"depth noise", name, "640x480 image copied", [=](benchmark::State& state) {
+  AddCase({"depth noise", name, AddCopyFloor(640), [=](benchmark::State& state) {
              const DepthNoise noise(options);
              const DepthWalk& walk = DepthWalkOf(640, 480);
              std::uint32_t frame = 0;

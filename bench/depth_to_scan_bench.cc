@@ -12,20 +12,6 @@ std::string SizeText(int width_px) {
   return std::to_string(width_px) + "x" + std::to_string(width_px * 3 / 4);
 }
 
-std::string AddCopy(int width_px) {
-  const std::string name = SizeText(width_px) + " image copied";
-  AddFloor(name, [=](benchmark::State& state) {
-    const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
-    std::size_t k = 0;
-    DepthImage copy = walk.noisy[0];
-    for (auto _ : state) {
-      copy.z_m = walk.noisy[k++ % walk.noisy.size()].z_m;
-      benchmark::ClobberMemory();
-    }
-  });
-  return name;
-}
-
 std::vector<DepthImage> WithHoles(std::vector<DepthImage> images, double share) {
   RandomStream random(1, RandomStage::kTest);
   for (DepthImage& image : images) {
@@ -46,7 +32,7 @@ struct ScanCase {
 };
 
 void AddScanCase(const ScanCase& c) {
-  AddCase({"depth to scan", SizeText(c.width_px) + ", " + c.name, AddCopy(c.width_px),
+  AddCase({"depth to scan", SizeText(c.width_px) + ", " + c.name, AddCopyFloor(c.width_px),
            [=](benchmark::State& state) {
              const DepthWalk& walk = DepthWalkOf(c.width_px, c.width_px * 3 / 4);
              std::vector<DepthImage> images = walk.noisy;
@@ -66,7 +52,7 @@ void AddScanCase(const ScanCase& c) {
 
 // Obstacle scan and level slice: what a frame costs.
 void AddFrameScansCase(int width_px, const std::string& name, const ScanOptions& options) {
-  AddCase({"depth to scan", SizeText(width_px) + ", " + name, AddCopy(width_px),
+  AddCase({"depth to scan", SizeText(width_px) + ", " + name, AddCopyFloor(width_px),
            [=](benchmark::State& state) {
              const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
              std::vector<Frame> frames(walk.noisy.size());

@@ -15,7 +15,7 @@ namespace depthgrid {
 
 // Others when any of the files was changed.
 struct WorldHashes {
-  std::string room;        // of triangles, floor and ceiling: what stands
+  std::string room;        // of triangles: what stands
   std::string scene;       // and of the movers that are there: what the depth camera can see
   std::string trajectory;  // of the path as the scene or its file gives it, whatever is cut off it
 };

@@ -1,5 +1,6 @@
 #include "eval/statistics/sample_size.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "eval/statistics/distributions.h"
@@ -29,12 +30,13 @@ std::optional<int> SeedsNeeded(double effect, double std_of_differences, const T
   const auto enough = [&](int pairs) {
     return PairedPower(pairs, ratio, plan.level) >= plan.power;
   };
+  int low = kLeast - 1;  // too few
   int high = kLeast;
   while (!enough(high)) {
     if (high >= kMost) return std::nullopt;
-    high *= 2;
+    low = high;
+    high = std::min(2 * high, kMost);
   }
-  int low = high / 2;  // too few, or below the least
   while (high - low > 1) {
     const int middle = (low + high) / 2;
     (enough(middle) ? high : low) = middle;

@@ -39,8 +39,9 @@ inline Eigen::Vector2d Project(const PinholeCamera& camera,
           camera.cy_px + camera.fy_px * point_in_camera.y() / point_in_camera.z()};
 }
 
-// Throws InputError naming `place` unless sizes and focal lengths are positive and everything is
-// finite.
+// Throws InputError naming `place` unless sides have 1 to kMostImageSidePx pixels (with distortion
+// 2 and more), focal lengths are positive, the principal point lies within ten of them of the image
+// and everything is finite.
 void Validate(const PinholeCamera& camera, const std::string& place);
 
 }  // namespace depthgrid

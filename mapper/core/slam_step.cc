@@ -7,6 +7,8 @@
 namespace depthgrid {
 namespace {
 
+// What is not exceeded between poses: a car's emergency braking, and a hand that turns by 1 rad/s
+// more within a frame of 30 Hz.
 constexpr double kAccelerationMps2 = 10.0;
 constexpr double kTurnAccelerationRadps2 = 30.0;
 

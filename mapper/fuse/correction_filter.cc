@@ -19,10 +19,14 @@ bool CorrectionFilter::Learns() const {
   return options_.mode == FusionMode::kLearned && options_.prior == PriorMode::kRelative;
 }
 
+Pose2 CorrectionFilter::PredictedPose(const Pose2& slam_from_base) const {
+  const bool relative = options_.prior == PriorMode::kRelative;
+  return relative ? map_from_slam_ * slam_from_base : slam_from_base;
+}
+
 Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s) const {
   if (Learns()) return tracker_.Predict(slam_from_base);
-  const bool relative = options_.prior == PriorMode::kRelative;
-  Prediction prediction{relative ? map_from_slam_ * slam_from_base : slam_from_base, covariance_};
+  Prediction prediction{PredictedPose(slam_from_base), covariance_};
   if (!last_) return prediction;
   const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
   prediction.covariance = Transported(covariance_, motion) +
@@ -96,7 +100,7 @@ Eigen::Vector3d CorrectionFilter::AdaptedGain(const Eigen::Vector3d& innovation)
 // The state is the reported pose itself.
 FilterStep CorrectionFilter::StepTo(const Pose2& slam_from_base, double stamp_s) const {
   FilterStep step;
-  step.predicted = map_from_slam_ * slam_from_base;
+  step.predicted = PredictedPose(slam_from_base);
   if (!last_) return step;
   const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
   step.walk = SlamStepCovariance(options_.slam_noise, motion, stamp_s - last_->stamp_s)

@@ -66,6 +66,8 @@ class CorrectionFilter {
     double stamp_s = 0.0;
   };
 
+  // Where SLAM's pose lies before the match: carried by the last correction, or as it is.
+  Pose2 PredictedPose(const Pose2& slam_from_base) const;
   // `humble`: the match, its information divided by `match_overconfidence`.
   FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
                        const MatchResult& humble, const Eigen::Vector3d& outside_gain);

@@ -27,9 +27,12 @@ void FusionOptions::Visit(OptionsVisitor& v) {
             {FusionMode::kOracle, "oracle"}},
            "who sets the gain");
   v.PerAxis("gain", gain, {0.0, 1.0}, "K of Eq. 3: 0 takes SLAM's poses, 1 the matched ones");
-  v.Group("slam_noise", slam_noise, "kalman: how the error of SLAM's motion grows");
-  v.Number("match_overconfidence", match_overconfidence, {0.01, 1e4},
-           "kalman: the match's information is divided by this");
+  v.Group("slam_noise", slam_noise,
+          "how the error of SLAM's motion grows: kalman's gain, and what all but learned tell of "
+          "errors");
+  v.Number(
+      "match_overconfidence", match_overconfidence, {0.01, 1e4},
+      "the match's information is divided by this: kalman's and learned's gain, and what is told");
   v.Flag("judge_innovations", judge_innovations,
          "learned: errors are told as if matches were as noisy as innovations show");
   v.Number("tilt_rad", tilt_rad, {0.0, 1.0},

@@ -51,7 +51,8 @@ struct FusionOptions {
   // matched pose whole. `adaptive` starts from it.
   std::array<double, 3> gain = {0.5, 0.5, 0.5};
   SlamNoiseOptions slam_noise;
-  // `kalman`: the match's information is divided by this, for errors its beams have in common.
+  // The match's information is divided by this, for errors its beams have in common: `kalman` and
+  // `learned` take less of it, and in every mode errors are told as larger.
   double match_overconfidence = 1.0;
   // `learned`: whether what is told of the errors, innovation_chi2 and motion_covariance, takes
   // matches for as noisy as their innovations show (MatchNoise). No pose depends on it.

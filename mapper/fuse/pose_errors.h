@@ -51,9 +51,9 @@ class PoseErrors {
  private:
   // So many earlier frames are remembered, denser the newer they are.
   static constexpr int kKnots = 32;
-  // Rows of newest_, all in map axes: true pose = Exp(error) * estimate.
+  // Rows of newest_, in axes of origin_ but for the bias: true pose = Exp(error) * estimate.
   static constexpr int kPose = 0;      // the filter's state
-  static constexpr int kBias = 3;      // and its bias
+  static constexpr int kBias = 3;      // and its bias, in base axes
   static constexpr int kMapNoise = 6;  // of the map's surface that is in view
   static constexpr int kCamera = 9;    // the pose as reported
   using Matrix9 = Eigen::Matrix<double, 9, 9>;

@@ -71,7 +71,7 @@ struct NotNear {
 };
 
 struct PlaceMatch {
-  bool found = false;  // whether any pose scores more than the least asked for
+  bool found = false;  // whether any pose scores as much as the least asked for
   Pose2 place_from_query;
   double score = 0.0;  // mean over the points, 0..1
 };

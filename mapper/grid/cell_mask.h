@@ -33,6 +33,8 @@ class CellMask {
   int first_row() const { return first_row_; }
   int words_per_row() const { return words_per_row_; }
   int rows() const { return rows_; }
+  // Cells of the rectangle, in the set or not.
+  std::size_t size() const { return bits_.size() * static_cast<std::size_t>(kWordCells); }
 
   // Words of row `y`, words_per_row() of them.
   std::uint64_t* Row(int y) { return bits_.data() + RowOffset(y); }

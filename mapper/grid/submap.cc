@@ -5,9 +5,15 @@
 namespace depthgrid {
 namespace {
 
-// A square of 400 m in cells of 5 cm. A pose that would make a submap larger is wild, or SLAM began
-// anew elsewhere: no scan so near to the last ones reaches so far.
+// A square of 400 m in cells of 5 cm, and where cells are smaller some scans' own size. A pose that
+// would make a submap larger is wild, or SLAM began anew elsewhere: no scan so near to the last
+// ones reaches so far.
 constexpr std::size_t kMostSubmapCells = std::size_t{1} << 26;
+constexpr std::size_t kMostScans = 4;
+
+std::size_t MostCellsWith(const ScanCells& cells) {
+  return std::max(kMostSubmapCells, kMostScans * cells.hit.size());
+}
 
 }  // namespace
 
@@ -43,7 +49,7 @@ const OccupancyMap& Submap::map() {
 
 void ActiveSubmaps::Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base) {
   const bool too_far = std::any_of(submaps_.begin(), submaps_.end(), [&](const Submap& submap) {
-    return submap.SizeWith(cells) > kMostSubmapCells;
+    return submap.SizeWith(cells) > MostCellsWith(cells);
   });
   if (too_far) submaps_.clear();
   if (scan_count_ % submap_options_.scans == 0 || submaps_.empty()) {

@@ -32,9 +32,10 @@ CameraFile ParseCameraFile(const std::string& text, const std::string& place) {
     if (!config.Has(key)) throw InputError(place, std::string("key '") + key + "' is missing");
   }
   CameraFile file;
-  if (config.Has("distortion") &&
-      config.List("distortion").size() > file.camera.distortion.size()) {
-    throw InputError(place, "distortion has more than the five plumb-bob numbers k1 k2 p1 p2 k3");
+  const std::size_t numbers = config.Has("distortion") ? config.List("distortion").size() : 0;
+  if (numbers != 0 && numbers != 4 && numbers != file.camera.distortion.size()) {
+    throw InputError(place, "distortion has " + std::to_string(numbers) +
+                                " numbers, must have the four or five k1 k2 p1 p2 k3");
   }
   config.Read(file);
   Validate(file.camera, place);

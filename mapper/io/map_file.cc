@@ -232,9 +232,10 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
   const StateThresholds written =
       mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : StateThresholds{};
   const Eigen::Vector2d origin = map.geometry.OriginM();
+  // Fifteen digits: those of a lattice's corner in any place of the earth, without a double's last.
   WriteFile(image_path.string(), internal::EncodeMapImage(map, mode));
   WriteFile(yaml_path,
-            fmt::format("image: {}\nmode: {}\nresolution: {:.9g}\norigin: [{:.9g}, {:.9g}, 0]\n"
+            fmt::format("image: {}\nmode: {}\nresolution: {:.15g}\norigin: [{:.15g}, {:.15g}, 0]\n"
                         "negate: 0\noccupied_thresh: {}\nfree_thresh: {}\n",
                         image_path.filename().string(), NameOf(mode), map.geometry.resolution_m,
                         origin.x(), origin.y(), written.occupied_prob, written.free_prob));

@@ -16,6 +16,10 @@ namespace {
 constexpr std::size_t kPoints = 320;
 constexpr std::size_t kCoarsePoints = 64;
 constexpr double kCoarseStepM = 0.1;
+// The lattice's cells are the map's, or several of them together: where those are smaller than
+// this, or with all that the returns can reach would be more than half a gigabyte.
+constexpr double kCoarseCellM = 0.05;
+constexpr std::size_t kMostCoarseCells = std::size_t{1} << 26;
 // A map holds what was seen, and a camera does not see where it stands.
 constexpr double kMarginM = 2.0;
 constexpr int kHeadings = 90;  // 4 degrees apart: 0.2 m at 3 m, which the score's width bridges
@@ -110,8 +114,7 @@ struct Candidate {
 // is worth that ends in a cell, and one that passes through it.
 class CoarseMap {
  public:
-  CoarseMap(const GridGeometry& geometry, const DistanceField& walls, int margin_cells)
-      : geometry_(Widened(geometry, margin_cells)) {
+  CoarseMap(const GridGeometry& geometry, const DistanceField& walls) : geometry_(geometry) {
     cells_.reserve(geometry_.size());
     for (std::size_t i = 0; i < geometry_.size(); ++i) {
       const Eigen::Vector2d centre = CellCentre(geometry_.CellAt(i), geometry_.resolution_m);
@@ -127,12 +130,14 @@ class CoarseMap {
     std::ptrdiff_t end = 0;
     std::ptrdiff_t on_the_way[std::size(kOnTheWay)] = {};
   };
-  std::vector<Offsets> OffsetsAt(const Points& points, double heading_rad) const {
+  std::vector<Offsets> OffsetsAt(const Points& points, double heading_rad, double reach_m) const {
     const Eigen::Rotation2Dd turn(heading_rad);
     const auto offset_of = [&](const Eigen::Vector2d& point) {
+      // What lies farther is outside of the map from everywhere, and so is this.
+      const double share = std::min(1.0, reach_m / std::max(point.norm(), 1e-9));
       // From the middle of a cell.
-      const Cell cell =
-          CellOf((turn * point).array() + 0.5 * geometry_.resolution_m, geometry_.resolution_m);
+      const Cell cell = CellOf((turn * (share * point)).array() + 0.5 * geometry_.resolution_m,
+                               geometry_.resolution_m);
       return static_cast<std::ptrdiff_t>(cell.y) * geometry_.width_cells + cell.x;
     };
     std::vector<Offsets> offsets;
@@ -182,20 +187,53 @@ double ReachOf(const Points& points) {
   return reach_m;
 }
 
+// The map's cells in squares of `side` a coarser one, as many as it takes to cover them.
+GridGeometry Coarser(const GridGeometry& fine, int side) {
+  const auto down = [&](int cell) {
+    return static_cast<int>(std::floor(static_cast<double>(cell) / side));
+  };
+  const Cell first{down(fine.min_cell.x), down(fine.min_cell.y)};
+  return {side * fine.resolution_m, first,
+          down(fine.min_cell.x + fine.width_cells - 1) - first.x + 1,
+          down(fine.min_cell.y + fine.height_cells - 1) - first.y + 1};
+}
+
+// What is searched, and with all that returns can end in from there.
+struct CoarseGeometry {
+  GridGeometry map;
+  int margin_cells = 0;
+  GridGeometry reached;
+};
+
+CoarseGeometry GeometryOf(const GridGeometry& fine, double reach_m) {
+  const auto least = static_cast<int>(std::ceil(kCoarseCellM / fine.resolution_m - 1e-6));
+  for (int side = std::max(1, least);; side *= 2) {
+    CoarseGeometry coarse;
+    coarse.map = Coarser(fine, side);
+    const double cell_m = coarse.map.resolution_m;
+    coarse.margin_cells = static_cast<int>(std::lround(kMarginM / cell_m));
+    const int reach = static_cast<int>(std::ceil(reach_m / cell_m)) + 2;
+    coarse.reached = Widened(coarse.map, coarse.margin_cells + reach);
+    if (coarse.reached.size() <= kMostCoarseCells) return coarse;
+  }
+}
+
 // The best places on a lattice of cells and headings, which is the same but for rounding to cells
 // as ScoreOf there.
 std::vector<Candidate> Coarse(const OccupancyMap& map, const DistanceField& walls,
                               const Points& points) {
   std::vector<Candidate> best;
   const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
-  const GridGeometry& g = map.geometry;
+  const GridGeometry& fine = map.geometry;
+  const double across_m =
+      fine.resolution_m * std::hypot(fine.width_cells, fine.height_cells) + 2.0 * kMarginM;
+  const double reach_m = std::min(ReachOf(points), across_m);
+  const auto [g, margin, reached] = GeometryOf(fine, reach_m);
   const int step = std::max(1, static_cast<int>(std::lround(kCoarseStepM / g.resolution_m)));
-  const int margin = static_cast<int>(std::lround(kMarginM / g.resolution_m));
-  const CoarseMap coarse(
-      g, walls, margin + static_cast<int>(std::ceil(ReachOf(points) / g.resolution_m)) + 2);
+  const CoarseMap coarse(reached, walls);
   for (int heading = 0; heading < kHeadings; ++heading) {
     const double heading_rad = WrapAngle(2.0 * kPi * heading / kHeadings);
-    const auto offsets = coarse.OffsetsAt(points, heading_rad);
+    const auto offsets = coarse.OffsetsAt(points, heading_rad, reach_m);
     for (int y = -margin; y < g.height_cells + margin; y += step) {
       for (int x = -margin; x < g.width_cells + margin; x += step) {
         const Cell cell{g.min_cell.x + x, g.min_cell.y + y};

@@ -35,7 +35,8 @@ constexpr double kLoopsClosed = 1e-4;  // m and rad of the last step
 constexpr double kSettledShare = 0.7;
 // Holds the first group where it is.
 constexpr double kAnchor = 1e12;
-// Keeps the factorisation alive when something is not determined at all; far below any information.
+// Keeps the factorisation alive where rounding leaves less than nothing of what is hardly
+// determined; far below any information.
 constexpr double kRidge = 1e-9;
 
 struct Problem {

@@ -29,7 +29,9 @@ TEST(CameraFile, ReadsAndWrites) {
 TEST(CameraFile, NamesKeyAndRule) {
   EXPECT_EQ(CameraFileRefusal("width: 640\n"), "camera.yaml: key 'height' is missing");
   EXPECT_EQ(CameraFileRefusal(std::string(kText) + "distortion: [1,2,3,4,5,6]\n"),
-            "camera.yaml: distortion has more than the five plumb-bob numbers k1 k2 p1 p2 k3");
+            "camera.yaml: distortion has 6 numbers, must have the four or five k1 k2 p1 p2 k3");
+  EXPECT_EQ(CameraFileRefusal(std::string(kText) + "distortion: [0.1, 0.2, 0.3]\n"),
+            "camera.yaml: distortion has 3 numbers, must have the four or five k1 k2 p1 p2 k3");
   EXPECT_EQ(CameraFileRefusal(std::string(kText) + "fz: 1\n"),
             "camera.yaml:7: unknown key 'fz', did you mean 'fx'?");
   EXPECT_EQ(CameraFileRefusal("width: 0\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n"),

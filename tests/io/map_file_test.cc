@@ -145,6 +145,19 @@ TEST_F(MapFileTest, TrinaryRoundTripKeepsTheStates) {
             "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
 }
 
+// In UTM coordinates a corner has seven digits before the point.
+TEST_F(MapFileTest, AMapFarFromItsOriginKeepsItsLattice) {
+  OccupancyMap map = RandomMap();
+  map.geometry.resolution_m = 0.025;
+  map.geometry.min_cell = {-18'765'433, 216'493'827};
+  WriteMap(Path("map.yaml"), map);
+  const MapFile read = ReadMap(Path("map.yaml"));
+  EXPECT_EQ(read.map.geometry, map.geometry);
+  EXPECT_EQ(read.world_from_grid, Pose2{});
+  EXPECT_NE(ReadFile(Path("map.yaml")).find("origin: [-469135.825, 5412345.675, 0]"),
+            std::string::npos);
+}
+
 TEST_F(MapFileTest, ScaleAndRawRoundTripKeepTheProbabilities) {
   const OccupancyMap map = RandomMap();
   for (const MapMode mode : {MapMode::kScale, MapMode::kRaw}) {

@@ -126,6 +126,32 @@ TEST(FindPlace, SaysAlongWhichLineThePlaceIsNotKnown) {
   EXPECT_FALSE(corner->unsure);
 }
 
+// What a return says that ends beyond the map costs no memory, nor do cells finer than the search.
+TEST(FindPlace, AFarReturnAndAFineMapTakeNoMoreMemory) {
+  OccupancyMap fine(GridGeometry{0.01, {-20, -20}, 650, 550});
+  const OccupancyMap map = Drawn();
+  for (std::size_t i = 0; i < fine.occupied_prob.size(); ++i) {
+    const Cell cell = fine.geometry.CellAt(i);
+    fine.occupied_prob[i] = map.At(CellOf(CellCentre(cell, 0.01), 0.05));
+  }
+  const Pose2 map_from_slam{0.4, -0.3, 0.5};
+  std::vector<PlacedScan> scans;
+  for (int i = 0; i < 5; ++i) {
+    scans.push_back(ScanAt({1.2, 3.0, WrapAngle(0.7 * i)}, map_from_slam));
+  }
+  Scan with_a_far_one = *scans[0].scan;
+  with_a_far_one.beams[3].range_m = 5000.0F;
+  scans[0].scan = std::make_shared<const Scan>(with_a_far_one);
+  for (const OccupancyMap& one : {map, fine}) {
+    const auto found = FindPlace(one, scans, Pose2{});
+    ASSERT_TRUE(found);
+    const Pose2 error = Between(map_from_slam * scans[0].slam_from_base,
+                                found->map_from_slam * scans[0].slam_from_base);
+    EXPECT_LT(std::hypot(error.x_m, error.y_m), 0.05);
+    EXPECT_LT(std::abs(error.yaw_rad), RadFromDeg(2.0));
+  }
+}
+
 TEST(FindPlace, NothingToFind) {
   EXPECT_FALSE(FindPlace(Drawn(), {}, Pose2{}));
   EXPECT_FALSE(FindPlace(OccupancyMap(GridGeometry{0.05, {0, 0}, 20, 20}),

@@ -223,6 +223,8 @@ TEST(CorrectionFilter, RelativeCarriesTheCorrectionOnAndAbsoluteDoesNot) {
     const Pose2 expected =
         prior == PriorMode::kRelative ? Pose2{2.0, 0.1, 0.0} : Pose2{2.0, 0.0, 0.0};
     ExpectNear(filter.Predict({2.0, 0.0, 0.0}, 0.1).map_from_base, expected, 1e-12);
+    filter.Commit({2.0, 0.0, 0.0}, 0.1, {2.0, 0.1, 0.0}, Eigen::Matrix3d::Zero());
+    ExpectNear(filter.step().predicted, expected, 1e-12);
   }
 }
 

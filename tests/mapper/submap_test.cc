@@ -39,6 +39,19 @@ TEST(ActiveSubmaps, TheOlderOfTwoIsMatchedAgainst) {
   }
 }
 
+// Cells may be so small that one scan alone covers more of them than a submap has elsewhere.
+TEST(ActiveSubmaps, AScanOfMoreCellsThanUsualBeginsNoneAnew) {
+  ActiveSubmaps submaps({.scans = 10}, {});
+  for (int n = 0; n < 3; ++n) {
+    ScanCells cells;
+    cells.hit.Reset({0, 0}, {8300, 8300});
+    cells.passed = cells.hit;
+    cells.hit.Set({n, 0});
+    submaps.Insert(cells, {}, {});
+  }
+  EXPECT_EQ(RangeOf(submaps, 5), std::make_pair(0, 2));
+}
+
 TEST(ActiveSubmaps, RestartsWhereAnyScanIs) {
   for (const int count : {7, 10, 25, 30}) {
     ActiveSubmaps running({.scans = 10}, {});

@@ -168,6 +168,7 @@ TEST(SampleSize, AgreesWithSciPy) {
   EXPECT_EQ(SeedsNeeded(-0.5, 1.0), 34);
   EXPECT_EQ(SeedsNeeded(0.2, 1.0), 199);
   EXPECT_EQ(SeedsNeeded(0.05, 1.0), 3142);
+  EXPECT_FALSE(SeedsNeeded(0.00278, 1.0));  // 1,015,600
   EXPECT_EQ(SeedsNeeded(1.0, 0.0), 2);
   EXPECT_EQ(SeedsNeeded(1e-5, 1.0), std::nullopt);
   EXPECT_EQ(SeedsNeededByRanks(0.5, 1.0), 36);  // ceil(34 * pi / 3)
