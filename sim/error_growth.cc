@@ -33,23 +33,25 @@ Eigen::Vector4d Solve(const Rows& rows, const Eigen::VectorXd& target, int mask)
 
 }  // namespace
 
-std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes, double frame_s) {
+std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes) {
   std::size_t longest = 0;
   for (const ErrorTrack& track : tracks) longest = std::max(longest, track.size());
   std::vector<Growth> growth;
   std::size_t lag = 1;
   for (std::size_t next = 2; lag <= longest / 3; std::swap(lag, next), next += lag) {
     double sum = 0.0;
+    double time_s = 0.0;
     double pairs = 0.0;
     for (const ErrorTrack& track : tracks) {
       for (std::size_t i = lag; i < track.size(); ++i) {
-        sum += (track[i] - track[i - lag]).squaredNorm() / axes;
+        sum += (track[i].error - track[i - lag].error).squaredNorm() / axes;
+        time_s += track[i].stamp_s - track[i - lag].stamp_s;
         ++pairs;
       }
     }
-    const double frames = static_cast<double>(lag);
     if (sum == 0.0) continue;
-    growth.push_back({frames * frame_s, sum / pairs, std::min(kMaxWeight, pairs / frames)});
+    const double stretches = pairs / static_cast<double>(lag);
+    growth.push_back({time_s / pairs, sum / pairs, std::min(kMaxWeight, stretches)});
   }
   return growth;
 }
@@ -61,6 +63,7 @@ double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double 
 
 GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times,
                       double known_walk_square) {
+  if (growth.empty()) return {};
   const auto count = static_cast<Eigen::Index>(growth.size());
   Rows rows(count, 4);
   Eigen::VectorXd target(count);

@@ -6,8 +6,13 @@
 
 namespace depthgrid {
 
-// A stretch without gaps: the summed error since its start, one entry a frame.
-using ErrorTrack = std::vector<Eigen::Vector3d>;
+// The summed error since a stretch began.
+struct SummedError {
+  double stamp_s = 0.0;
+  Eigen::Vector3d error;
+};
+// A stretch without gaps, one entry a frame.
+using ErrorTrack = std::vector<SummedError>;
 
 // Mean square per axis of the error over a lag.
 struct Growth {
@@ -16,9 +21,10 @@ struct Growth {
   double weight = 0.0;  // independent stretches of that lag, at most 100
 };
 
-// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track. `axes` of the three are
-// in use, the others 0.
-std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes, double frame_s);
+// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track, those without any error
+// left out. A lag lasts the mean time of its pairs: stamps jitter, and a walk's growth is linear in
+// time. `axes` of the three are in use, the others 0.
+std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes);
 
 // One sigma each, per axis: white and slowly varying error of a pose, random walk in 1 s, slowly
 // varying rate.
@@ -39,7 +45,7 @@ struct CorrelationTimes {
 double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double lag_s);
 
 // The terms, none negative, nearest to the growth in relative least squares, beside a walk of known
-// square.
+// square. None, and no misfit, where nothing grew.
 GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times,
                       double known_walk_square);
 

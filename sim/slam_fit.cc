@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -66,21 +67,22 @@ struct Tracks {
   std::vector<ErrorTrack> tilt;  // about x and y of the world
   std::vector<ErrorTrack> translation;
 
-  void Begin() {
+  void Begin(double stamp_s) {
     for (auto* tracks : {&yaw, &tilt, &translation}) {
-      tracks->push_back({Eigen::Vector3d::Zero()});
+      tracks->push_back({{stamp_s, Eigen::Vector3d::Zero()}});
     }
   }
-  void Add(const Pose3& error, const Pose3& world_from_camera, double pivot_m) {
-    const Eigen::Vector3d turn = world_from_camera.rotation * LogRotation(error.rotation);
-    Extend(yaw.back(), {0.0, 0.0, turn.z()});
-    Extend(tilt.back(), {turn.x(), turn.y(), 0.0});
-    Extend(translation.back(), WithoutPivot(error, pivot_m));
+  // The error of the motion that ends at this true pose.
+  void Add(const Pose3& error, const StampedPose& truth, double pivot_m) {
+    const Eigen::Vector3d turn = truth.world_from_camera.rotation * LogRotation(error.rotation);
+    Extend(yaw.back(), truth.stamp_s, {0.0, 0.0, turn.z()});
+    Extend(tilt.back(), truth.stamp_s, {turn.x(), turn.y(), 0.0});
+    Extend(translation.back(), truth.stamp_s, WithoutPivot(error, pivot_m));
   }
 
  private:
-  static void Extend(ErrorTrack& track, const Eigen::Vector3d& error) {
-    track.push_back(track.back() + error);
+  static void Extend(ErrorTrack& track, double stamp_s, const Eigen::Vector3d& error) {
+    track.push_back({stamp_s, track.back().error + error});
   }
 };
 
@@ -96,27 +98,31 @@ Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
       if (!event.correction && event.lost_s == 0.0) continue;
       for (std::size_t to = event.from + 1; to <= event.to; ++to) is_left_out[to] = true;
     }
-    tracks.Begin();
+    const Trajectory& truth = run.run->truth;
+    tracks.Begin(truth.front().stamp_s);
     for (std::size_t to = 1; to < run.in_event.size(); ++to) {
       if (is_left_out[to]) {
-        tracks.Begin();
+        tracks.Begin(truth[to].stamp_s);
       } else {
-        tracks.Add(MotionError(*run.run, to - 1, to), run.run->truth[to].world_from_camera,
-                   pivot_m);
+        tracks.Add(MotionError(*run.run, to - 1, to), truth[to], pivot_m);
       }
     }
   }
   return tracks;
 }
 
-// Root mean ratio of tilt, per axis, to yaw over the longer lags.
+// Root mean ratio of tilt, per axis, to yaw over the longer lags; 1 where that is not known.
 double TiltShare(const std::vector<Growth>& tilt, const std::vector<Growth>& yaw) {
+  if (tilt.empty() && !yaw.empty()) return 0.0;
   double ratio = 0.0;
   double weights = 0.0;
-  for (std::size_t i = 0; i < std::min(tilt.size(), yaw.size()); ++i) {
-    if (yaw[i].lag_s < kShortestTiltLagS) continue;
-    ratio += yaw[i].weight * tilt[i].mean_square / yaw[i].mean_square;
-    weights += yaw[i].weight;
+  for (const Growth& turned : yaw) {
+    if (turned.lag_s < kShortestTiltLagS) continue;
+    // Of the same pairs of poses, unless there is none: lags without any error are left out.
+    const auto tilted = std::ranges::find(tilt, turned.lag_s, &Growth::lag_s);
+    const double tilt_square = tilted == tilt.end() ? 0.0 : tilted->mean_square;
+    ratio += turned.weight * tilt_square / turned.mean_square;
+    weights += turned.weight;
   }
   return weights > 0.0 ? std::min(1.0, std::sqrt(ratio / weights)) : 1.0;
 }
@@ -127,10 +133,10 @@ struct ErrorGrowth {
   std::vector<Growth> translation;
 };
 
-ErrorGrowth GrowthOf(const std::vector<RunEvents>& runs, double pivot_m, double frame_s) {
+ErrorGrowth GrowthOf(const std::vector<RunEvents>& runs, double pivot_m) {
   const Tracks tracks = ErrorTracks(runs, pivot_m);
-  return {MeasureGrowth(tracks.yaw, 1, frame_s), MeasureGrowth(tracks.tilt, 2, frame_s),
-          MeasureGrowth(tracks.translation, 3, frame_s)};
+  return {MeasureGrowth(tracks.yaw, 1), MeasureGrowth(tracks.tilt, 2),
+          MeasureGrowth(tracks.translation, 3)};
 }
 
 void FitNoise(const ErrorGrowth& growth, SlamFit& fit) {
@@ -220,7 +226,6 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs, const std::string& place
   std::vector<RunEvents> found;
   std::size_t poses = 0;
   SlamFit fit;
-  double least_step_s = std::numeric_limits<double>::infinity();
   for (const SlamRun& run : runs) {
     Require(run.truth.size() == run.estimate.size(), "each estimate belongs to a true pose");
     if (run.truth.size() < 2) continue;
@@ -228,9 +233,6 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs, const std::string& place
     found.push_back(EventsOf(run));
     fit.tracked_s += run.truth.back().stamp_s - run.truth.front().stamp_s;
     for (const RunEvent& event : found.back().events) fit.tracked_s -= event.lost_s;
-    for (std::size_t to = 1; to < run.truth.size(); ++to) {
-      least_step_s = std::min(least_step_s, run.StepS(to));
-    }
   }
   if (poses < kFewestPoses) {
     throw InputError(
@@ -238,7 +240,7 @@ SlamFit FitSlamErrors(const std::vector<SlamRun>& runs, const std::string& place
                            kFewestPoses));
   }
   FitPivot(found, fit);
-  const ErrorGrowth growth = GrowthOf(found, fit.options.pivot_m, least_step_s);
+  const ErrorGrowth growth = GrowthOf(found, fit.options.pivot_m);
   fit.options.tilt_share = TiltShare(growth.tilt, growth.yaw);
   FitEvents(found, growth, fit);
   FitNoise(growth, fit);

@@ -48,6 +48,47 @@ std::vector<SlamRun> Runs(const SlamOptions& options, int count, double seconds)
   return runs;
 }
 
+// Straight ahead without a turn: rotations are exact, bit for bit.
+Trajectory AheadAt(const std::vector<double>& stamps_s) {
+  Trajectory truth;
+  for (const double stamp_s : stamps_s) {
+    truth.push_back({stamp_s, {Eigen::Quaterniond::Identity(), {0.1 * stamp_s, 0.0, 1.0}}});
+  }
+  return truth;
+}
+
+std::vector<double> StampsS(int count) {
+  std::vector<double> stamps_s;
+  for (int i = 0; i < count; ++i) stamps_s.push_back(i / 30.0);
+  return stamps_s;
+}
+
+std::vector<SlamRun> RunsOf(const Trajectory& truth, const SlamOptions& options) {
+  std::vector<SlamRun> runs;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) runs.push_back(Disturbed(truth, options, seed));
+  return runs;
+}
+
+// How far a walk, per axis, is off after a time.
+double WalkedM(const SlamOptions& options, double lag_s) {
+  const GrowthTerms terms = {options.jitter_translation_m, options.bias_translation_m,
+                             options.walk_translation_m, options.drift_speed_mps, 0.0};
+  return std::sqrt(GrowthOf(terms, {options.bias_time_s, options.drift_time_s}, lag_s));
+}
+
+double TurnedDeg(const SlamOptions& options, double lag_s) {
+  const GrowthTerms terms = {options.jitter_rotation_deg, options.bias_rotation_deg,
+                             options.walk_rotation_deg, options.drift_turn_dps, 0.0};
+  return std::sqrt(GrowthOf(terms, {options.bias_time_s, options.drift_time_s}, lag_s));
+}
+
+// Walk, bias and drift can stand in for one another: what counts is how errors grow.
+void ExpectWalk(const SlamOptions& fitted, double walk_m) {
+  for (const double lag_s : {0.1, 1.0, 5.0}) {
+    EXPECT_NEAR(WalkedM(fitted, lag_s) / (walk_m * std::sqrt(lag_s)), 1.0, 0.15) << lag_s;
+  }
+}
+
 TEST(ErrorOverLag, IsThatOfAConstantRateByHand) {
   SlamRun run;
   for (int i = 0; i <= 90; ++i) {
@@ -116,7 +157,73 @@ TEST(FitSlamErrors, RoundedTurnsAreNoPivot) {
   }
   const SlamFit fit = FitSlamErrors(runs);
   EXPECT_EQ(fit.options.pivot_m, 0.0);
-  EXPECT_LT(fit.options.walk_translation_m, 0.1);
+  ExpectWalk(fit.options, 0.02);
+}
+
+TEST(FitSlamErrors, OfExactRotationFindsTranslation) {
+  SlamOptions given;
+  given.walk_translation_m = 0.02;
+  const std::vector<SlamRun> runs = RunsOf(AheadAt(StampsS(3000)), given);
+  for (const auto& posed : runs[0].estimate) {
+    ASSERT_EQ(posed.world_from_camera.rotation.vec().norm(), 0.0);
+  }
+  const SlamOptions fitted = FitSlamErrors(runs).options;
+  ExpectWalk(fitted, 0.02);
+  EXPECT_EQ(TurnedDeg(fitted, 1.0), 0.0);
+  EXPECT_EQ(fitted.tilt_share, 1.0);  // nothing is known of it
+}
+
+// The camera stands still and upright, so that its turns about z are the world's.
+TEST(FitSlamErrors, OfYawAloneFindsNoTilt) {
+  std::vector<SlamRun> runs;
+  for (int seed = 0; seed < 10; ++seed) {
+    SlamRun run;
+    RandomStream random(5, RandomStage::kTest, static_cast<std::uint64_t>(seed));
+    double yaw_rad = 0.0;
+    for (const double stamp_s : StampsS(3000)) {
+      const Eigen::Quaterniond turn(std::cos(yaw_rad / 2.0), 0.0, 0.0, std::sin(yaw_rad / 2.0));
+      run.truth.push_back({stamp_s, {}});
+      run.estimate.push_back({stamp_s, {turn, Eigen::Vector3d::Zero()}});
+      yaw_rad += RadFromDeg(0.5) * std::sqrt(1.0 / 30.0) * random.Normal();
+    }
+    runs.push_back(run);
+  }
+  const SlamOptions fitted = FitSlamErrors(runs).options;
+  EXPECT_EQ(fitted.tilt_share, 0.0);
+  EXPECT_EQ(WalkedM(fitted, 1.0), 0.0);
+  for (const double lag_s : {0.1, 1.0, 5.0}) {
+    EXPECT_NEAR(TurnedDeg(fitted, lag_s) / (0.5 * std::sqrt(lag_s)), 1.0, 0.15) << lag_s;
+  }
+}
+
+TEST(FitSlamErrors, ErrorsGrowWithTimeWhateverTheStampsAre) {
+  SlamOptions given;
+  given.walk_translation_m = 0.02;
+  std::vector<double> jittered_s = StampsS(3000);
+  RandomStream random(5, RandomStage::kTest, 0);
+  for (double& stamp_s : jittered_s) stamp_s += 0.012 * (random.Uniform() - 0.5);
+  ExpectWalk(FitSlamErrors(RunsOf(AheadAt(jittered_s), given)).options, 0.02);
+  std::vector<double> one_odd_s = StampsS(3000);
+  one_odd_s.insert(one_odd_s.begin() + 1001, one_odd_s[1000] + 0.002);
+  ExpectWalk(FitSlamErrors(RunsOf(AheadAt(one_odd_s), given)).options, 0.02);
+  std::vector<double> gaps_s = StampsS(3000);
+  std::erase_if(gaps_s, [](double stamp_s) { return std::fmod(stamp_s, 20.0) > 19.0; });
+  ExpectWalk(FitSlamErrors(RunsOf(AheadAt(gaps_s), given)).options, 0.02);
+}
+
+// A recorder that skips every other frame for a while, at most 1.5 usual steps being no gap.
+TEST(MeasureGrowth, LagsLastTheMeanTimeOfTheirPairs) {
+  ErrorTrack track;
+  for (const double stamp_s : {0.0, 1.0, 1.5, 2.5, 3.0, 4.0, 4.5}) {
+    track.push_back({stamp_s, {2.0 * stamp_s, 0.0, 0.0}});
+  }
+  const std::vector<Growth> growth = MeasureGrowth({track}, 1);
+  ASSERT_EQ(growth.size(), 2U);
+  EXPECT_DOUBLE_EQ(growth[0].lag_s, 0.75);
+  EXPECT_DOUBLE_EQ(growth[0].mean_square, 4.0 * (1.0 + 0.25) / 2.0);
+  EXPECT_DOUBLE_EQ(growth[0].weight, 6.0);
+  EXPECT_DOUBLE_EQ(growth[1].lag_s, 1.5);
+  EXPECT_DOUBLE_EQ(growth[1].mean_square, 9.0);
 }
 
 TEST(FitSlamErrors, FindsWhatTheSurrogateWasGiven) {
@@ -220,8 +327,13 @@ TEST(FitSlamErrors, OfAPerfectRunIsZero) {
   const Trajectory truth = RoundADesk(20.0);
   const SlamFit fit = FitSlamErrors({{truth, truth}});
   EXPECT_EQ(fit.jumps, 0);
-  EXPECT_LT(fit.options.jitter_translation_m, 1e-12);
-  EXPECT_LT(fit.options.walk_translation_m, 1e-12);
+  EXPECT_LT(WalkedM(fit.options, 1.0), 1e-12);
+  EXPECT_LT(TurnedDeg(fit.options, 1.0), 1e-10);
+  // Beside a run of some error, which is found: its square is the mean of both.
+  SlamOptions given;
+  given.jitter_translation_m = 0.001;
+  const SlamFit halved = FitSlamErrors({{truth, truth}, Disturbed(truth, given, 1)});
+  EXPECT_NEAR(halved.options.jitter_translation_m, 0.001 / std::sqrt(2.0), 0.00005);
 }
 
 TEST(CalibrateDrift, ReachesItsTargetOnOtherSeedsToo) {
