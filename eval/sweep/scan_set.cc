@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 // Counts up whenever the same input may give other scans.
-constexpr int kScanFormat = 5;
+constexpr int kScanFormat = 6;
 
 void Add(ContentHash& hash, const Pose3& pose) {
   for (const double v : pose.rotation.coeffs()) hash.Value(v);
@@ -25,7 +25,10 @@ ContentHash DepthHash(const ScanSet& set) {
   hash.Text(ToYaml(set.options.sensor));
   hash.Value(set.options.DepthSeed());
   hash.Value(set.world->trajectory.size());
-  for (const StampedPose& pose : set.world->trajectory) Add(hash, pose.world_from_camera);
+  for (const StampedPose& pose : set.world->trajectory) {
+    hash.Value(pose.stamp_s);  // places what moves
+    Add(hash, pose.world_from_camera);
+  }
   return hash;
 }
 
@@ -45,6 +48,7 @@ std::string ContentKey(const ScanSet& set) {
   ContentHash hash = DepthHash(set);
   hash.Text(ToYaml(set.options.mapper.scan));
   for (const SlamPose& pose : set.slam.live) {
+    hash.Value(pose.stamp_s);
     hash.Value(pose.epoch);
     hash.Value(pose.slam_from_camera.has_value());
     if (pose.slam_from_camera) Add(hash, *pose.slam_from_camera);

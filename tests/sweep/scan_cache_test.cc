@@ -1,8 +1,10 @@
-// What the scan cache gives back is what was put in, or nothing.
+// What the scan cache gives back is what was put in, or nothing; and what it is asked for.
 #include "eval/sweep/scan_cache.h"
 
 #include <gtest/gtest.h>
 
+#include "eval/sweep/scan_maker.h"
+#include "eval/sweep/scan_set.h"
 #include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
@@ -97,6 +99,55 @@ TEST_F(ScanCacheTest, KeepsToItsSizeAndDropsTheLongestUnused) {
   EXPECT_TRUE(std::filesystem::exists(Path("cache/measure.scans")));
   ScanCache(Path("tiny"), size - 1).Store(a, Frames());
   EXPECT_TRUE(std::filesystem::is_empty(Path("tiny")));
+}
+
+// Somebody crosses the view of a camera that looks around.
+constexpr const char* kPeopledRoom = R"(
+name: test_room
+shapes:
+  - {shape: box, size: [3, 4, 0.1], at: [1.5, 2, -0.1]}
+  - {shape: wall, from: [3, 4], to: [0, 4], side: right}
+trajectories:
+  look_around:
+    kind: handheld
+    waypoints:
+      - {at: [1.5, 1.0, 1.1], look_at: [1.5, 4.0, 1.0]}
+      - {at: [1.9, 2.0, 1.1], look_at: [1.0, 4.0, 1.0]}
+movers:
+  visitor:
+    shapes: [{shape: cylinder, radius_m: 0.2, height_m: 1.7}]
+    there_and_back: true
+    waypoints: [{at: [0.4, 3.4]}, {at: [2.6, 3.4]}]
+)";
+
+// Where they are is a matter of the stamps: the same poses, walked in half the time.
+TEST_F(ScanCacheTest, OtherStampsAreOtherScans) {
+  Write("room.yaml", kPeopledRoom);
+  ExperimentOptions options;
+  options.scene = Path("room.yaml");
+  options.movers = "all";
+  options.frames = 8;
+  options.sensor.width_px = 40;
+  options.sensor.height_px = 30;
+  const auto set_of = [&](double times) {
+    World world = LoadWorld(options, 1);
+    for (StampedPose& pose : world.trajectory) pose.stamp_s *= times;
+    return MakeSet(options, std::make_shared<const World>(std::move(world)));
+  };
+  ScanSet slow = set_of(20.0), fast = set_of(10.0), alone = set_of(10.0);
+  EXPECT_EQ(DepthKey(fast), DepthKey(alone));
+  EXPECT_EQ(ContentKey(fast), ContentKey(alone));
+  EXPECT_NE(DepthKey(fast), DepthKey(slow));
+  EXPECT_NE(ContentKey(fast), ContentKey(slow));
+  MakeScans({&slow, &fast}, {1, Path("cache"), [] {}});
+  MakeScans({&alone}, {1, "", [] {}});
+  ASSERT_EQ(alone.failure, "");
+  ExpectSame(fast.scans, alone.scans);
+  EXPECT_NE(*fast.scans.back().obstacles, *slow.scans.back().obstacles);
+  // What SLAM says when is of the scans as well, whatever the true stamps are.
+  alone.slam.live.back().stamp_s += 0.001;
+  EXPECT_EQ(DepthKey(fast), DepthKey(alone));
+  EXPECT_NE(ContentKey(fast), ContentKey(alone));
 }
 
 }  // namespace
