@@ -1,5 +1,7 @@
 #include "eval/ablation.h"
 
+#include <cmath>
+
 #include "eval/metric_columns.h"
 #include "eval/run_folder.h"
 #include "eval/synthetic_source.h"
@@ -69,6 +71,10 @@ ExperimentOptions WithTruth(ExperimentOptions options, const TrueStages& truth) 
   options.slam = WithTruth(options.slam, truth);
   if (truth.depth) {
     const SensorOptions exact;
+    // What a sensor cannot measure is not noise: the model goes, its limits stay.
+    const DepthRange range = SensorRange(options.sensor);
+    options.sensor.min_range_m = range.min_m;
+    if (std::isfinite(range.max_m)) options.sensor.max_range_m = range.max_m;
     options.sensor.noise = DepthNoiseModel::kNone;
     options.sensor.grazing_limit_deg = exact.grazing_limit_deg;
     options.sensor.flying_pixels = 0.0;

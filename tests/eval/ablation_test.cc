@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/eval/browser.h"
 #include "tests/eval/program.h"
@@ -132,6 +134,33 @@ TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
   EXPECT_GT(online["error"].get<double>(), 1e-4);
   const std::string csv = ReadFile(Path("one/ablation.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 7);
+}
+
+// A sensor that errs in nothing but sees 4.5 m far, in a hall of 8 m.
+TEST_F(ProgramAblate, ExactDepthKeepsTheRangeOfTheSensor) {
+  Write("hall.yaml", R"(
+name: hall
+shapes:
+  - {shape: box, size: [3, 8, 0.1], at: [1.5, 4, -0.1]}
+  - {shape: wall, from: [0, 0], to: [3, 0], side: right}
+  - {shape: wall, from: [3, 0], to: [3, 8], side: right}
+  - {shape: wall, from: [3, 8], to: [0, 8], side: right}
+  - {shape: wall, from: [0, 8], to: [0, 0], side: right}
+trajectories:
+  along: {kind: handheld, waypoints: [{at: [1.5, 2, 1.1], look_at: [1.5, 8, 1]},
+                                      {at: [1.6, 3, 1.1], look_at: [1.5, 8, 1]}]}
+)");
+  Succeed(
+      "ablate ./small.yaml --seeds 1 --set scene=./hall.yaml --set sensor.noise=kinect_v2 "
+      "--set sensor.noise_scale=0 --set sensor.grazing_limit_deg=90 -o out");
+  std::map<std::string, std::string> scores;  // of each variant
+  std::istringstream lines(ReadFile(Path("out/ablation.csv")));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t comma = line.find(',');
+    scores[line.substr(0, comma)] = line.substr(comma);
+  }
+  EXPECT_EQ(scores.at("depth"), scores.at("as_it_is"));
+  EXPECT_NE(scores.at("converter"), scores.at("as_it_is"));
 }
 
 TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
