@@ -35,6 +35,9 @@ ScoredMaps OnOneGeometry(const StateMap& truth, const StateMap& estimate,
 // Cell centres in metres, in the order of the cells.
 std::vector<Eigen::Vector2d> CentresOf(const CellSet& set);
 
+// Of a limit on how far centres are apart: a whole number of cells comes out a rounding error off.
+constexpr double kCentreSlackM = 1e-6;
+
 std::optional<double> Ratio(double part, double whole);  // empty when the whole is not positive
 std::optional<double> F1Of(const std::optional<double>& precision,
                            const std::optional<double>& recall);

@@ -1,5 +1,6 @@
 #include "eval/metrics/navigability.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace {
 // Free cells whose centre is at least so far from every wall cell's centre.
 CellSet Passable(const StateMap& map, double clearance_m) {
   const std::vector<double> squared_cells = SquaredDistances(CellsIn(map, CellState::kOccupied));
-  const double least_cells = clearance_m / map.geometry.resolution_m;
+  const double least_cells = std::max(0.0, clearance_m - kCentreSlackM) / map.geometry.resolution_m;
   CellSet passable(map.geometry);
   for (std::size_t i = 0; i < map.states.size(); ++i) {
     passable.members[i] =
@@ -52,7 +53,8 @@ std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
          ++i) {
       const Cell goal = draw();
       const double apart_cells = std::hypot(goal.x - errand.start.x, goal.y - errand.start.y);
-      if (apart_cells >= least_cells) errand.goals.push_back(goal);
+      // No way leads from a cell to itself.
+      if (apart_cells >= std::max(1.0, least_cells)) errand.goals.push_back(goal);
     }
     if (!errand.goals.empty()) errands.push_back(std::move(errand));
   }

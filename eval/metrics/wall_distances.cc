@@ -57,10 +57,8 @@ class Buckets {
 };
 
 double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
-  // Centres a whole number of cells apart come out a rounding error too far.
-  constexpr double kSlackM = 1e-6;
   const auto within = std::count_if(distances_m.begin(), distances_m.end(),
-                                    [&](double d) { return d <= limit_m + kSlackM; });
+                                    [&](double d) { return d <= limit_m + kCentreSlackM; });
   return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
 

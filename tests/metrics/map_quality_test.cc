@@ -164,6 +164,33 @@ TEST(Navigability, APerfectMapIsDrivenPerfectly) {
   EXPECT_EQ(*score->length_ratio, 1.0);
 }
 
+// A corridor of seven cells: its middle is three cells from both walls, 0.15 m of centres. In
+// doubles (0.10 + 0.05) / 0.05 is more than 3.
+TEST(Navigability, ARobotFitsWhereItsRadiusAndMarginAreWholeCells) {
+  std::vector<std::string> rows(5, std::string(60, '.'));
+  rows.insert(rows.begin(), std::string(60, '#'));
+  rows.push_back(std::string(60, '#'));
+  const StateMap map = DrawnMap(rows);
+  NavigabilityOptions robot;
+  robot.robot_radius_m = 0.10;
+  EXPECT_TRUE(Navigate(map, map, Everywhere(map.geometry), robot));
+  robot.robot_radius_m = 0.11;
+  EXPECT_FALSE(Navigate(map, map, Everywhere(map.geometry), robot));
+}
+
+// In two cells each start has one goal, which is not itself.
+TEST(Navigability, AGoalIsNeverTheStart) {
+  const StateMap map = DrawnMap({"####", "#..#", "####"});
+  NavigabilityOptions robot;
+  robot.robot_radius_m = robot.margin_m = robot.least_distance_m = 0.0;
+  const auto score = Navigate(map, map, Everywhere(map.geometry), robot);
+  ASSERT_TRUE(score);
+  EXPECT_EQ(score->pairs, 40);
+  EXPECT_EQ(*score->length_ratio, 1.0);
+  const StateMap one = DrawnMap({"###", "#.#", "###"});
+  EXPECT_FALSE(Navigate(one, one, Everywhere(one.geometry), robot));
+}
+
 TEST(Navigability, WallsThatAreNotThereBlockAndMissingOnesCollide) {
   const StateMap with_door = TwoRooms(10);
   const StateMap without = TwoRooms(0);
