@@ -41,9 +41,15 @@ Progress PartOf(const Progress& whole, std::size_t group, std::size_t groups) {
   };
 }
 
+// Of a joint run: the same for each of its cases, however many were written before.
+struct JointTimes {
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+};
+
 // A case's folder, with the times of the joint run it was part of.
 CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const JointRuns& joint,
-                     MapMode map_mode, const OutputFolder& study_folder, double wall_s) {
+                     MapMode map_mode, const OutputFolder& study_folder, const JointTimes& times) {
   const OccupancyMap input = InputPoseMap(run.mapping, run.options.mapper.grid);
   CaseResult result;
   result.name = study_case.name;
@@ -60,8 +66,8 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
     if (doubt) record.warnings.push_back(*doubt);
   }
   record.map_mode = map_mode;
-  record.wall_s_total = wall_s;
-  record.cpu_s_total = ProcessCpuS();
+  record.wall_s_total = times.wall_s;
+  record.cpu_s_total = times.cpu_s;
   WriteMap(folder.File("input_map.yaml"), MapToWrite(input), map_mode);
   WriteRunFolder(folder, record);
   const auto no_colour = AddColour(folder.work().string(), record);
@@ -93,16 +99,17 @@ std::vector<CaseResult> RunStudy(const Study& study, const std::string& text, Ma
   const std::vector<std::vector<std::size_t>> groups = JointGroups(study);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto start = Clock::now();
+    const double cpu_before_s = ProcessCpuS();
     std::vector<ExperimentOptions> options;
     for (const std::size_t i : groups[g]) options.push_back(study.experiments[i]);
     RunContext part = context;
     part.progress = PartOf(context.progress, g, groups.size());
     const JointRuns joint = RunJointly(options, part);
+    const JointTimes times = {std::chrono::duration<double>(Clock::now() - start).count(),
+                              ProcessCpuS() - cpu_before_s};
     for (std::size_t k = 0; k < groups[g].size(); ++k) {
-      const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
       const std::size_t i = groups[g][k];
-      results[i] =
-          WriteCase(study.outline.cases[i], joint.runs[k], joint, map_mode, folder, wall_s);
+      results[i] = WriteCase(study.outline.cases[i], joint.runs[k], joint, map_mode, folder, times);
     }
   }
   WriteFile(folder.File("study.yaml"), text);

@@ -48,6 +48,18 @@ TEST_F(StudyRun, EachCaseIsWhatItWouldBeAlone) {
   }
 }
 
+// They took the same time, though one was written after the other.
+TEST_F(StudyRun, CasesThatRunTogetherHaveTheSameTimes) {
+  Succeed("run ./study.yaml -o out");
+  const auto total = [&](const std::string& name, const char* key) {
+    return nlohmann::json::parse(ReadFile(Path("out/" + name + "/timing.json")))[key].get<double>();
+  };
+  for (const char* key : {"wall_s_total", "cpu_s_total"}) {
+    EXPECT_EQ(total("orb", key), total("truth", key)) << key;
+    EXPECT_GT(total("orb", key), 0.0) << key;
+  }
+}
+
 TEST_F(StudyRun, ThePageShowsWhatTheCommandLineChanged) {
   Succeed("run ./study.yaml -o as_written");
   EXPECT_THAT(ReadFile(Path("as_written/report.html")), HasSubstr("\"overrides\":[]"));
