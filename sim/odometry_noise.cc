@@ -1,5 +1,7 @@
 #include "sim/odometry_noise.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -58,14 +60,28 @@ double MeanError(const std::vector<Pose2>& truth, const std::vector<Pose2>& odom
 
 // The error grows with the scale while the yaw error is moderate; bisection on a logarithm.
 double CalibratedScale(const std::vector<Pose2>& truth, const Errors& errors, double target_m) {
-  double low = 1e-4;
-  double high = 1e2;
+  constexpr double kLeastScale = 1e-4;
+  constexpr double kMostScale = 1e2;
+  const auto error_m = [&](double scale) {
+    return MeanError(truth, Integrate(truth, errors, scale));
+  };
+  double low = kLeastScale;
+  double high = kMostScale;
   constexpr int kHalvings = 50;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = std::sqrt(low * high);
-    (MeanError(truth, Integrate(truth, errors, middle)) < target_m ? low : high) = middle;
+    (error_m(middle) < target_m ? low : high) = middle;
   }
-  return std::sqrt(low * high);
+  const double scale = std::sqrt(low * high);
+  constexpr double kTolerance = 1e-3;
+  if (std::abs(error_m(scale) - target_m) > kTolerance * target_m) {
+    throw SettingError(
+        "mean_error_m",
+        fmt::format("is {:g}, must be 0 or from {:.3g} to {:.3g}: what odometry over "
+                    "this path can err by, of this seed",
+                    target_m, error_m(kLeastScale), error_m(kMostScale)));
+  }
+  return scale;
 }
 
 }  // namespace

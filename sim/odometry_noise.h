@@ -22,7 +22,8 @@ struct OdometryOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// One pose a true pose; the first is exact.
+// One pose a true pose; the first is exact. Throws SettingError for a mean error that no scale
+// gives.
 std::vector<Pose2> DisturbOdometry(const std::vector<Pose2>& truth, const OdometryOptions& options,
                                    std::uint64_t seed);
 

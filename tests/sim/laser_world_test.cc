@@ -1,5 +1,6 @@
 #include "sim/laser_world.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "mapper/core/rng.h"
 #include "sim/odometry_noise.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -140,6 +142,18 @@ TEST(OdometryNoise, MeanErrorIsTheOneAskedFor) {
       }
       EXPECT_NEAR(sum_m / 900.0, target_m, 1e-6 + 1e-6 * target_m);
     }
+  }
+}
+
+TEST(OdometryNoise, AMeanErrorOutOfReachIsRefused) {
+  std::vector<Pose2> truth;
+  for (int i = 0; i < 100; ++i) truth.push_back({0.01 * i, 0.0, 0.0});
+  OdometryOptions options;
+  for (const double target_m : {1e-8, 90.0}) {
+    options.mean_error_m = target_m;
+    EXPECT_THAT(RefusalOf([&] { DisturbOdometry(truth, options, 1); }),
+                testing::MatchesRegex(
+                    "mean_error_m: is .*, must be 0 or from [0-9.e-]+ to [0-9.]+: what .*"));
   }
 }
 
