@@ -9,8 +9,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <span>
+#include <string_view>
 
 #include "mapper/core/error.h"
+#include "mapper/core/plus_sign.h"
 #include "mapper/io/file.h"
 #include "sim/face_triangles.h"
 #include "sim/ply_header.h"
@@ -67,9 +69,8 @@ class PlyParser {
   double AsciiNumber() {
     while (at_ < text_.size() && IsPlySpace(text_[at_])) ++at_;
     if (at_ >= text_.size()) FailCutOff();
-    const char* begin = text_.data() + at_;
+    const char* begin = WithoutPlus(std::string_view(text_).substr(at_)).data();
     const char* end = text_.data() + text_.size();
-    if (*begin == '+') ++begin;
     double number = 0.0;
     const auto [stop, error] = std::from_chars(begin, end, number);
     // Too large or too small for a double: from_chars leaves the number alone, strtod says which.

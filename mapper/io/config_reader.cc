@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "mapper/core/error.h"
+#include "mapper/core/plus_sign.h"
 #include "mapper/io/config_text.h"
 #include "mapper/io/config_tree_impl.h"
 #include "mapper/io/number_rows.h"
@@ -145,10 +146,9 @@ class YamlReader final : public OptionsVisitor {
   bool WholeIn(const YAML::Node& node, std::string_view key, Whole& number) const {
     if (!node.IsScalar()) return false;
     RequireDecimal(node, key);
-    const std::string& text = node.Scalar();
-    const char* const digits = text.data() + (text.starts_with('+') ? 1 : 0);
+    const std::string_view text = WithoutPlus(node.Scalar());
     const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(digits, end, number);
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
     return error == std::errc() && stop == end;
   }
   double NumberIn(const YAML::Node& node, std::string_view key, const Interval& allowed) const {

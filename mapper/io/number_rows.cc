@@ -8,6 +8,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/core/plus_sign.h"
 
 namespace depthgrid {
 namespace {
@@ -76,7 +77,7 @@ std::vector<std::string_view> SplitAtCommas(std::string_view line) {
 }
 
 std::optional<double> ParseNumber(std::string_view field) {
-  if (field.starts_with('+')) field.remove_prefix(1);
+  field = WithoutPlus(field);
   double value = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (field.empty() || error != std::errc{} || end != field.data() + field.size()) return {};

@@ -232,6 +232,9 @@ TEST(Config, WholeNumbersAreDecimalWithoutLeadingZeros) {
             "run.yaml:1: frames is '-007', must be a decimal number without leading zeros");
   EXPECT_EQ(ConfigRefusal("step_m: 00.5"),
             "run.yaml:1: step_m is '00.5', must be a decimal number without leading zeros");
+  EXPECT_EQ(ConfigRefusal("frames: +10"), "no error");
+  EXPECT_EQ(ConfigRefusal("frames: +-10"), "run.yaml:1: frames is '+-10', must be a whole number");
+  EXPECT_EQ(ConfigRefusal("step_m: +-0.5"), "run.yaml:1: step_m is '+-0.5', must be a number");
   EXPECT_EQ(ConfigRefusal("frames: 0x10"), "run.yaml:1: frames is '0x10', must be a whole number");
   EXPECT_EQ(ConfigRefusal("frames: 99999999999"),
             "run.yaml:1: frames is '99999999999', must be a whole number");

@@ -255,6 +255,8 @@ TEST_F(MeshFiles, PlyErrorsSayWhatIsWrong) {
   EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 nan\n")), "vertex 3 is not finite");
   EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 1e999\n")), "vertex 3 is not finite");
   EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 x\n")), "'x' is not a number");
+  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 +-3\n")), "'+-3' is not a number");
+  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 +3\n")), "no error");
   EXPECT_EQ(ErrorOf("a.ply", edited("vertex 4", "vertex 4000000000")),
             "ends before all that its header announces");
   EXPECT_EQ(ErrorOf("a.ply", edited("float z", "float w")), "its vertices have no 'z'");
