@@ -117,7 +117,7 @@ TEST(CameraFormats, OneClearLineForEachFault) {
   }
   const std::string small = "width: 1\nheight: 480\nfx: 480\nfy: 480\ncx: 0\ncy: 240\n";
   EXPECT_EQ(DescriptionRefusal(small), "no error");
-  EXPECT_EQ(DescriptionRefusal(small + "distortion: [0.1]\n"),
+  EXPECT_EQ(DescriptionRefusal(small + "distortion: [0.1, 0, 0, 0]\n"),
             "c: width is 1, must be from 2 to 16384 pixels");
   EXPECT_EQ(DescriptionRefusal("what: ever\n"), "c: key 'width' is missing");
   // A matrix does not say the image's size: what fits some image is no error yet.

@@ -278,9 +278,10 @@ Worst WorstOfShortLoss(MapperMethod method, std::uint64_t seed) {
 }
 
 // Nothing ties what comes after to what came before but SLAM's own word: few walls are seen from
-// both sides of the loss. Single runs are off by .03 to .18 m at worst.
+// both sides of the loss. What single runs are off by at worst has a standard deviation of .03 m,
+// with the paper's method of .07: of a dozen the mean would be chance by .02.
 TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
-  constexpr int kSeeds = 12;
+  constexpr int kSeeds = 60;
   for (const auto& [method, most_m] :
        {std::pair(MapperMethod::kSurfel, 0.08), std::pair(MapperMethod::kPaper, 0.13)}) {
     Worst mean;
