@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "eval/study.h"
@@ -16,10 +18,15 @@ namespace fs = std::filesystem;
 
 using Names = std::set<std::string>;
 
-// depth/ or rgb/ and the stamp.
+// depth/ or rgb/ and the stamp, with six decimals.
 bool IsRenderedImage(const fs::path& relative) {
   const fs::path folder = relative.parent_path();
-  return (folder == "depth" || folder == "rgb") && relative.extension() == ".png";
+  if ((folder != "depth" && folder != "rgb") || relative.extension() != ".png") return false;
+  constexpr std::size_t kDecimals = 6;
+  const std::string stamp = relative.stem().string();
+  const std::size_t point = stamp.find('.');
+  return point != std::string::npos && stamp.size() == point + 1 + kDecimals &&
+         stamp.find_first_not_of("-.0123456789") == std::string::npos;
 }
 
 bool IsSamplePicture(const fs::path& relative, const char* ending) {
@@ -88,38 +95,75 @@ bool IsNoFile(const fs::path&) { return false; }
 
 bool IsRunOrMap(ResultKind kind) { return kind == ResultKind::kRun || kind == ResultKind::kMap; }
 
-// Nothing when it is no file that a command wrote: those say so.
-FileRule FilesOfRun(const std::string& run_yaml) {
+// Whether a command wrote the file: those that runs, maps and renders leave say with what.
+bool HasProvenance(const fs::path& yaml) {
   try {
-    const Config config = Config::FromFile(run_yaml);
-    if (!config.Has("provenance")) return IsNoFile;
-    return config.Has("scene") ? IsRunFile : IsMapFile;
+    return fs::is_regular_file(yaml) && Config::FromFile(yaml.string()).Has("provenance");
   } catch (const InputError&) {
-    return IsNoFile;
+    return false;
+  }
+}
+
+// Of the run or map there, if there is one.
+FileRule FilesOfRun(const fs::path& folder) {
+  const fs::path run_yaml = folder / "run.yaml";
+  if (!HasProvenance(run_yaml)) return IsNoFile;
+  return Config::FromFile(run_yaml.string()).Has("scene") ? IsRunFile : IsMapFile;
+}
+
+// Those of the study there, none when there is no such.
+Names CasesIn(const fs::path& folder) {
+  if (!fs::exists(folder / "study.yaml") || !fs::exists(folder / "overrides.txt")) return {};
+  try {
+    Names cases;
+    const Config config = Config::FromFile((folder / "study.yaml").string());
+    for (const StudyCase& one : ReadStudyOutline(config).cases) cases.insert(one.name);
+    return cases;
+  } catch (const InputError&) {
+    return {};
   }
 }
 
 // The runs of its cases, of which a new study may have others.
 FileRule FilesOfCases(const fs::path& folder) {
-  if (!fs::exists(folder / "study.yaml") || !fs::exists(folder / "overrides.txt")) return IsNoFile;
-  Names cases;
-  try {
-    const Config config = Config::FromFile((folder / "study.yaml").string());
-    for (const StudyCase& one : ReadStudyOutline(config).cases) cases.insert(one.name);
-  } catch (const InputError&) {
-    return IsNoFile;
-  }
+  std::map<std::string, FileRule> cases;
+  for (const std::string& name : CasesIn(folder)) cases[name] = FilesOfRun(folder / name);
   return [cases](const fs::path& relative) {
-    return !relative.parent_path().empty() && cases.contains(relative.begin()->string()) &&
-           IsStudyFile(relative);
+    if (relative.parent_path().empty()) return false;
+    const auto found = cases.find(relative.begin()->string());
+    return found != cases.end() && found->second(relative.lexically_relative(found->first));
   };
 }
 
-// Those that a result of this kind makes at its top, apart from a study's, which are its cases'.
-Names FoldersOf(ResultKind kind) {
+bool AllExist(const fs::path& folder, const Names& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return fs::exists(folder / name); });
+}
+
+// Of all results there, each by files that no user gives by chance.
+FileRule FilesOfResultsIn(const fs::path& folder) {
+  std::vector<FileRule> rules = {FilesOfRun(folder), FilesOfCases(folder)};
+  if (HasProvenance(folder / "render.yaml")) rules.emplace_back(IsRenderFile);
+  if (AllExist(folder, {"slam.yaml", "slam.txt"})) rules.emplace_back(IsSlamFile);
+  if (AllExist(folder, {"ablation.csv", "ablation.json"})) rules.emplace_back(IsAblationFile);
+  if (!CasesIn(folder).empty()) {
+    rules.emplace_back([](const fs::path& relative) {
+      return relative.parent_path().empty() && IsStudyFile(relative);
+    });
+  }
+  return [rules](const fs::path& relative) {
+    return std::any_of(rules.begin(), rules.end(),
+                       [&](const FileRule& rule) { return rule(relative); });
+  };
+}
+
+// Those that a result of this kind makes.
+Names FoldersOf(ResultKind kind, const std::vector<std::string>& cases) {
   if (IsRunOrMap(kind)) return {"frames"};
   if (kind == ResultKind::kRender) return {"depth", "rgb"};
-  return {};
+  Names folders;
+  for (const std::string& name : cases) folders.insert({name, name + "/frames"});
+  return folders;
 }
 
 // A run and a rendered sequence have a true map each, of one name: what is scored against the one
@@ -172,29 +216,33 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
   // Names that several commands give belong to the one that must have written them.
   const bool rendered = fs::exists(place / "render.yaml");
   const bool has_slam = fs::exists(place / "slam.yaml");
-  return [of_run = FilesOfRun((place / "run.yaml").string()), rendered,
-          has_slam](const fs::path& relative) {
+  return [of_run = FilesOfRun(place), rendered, has_slam](const fs::path& relative) {
     if (rendered && IsRenderFile(relative)) return false;
     if (has_slam && IsSlamFile(relative)) return false;
     return of_run(relative);
   };
 }
 
-void RequireOwnFiles(const std::string& folder, ResultKind kind) {
-  if (!IsRunOrMap(kind) || !fs::is_directory(folder)) return;
+void RequireOwnFiles(const std::string& folder, ResultKind kind,
+                     const std::vector<std::string>& cases) {
+  if (!fs::is_directory(folder)) return;
   const fs::path place = folder;
+  const Names known_cases = CasesIn(place);
+  for (const std::string& name : cases) {
+    if (known_cases.contains(name) || !HasProvenance(place / name / "run.yaml")) continue;
+    throw InputError((place / name).string(),
+                     "holds a run that is no case of a study there; choose another folder");
+  }
   const FileRule written = FilesOf(kind);
-  const FileRule of_run = FilesOfRun((place / "run.yaml").string());
-  const bool rendered = fs::exists(place / "render.yaml");
-  const bool has_slam = fs::exists(place / "slam.yaml");
+  const FileRule own = FilesOfResultsIn(place);
+  Names parts = FoldersOf(kind, cases);
+  parts.insert("");
   std::set<fs::path> others;  // the same one is named everywhere
-  for (const fs::path& part : {place, place / "frames"}) {
+  for (const std::string& part : parts) {
     std::error_code error;  // most folders have no frames
-    for (const auto& entry : fs::directory_iterator(part, error)) {
+    for (const auto& entry : fs::directory_iterator(place / part, error)) {
       const fs::path relative = entry.path().lexically_relative(place);
-      const bool own = of_run(relative) || (rendered && IsRenderFile(relative)) ||
-                       (has_slam && IsSlamFile(relative));
-      if (written(relative) && !own) others.insert(entry.path());
+      if (written(relative) && !own(relative)) others.insert(entry.path());
     }
   }
   if (others.empty()) return;
@@ -208,8 +256,7 @@ void RequireNamesFree(const std::string& folder, ResultKind kind,
   if (!fs::is_directory(folder)) return;
   constexpr int kDeepestFile = 2;  // a study's CASE/frames/NAME
   const FileRule is_file = FilesOf(kind);
-  Names folders = FoldersOf(kind);
-  for (const std::string& name : cases) folders.insert({name, name + "/frames"});
+  const Names folders = FoldersOf(kind, cases);
   const auto options = fs::directory_options::skip_permission_denied;
   for (auto entry = fs::recursive_directory_iterator(folder, options);
        entry != fs::recursive_directory_iterator(); ++entry) {

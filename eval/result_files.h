@@ -24,8 +24,10 @@ FileRule FilesOf(ResultKind kind);
 FileRule FilesLeftBy(ResultKind kind, const std::string& folder);
 
 // Throws InputError when the folder has a file that such a result would overwrite and that no
-// result of depthgrid there can have written: a user's own. Of runs and maps.
-void RequireOwnFiles(const std::string& folder, ResultKind kind);
+// result of depthgrid there can have written: a user's own; also when a case of a study would take
+// the place of a run that is none. `cases`: of a study.
+void RequireOwnFiles(const std::string& folder, ResultKind kind,
+                     const std::vector<std::string>& cases = {});
 
 // Throws InputError when what lies there cannot be replaced by such a result: a folder where one of
 // its files goes, or the other way round, or a link where a folder goes: what it links to is no

@@ -12,7 +12,7 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
   RequireNotCurrent(folder);
   RequireNoOtherResult(folder, kind);
   RequireNamesFree(folder, kind, cases);
-  if (arguments.force) RequireOwnFiles(folder, kind);
+  if (arguments.force) RequireOwnFiles(folder, kind, cases);
   const FileRule written = FilesOf(kind);
   const FileRule removed = FilesLeftBy(kind, folder);
   RequireInputsKept(

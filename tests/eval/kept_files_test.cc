@@ -97,6 +97,49 @@ TEST_F(KeptFiles, AUsersOwnFileIsNotReplaced) {
   }
 }
 
+TEST_F(KeptFiles, NorByAStudyOrItsCases) {
+  Write("cases.yaml", "frames: 3\ncases: [{name: a, scene: ./room.yaml}]\n");
+  const std::string study = "run ./cases.yaml --force -o ";
+  for (const std::string file : {"metrics.json", "report.html", "study.yaml", "overrides.txt",
+                                 "a/map.yaml", "a/loops.csv", "a/frames/000000_depth.png"}) {
+    std::string folder = "of_" + file;
+    std::replace(folder.begin(), folder.end(), '/', '_');
+    fs::create_directories(Path(folder + "/a/frames"));
+    Write(folder + "/" + file, "mine");
+    ExpectRefusal(study + folder, folder + "/" + file + kIsOfNoResult);
+  }
+  Succeed("run ./small.yaml --set frames=3 -o w/a");
+  ExpectRefusal(study + "w", "w/a: holds a run that is no case of a study there; choose another");
+  // What a user puts beside a study's files is his, in a new case's place too.
+  Succeed(study + "out");
+  Write("two.yaml",
+        "frames: 3\ncases: [{name: a, scene: ./room.yaml}, {name: b, scene: "
+        "./room.yaml, seed: 2}]\n");
+  MakeFolder("out/b", {"map.pgm"});
+  ExpectRefusal("run ./two.yaml --force -o out", std::string("out/b/map.pgm") + kIsOfNoResult);
+  Succeed(study + "out");
+  EXPECT_EQ(ReadFile(Path("out/b/map.pgm")), "mine");
+}
+
+TEST_F(KeptFiles, NorByImagesPosesOrAnAblation) {
+  Succeed("render ./small.yaml --set frames=2 --no-colour -o seq");
+  const auto refused = [&](const std::string& command, const std::string& file) {
+    const std::string folder = "of_" + file;
+    MakeFolder(folder, {file});
+    ExpectRefusal(command + " --force -o " + folder, folder + "/" + file + kIsOfNoResult);
+  };
+  for (const std::string file : {"camera.yaml", "groundtruth.txt", "render.yaml"}) {
+    refused("render ./small.yaml --no-colour", file);
+  }
+  for (const std::string file : {"slam.txt", "slam.yaml", "loops.csv"}) refused("slam seq", file);
+  refused("ablate ./small.yaml", "ablation.csv");
+  refused("ablate ./small.yaml", "experiment.yaml");
+  for (int times = 0; times < 2; ++times) {
+    Succeed("slam seq -o poses --force");
+    Succeed("ablate ./small.yaml --set frames=3 --seeds 1 -o ablated --force");
+  }
+}
+
 TEST_F(KeptFiles, AnInputIsNeitherOverwrittenNorRemoved) {
   Succeed("render ./small.yaml --set frames=4 --no-colour -o seq");
   Succeed("run ./small.yaml --set frames=4 -o m");
@@ -260,12 +303,16 @@ TEST_F(KeptFiles, ARenderKeepsTheImagesOfNoRender) {
   Succeed("render ./small.yaml --set frames=2 --no-colour -o images --force");
   EXPECT_THAT(FilesIn("images"), Contains("rgb.txt"));
   EXPECT_EQ(ReadFile(Path("images/rgb/7.png")), "mine");
-  MakeFolder("tum", {});
-  fs::create_directory(Path("tum/depth"));
-  Write("tum/depth.txt", "5.000000 depth/5.000000.png\n");
-  Write("tum/depth/5.000000.png", "mine");
-  Succeed("render ./small.yaml --set frames=2 --no-colour -o tum --force");
-  EXPECT_EQ(ReadFile(Path("tum/depth/5.000000.png")), "mine");
+  // A folder that render did not write is not written into, whatever the frames' stamps.
+  MakeFolder("tum", {"depth.txt"});
+  const std::string render = "render ./small.yaml --set frames=2 --no-colour -o tum --force";
+  ExpectRefusal(render, std::string("tum/depth.txt") + kIsOfNoResult);
+  fs::remove(Path("tum/depth.txt"));
+  MakeFolder("tum/depth", {"5.000000.png", "mine.png"});
+  ExpectRefusal(render, std::string("tum/depth/5.000000.png") + kIsOfNoResult);
+  fs::remove(Path("tum/depth/5.000000.png"));
+  Succeed(render);
+  EXPECT_EQ(ReadFile(Path("tum/depth/mine.png")), "mine");
 }
 
 TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
