@@ -24,18 +24,21 @@ class VideoWriter {
   VideoWriter& operator=(const VideoWriter&) = delete;
 
   void Add(const RgbImage& frame);
-  // Throws std::runtime_error when ffmpeg failed.
+  // Throws std::runtime_error when ffmpeg failed or the disk was full; an earlier file of that name
+  // is as it was then.
   void Finish();
 
  private:
   void Close();
   void Abandon();
+  std::string Complaint() const;
 
   std::string path_;
   std::string temporary_;
   int width_px_;
   int height_px_;
   int pipe_ = -1;
+  int errors_ = -1;                // what ffmpeg says
   std::atomic<int> process_ = -1;  // abandoned on any thread
   int status_ = -1;
   EndTask remove_temporary_;

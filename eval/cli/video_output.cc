@@ -1,18 +1,44 @@
 #include "eval/cli/video_output.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include "eval/kept_inputs.h"
 #include "eval/map_video.h"
 #include "eval/output_file.h"
 #include "eval/video_writer.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Neither the output folder nor one that is made around it.
+void RequireNoFolderThere(const std::string& video, const std::string& output) {
+  std::error_code error;  // whoever makes the folder says so
+  const fs::path folder = fs::weakly_canonical(fs::absolute(output), error);
+  const fs::path file = fs::weakly_canonical(fs::absolute(video), error);
+  if (error ||
+      std::mismatch(file.begin(), file.end(), folder.begin(), folder.end()).first != file.end()) {
+    return;
+  }
+  throw InputError("--video " + video,
+                   fmt::format("is where -o {} makes a folder; choose another name", output));
+}
+
+}  // namespace
 
 void RequireVideoFile(const OutputArguments& output, const CommonArguments& common,
                       const std::vector<std::string>& inputs) {
   if (output.video.empty()) return;
   RequireInputsKept(output.video, "--video", inputs);
+  RequireNoFolderThere(output.video, common.output);
   RequireNewFile(output.video, common.force);
   RequireVideo(output.video);
 }
