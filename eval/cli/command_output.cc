@@ -1,5 +1,6 @@
 #include "eval/cli/command_output.h"
 
+#include "eval/cli/experiment_argument.h"
 #include "eval/kept_inputs.h"
 
 namespace depthgrid::cli {
@@ -12,6 +13,9 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
   RequireNotCurrent(folder);
   RequireNoOtherResult(folder, kind);
   RequireNamesFree(folder, kind, cases);
+  // Those that render, and into a folder that is there.
+  const bool has_cache = kind != ResultKind::kMap && kind != ResultKind::kSlam;
+  if (has_cache && !arguments.force) RequireCacheElsewhere(arguments);
   if (arguments.force) RequireOwnFiles(folder, kind, cases);
   const FileRule written = FilesOf(kind);
   const FileRule removed = FilesLeftBy(kind, folder);

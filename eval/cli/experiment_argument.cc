@@ -180,4 +180,19 @@ std::string CacheFolder(const CommonArguments& arguments) {
   return folder != nullptr ? folder : "";
 }
 
+void RequireCacheElsewhere(const CommonArguments& arguments) {
+  const std::string cache = CacheFolder(arguments);
+  if (cache.empty() || arguments.output.empty()) return;
+  const auto plain = [](const std::string& path) {
+    std::error_code error;  // whoever uses the folder says so
+    const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
+    return resolved.has_filename() ? resolved : resolved.parent_path();
+  };
+  const fs::path relative = plain(cache).lexically_relative(plain(arguments.output));
+  if (relative.empty() || *relative.begin() == "..") return;
+  throw InputError(
+      (arguments.cache.empty() ? "DEPTHGRID_CACHE " : "--cache ") + cache,
+      fmt::format("is a place in {}, the output, must be one beside it", arguments.output));
+}
+
 }  // namespace depthgrid::cli

@@ -53,5 +53,8 @@ void RequireNotSet(const std::vector<std::string>& set, const std::string& key,
 
 // Where rendered depth is kept: --cache, or else $DEPTHGRID_CACHE, unless --no-cache.
 std::string CacheFolder(const CommonArguments& arguments);
+// Throws InputError when it is the output folder or lies in it: that is empty, or another's, before
+// anything is written there.
+void RequireCacheElsewhere(const CommonArguments& arguments);
 
 }  // namespace depthgrid::cli

@@ -16,6 +16,7 @@
 #include "eval/shipped.h"
 #include "eval/sweep/scan_maker.h"
 #include "eval/sweep/slurm.h"
+#include "eval/sweep/sweep_cache.h"
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_folder.h"
 #include "eval/sweep/sweep_progress.h"
@@ -71,16 +72,19 @@ class SweepFolder {
   SweepFolder(const SweepFolder&) = delete;
   SweepFolder& operator=(const SweepFolder&) = delete;
 
+  // Whether nobody has removed it meanwhile.
+  bool IsThere() const { return fs::exists(path_ + "/.lock"); }
+
  private:
   // One killed before its plan was written has a lock and no more.
-  bool IsSweep() const { return SweepDatabase::Exists(path_) || fs::exists(path_ + "/.lock"); }
+  bool IsSweep() const { return SweepDatabase::Exists(path_) || IsThere(); }
 
   std::string path_;
   bool created_ = false;
   std::optional<SweepLock> lock_;
   EndTask clean_{[this] {
     std::error_code ignored;
-    if (created_ && !SweepDatabase::Exists(path_) && !HasSlurmJobs(path_)) {
+    if (created_ && IsThere() && !SweepDatabase::Exists(path_) && !HasSlurmJobs(path_)) {
       fs::remove_all(path_, ignored);
     }
   }};
@@ -197,6 +201,18 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
   return database.Results();
 }
 
+// In its folder, which is there and locked.
+void SweepIn(const std::string& output, const SweepArguments& arguments, const SweepPlan& plan,
+             SweepContext context) {
+  // Rendered depth and scans outlive a kill beside the results when nobody named another place.
+  const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
+  if (own_cache) context.cache_folder = output + "/cache";
+  const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
+  ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
+  if (own_cache) RemoveSweepCache(context.cache_folder);
+  Summarise(results);
+}
+
 void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   const std::string& output = arguments.common.output;
   ShardOf(arguments.shard);  // refused before there is a folder
@@ -204,13 +220,13 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   SweepContext context;
   context.threads = ThreadsOr(arguments.jobs);
   context.cache_folder = CacheFolder(arguments.common);
-  // Rendered depth and scans outlive a kill beside the results when nobody named another place.
-  const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
-  if (own_cache) context.cache_folder = output + "/cache";
-  const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
-  ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
-  if (own_cache) fs::remove_all(context.cache_folder);
-  Summarise(results);
+  try {
+    SweepIn(output, arguments, plan, context);
+  } catch (const std::exception&) {
+    // Whatever came of that, it is no mistake in what the user gave.
+    if (folder.IsThere()) throw;
+    throw std::runtime_error(output + ": was removed while the sweep was at work in it");
+  }
 }
 
 // The command of one part; the shell of its task knows which.
@@ -306,6 +322,7 @@ void Sweep(const SweepArguments& arguments) {
   const std::string file = ResolveName(arguments.sweep, ShippedKind::kSweep);
   const SweepPlan plan = ReadSweepPlan(file, arguments.common.set);
   RequireRooms(plan);
+  RequireCacheElsewhere(arguments.common);
   RequireUsableCache(CacheFolder(arguments.common));
   Warn(plan.warnings);
   Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
