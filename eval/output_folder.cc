@@ -44,7 +44,10 @@ bool IsOnItsOwn(const fs::path& folder) {
 
 fs::path WorkOf(const fs::path& target) {
   const std::string name = fmt::format(".{}.partial", target.filename().string());
-  return IsOnItsOwn(target) ? target / name : target.parent_path() / name;
+  const fs::path around = target.parent_path();
+  const bool inside = IsOnItsOwn(target) ||
+                      (fs::is_directory(target) && ::access(around.c_str(), W_OK | X_OK) != 0);
+  return (inside ? target : around) / name;
 }
 
 // Apart from what a killed program left to work in.
@@ -60,6 +63,16 @@ void RequireUsable(const fs::path& target, const fs::path& work, const std::stri
   if (!force && !IsEmpty(target, work)) {
     throw InputError(shown, "is not empty; choose another folder, or --force to write into it");
   }
+}
+
+// What it would be taken for is nothing that a killed program left.
+void RequireFolderOrNothing(const fs::path& work) {
+  std::error_code error;
+  const fs::file_status there = fs::symlink_status(work, error);
+  if (!fs::exists(there) || fs::is_directory(there)) return;
+  throw InputError(work.string(),
+                   fmt::format("is a {}, must be a folder or not be there: it is written first",
+                               fs::is_symlink(there) ? "link" : "file"));
 }
 
 // The topmost folder that create_directories(parent) is going to create.
@@ -145,9 +158,13 @@ void RequireReachable(const std::string& path) {
 }
 
 OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
-    : target_(Resolved(path)), work_(WorkOf(target_)), superseded_(std::move(superseded)) {
+    : target_(Resolved(path)),
+      work_(WorkOf(target_)),
+      force_(force),
+      superseded_(std::move(superseded)) {
   RequireNotCurrent(path);
   RequireUsable(target_, work_, path, force);
+  RequireFolderOrNothing(work_);
   const fs::path parent = target_.parent_path();
   first_created_parent_ = FirstMissing(parent);
   const EndDelay whole;
@@ -233,7 +250,12 @@ void OutputFolder::PutInPlace() const {
     std::error_code error;
     fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
     if (!error) return;
-    if (!fs::is_directory(target_)) throw fs::filesystem_error("rename", target_, error);
+    if (!fs::is_directory(fs::symlink_status(target_))) {
+      throw fs::filesystem_error("rename", target_, error);
+    }
+  }
+  if (!force_ && !IsEmpty(target_, work_)) {
+    throw std::runtime_error(target_.string() + ": is not empty any more");
   }
   RequireSameKinds(work_, target_);
   RemoveSuperseded();

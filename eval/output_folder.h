@@ -1,6 +1,7 @@
 // The folder a command writes. Everything goes to a sibling first and takes its place when the
 // command is done, so that an error leaves nothing behind, and nobody reads half a result. Of a
-// mount point, whose siblings are on another file system, to a folder inside it.
+// mount point, whose siblings are on another file system, or of a folder beside which this user may
+// not write, to a folder inside it.
 #pragma once
 
 #include <filesystem>
@@ -35,10 +36,11 @@ class OutputFolder {
   const std::filesystem::path& work() const { return work_; }
   std::string File(const std::string& name) const { return (work_ / name).string(); }
 
-  // Puts the written files in place. In a folder that has files already (`force`), files of the
-  // same name are replaced, superseded ones go and all others stay: what a user put there is never
-  // deleted. Throws std::runtime_error when that cannot be done; the files that are not in place
-  // then stay where they are, and the message says where.
+  // Puts the written files in place. In a folder that has files already (with `force` only, also
+  // where they came there meanwhile), files of the same name are replaced, superseded ones go and
+  // all others stay: what a user put there is never deleted. Throws std::runtime_error when that
+  // cannot be done; the files that are not in place then stay where they are, and the message says
+  // where.
   void Commit();
 
  private:
@@ -49,6 +51,7 @@ class OutputFolder {
 
   std::filesystem::path target_;
   std::filesystem::path work_;
+  bool force_;
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
   int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
   bool committed_ = false;

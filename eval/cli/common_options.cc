@@ -36,8 +36,23 @@ void AddSet(CLI::App& app, CommonArguments& common, const char* meaning) {
           ""));
 }
 
+CLI::Option* MeantFolder(CLI::Option* option) {
+  return option->transform(CLI::Validator(
+      [](std::string& path) {
+        std::error_code error;  // whoever makes the folder says so
+        const auto around = std::filesystem::path(path).parent_path();
+        if (around.empty() || std::filesystem::exists(around, error)) return "";
+        const auto meant = std::filesystem::weakly_canonical(path, error);
+        if (!error && path.find("..") != std::string::npos) path = meant.string();
+        return "";
+      },
+      ""));
+}
+
 void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning) {
-  app.add_option("-o,--output", common.output, "Folder to write")->required()->type_name("DIR");
+  MeantFolder(app.add_option("-o,--output", common.output, "Folder to write"))
+      ->required()
+      ->type_name("DIR");
   app.add_flag("--force", common.force, force_meaning);
 }
 

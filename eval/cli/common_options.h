@@ -15,6 +15,8 @@ constexpr const char* kSetOfExperimentMeaning =
     "Override a key: key.path=value (repeat for more); `depthgrid run --keys` lists them";
 // `meaning`: what --set takes, in --help.
 void AddSet(CLI::App& app, CommonArguments& common, const char* meaning = kSetMeaning);
+// Of an option that names a folder to make: x/../out is out, also where there is no x.
+CLI::Option* MeantFolder(CLI::Option* option);
 constexpr const char* kForceMeaning =
     "Write into a folder that is not empty: what an earlier such command wrote there goes, all "
     "other names stay; never over a file that this one reads";

@@ -305,7 +305,8 @@ void AddReport(Program& program) {
   app->add_option("folder", arguments->folder,
                   "Folder that `run`, `map`, `sweep` or `ablate` wrote")
       ->required();
-  app->add_option("-o,--output", arguments->output, "Folder for the page; default: the same one")
+  MeantFolder(app->add_option("-o,--output", arguments->output,
+                              "Folder for the page; default: the same one"))
       ->type_name("DIR");
   app->add_flag("--force", arguments->force, "Write into a folder that is not empty");
 }

@@ -126,6 +126,65 @@ TEST_F(OutputFolderTest, WhatCannotTakeItsPlaceIsKept) {
   EXPECT_EQ(ReadFile(Path(".out.partial/rgb/0.png")), "new");
 }
 
+TEST_F(OutputFolderTest, WhatCameMeanwhileIsKeptWithoutForce) {
+  const auto commit = [&](bool force, const auto& meanwhile) -> std::string {
+    fs::remove_all(Path("out"));
+    OutputFolder folder(Path("out"), force);
+    WriteFile(folder.File("a.txt"), "new");
+    meanwhile();
+    try {
+      folder.Commit();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string rest = "; what was to be written is in " + Path(".out.partial") +
+                           " until the next command that writes " + Path("out");
+  const auto user_writes = [&] {
+    fs::create_directory(Path("out"));
+    WriteFile(Path("out/a.txt"), "mine");
+  };
+  EXPECT_EQ(commit(false, user_writes), Path("out") + ": is not empty any more" + rest);
+  EXPECT_EQ(ReadFile(Path("out/a.txt")), "mine");
+  EXPECT_EQ(ReadFile(Path(".out.partial/a.txt")), "new");
+  EXPECT_EQ(commit(true, user_writes), "");
+  EXPECT_EQ(ReadFile(Path("out/a.txt")), "new");
+  fs::create_directory(Path("old"));
+  WriteFile(Path("old/a.txt"), "mine");
+  for (const bool force : {false, true}) {
+    const std::string said =
+        commit(force, [&] { fs::create_directory_symlink(Path("old"), Path("out")); });
+    EXPECT_EQ(said, Path("out") + ": Not a directory" + rest);
+    EXPECT_EQ(ReadFile(Path("old/a.txt")), "mine");
+  }
+  // An empty folder is as good as none.
+  EXPECT_EQ(commit(false, [&] { fs::create_directory(Path("out")); }), "");
+}
+
+TEST_F(OutputFolderTest, WhatIsNoFolderToWorkInIsNamed) {
+  const auto says = [&](const char* what) {
+    try {
+      OutputFolder(Path("out"), false);
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), Path(".out.partial") + ": is a " + what +
+                                  ", must be a folder or not be there: it is written first");
+      return;
+    }
+    ADD_FAILURE() << "a " << what << " was taken";
+  };
+  WriteFile(Path(".out.partial"), "mine");
+  says("file");
+  EXPECT_EQ(ReadFile(Path(".out.partial")), "mine");
+  fs::remove(Path(".out.partial"));
+  fs::create_directory(Path("mine"));
+  for (const char* target : {"mine", "nowhere"}) {
+    fs::create_directory_symlink(Path(target), Path(".out.partial"));
+    says("link");
+    fs::remove(Path(".out.partial"));
+  }
+}
+
 TEST_F(OutputFolderTest, NothingIsWrittenThroughALink) {
   fs::create_directory(Path("elsewhere"));
   WriteFile(Path("elsewhere/0.png"), "precious");
@@ -235,6 +294,12 @@ TEST_P(OutputMountTest, IsWrittenInside) {
     folder.Commit();
   }
   EXPECT_EQ(InFolder(), (Names{"out/mine.txt", "out/run.yaml"}));
+  for (const char* name : {"out/mine.txt", "out/run.yaml"}) fs::remove(Path(name));
+  OutputFolder folder(Path("out"), false);
+  WriteFile(folder.File("run.yaml"), "3");
+  WriteFile(Path("out/run.yaml"), "precious");  // meanwhile
+  EXPECT_THROW(folder.Commit(), std::runtime_error);
+  EXPECT_EQ(ReadFile(Path("out/run.yaml")), "precious");
 }
 
 TEST_P(OutputMountTest, IsLeftAsItWas) {
