@@ -157,7 +157,13 @@ std::optional<std::string> AddColour(const std::string& folder, const RunRecord&
   } catch (const std::runtime_error& error) {
     return fmt::format("pictures in colour are left out: {}", error.what());
   }
-  WriteRunReport(folder, {folder});
+  try {
+    WriteRunReport(folder, {folder});
+  } catch (const std::bad_alloc&) {
+    return "the page is without the pictures in colour: out of memory";
+  } catch (const std::runtime_error& error) {
+    return fmt::format("the page is without the pictures in colour: {}", error.what());
+  }
   return std::nullopt;
 }
 

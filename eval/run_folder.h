@@ -38,7 +38,8 @@ OccupancyMap MapToWrite(const OccupancyMap& map);
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 
 // Puts the pictures in colour into a run's folder, and its page anew: apart, for the library that
-// draws them may be missing, or end the program when memory is short. Returns why there are none.
+// draws them may be missing, or end the program when memory is short. Returns why there are
+// none; the run stays as it was.
 std::optional<std::string> AddColour(const std::string& folder, const RunRecord& record);
 
 // metrics.json of a run.

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <ctime>
+#include <mutex>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -31,6 +32,16 @@ constexpr long long kSameRequestNs = 1'000'000'000;
 constexpr std::chrono::milliseconds kOrderlyEnd{500};
 bool on_terminal = false;  // standard error, known before any signal
 sem_t signalled;           // what a handler may wake a thread with
+
+// Never destroyed: a thread may ask at the very end.
+struct Result {
+  std::mutex mutex;
+  std::string what;
+};
+Result& KnownResult() {
+  static Result& result = *new Result;
+  return result;
+}
 
 long long MonotonicNs() {
   timespec now{};
@@ -64,7 +75,7 @@ void Remember(int signal) {
   }
   std::this_thread::sleep_for(kOrderlyEnd);
   DoEndTasks();
-  WriteError(on_terminal ? "\r\033[Kdepthgrid: interrupted\n" : "depthgrid: interrupted\n");
+  WriteError((on_terminal ? "\r\033[Kdepthgrid: " : "depthgrid: ") + InterruptText() + "\n");
   _exit(kSignalled + interrupted_by);
 }
 
@@ -87,6 +98,17 @@ void CatchInterrupts() {
 
 void ThrowIfInterrupted() {
   if (interrupted_by != 0) throw std::runtime_error("interrupted");
+}
+
+void NoteResult(const std::string& what) {
+  const std::lock_guard lock(KnownResult().mutex);
+  KnownResult().what = what;
+}
+
+std::string InterruptText() {
+  const std::lock_guard lock(KnownResult().mutex);
+  const std::string& what = KnownResult().what;
+  return what.empty() ? "interrupted" : "interrupted; " + what;
 }
 
 std::optional<int> InterruptExitCode() {

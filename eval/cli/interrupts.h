@@ -4,11 +4,16 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 namespace depthgrid::cli {
 
 void CatchInterrupts();
 void ThrowIfInterrupted();
+// What is there whatever comes, such as "the run is in out": said when the program is ended.
+void NoteResult(const std::string& what);
+// The line of a program that was ended.
+std::string InterruptText();
 // 128 and the signal's number, as shells count; nothing when no signal came.
 std::optional<int> InterruptExitCode();
 

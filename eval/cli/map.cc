@@ -8,6 +8,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/finished_map.h"
+#include "eval/cli/interrupts.h"
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
@@ -298,6 +299,7 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   WriteRunFolder(folder, record);
   if (arguments.localise) KeepMap(arguments.map, folder);
   folder.Commit();
+  NoteResult("the map is in " + arguments.common.output);
   WriteVideo(arguments.output, arguments.common, run, settings.mapper.grid);
   bar.Clear();
   SayResult(run, arguments.localise);

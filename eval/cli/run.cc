@@ -8,6 +8,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
+#include "eval/cli/interrupts.h"
 #include "eval/cli/shader_cache.h"
 #include "eval/cli/video_output.h"
 #include "eval/experiment.h"
@@ -119,6 +120,7 @@ void RunOne(const RunArguments& arguments) {
   bar.Say("writing the folder and the report");
   WriteRunFolder(folder, record);
   folder.Commit();
+  NoteResult("the run is in " + arguments.common.output);
   if (const auto no_colour = AddColour(arguments.common.output, record)) {
     record.warnings.push_back(*no_colour);
   }

@@ -89,7 +89,7 @@ TEST_F(ProgramSignals, EndAStepThatDoesNotEnd) {
   ::waitpid(child, &status, 0);
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
-  EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted\n");
+  EXPECT_EQ(ReadFile(Path("err.txt")), "depthgrid: interrupted; the run is in out\n");
   EXPECT_FALSE(HasUnfinishedFolder());
   EXPECT_TRUE(std::filesystem::exists(Path("out/report.html")));
   EXPECT_THAT(FilesIn("."), testing::Not(testing::Contains(testing::HasSubstr(".mp4"))));
