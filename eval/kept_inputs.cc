@@ -14,7 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path Resolved(const fs::path& path) {
-  const fs::path resolved = fs::weakly_canonical(fs::absolute(path));
+  std::error_code error;  // of a pipe, say, which has no path
+  fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
+  if (error) resolved = fs::absolute(path).lexically_normal();
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 

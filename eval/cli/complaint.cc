@@ -4,12 +4,23 @@
 
 #include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "eval/cli/console.h"
 #include "eval/cli/interrupts.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {
+namespace {
+
+// Whether a file could not even be looked for under the name that the user gave.
+bool IsOfName(const std::filesystem::filesystem_error& error) {
+  const std::error_code& code = error.code();
+  return code == std::errc::permission_denied || code == std::errc::filename_too_long ||
+         code == std::errc::too_many_symbolic_link_levels;
+}
+
+}  // namespace
 
 int Complain(const std::string& message, int exit_code) {
   std::string line = message;
@@ -23,9 +34,14 @@ int Complain(const std::string& message, int exit_code) {
 
 int ComplainOf(const std::exception& error) {
   // Whatever came of being stopped, that is what happened.
-  if (const auto exit_code = InterruptExitCode()) return Complain("interrupted", *exit_code);
-  if (const auto* path = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
-    return Complain(path->path1().string() + ": " + path->code().message(), kBadInput);
+  if (const auto exit_code = InterruptExitCode()) return Complain(InterruptText(), *exit_code);
+  if (const auto* of_files = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+    const std::string why = of_files->code().message();
+    if (!of_files->path2().empty()) {  // of two, the one that was to be written
+      return Complain(of_files->path2().string() + ": cannot be written: " + why, kFailed);
+    }
+    return Complain(of_files->path1().string() + ": " + why,
+                    IsOfName(*of_files) ? kBadInput : kFailed);
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return Complain("out of memory", kFailed);

@@ -114,7 +114,10 @@ std::optional<Pose2> PlaceOf(const std::string& text) {
 
 std::string FromEverywhere(const std::string& path) {
   namespace fs = std::filesystem;
-  return path.empty() ? path : fs::weakly_canonical(fs::absolute(path)).string();
+  if (path.empty()) return path;
+  std::error_code error;  // of a pipe, say, which has no path; whoever reads it says so
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
+  return (error ? fs::absolute(path) : resolved).string();
 }
 
 void MapSettings::Visit(OptionsVisitor& v) {
