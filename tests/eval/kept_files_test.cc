@@ -328,6 +328,27 @@ TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
   Succeed("sweep ./s.yaml -o mine");  // its own names
 }
 
+TEST_F(KeptFiles, ASweepRemovesNothingFromItsCacheThatIsAUsers) {
+  Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1]}\n");
+  Succeed("sweep ./s.yaml -o out");
+  EXPECT_FALSE(fs::exists(Path("out/cache")));
+  const std::string hex = "0123456789abcdef";
+  fs::create_directories(Path("disk/scans"));
+  fs::create_directories(Path("disk/" + hex));
+  for (const std::string& own :
+       {"scans/" + hex + ".scans", "scans/" + hex + ".scans.12.0.tmp",
+        hex + "/" + hex + "-incidence.depth", hex + "/" + hex + ".depth.12-34"}) {
+    Write("disk/" + own, "");
+  }
+  Write("disk/notes", "mine");
+  Write("disk/scans/mine.scans", "mine");
+  fs::create_directory_symlink("../disk", Path("out/cache"));
+  Succeed("sweep ./s.yaml -o out");
+  EXPECT_TRUE(fs::is_symlink(Path("out/cache")));
+  EXPECT_THAT(FilesIn("disk"), ElementsAre("notes", "scans/mine.scans"));
+  EXPECT_FALSE(fs::exists(Path("disk/" + hex)));
+}
+
 TEST_F(KeptFiles, RegridReplacesTheImageOfAnotherMode) {
   Succeed("map one.log -o m");
   const auto drawn = [&](const std::string& mode) {

@@ -39,6 +39,74 @@ TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
   EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr("mp4"))));
 }
 
+// ffmpeg says that all is well when the disk is full at the end of the file.
+TEST_F(KeptResults, AVideoThatIsNotWholeReplacesNone) {
+  Write("one.mp4", "an earlier one");
+  const auto map_with = [&](const std::string& video) {
+    Write("ffmpeg", "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf '" + video +
+                        "' >\"${last#file:}\"\necho 'x: No space left on device' >&2\n");
+    EXPECT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+    return Program("map one.log --force -o out --video one.mp4", "PATH=\"$PWD:$PATH\" ");
+  };
+  const std::string empty_box = "\\000\\000\\000\\010";
+  const std::string ten_bytes = "\\000\\000\\000\\012mdat";
+  // No index, a box that ends beyond the file, no box, nothing.
+  for (const std::string& video :
+       {empty_box + "ftyp" + ten_bytes + "12", empty_box + "moov" + ten_bytes, std::string("moov"),
+        std::string()}) {
+    const Outcome outcome = map_with(video);
+    EXPECT_EQ(outcome.exit_code, 1) << video;
+    EXPECT_EQ(outcome.err,
+              "depthgrid: one.mp4: cannot be written by ffmpeg (x: No space left on device); the "
+              "map is in out\n");
+    EXPECT_EQ(ReadFile(Path("one.mp4")), "an earlier one");
+  }
+  EXPECT_EQ(map_with(empty_box + "moov" + ten_bytes + "12").exit_code, 0);
+  EXPECT_EQ(ReadFile(Path("one.mp4")).size(), 18U);
+  EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr(".tmp"))));
+}
+
+// Its page is written twice, the second time with the pictures in colour.
+TEST_F(KeptResults, ARunWhoseLargerPageHasNoRoomIsThere) {
+  Succeed("run ./small.yaml --set frames=3 --no-cache -o whole");
+  constexpr std::uintmax_t kBlock = 512;  // of the shell's ulimit
+  const auto blocks = (fs::file_size(Path("whole/report.html")) - 1) / kBlock;
+  const Outcome outcome = Program("run ./small.yaml --set frames=3 --no-cache -o out",
+                                  "ulimit -f " + std::to_string(blocks) + " && ");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "depthgrid: warning: the page is without the pictures in colour: out/report.html: "
+            "cannot be written: File too large\n");
+  EXPECT_THAT(outcome.out, HasSubstr("look at out/report.html"));
+  EXPECT_EQ(FilesIn("out"), FilesIn("whole"));
+}
+
+TEST_F(KeptResults, AMapThatCannotBeHandedOnIsNoMistakeOfTheUser) {
+  Succeed("map one.log -o m");
+  Write("m/map.pgm", ReadFile(Path("m/map.pgm")) + std::string(1 << 20, ' '));
+  const Outcome outcome =
+      Program("map one.log --map m --localise --start 0,0,0 -o out", "ulimit -f 1000 && ");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("/map.pgm: cannot be written: "));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("depthgrid: m/map.pgm")));
+  EXPECT_FALSE(fs::exists(Path("out")));
+}
+
+// The program that reads the output is gone, as ever.
+TEST_F(KeptResults, AVideoLeavesABrokenPipeWhatItIs) {
+  Write("ffmpeg",
+        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
+        "printf '\\000\\000\\000\\010moov' >\"${last#file:}\"\n");
+  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  const std::string command = "PATH=\"$PWD:$PATH\" '" + std::string(kProgramFile) +
+                              "' run ./small.yaml --set frames=2 -o out --video v.mp4; echo $? "
+                              ">code";
+  Program("--version", "(" + command + ") 2>err | true; ");
+  EXPECT_EQ(ReadFile(Path("code")), "141\n");
+  EXPECT_EQ(ReadFile(Path("err")), "");
+  EXPECT_TRUE(fs::exists(Path("v.mp4")));
+}
+
 // A folder of an old disk, say, in Latin-1.
 TEST_F(KeptResults, NamesNeedNotBeUtf8) {
   fs::create_directory(Path("Z\xFCrich"));
@@ -78,6 +146,16 @@ TEST_F(KeptResults, OfTwoSweepsAtOnceOneIsDone) {
   }
 }
 
+TEST_F(KeptResults, ASweepWhoseFolderIsRemovedHasFailed) {
+  Write("s.yaml", "experiment: ./small.yaml\naxes: {seed: [1, 2, 3]}\n");
+  Program("--version", "{ '" + std::string(kProgramFile) +
+                           "' sweep ./s.yaml --no-cache -o s >/dev/null 2>err & "
+                           "until [ -e s/results.sqlite ]; do sleep 0.01; done; "
+                           "while [ -e s ]; do rm -rf s; done; wait $!; echo $? >code; }; ");
+  EXPECT_EQ(ReadFile(Path("code")), "1\n");
+  EXPECT_EQ(ReadFile(Path("err")), "depthgrid: s: was removed while the sweep was at work in it\n");
+}
+
 TEST_F(KeptResults, ACacheOnAFullDiskCostsNothingButTime) {
   fs::create_directory(Path("full"));
   if (::mount("tmpfs", Path("full").c_str(), "tmpfs", 0, "size=200k") != 0) {
@@ -104,13 +182,14 @@ TEST_F(KeptResults, AFileBeyondTheLimitOfTheShellIsSaid) {
 // "-" begins an option and "file:" a protocol of ffmpeg's.
 TEST_F(KeptResults, AVideoHasTheNameItWasGiven) {
   Write("ffmpeg",
-        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho video >\"${last#file:}\"\n");
+        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
+        "printf '\\000\\000\\000\\010moov' >\"${last#file:}\"\n");
   ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
   for (const std::string name : {"-x.mp4", "file:y.mp4"}) {
     const Outcome outcome =
         Program("map one.log --force -o out --video=" + name, "PATH=\"$PWD:$PATH\" ");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(ReadFile(Path(name)), "video\n");
+    EXPECT_EQ(ReadFile(Path(name)), std::string("\0\0\0\10moov", 8));
   }
   EXPECT_THAT(FilesIn("."), Not(Contains(HasSubstr(".tmp"))));
 }

@@ -78,6 +78,54 @@ TEST_F(ProgramOutput, AFolderThatMayNotBeEnteredIsNamedAsGiven) {
   }
 }
 
+TEST_F(ProgramOutput, AFolderInOneThatMayNotBeWrittenIsWrittenInside) {
+  const std::string nobody =
+      ::geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  if (Program("--version", nobody).exit_code != 0) GTEST_SKIP() << "no unprivileged user runs it";
+  fs::create_directories(Path("around/own"));
+  ASSERT_EQ(::chmod(Path("around/own").c_str(), 0777), 0);
+  ASSERT_EQ(::chmod(Path("around").c_str(), 0555), 0);
+  const Outcome outcome =
+      Program("run ./small.yaml --set frames=2 --no-cache -o around/own", nobody);
+  ASSERT_EQ(::chmod(Path("around").c_str(), 0755), 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(fs::exists(Path("around/own/report.html")));
+  EXPECT_FALSE(fs::exists(Path("around/own/.own.partial")));
+}
+
+TEST_F(ProgramOutput, AFolderIsWhatItsNameMeans) {
+  const Outcome run = Program("run ./small.yaml --set frames=2 -o nothere/../out");
+  EXPECT_EQ(run.err, "");
+  EXPECT_THAT(run.out, HasSubstr("look at out/report.html\n"));
+  EXPECT_TRUE(fs::exists(Path("out/frames/000000_colour.png")));
+  Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1]}\n");
+  Succeed("sweep ./s.yaml -o nothere/../swept");
+  EXPECT_TRUE(fs::exists(Path("swept/results.csv")));
+  Succeed("report out -o nothere/../page");
+  EXPECT_TRUE(fs::exists(Path("page/report.html")));
+  EXPECT_FALSE(fs::exists(Path("nothere")));
+}
+
+TEST_F(ProgramOutput, ACacheInTheOutputIsRefusedBeforeTheWork) {
+  Write("s.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1]}\n");
+  for (const std::string command : {"sweep ./s.yaml", "run ./small.yaml", "ablate ./small.yaml"}) {
+    for (const std::string cache : {"out", "out/cache", "out/a/../b"}) {
+      ExpectRefusal(command + " -o out --cache " + cache,
+                    {"--cache " + cache + ": is a place in out, the output, must be one beside"});
+    }
+  }
+  Succeed("sweep ./s.yaml -o out --cache cache");
+}
+
+TEST_F(ProgramOutput, AVideoIsNotWhereTheFolderIs) {
+  Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
+  for (const std::string output : {"x.mp4", "./x.mp4/", "x.mp4/below"}) {
+    ExpectRefusal("map one.log --video x.mp4 -o " + output,
+                  {"--video x.mp4: is where -o " + output + " makes a folder"});
+  }
+}
+
 // A run.yaml names files, which may have changed since.
 TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   Succeed("run ./small.yaml -o out");
