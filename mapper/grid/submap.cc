@@ -5,9 +5,10 @@
 namespace depthgrid {
 namespace {
 
-// A square of 400 m in cells of 5 cm, and where cells are smaller some scans' own size. A pose that
-// would make a submap larger is wild, or SLAM began anew elsewhere: no scan so near to the last
-// ones reaches so far.
+// A square of 400 m in cells of 5 cm; where cells are so small that a scan has more, four times its
+// own rectangle, which a narrow view that turns once on the spot covers. A pose that would make a
+// submap larger is wild, or SLAM began anew elsewhere: no scan so near to the last ones reaches so
+// far.
 constexpr std::size_t kMostSubmapCells = std::size_t{1} << 26;
 constexpr std::size_t kMostScans = 4;
 

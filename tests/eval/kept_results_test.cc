@@ -19,11 +19,20 @@ class KeptResults : public ProgramTest {
     ProgramTest::SetUp();
     Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
   }
+
+  // A program of that name in the test's folder, which reads all that it is given first.
+  void WriteFfmpeg(const std::string& script) const {
+    Write("ffmpeg", "#!/bin/sh\ncat >/dev/null\n" + script);
+    ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  }
+  // The least that is a whole video: an index of nothing.
+  void WriteQuickFfmpeg() const {
+    WriteFfmpeg("for last; do :; done\nprintf '\\000\\000\\000\\010moov' >\"${last#file:}\"\n");
+  }
 };
 
 TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
-  Write("ffmpeg", "#!/bin/sh\ncat >/dev/null\nexit 1\n");  // as one without libx264
-  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  WriteFfmpeg("exit 1\n");  // as one without libx264
   const char* path = std::getenv("PATH");
   const std::string before = path == nullptr ? "/usr/bin:/bin" : path;
   ASSERT_EQ(::setenv("PATH", (root_.string() + ":" + before).c_str(), 1), 0);
@@ -43,9 +52,8 @@ TEST_F(KeptResults, AMapWhoseVideoFailsIsThere) {
 TEST_F(KeptResults, AVideoThatIsNotWholeReplacesNone) {
   Write("one.mp4", "an earlier one");
   const auto map_with = [&](const std::string& video) {
-    Write("ffmpeg", "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf '" + video +
-                        "' >\"${last#file:}\"\necho 'x: No space left on device' >&2\n");
-    EXPECT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+    WriteFfmpeg("for last; do :; done\nprintf '" + video +
+                "' >\"${last#file:}\"\necho 'x: No space left on device' >&2\n");
     return Program("map one.log --force -o out --video one.mp4", "PATH=\"$PWD:$PATH\" ");
   };
   const std::string empty_box = "\\000\\000\\000\\010";
@@ -94,10 +102,7 @@ TEST_F(KeptResults, AMapThatCannotBeHandedOnIsNoMistakeOfTheUser) {
 
 // The program that reads the output is gone, as ever.
 TEST_F(KeptResults, AVideoLeavesABrokenPipeWhatItIs) {
-  Write("ffmpeg",
-        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
-        "printf '\\000\\000\\000\\010moov' >\"${last#file:}\"\n");
-  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  WriteQuickFfmpeg();
   const std::string command = "PATH=\"$PWD:$PATH\" '" + std::string(kProgramFile) +
                               "' run ./small.yaml --set frames=2 -o out --video v.mp4; echo $? "
                               ">code";
@@ -181,10 +186,7 @@ TEST_F(KeptResults, AFileBeyondTheLimitOfTheShellIsSaid) {
 
 // "-" begins an option and "file:" a protocol of ffmpeg's.
 TEST_F(KeptResults, AVideoHasTheNameItWasGiven) {
-  Write("ffmpeg",
-        "#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
-        "printf '\\000\\000\\000\\010moov' >\"${last#file:}\"\n");
-  ASSERT_EQ(::chmod(Path("ffmpeg").c_str(), 0755), 0);
+  WriteQuickFfmpeg();
   for (const std::string name : {"-x.mp4", "file:y.mp4"}) {
     const Outcome outcome =
         Program("map one.log --force -o out --video=" + name, "PATH=\"$PWD:$PATH\" ");
