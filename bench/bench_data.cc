@@ -5,7 +5,7 @@
 
 #include "bench/bench_table.h"
 #include "mapper/core/level.h"
-#include "sim/depth_noise.h"
+#include "sim/depth/depth_noise.h"
 #include "tests/mapper/analytic_room.h"
 #include "tests/mapper/match_world.h"
 #include "tests/sim/test_meshes.h"

@@ -7,7 +7,7 @@
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/frame.h"
-#include "sim/depth_camera.h"
+#include "sim/depth/depth_camera.h"
 
 namespace depthgrid::bench {
 

@@ -8,8 +8,8 @@
 #include "bench/bench_data.h"
 #include "bench/bench_table.h"
 #include "mapper/core/level.h"
-#include "sim/depth_noise.h"
-#include "sim/ray_scene_impl.h"
+#include "sim/depth/depth_noise.h"
+#include "sim/depth/ray_scene_impl.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid::bench {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/core/slam_epochs.h"
 #include "mapper/core/usual_step.h"
-#include "mapper/reference_map.h"
 #include "mapper/scan/stand_blend.h"
 
 namespace depthgrid {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "mapper/frame_report.h"
+#include "mapper/core/frame_report.h"
 
 namespace depthgrid {
 

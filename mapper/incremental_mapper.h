@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
+#include "mapper/core/frame_report.h"
 #include "mapper/core/occupancy_map.h"
-#include "mapper/frame_report.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/frame_timer.h"
 #include "mapper/mapper_options.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

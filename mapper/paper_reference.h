@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/graph/scan_submap_graph.h"
 #include "mapper/grid/scan_rasterizer.h"
 #include "mapper/grid/submap.h"
 #include "mapper/match/scan_matcher.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "mapper/frame_report.h"
+#include "mapper/core/frame_report.h"
 
 namespace depthgrid {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/mapper_options.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

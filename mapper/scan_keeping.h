@@ -8,7 +8,7 @@
 
 #include "mapper/core/key_index.h"
 #include "mapper/core/options.h"
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 
 namespace depthgrid {
 

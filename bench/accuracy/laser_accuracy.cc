@@ -13,13 +13,13 @@
 #include "bench/accuracy/people.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
-#include "eval/consistency.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
+#include "eval/run/consistency.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
-#include "sim/odometry_noise.h"
+#include "sim/laser/odometry_noise.h"
 
 using namespace depthgrid;
 

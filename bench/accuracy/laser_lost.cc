@@ -11,7 +11,7 @@
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 #include "mapper/incremental_mapper.h"
-#include "sim/odometry_noise.h"
+#include "sim/laser/odometry_noise.h"
 
 using namespace depthgrid;
 

@@ -9,7 +9,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/trajectory_file.h"
-#include "sim/laser_world.h"
+#include "sim/laser/laser_world.h"
 
 namespace depthgrid {
 

@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "bench/guarded_main.h"
-#include "eval/joint_runs.h"
+#include "eval/experiment/shipped.h"
+#include "eval/experiment/study.h"
 #include "eval/metrics/statistics.h"
-#include "eval/shipped.h"
-#include "eval/study.h"
+#include "eval/run/joint_runs.h"
 #include "mapper/core/level.h"
 #include "mapper/grid/map_drawing.h"
 

@@ -7,7 +7,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/pose2.h"
-#include "sim/laser_world.h"
+#include "sim/laser/laser_world.h"
 
 namespace depthgrid {
 

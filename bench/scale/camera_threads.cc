@@ -8,7 +8,7 @@
 
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
-#include "sim/depth_camera.h"
+#include "sim/depth/depth_camera.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {

@@ -2,13 +2,13 @@
 
 #include <numeric>
 
-#include "eval/ablation.h"
-#include "eval/ablation_report.h"
 #include "eval/cli/command_output.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
-#include "eval/seed_range.h"
+#include "eval/experiment/seed_range.h"
+#include "eval/study/ablation.h"
+#include "eval/study/ablation_report.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"

@@ -1,7 +1,7 @@
 #include "eval/cli/command_output.h"
 
 #include "eval/cli/experiment_argument.h"
-#include "eval/kept_inputs.h"
+#include "eval/output/kept_inputs.h"
 
 namespace depthgrid::cli {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "eval/cli/commands.h"
-#include "eval/output_folder.h"
-#include "eval/result_files.h"
+#include "eval/output/output_folder.h"
+#include "eval/output/result_files.h"
 
 namespace depthgrid::cli {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "eval/cli/usage.h"
-#include "eval/shipped.h"
+#include "eval/experiment/shipped.h"
 
 namespace depthgrid::cli {
 namespace {

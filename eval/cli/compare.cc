@@ -5,9 +5,9 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
-#include "eval/comparison.h"
-#include "eval/metric_columns.h"
-#include "eval/run_collection.h"
+#include "eval/compare/comparison.h"
+#include "eval/compare/run_collection.h"
+#include "eval/files/metric_columns.h"
 #include "eval/statistics/metric_direction.h"
 #include "mapper/core/error.h"
 

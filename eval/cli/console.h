@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/mapping_run.h"
+#include "eval/run/mapping_run.h"
 #include "mapper/core/counted.h"
 
 namespace depthgrid::cli {

@@ -8,12 +8,12 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/files/one_grid.h"
+#include "eval/files/shell_word.h"
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/map_metrics.h"
 #include "eval/metrics/map_turns.h"
-#include "eval/metrics_json.h"
-#include "eval/one_grid.h"
-#include "eval/shell_word.h"
+#include "eval/run/metrics_json.h"
 #include "mapper/core/error.h"
 #include "mapper/io/map_file.h"
 

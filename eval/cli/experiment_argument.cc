@@ -6,12 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "eval/camera_doubts.h"
-#include "eval/idle_settings.h"
-#include "eval/record_check.h"
-#include "eval/shipped.h"
+#include "eval/doubts/record_check.h"
+#include "eval/experiment/camera_doubts.h"
+#include "eval/experiment/idle_settings.h"
+#include "eval/experiment/shipped.h"
 #include "mapper/core/error.h"
-#include "sim/mesh_file.h"
+#include "sim/mesh/mesh_file.h"
 
 namespace depthgrid::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/cli/commands.h"
-#include "eval/experiment_options.h"
+#include "eval/experiment/experiment_options.h"
 #include "mapper/io/config.h"
 
 namespace depthgrid::cli {

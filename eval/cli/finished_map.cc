@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "eval/cli/console.h"
-#include "eval/place_check.h"
-#include "eval/prior_run.h"
-#include "eval/run_folder.h"
+#include "eval/doubts/place_check.h"
+#include "eval/output/run_folder.h"
+#include "eval/run/prior_run.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/core/median.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "eval/cli/map_settings.h"
-#include "eval/mapping_run.h"
-#include "eval/output_folder.h"
+#include "eval/output/output_folder.h"
+#include "eval/run/mapping_run.h"
 #include "mapper/map_start.h"
 
 namespace depthgrid::cli {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "eval/idle_settings.h"
+#include "eval/experiment/idle_settings.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"

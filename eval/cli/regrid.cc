@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "eval/cli/commands.h"
-#include "eval/output_file.h"
-#include "eval/run_files.h"
+#include "eval/files/run_files.h"
+#include "eval/output/output_file.h"
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/config.h"

@@ -8,16 +8,16 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/shader_cache.h"
-#include "eval/experiment.h"
-#include "eval/run_folder.h"
-#include "eval/shell_word.h"
-#include "eval/synthetic_source.h"
-#include "eval/truth_check.h"
-#include "eval/world.h"
+#include "eval/doubts/truth_check.h"
+#include "eval/files/shell_word.h"
+#include "eval/output/run_folder.h"
+#include "eval/run/experiment.h"
+#include "eval/run/synthetic_source.h"
+#include "eval/run/world.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/tum_folder.h"
-#include "sim/colour_camera.h"
+#include "sim/colour/colour_camera.h"
 
 namespace depthgrid::cli {
 namespace {

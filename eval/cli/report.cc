@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <string_view>
 
-#include "eval/ablation_report.h"
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
-#include "eval/output_file.h"
-#include "eval/output_folder.h"
-#include "eval/result_files.h"
-#include "eval/run_report.h"
-#include "eval/study_report.h"
+#include "eval/compare/sweep_report.h"
+#include "eval/output/output_file.h"
+#include "eval/output/output_folder.h"
+#include "eval/output/result_files.h"
+#include "eval/report/run_report.h"
+#include "eval/study/ablation_report.h"
+#include "eval/study/study_report.h"
 #include "eval/sweep/sweep_database.h"
-#include "eval/sweep_report.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 

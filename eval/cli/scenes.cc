@@ -5,13 +5,13 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/scene_facts.h"
-#include "eval/experiment_options.h"
-#include "eval/shipped.h"
-#include "eval/study.h"
+#include "eval/experiment/experiment_options.h"
+#include "eval/experiment/shipped.h"
+#include "eval/experiment/study.h"
 #include "eval/sweep/sweep_plan.h"
 #include "mapper/core/error.h"
-#include "sim/scene.h"
-#include "sim/trajectory.h"
+#include "sim/path/trajectory.h"
+#include "sim/scene/scene.h"
 
 namespace depthgrid::cli {
 namespace {

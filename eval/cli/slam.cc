@@ -7,7 +7,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
-#include "eval/shell_word.h"
+#include "eval/files/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -15,7 +15,7 @@
 #include "mapper/io/slam_files.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
-#include "sim/slam_surrogate.h"
+#include "sim/slam/slam_surrogate.h"
 
 namespace depthgrid::cli {
 namespace {

@@ -3,11 +3,11 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
-#include "eval/idle_settings.h"
-#include "eval/seed_range.h"
-#include "eval/world.h"
+#include "eval/experiment/idle_settings.h"
+#include "eval/experiment/seed_range.h"
+#include "eval/run/world.h"
 #include "mapper/core/error.h"
-#include "sim/slam_calibration.h"
+#include "sim/slam/slam_calibration.h"
 
 namespace depthgrid::cli {
 namespace {

@@ -1,17 +1,17 @@
-#include "sim/slam_fit.h"
+#include "sim/slam/slam_fit.h"
 
 #include <fmt/format.h>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
+#include "eval/doubts/trajectory_doubts.h"
 #include "eval/metrics/association.h"
-#include "eval/trajectory_doubts.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/trajectory_file.h"
-#include "sim/slam_events.h"
-#include "sim/slam_surrogate.h"
+#include "sim/slam/slam_events.h"
+#include "sim/slam/slam_surrogate.h"
 
 namespace depthgrid::cli {
 namespace {

@@ -1,7 +1,7 @@
 // SLAM's keys as in an experiment: slam.profile, slam.loops.recall ...
 #pragma once
 
-#include "sim/slam_options.h"
+#include "sim/slam/slam_options.h"
 
 namespace depthgrid::cli {
 

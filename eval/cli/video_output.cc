@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "eval/kept_inputs.h"
-#include "eval/map_video.h"
-#include "eval/output_file.h"
-#include "eval/video_writer.h"
+#include "eval/output/kept_inputs.h"
+#include "eval/output/output_file.h"
+#include "eval/pictures/map_video.h"
+#include "eval/pictures/video_writer.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid::cli {

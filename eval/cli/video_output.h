@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/cli/commands.h"
-#include "eval/mapping_run.h"
+#include "eval/run/mapping_run.h"
 #include "mapper/grid/grid_options.h"
 
 namespace depthgrid::cli {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "eval/hash.h"
+#include "eval/files/hash.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <optional>
 
-#include "eval/parallel.h"
+#include "eval/run/synthetic_source.h"
+#include "eval/sweep/parallel.h"
 #include "eval/sweep/scan_cache.h"
-#include "eval/synthetic_source.h"
 
 namespace depthgrid {
 namespace {

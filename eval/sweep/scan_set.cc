@@ -1,9 +1,9 @@
 #include "eval/sweep/scan_set.h"
 
-#include "eval/experiment.h"
-#include "eval/hash.h"
+#include "eval/files/hash.h"
+#include "eval/run/experiment.h"
 #include "mapper/io/config.h"
-#include "sim/slam_surrogate.h"
+#include "sim/slam/slam_surrogate.h"
 
 namespace depthgrid {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/synthetic_source.h"
+#include "eval/run/synthetic_source.h"
 #include "mapper/scan/frame_scans.h"
 
 namespace depthgrid {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "eval/shell_word.h"
+#include "eval/files/shell_word.h"
 #include "eval/sweep/sweep_progress.h"
 #include "mapper/io/end_task.h"
 #include "mapper/io/file.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "eval/shipped.h"
+#include "eval/experiment/shipped.h"
 #include "eval/sweep/sweep_results.h"
 
 namespace depthgrid {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <set>
 
-#include "eval/experiment_options.h"
-#include "eval/seed_range.h"
+#include "eval/experiment/experiment_options.h"
+#include "eval/experiment/seed_range.h"
 #include "eval/sweep/sweep_results.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <vector>
 
-#include "eval/hash.h"
+#include "eval/files/hash.h"
 
 namespace depthgrid {
 namespace {
@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kHexDigits = 16;
 
-// HEX.depth and HEX-incidence.depth (eval/depth_cache.cc), HEX.scans (eval/sweep/scan_cache.cc),
-// and what they are called while they are written.
+// HEX.depth and HEX-incidence.depth (eval/run/depth_cache.cc), HEX.scans
+// (eval/sweep/scan_cache.cc), and what they are called while they are written.
 bool IsCacheFile(const std::string& name) {
   if (!ContentHash::IsHex(std::string_view(name).substr(0, kHexDigits))) return false;
   std::string_view ending = std::string_view(name).substr(kHexDigits);

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <utility>
 
-#include "eval/camera_doubts.h"
-#include "eval/idle_settings.h"
-#include "eval/truth_check.h"
+#include "eval/doubts/truth_check.h"
+#include "eval/experiment/camera_doubts.h"
+#include "eval/experiment/idle_settings.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "eval/run/truth_record.h"
 #include "eval/sweep/sweep_plan.h"
-#include "eval/truth_record.h"
 
 namespace depthgrid {
 

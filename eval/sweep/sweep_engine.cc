@@ -7,9 +7,9 @@
 #include <mutex>
 
 #include "eval/metrics/statistics.h"
-#include "eval/parallel.h"
 #include "eval/statistics/resamples.h"
 #include "eval/statistics/seed_units.h"
+#include "eval/sweep/parallel.h"
 #include "eval/sweep/scan_maker.h"
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_inputs.h"

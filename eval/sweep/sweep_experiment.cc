@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "eval/experiment_options.h"
-#include "eval/shipped.h"
+#include "eval/experiment/experiment_options.h"
+#include "eval/experiment/shipped.h"
 
 namespace depthgrid {
 

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "eval/result_files.h"
+#include "eval/output/result_files.h"
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "eval/run/truth_record.h"
+#include "eval/run/world.h"
 #include "eval/sweep/shelf.h"
-#include "eval/truth_record.h"
-#include "eval/world.h"
 
 namespace depthgrid {
 

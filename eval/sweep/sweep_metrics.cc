@@ -1,7 +1,7 @@
 #include "eval/sweep/sweep_metrics.h"
 
-#include "eval/metric_columns.h"
-#include "eval/run_folder.h"
+#include "eval/files/metric_columns.h"
+#include "eval/output/run_folder.h"
 
 namespace depthgrid {
 

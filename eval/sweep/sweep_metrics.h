@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/experiment.h"
+#include "eval/run/experiment.h"
 #include "eval/sweep/sweep_database.h"
 
 namespace depthgrid {

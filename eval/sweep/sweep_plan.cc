@@ -7,8 +7,8 @@
 #include <iterator>
 #include <unordered_map>
 
-#include "eval/record_check.h"
-#include "eval/shipped.h"
+#include "eval/doubts/record_check.h"
+#include "eval/experiment/shipped.h"
 #include "eval/sweep/sweep_again.h"
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_experiment.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/experiment_options.h"
+#include "eval/experiment/experiment_options.h"
 #include "eval/sweep/sweep_axes.h"
 #include "eval/sweep/sweep_database.h"
 

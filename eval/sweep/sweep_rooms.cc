@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "eval/shipped.h"
-#include "eval/truth_check.h"
-#include "eval/world.h"
+#include "eval/doubts/truth_check.h"
+#include "eval/experiment/shipped.h"
+#include "eval/run/world.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {

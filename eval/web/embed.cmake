@@ -1,5 +1,5 @@
 # cmake -DOUT=file.cc -DFILES="a;b" -P embed.cmake: text files as C++ string literals, found by name.
-set(code "// Made by eval/web/embed.cmake.\n#include \"eval/web_assets.h\"\n\nnamespace depthgrid::internal {\n")
+set(code "// Made by eval/web/embed.cmake.\n#include \"eval/report/web_assets.h\"\n\nnamespace depthgrid::internal {\n")
 string(APPEND code "const WebAsset kWebAssets[] = {\n")
 foreach(file IN LISTS FILES)
   get_filename_component(name "${file}" NAME)

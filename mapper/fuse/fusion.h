@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "mapper/frame_report.h"
+#include "mapper/core/frame_report.h"
 #include "mapper/fuse/fusion_options.h"
 
 namespace depthgrid {

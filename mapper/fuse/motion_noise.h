@@ -6,7 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "mapper/frame_report.h"
+#include "mapper/core/frame_report.h"
+#include "mapper/core/motion_spread.h"
 
 namespace depthgrid {
 
@@ -30,24 +31,6 @@ struct MotionErrors {
 };
 // Over so many frames at once, where a recording paused.
 MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
-
-// The same as seen from poses and map adjusted together: the error of SLAM's motion over stretches
-// of so many frames, as that of one frame if it grows with their number.
-struct MotionSpread {
-  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
-  double frames = 1.0;
-  int stretches = 0;  // that saw something
-  // How well such a motion, of one frame, is told by what was seen; infinite where nothing tells
-  // it.
-  Eigen::Vector3d seen_sigma = Eigen::Vector3d::Zero();
-
-  // Fewer are not believed for long: from the seven of the first 60 frames a prior that drifts
-  // 0.375 m was once called nearly perfect (docs/tried.md, "A nearly perfect prior").
-  bool IsSure() const { return stretches >= 20; }
-  // Of so few it says nothing of an axis along which they hardly saw, nor of one along which SLAM
-  // errs by so much that matches had better lead (docs/math.md, "The first frames again").
-  bool Tells(int axis) const { return IsSure() || seen_sigma[axis] <= 0.01; }
-};
 
 // Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds
 // on what is learnt").

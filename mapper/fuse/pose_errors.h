@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/fuse/filter_step.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

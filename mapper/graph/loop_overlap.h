@@ -7,7 +7,7 @@
 
 #include "mapper/core/grid_geometry.h"
 #include "mapper/core/options.h"
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 
 namespace depthgrid {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/graph/loop_search_options.h"
 #include "mapper/graph/place_matcher.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

@@ -5,7 +5,7 @@
 
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/options.h"
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 
 namespace depthgrid {
 

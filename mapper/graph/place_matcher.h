@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/graph/known_place.h"
 #include "mapper/graph/loop_search_options.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mapper/core/options.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/graph/place_matcher.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

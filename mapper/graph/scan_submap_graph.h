@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "mapper/core/reference_map.h"
 #include "mapper/graph/pose_graph.h"
-#include "mapper/reference_map.h"
 
 namespace depthgrid {
 

@@ -2,8 +2,8 @@
 // determines the pose.
 #pragma once
 
+#include "mapper/core/frame_report.h"
 #include "mapper/core/options.h"
-#include "mapper/frame_report.h"
 #include "mapper/match/correlative_search.h"
 #include "mapper/match/least_squares.h"
 #include "mapper/match/match_information.h"

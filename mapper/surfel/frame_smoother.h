@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "mapper/frame_report.h"
+#include "mapper/core/frame_report.h"
 #include "mapper/fuse/motion_noise.h"
 
 namespace depthgrid {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/surfel/landmarks.h"
 #include "mapper/surfel/loop_jury.h"
 #include "mapper/surfel/motion_persistence.h"

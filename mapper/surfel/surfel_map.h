@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/surfel/joint_adjustment.h"
 #include "mapper/surfel/range_noise.h"
 #include "mapper/surfel/scan_surfels.h"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "mapper/core/frame_report.h"
 #include "mapper/core/options.h"
-#include "mapper/frame_report.h"
 #include "mapper/surfel/surfel_pairs.h"
 
 namespace depthgrid {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mapper/reference_map.h"
+#include "mapper/core/reference_map.h"
 #include "mapper/surfel/debias.h"
 #include "mapper/surfel/surfel_store.h"
 

@@ -1,5 +1,5 @@
 // `depthgrid ablate`: shares worked by hand, and the program on a tiny room.
-#include "eval/ablation.h"
+#include "eval/study/ablation.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

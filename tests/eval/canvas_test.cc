@@ -1,4 +1,4 @@
-#include "eval/canvas.h"
+#include "eval/pictures/canvas.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "eval/map_picture.h"
+#include "eval/pictures/map_picture.h"
 
 namespace depthgrid {
 namespace {

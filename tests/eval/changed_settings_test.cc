@@ -1,9 +1,9 @@
-#include "eval/changed_settings.h"
+#include "eval/experiment/changed_settings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "eval/experiment_options.h"
+#include "eval/experiment/experiment_options.h"
 #include "tests/eval/program.h"
 
 namespace depthgrid {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "eval/comparison.h"
+#include "eval/compare/comparison.h"
 #include "eval/sweep/sweep_database.h"
 #include "mapper/core/error.h"
 #include "tests/eval/program.h"

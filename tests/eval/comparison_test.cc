@@ -1,5 +1,5 @@
 // Runs joined into pairs, and what is concluded from them.
-#include "eval/comparison.h"
+#include "eval/compare/comparison.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

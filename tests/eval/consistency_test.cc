@@ -1,4 +1,4 @@
-#include "eval/consistency.h"
+#include "eval/run/consistency.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "eval/depth_cache.h"
+#include "eval/run/depth_cache.h"
 
 #include <gtest/gtest.h>
 

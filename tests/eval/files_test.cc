@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "eval/base64.h"
-#include "eval/csv_table.h"
-#include "eval/hash.h"
-#include "eval/web_assets.h"
+#include "eval/files/base64.h"
+#include "eval/files/csv_table.h"
+#include "eval/files/hash.h"
+#include "eval/report/web_assets.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "tests/scratch.h"

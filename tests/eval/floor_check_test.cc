@@ -1,4 +1,4 @@
-#include "eval/floor_check.h"
+#include "eval/doubts/floor_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Which settings have no effect beside the others.
-#include "eval/idle_settings.h"
+#include "eval/experiment/idle_settings.h"
 
 #include <gmock/gmock.h>
 

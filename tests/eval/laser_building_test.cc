@@ -4,8 +4,8 @@
 
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/trajectory_file.h"
-#include "sim/laser_world.h"
-#include "sim/odometry_noise.h"
+#include "sim/laser/laser_world.h"
+#include "sim/laser/odometry_noise.h"
 #include "tests/eval/program.h"
 #include "tests/io/log_text.h"
 

@@ -1,4 +1,4 @@
-#include "eval/mapping_run.h"
+#include "eval/run/mapping_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

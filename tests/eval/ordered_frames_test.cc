@@ -1,4 +1,4 @@
-#include "eval/ordered_frames.h"
+#include "eval/run/ordered_frames.h"
 
 #include <gtest/gtest.h>
 

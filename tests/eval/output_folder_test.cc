@@ -1,4 +1,4 @@
-#include "eval/output_folder.h"
+#include "eval/output/output_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>

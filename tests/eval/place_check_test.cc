@@ -1,4 +1,4 @@
-#include "eval/place_check.h"
+#include "eval/doubts/place_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "eval/placed_path.h"
+#include "eval/pictures/placed_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "eval/run_graph.h"
+#include "eval/output/run_graph.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "eval/saturation_check.h"
+#include "eval/run/saturation_check.h"
 
 #include <gtest/gtest.h>
 

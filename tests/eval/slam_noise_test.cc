@@ -1,11 +1,11 @@
-#include "eval/slam_noise.h"
+#include "eval/run/slam_noise.h"
 
 #include <gtest/gtest.h>
 
-#include "eval/experiment.h"
+#include "eval/run/experiment.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/options.h"
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 namespace depthgrid {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/sweep_grid.h"
+#include "eval/compare/sweep_grid.h"
 
 #include <gtest/gtest.h>
 

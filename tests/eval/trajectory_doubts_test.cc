@@ -1,14 +1,14 @@
 // What is said of an estimate whose errors do not say what they seem to.
-#include "eval/trajectory_doubts.h"
+#include "eval/doubts/trajectory_doubts.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "eval/clock_check.h"
+#include "eval/doubts/clock_check.h"
+#include "eval/doubts/rotation_check.h"
 #include "eval/metrics/trajectory_metrics.h"
-#include "eval/rotation_check.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"

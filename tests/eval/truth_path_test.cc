@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "eval/storey_check.h"
+#include "eval/doubts/storey_check.h"
 #include "mapper/core/level.h"
 #include "tests/eval/program.h"
 

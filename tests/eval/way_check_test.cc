@@ -1,4 +1,4 @@
-#include "eval/way_check.h"
+#include "eval/doubts/way_check.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "eval/frame_reference.h"
-#include "eval/match_surface.h"
-#include "eval/run_tables.h"
-#include "eval/worst_frames_impl.h"
+#include "eval/output/run_tables.h"
+#include "eval/report/frame_reference.h"
+#include "eval/report/match_surface.h"
+#include "eval/report/worst_frames_impl.h"
 #include "mapper/core/level.h"
 #include "mapper/io/file.h"
 #include "tests/scratch.h"

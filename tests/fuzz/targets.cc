@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "eval/csv_table.h"
+#include "eval/files/csv_table.h"
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/camera_formats.h"
@@ -24,9 +24,9 @@
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_jumps.h"
 #include "mapper/io/tum_folder.h"
-#include "sim/ply_file.h"
-#include "sim/scene_file.h"
-#include "sim/slam_options.h"
+#include "sim/mesh/ply_file.h"
+#include "sim/scene/scene_file.h"
+#include "sim/slam/slam_options.h"
 
 namespace depthgrid {
 namespace {

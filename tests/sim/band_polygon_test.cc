@@ -1,4 +1,4 @@
-#include "sim/band_polygon.h"
+#include "sim/truth/band_polygon.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/colour_camera.h"
+#include "sim/colour/colour_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
-#include "sim/box.h"
-#include "sim/depth_camera.h"
-#include "sim/revolve.h"
+#include "sim/depth/depth_camera.h"
+#include "sim/shapes/box.h"
+#include "sim/shapes/revolve.h"
 #include "tests/paths.h"
 
 namespace depthgrid {

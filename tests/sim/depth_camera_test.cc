@@ -1,4 +1,4 @@
-#include "sim/depth_camera.h"
+#include "sim/depth/depth_camera.h"
 
 #include <gtest/gtest.h>
 

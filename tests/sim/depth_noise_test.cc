@@ -1,4 +1,4 @@
-#include "sim/depth_noise.h"
+#include "sim/depth/depth_noise.h"
 
 #include <gtest/gtest.h>
 

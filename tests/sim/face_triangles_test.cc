@@ -1,4 +1,4 @@
-#include "sim/face_triangles.h"
+#include "sim/mesh/face_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "mapper/core/rng.h"
-#include "sim/mesh_file.h"
-#include "sim/triangle_mesh.h"
+#include "sim/mesh/mesh_file.h"
+#include "sim/mesh/triangle_mesh.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 

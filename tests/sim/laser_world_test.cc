@@ -1,4 +1,4 @@
-#include "sim/laser_world.h"
+#include "sim/laser/laser_world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
-#include "sim/odometry_noise.h"
+#include "sim/laser/odometry_noise.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "sim/mesh_file.h"
-#include "sim/triangle_mesh.h"
+#include "sim/mesh/mesh_file.h"
+#include "sim/mesh/triangle_mesh.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 

@@ -1,4 +1,4 @@
-#include "sim/mesh_file.h"
+#include "sim/mesh/mesh_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "mapper/core/error.h"
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 #include "tests/sim/test_meshes.h"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "sim/mover_scene.h"
-#include "sim/ray_scene.h"
-#include "sim/scene.h"
+#include "sim/depth/ray_scene.h"
+#include "sim/scene/mover_scene.h"
+#include "sim/scene/scene.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/paths.h"
 #include "tests/refusal.h"

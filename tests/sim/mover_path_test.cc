@@ -1,4 +1,4 @@
-#include "sim/mover_path.h"
+#include "sim/scene/mover_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "sim/mover_scene.h"
+#include "sim/scene/mover_scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "mapper/core/level.h"
-#include "sim/box.h"
-#include "sim/colour_camera.h"
-#include "sim/sensor_options.h"
+#include "sim/colour/colour_camera.h"
+#include "sim/depth/sensor_options.h"
+#include "sim/shapes/box.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {

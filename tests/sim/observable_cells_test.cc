@@ -1,4 +1,4 @@
-#include "sim/observable_cells.h"
+#include "sim/truth/observable_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/ray_scene.h"
+#include "sim/depth/ray_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "sim/scene.h"
+#include "sim/scene/scene.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "mapper/core/error.h"
-#include "sim/floor.h"
-#include "sim/ray_scene.h"
-#include "sim/trajectory.h"
+#include "sim/depth/ray_scene.h"
+#include "sim/mesh/floor.h"
+#include "sim/path/trajectory.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/paths.h"
 

@@ -1,10 +1,10 @@
-#include "sim/sensor_artifacts.h"
+#include "sim/depth/sensor_artifacts.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "sim/depth_noise.h"
+#include "sim/depth/depth_noise.h"
 #include "tests/sim/test_frames.h"
 
 namespace depthgrid {

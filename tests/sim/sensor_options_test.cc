@@ -1,4 +1,4 @@
-#include "sim/sensor_options.h"
+#include "sim/depth/sensor_options.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Every primitive is closed, faces outward, and encloses the volume its formula says.
-#include "sim/shapes.h"
+#include "sim/shapes/shapes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,13 +9,13 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/rng.h"
-#include "sim/box.h"
-#include "sim/polygon.h"
-#include "sim/ray_scene.h"
-#include "sim/revolve.h"
-#include "sim/superellipsoid.h"
-#include "sim/sweep_shapes.h"
-#include "sim/wall.h"
+#include "sim/depth/ray_scene.h"
+#include "sim/mesh/polygon.h"
+#include "sim/shapes/box.h"
+#include "sim/shapes/revolve.h"
+#include "sim/shapes/superellipsoid.h"
+#include "sim/shapes/sweep_shapes.h"
+#include "sim/shapes/wall.h"
 #include "tests/refusal.h"
 #include "tests/sim/test_meshes.h"
 

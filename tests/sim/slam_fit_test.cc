@@ -1,4 +1,4 @@
-#include "sim/slam_fit.h"
+#include "sim/slam/slam_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/core/rng.h"
-#include "sim/error_growth.h"
-#include "sim/slam_calibration.h"
-#include "sim/slam_events.h"
-#include "sim/slam_surrogate.h"
+#include "sim/slam/error_growth.h"
+#include "sim/slam/slam_calibration.h"
+#include "sim/slam/slam_events.h"
+#include "sim/slam/slam_surrogate.h"
 
 namespace depthgrid {
 namespace {

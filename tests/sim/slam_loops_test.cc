@@ -1,11 +1,11 @@
-#include "sim/slam_loops.h"
+#include "sim/slam/slam_loops.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/loop_correction.h"
-#include "sim/slam_surrogate.h"
+#include "sim/slam/loop_correction.h"
+#include "sim/slam/slam_surrogate.h"
 #include "tests/refusal.h"
 #include "tests/sim/slam_paths.h"
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "mapper/io/slam_files.h"
-#include "sim/scene.h"
-#include "sim/slam_calibration.h"
-#include "sim/slam_surrogate.h"
-#include "sim/trajectory.h"
+#include "sim/path/trajectory.h"
+#include "sim/scene/scene.h"
+#include "sim/slam/slam_calibration.h"
+#include "sim/slam/slam_surrogate.h"
 #include "tests/paths.h"
 #include "tests/scratch.h"
 

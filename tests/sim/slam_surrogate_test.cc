@@ -1,4 +1,4 @@
-#include "sim/slam_surrogate.h"
+#include "sim/slam/slam_surrogate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mapper/io/config.h"
-#include "sim/slam_error.h"
+#include "sim/slam/slam_error.h"
 #include "tests/sim/slam_paths.h"
 
 namespace depthgrid {

@@ -5,8 +5,8 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
-#include "sim/depth_camera.h"
-#include "sim/sensor_options.h"
+#include "sim/depth/depth_camera.h"
+#include "sim/depth/sensor_options.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid::test {

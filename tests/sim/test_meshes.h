@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mapper/core/angle.h"
-#include "sim/triangle_mesh.h"
+#include "sim/mesh/triangle_mesh.h"
 
 namespace depthgrid::test {
 

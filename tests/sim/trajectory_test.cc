@@ -1,4 +1,4 @@
-#include "sim/trajectory.h"
+#include "sim/path/trajectory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "sim/true_scan.h"
+#include "sim/truth/true_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/truth_grid.h"
+#include "sim/truth/truth_grid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

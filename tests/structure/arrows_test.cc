@@ -46,6 +46,25 @@ const std::map<std::string, std::set<std::string>>& Allowed() {
   return kAllowed;
 }
 
+// The folders from the ground up: a file includes those of its own and of the ones below.
+const std::vector<std::string>& Floors() {
+  static const std::vector<std::string> kFloors = {
+      "mapper/core", "mapper/io",       "mapper/scan",  "mapper/grid",  "mapper/match",
+      "mapper/fuse", "mapper/surfel",   "mapper/graph", "mapper",       "sim/mesh",
+      "sim/shapes",  "sim/path",        "sim/depth",    "sim/scene",    "sim/colour",
+      "sim/laser",   "sim/slam",        "sim/truth",    "eval/metrics", "eval/statistics",
+      "eval/files",  "eval/experiment", "eval/run",     "eval/doubts",  "eval/pictures",
+      "eval/report", "eval/output",     "eval/study",   "eval/sweep",   "eval/compare",
+      "eval/cli"};
+  return kFloors;
+}
+
+// Counted from the ground; -1 of a folder that is none of them.
+int FloorOf(const std::string& path) {
+  const auto found = std::find(Floors().begin(), Floors().end(), fs::path(path).parent_path());
+  return found == Floors().end() ? -1 : static_cast<int>(found - Floors().begin());
+}
+
 // Libraries that are wrapped once: their headers may appear in .cc files only, and in *_impl.h,
 // which only .cc files include.
 const std::vector<std::string>& HiddenLibraries() {
@@ -81,6 +100,8 @@ std::string Fault(const std::string& file, const Include& include) {
     const std::string target = RoomOf(include.path);
     if (target.empty()) return "includes are written from the source root";
     if (!Allowed().at(room).contains(target)) return room + " may not include " + target;
+    if (FloorOf(file) < 0 || FloorOf(include.path) < 0) return "stands in no folder that is listed";
+    if (FloorOf(include.path) > FloorOf(file)) return "includes what stands above it";
     if (file.ends_with(".h") && include.path.ends_with("_impl.h")) {
       return "only .cc files may include *_impl.h";
     }
@@ -119,11 +140,15 @@ TEST(Arrows, AWrongIncludeIsFound) {
   EXPECT_NE(Fault("mapper/grid/a.cc", {"mapper/io/b.h", true}), "");
   EXPECT_NE(Fault("mapper/match/a.cc", {"sim/b.h", true}), "");
   EXPECT_NE(Fault("eval/metrics/a.cc", {"mapper/grid/b.h", true}), "");
-  EXPECT_NE(Fault("eval/run.cc", {"eval/cli/b.h", true}), "");
-  EXPECT_NE(Fault("sim/a.h", {"embree3/rtcore.h", false}), "");
+  EXPECT_NE(Fault("eval/run/a.cc", {"eval/cli/b.h", true}), "");
+  EXPECT_NE(Fault("eval/run/a.cc", {"eval/report/b.h", true}), "");
+  EXPECT_NE(Fault("mapper/fuse/a.h", {"mapper/surfel/b.h", true}), "");
+  EXPECT_NE(Fault("sim/elsewhere/a.h", {"sim/mesh/b.h", true}), "");
+  EXPECT_NE(Fault("sim/depth/a.h", {"embree3/rtcore.h", false}), "");
   EXPECT_NE(Fault("mapper/graph/a.h", {"ceres/ceres.h", false}), "");
-  EXPECT_EQ(Fault("sim/a.cc", {"embree3/rtcore.h", false}), "");
-  EXPECT_EQ(Fault("eval/run.cc", {"sim/b.h", true}), "");
+  EXPECT_EQ(Fault("sim/depth/a.cc", {"embree3/rtcore.h", false}), "");
+  EXPECT_EQ(Fault("eval/run/a.cc", {"sim/truth/b.h", true}), "");
+  EXPECT_EQ(Fault("eval/report/a.cc", {"eval/run/b.h", true}), "");
 }
 
 TEST(Arrows, NoFileIsLongerThan400Lines) {

@@ -1,0 +1,207 @@
+#include "eval/compare/comparison.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "eval/compare/comparison_pairs.h"
+#include "eval/statistics/holm.h"
+#include "eval/statistics/metric_direction.h"
+#include "eval/statistics/sample_size.h"
+
+namespace depthgrid {
+namespace {
+
+// What is compared when nothing is asked for: one or two figures of each kind, those first that
+// should be tested where there are pairs for a few only.
+constexpr std::array<const char*, 13> kHeadlines = {"trajectory.est.mean_euclidean_m",
+                                                    "map.observable.occupied.f1",
+                                                    "trajectory.est.ate_rmse_se2_m",
+                                                    "map.chamfer_m",
+                                                    "trajectory.online.mean_euclidean_m",
+                                                    "map.coverage",
+                                                    "map.observable.free.f1",
+                                                    "map.registered.chamfer_m",
+                                                    "map.double_wall_rate",
+                                                    "map.ssim",
+                                                    "map.calibration.brier",
+                                                    "map.navigability.success_rate",
+                                                    "map.navigability.collision_rate"};
+
+bool HasMetric(const SweepResults& table, const std::string& name) {
+  return std::any_of(table.metrics.begin(), table.metrics.end(),
+                     [&](const SweepColumn& column) { return column.name == name; });
+}
+
+std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResults& b,
+                                          const std::vector<std::string>& asked) {
+  std::vector<std::string> names;
+  if (asked == std::vector<std::string>{"all"}) {
+    for (const SweepColumn& column : a.metrics) names.push_back(column.name);
+  } else if (asked.empty()) {
+    names.assign(kHeadlines.begin(), kHeadlines.end());
+  } else {
+    for (const std::string& name : asked) {  // one asked for twice is one test
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return names;
+  }
+  std::erase_if(names, [&](const std::string& n) { return !HasMetric(a, n) || !HasMetric(b, n); });
+  return names;
+}
+
+// One figure a unit, of the pairs in which both sides are defined; distances from the target of a
+// score that has one.
+struct UnitFigures {
+  std::vector<double> a;
+  std::vector<double> b;
+  int undefined_pairs = 0;  // of runs, on one side or the other
+};
+
+UnitFigures FiguresOf(const SweepResults& a, const SweepResults& b, const std::string& name,
+                      const RunPairs& pairs) {
+  const auto target = TargetOf(name);
+  const auto figure = [&](double value) { return target ? DistanceFrom(*target, value) : value; };
+  std::vector<double> of_a(pairs.a.size(), NAN), of_b(pairs.a.size(), NAN);
+  int undefined_pairs = 0;
+  for (std::size_t i = 0; i < pairs.a.size(); ++i) {
+    const double value_a = a.Metric(name)[pairs.a[i]];
+    const double value_b = b.Metric(name)[pairs.b[i]];
+    if (!std::isfinite(value_a) || !std::isfinite(value_b)) {
+      ++undefined_pairs;
+      continue;
+    }
+    of_a[i] = figure(value_a);
+    of_b[i] = figure(value_b);
+  }
+  UnitFigures units{pairs.units.Figures(of_a), pairs.units.Figures(of_b), undefined_pairs};
+  std::erase_if(units.a, [](double v) { return std::isnan(v); });
+  std::erase_if(units.b, [](double v) { return std::isnan(v); });
+  return units;
+}
+
+// Empty when there is no pair.
+std::optional<MetricComparison> CompareMetric(const SweepResults& a, const SweepResults& b,
+                                              const std::string& name, const RunPairs& pairs,
+                                              const CompareOptions& options) {
+  const UnitFigures units = FiguresOf(a, b, name, pairs);
+  if (units.a.empty()) return std::nullopt;
+  MetricComparison result;
+  result.metric = name;
+  result.better = BetterOf(name);
+  result.target = TargetOf(name);
+  result.undefined_pairs = units.undefined_pairs;
+  result.paired =
+      ComparePaired(units.a, units.b, result.better, Resamples(units.a.size(), options.bootstrap));
+  return result;
+}
+
+// `least_p_holm`: the row's p-value if in every row all differences had one sign.
+Verdict VerdictOf(const MetricComparison& c, double least_p_holm, double level) {
+  if (least_p_holm >= level) return Verdict::kTooFew;
+  if (c.p_holm >= level) return Verdict::kNotToldApart;
+  const bool b_is_higher = c.paired.wilcoxon.rank_biserial > 0.0;
+  if (c.better == Better::kNeither) return b_is_higher ? Verdict::kBHigher : Verdict::kAHigher;
+  return b_is_higher == (c.better == Better::kHigher) ? Verdict::kBBetter : Verdict::kABetter;
+}
+
+int MostRowsToldApart(const std::vector<MetricComparison>& rows, double level) {
+  int pairs = 0;
+  for (const MetricComparison& row : rows) pairs = std::max(pairs, row.paired.pairs);
+  int most = static_cast<int>(rows.size());
+  while (most > 0 && most * LeastWilcoxonP(pairs) >= level) --most;
+  return most;
+}
+
+int PairsToTellApart(int rows, double level) {
+  int pairs = 1;
+  while (rows * LeastWilcoxonP(pairs) >= level) ++pairs;
+  return pairs;
+}
+
+// Which rows are tested: those asked for all are. Of the headlines, where so few pairs cannot tell
+// all of them apart, the first that they can: a choice made without a look at the signs of the
+// differences keeps the chance of a false alarm, and a verdict on one row says more than none on
+// thirteen. Rows that are equal in every pair cannot decide and would take the place of others.
+std::vector<std::size_t> RowsToTest(const Comparison& comparison, bool are_headlines) {
+  const std::vector<MetricComparison>& rows = comparison.metrics;
+  const auto most = static_cast<std::size_t>(comparison.most_rows);
+  const bool choose = are_headlines && most > 0 && most < rows.size();
+  std::vector<std::size_t> tested;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool can_decide = rows[i].paired.wilcoxon.pairs > 0 && tested.size() < most;
+    if (!choose || can_decide) tested.push_back(i);
+  }
+  return tested;
+}
+
+void Judge(const std::vector<std::size_t>& tested, double level, Comparison& comparison) {
+  std::vector<double> p_values, least_p_values;
+  for (const std::size_t i : tested) {
+    const PairedComparison& paired = comparison.metrics[i].paired;
+    p_values.push_back(paired.wilcoxon.p_value);
+    least_p_values.push_back(LeastWilcoxonP(paired.pairs));
+  }
+  const std::vector<double> adjusted = HolmAdjusted(p_values);
+  const std::vector<double> least = HolmAdjusted(least_p_values);
+  for (MetricComparison& row : comparison.metrics) {
+    const bool all_equal = row.paired.wilcoxon.pairs == 0;  // which no test would tell apart
+    row.verdict = all_equal ? Verdict::kNotToldApart : Verdict::kNotTested;
+  }
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    MetricComparison& row = comparison.metrics[tested[k]];
+    row.p_holm = adjusted[k];
+    row.verdict = VerdictOf(row, least[k], level);
+  }
+}
+
+// Of a table of that many rows: each is judged as the first of them is, whose p-value Holm takes
+// times all of them. What so many pairs did not show takes more.
+std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, double level) {
+  const PairedComparison& paired = c.paired;
+  if (paired.mean_difference == 0.0 || paired.pairs < 2) return std::nullopt;
+  TestPlan plan;
+  plan.level = level / static_cast<double>(rows);
+  auto needed = SeedsNeededByRanks(paired.mean_difference, paired.std_difference, plan);
+  const bool is_shown = c.verdict != Verdict::kNotToldApart && c.verdict != Verdict::kTooFew &&
+                        c.verdict != Verdict::kNotTested;
+  if (needed && !is_shown) needed = std::max(*needed, paired.pairs + 1);
+  return needed;
+}
+
+// Of all scores there are, which ones make no row: they would only cost the others Holm's
+// correction (one that is equal in every pair has a p-value of 1 whatever the level; Tarone 1990).
+bool IsLeftOut(const MetricComparison& compared, Comparison& comparison) {
+  if (compared.better == Better::kNeither) {
+    comparison.without_direction.push_back(compared.metric);
+    return true;
+  }
+  const bool all_equal = compared.paired.wilcoxon.pairs == 0;
+  if (all_equal) comparison.all_equal.push_back(compared.metric);
+  return all_equal;
+}
+
+}  // namespace
+
+Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options) {
+  Comparison comparison;
+  const RunPairs pairs = PairsOf(a, b, options, comparison);
+  const bool of_all = options.metrics == std::vector<std::string>{"all"};
+  for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
+    auto compared = CompareMetric(a, b, name, pairs, options);
+    if (!compared) comparison.undefined.push_back(name);
+    if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
+    comparison.metrics.push_back(std::move(*compared));
+  }
+  const std::size_t rows = comparison.metrics.size();
+  comparison.most_rows = MostRowsToldApart(comparison.metrics, options.level);
+  comparison.pairs_for_one = PairsToTellApart(1, options.level);
+  comparison.pairs_for_all = PairsToTellApart(static_cast<int>(rows), options.level);
+  Judge(RowsToTest(comparison, options.metrics.empty()), options.level, comparison);
+  for (MetricComparison& row : comparison.metrics) {
+    row.seeds_needed = SeedsNeededIn(rows, row, options.level);
+  }
+  return comparison;
+}
+
+}  // namespace depthgrid

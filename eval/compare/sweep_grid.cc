@@ -1,0 +1,193 @@
+#include "eval/compare/sweep_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace depthgrid {
+namespace {
+
+GridAxis AxisOf(const SweepParameter& parameter) {
+  GridAxis axis{parameter.key, parameter.IsNumeric(), {}, {}};
+  std::map<std::string, double> number_of;
+  for (std::size_t row = 0; row < parameter.texts.size(); ++row) {
+    if (number_of.try_emplace(parameter.texts[row], parameter.numbers[row]).second) {
+      axis.texts.push_back(parameter.texts[row]);
+    }
+  }
+  if (!axis.numeric) return axis;
+  std::stable_sort(
+      axis.texts.begin(), axis.texts.end(),
+      [&](const std::string& a, const std::string& b) { return number_of[a] < number_of[b]; });
+  for (const std::string& text : axis.texts) axis.numbers.push_back(number_of[text]);
+  return axis;
+}
+
+std::vector<std::string> SeedTexts(const SweepResults& results) {
+  std::vector<std::string> seeds(results.rows());
+  for (const SweepParameter& parameter : results.parameters) {
+    if (!parameter.IsSeed()) continue;
+    for (std::size_t row = 0; row < results.rows(); ++row) {
+      if (!seeds[row].empty()) seeds[row] += " ";
+      seeds[row] += parameter.texts[row];
+    }
+  }
+  return seeds;
+}
+
+std::vector<std::size_t> Measurements(const SweepResults& results, const SweepGrid& grid) {
+  std::vector<std::size_t> measurement_of_row(results.rows());
+  std::iota(measurement_of_row.begin(), measurement_of_row.end(), std::size_t{0});
+  for (const GridPoint& point : grid.points) {
+    std::map<std::vector<std::uint64_t>, std::size_t> row_of_scores;
+    for (const std::size_t row : point.rows) {
+      std::vector<std::uint64_t> bits;
+      for (const SweepColumn& column : results.metrics) {
+        bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
+      }
+      measurement_of_row[row] = row_of_scores.try_emplace(std::move(bits), row).first->second;
+    }
+  }
+  return measurement_of_row;
+}
+
+using SeedRows = std::map<std::string, std::size_t>;
+
+SeedRows RowsBySeed(const SweepGrid& grid, const GridPoint& point,
+                    const std::vector<double>& metric) {
+  SeedRows rows;
+  for (const std::size_t row : point.rows) {
+    if (std::isfinite(metric[row])) rows[grid.seeds_of_row[row]] = row;
+  }
+  return rows;
+}
+
+// Which seeds every point of a line has, in the order of the first point's runs, less those that
+// gave at all of them what one before gave.
+std::vector<std::string> SharedSeeds(const SweepGrid& grid, const GridPoint& first,
+                                     const std::vector<SeedRows>& by_point) {
+  std::vector<std::string> shared;
+  std::set<std::vector<std::size_t>> known;
+  for (const std::size_t row : first.rows) {
+    const std::string& seed = grid.seeds_of_row[row];
+    const bool everywhere = std::all_of(by_point.begin(), by_point.end(),
+                                        [&](const SeedRows& rows) { return rows.contains(seed); });
+    if (!everywhere) continue;
+    std::vector<std::size_t> measurements;
+    for (const SeedRows& rows : by_point) {
+      measurements.push_back(grid.measurement_of_row[rows.at(seed)]);
+    }
+    if (known.insert(std::move(measurements)).second) shared.push_back(seed);
+  }
+  return shared;
+}
+
+double Mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>& metric,
+              Better better, const BootstrapOptions& bootstrap, GridLine& line) {
+  std::vector<SeedRows> by_point;
+  for (const std::size_t point : std::exchange(line.points, {})) {
+    SeedRows rows = RowsBySeed(grid, grid.points[point], metric);
+    // One whose runs all fail would leave no seed that all points share, and so no best value.
+    (rows.empty() ? line.left_out : line.points).push_back(point);
+    if (!rows.empty()) by_point.push_back(std::move(rows));
+  }
+  if (line.points.size() < 2) return;
+  const std::vector<std::string> seeds =
+      SharedSeeds(grid, grid.points[line.points.front()], by_point);
+  if (seeds.empty()) return;
+  std::vector<SettingRuns> settings;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const GridPoint& point = grid.points[line.points[i]];
+    settings.push_back({grid.axes[axis].numbers[point.values[axis]], {}});
+    for (const std::string& seed : seeds) {
+      settings.back().by_seed.push_back(metric[by_point[i].at(seed)]);
+    }
+  }
+  const std::vector<double> best_of_seed = BestOfEachSeed(settings, better);
+  for (const SettingRuns& setting : settings) {
+    line.mean_regret_of_seed.push_back(Mean(Regret(setting.by_seed, best_of_seed, better)));
+  }
+  const SeedUnits units = UnitsOf(seeds);
+  line.seeds = units.count();
+  if (units.count() < seeds.size()) {
+    for (SettingRuns& setting : settings) setting.by_seed = units.Figures(setting.by_seed);
+  }
+  line.best = FindBestSetting(settings, better, Resamples(line.seeds, bootstrap));
+}
+
+}  // namespace
+
+SeedUnits UnitsOf(const std::vector<std::string>& seeds) {
+  std::vector<std::vector<std::string>> values;
+  for (const std::string& texts : seeds) {
+    values.emplace_back();
+    std::istringstream fields(texts);
+    for (std::string field; fields >> field;) values.back().push_back(field);
+  }
+  return SeedUnits(values);
+}
+
+SweepGrid GridOf(const SweepResults& results) {
+  SweepGrid grid;
+  std::vector<const SweepParameter*> varied;
+  for (const SweepParameter& parameter : results.parameters) {
+    if (parameter.IsSeed()) {
+      ++grid.seed_axes;
+      continue;
+    }
+    varied.push_back(&parameter);
+    grid.axes.push_back(AxisOf(parameter));
+  }
+  grid.seeds_of_row = SeedTexts(results);
+  std::map<int, std::size_t> index_of;
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    const auto [entry, is_new] = index_of.try_emplace(results.points[row], grid.points.size());
+    if (is_new) {
+      GridPoint point;
+      for (std::size_t a = 0; a < varied.size(); ++a) {
+        const std::vector<std::string>& texts = grid.axes[a].texts;
+        const auto found = std::find(texts.begin(), texts.end(), varied[a]->texts[row]);
+        point.values.push_back(static_cast<std::size_t>(found - texts.begin()));
+      }
+      grid.points.push_back(std::move(point));
+    }
+    if (results.failures[row].empty()) grid.points[entry->second].rows.push_back(row);
+  }
+  grid.measurement_of_row = Measurements(results, grid);
+  return grid;
+}
+
+std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
+                                 const std::vector<double>& metric, Better better,
+                                 const BootstrapOptions& bootstrap) {
+  std::map<std::vector<std::size_t>, GridLine> line_of;
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    std::vector<std::size_t> held = grid.points[i].values;
+    held[axis] = 0;
+    line_of[held].points.push_back(i);
+  }
+  std::vector<GridLine> lines;
+  for (auto& [held, line] : line_of) {
+    const auto value = [&](std::size_t point) { return grid.points[point].values[axis]; };
+    std::stable_sort(line.points.begin(), line.points.end(),
+                     [&](std::size_t a, std::size_t b) { return value(a) < value(b); });
+    std::set<std::size_t> distinct;
+    for (const std::size_t point : line.points) distinct.insert(value(point));
+    if (distinct.size() < 2 || distinct.size() != line.points.size()) continue;
+    FindBest(grid, axis, metric, better, bootstrap, line);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace depthgrid

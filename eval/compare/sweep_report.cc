@@ -1,0 +1,309 @@
+#include "eval/compare/sweep_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "eval/compare/sweep_grid.h"
+#include "eval/experiment/changed_settings.h"
+#include "eval/experiment/shipped.h"
+#include "eval/files/json_text_impl.h"
+#include "eval/files/metric_columns.h"
+#include "eval/files/shell_word.h"
+#include "eval/metrics/statistics.h"
+#include "eval/report/report_json_impl.h"
+#include "eval/report/web_assets.h"
+#include "eval/statistics/metric_direction.h"
+#include "mapper/core/error.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = ReportJson;
+
+// More runs than a page can hold: it then has the grid points only.
+constexpr std::size_t kMostRunsListed = 20'000;
+constexpr int kSignificantDigits = 6;
+
+// What a reader looks at first; the first of them a sweep has is what its page opens with.
+constexpr std::array<const char*, 6> kMainMetrics = {"trajectory.est.mean_euclidean_m",
+                                                     "trajectory.est.ate_rmse_se2_m",
+                                                     "map.observable.occupied.f1",
+                                                     "map.chamfer_m",
+                                                     "map.coverage",
+                                                     "trajectory.slam.mean_euclidean_m"};
+
+// Its place among them, counted from 1; 0 for the others.
+int MainRank(const std::string& metric) {
+  const auto found = std::find(kMainMetrics.begin(), kMainMetrics.end(), metric);
+  return found == kMainMetrics.end() ? 0 : static_cast<int>(found - kMainMetrics.begin()) + 1;
+}
+
+Json Short(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  // Not stod, which throws for a p-value below 1e-308.
+  return std::strtod(fmt::format("{:.{}g}", value, kSignificantDigits).c_str(), nullptr);
+}
+
+// The intervals' ends wander by about 1 % of the width at 10,000 resamples. What a page has dozens
+// of, and large sweeps, whose page should not take minutes, get fewer.
+BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
+  constexpr double kMostDraws = 2e7;  // some seconds
+  constexpr double kFewest = 1000.0;
+  constexpr double kMostOfOthers = 2000.0;
+  BootstrapOptions options;
+  const double most = main_metric ? options.resamples : kMostOfOthers;
+  options.resamples =
+      static_cast<int>(std::clamp(kMostDraws / static_cast<double>(results.rows()), kFewest, most));
+  return options;
+}
+
+// A value as the command of a run takes it, which is started in the sweep's folder.
+std::string SetText(const SweepResults& results, const std::string& key, const std::string& text) {
+  const auto folder = results.environment.find("files_from");
+  const bool is_file = IsFileKey(key) && IsFileName(text);
+  if (!is_file || folder == results.environment.end()) return text;
+  return (fs::path(folder->second) / text).lexically_normal().string();
+}
+
+Json AxesJson(const SweepResults& results, const SweepGrid& grid) {
+  Json json = Json::array();
+  for (const GridAxis& axis : grid.axes) {
+    Json one = {{"key", axis.key}, {"numeric", axis.numeric}, {"texts", axis.texts}};
+    for (const std::string& text : axis.texts) {
+      one["set"].push_back(ShellWord(SetText(results, axis.key, text)));
+    }
+    if (axis.numeric) one["numbers"] = axis.numbers;
+    json.push_back(one);
+  }
+  return json;
+}
+
+Json PointsJson(const SweepGrid& grid) {
+  Json json = Json::array();
+  for (const GridPoint& point : grid.points) {
+    const auto counts = std::count_if(point.rows.begin(), point.rows.end(), [&](std::size_t row) {
+      return grid.measurement_of_row[row] == row;
+    });
+    json.push_back({{"values", point.values}, {"runs", point.rows.size()}, {"counting", counts}});
+  }
+  return json;
+}
+
+// A score as the page shows it.
+struct ShownMetric {
+  std::string name;
+  std::string score;  // that it is of: another name where it is a distance
+  Better better = Better::kLower;
+  std::vector<double> values;
+};
+
+// One that should have a value is there as it is, of which neither more nor less is better, and as
+// its distance from that value, which is better when lower.
+std::vector<ShownMetric> ShownMetrics(const SweepResults& results) {
+  std::vector<ShownMetric> shown;
+  for (const auto& [name, values] : results.metrics) {
+    const bool any =
+        std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    if (!any) continue;
+    const auto target = TargetOf(name);
+    shown.push_back({name, name, target ? Better::kNeither : BetterOf(name), values});
+    if (!target) continue;
+    shown.push_back({DistanceName(name, *target), name, Better::kLower, values});
+    for (double& value : shown.back().values) value = DistanceFrom(*target, value);
+  }
+  return shown;
+}
+
+Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metric,
+               const BootstrapOptions& bootstrap) {
+  Json json = Json::array();
+  for (const GridLine& line : LinesAlong(grid, axis, metric.values, metric.better, bootstrap)) {
+    Json one = {{"points", line.points}, {"left_out", line.left_out}};
+    if (!line.best) {
+      json.push_back(one);
+      continue;
+    }
+    const BestSetting& best = *line.best;
+    one["best"] = best.index;
+    one["seeds"] = line.seeds;
+    one["low"] = best.setting_interval.low;
+    one["high"] = best.setting_interval.high;
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      one["share_best"].push_back(Rounded(best.share_best[i], 3));
+      one["p"].push_back(Short(best.p_as_good[i]));
+      one["regret"].push_back(Short(best.regret_mean[i]));
+      one["regret_of_seed"].push_back(Short(line.mean_regret_of_seed[i]));
+    }
+    json.push_back(one);
+  }
+  return json;
+}
+
+// What one grid point gives, over its seeds.
+void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<double>& values,
+              std::map<std::size_t, Resamples>& resamples, const BootstrapOptions& bootstrap,
+              Json& json) {
+  std::vector<double> sample;
+  std::vector<std::string> seeds;
+  for (const std::size_t row : point.rows) {
+    if (!std::isfinite(values[row]) || grid.measurement_of_row[row] != row) continue;
+    sample.push_back(values[row]);
+    seeds.push_back(grid.seeds_of_row[row]);
+  }
+  Json mean, median, low, high;
+  if (!sample.empty()) {
+    mean = Short(std::accumulate(sample.begin(), sample.end(), 0.0) /
+                 static_cast<double>(sample.size()));
+    median = Short(Percentile(sample, 0.5));
+    if (grid.seed_axes > 1) {
+      const SeedUnits units = UnitsOf(seeds);
+      if (units.count() < sample.size()) sample = units.Figures(sample);
+    }
+    const auto table = resamples.try_emplace(sample.size(), sample.size(), bootstrap).first;
+    if (const auto interval = MeanInterval(sample, table->second)) {
+      low = Short(interval->low);
+      high = Short(interval->high);
+    }
+  }
+  json["mean"].push_back(mean);
+  json["median"].push_back(median);
+  json["low"].push_back(low);
+  json["high"].push_back(high);
+}
+
+Json MetricsJson(const SweepResults& results, const SweepGrid& grid) {
+  std::map<std::size_t, Resamples> main_resamples;  // by number of seeds
+  std::map<std::size_t, Resamples> other_resamples;
+  Json json = Json::array();
+  for (const ShownMetric& metric : ShownMetrics(results)) {
+    const bool is_main = MainRank(metric.name) > 0;
+    const BootstrapOptions bootstrap = BootstrapFor(results, is_main);
+    auto& resamples = is_main ? main_resamples : other_resamples;
+    Json one = {{"name", metric.name},
+                {"score", metric.score},
+                {"resamples", bootstrap.resamples},
+                {"better", NameOf(metric.better)},
+                {"main", MainRank(metric.name)}};
+    for (const GridPoint& point : grid.points) {
+      AddPoint(grid, point, metric.values, resamples, bootstrap, one);
+    }
+    if (is_main) {
+      for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) {
+        if (grid.axes[axis].numeric) {
+          one["lines"][grid.axes[axis].key] = LinesJson(grid, axis, metric, bootstrap);
+        }
+      }
+    }
+    json.push_back(one);
+  }
+  return json;
+}
+
+Json RunsJson(const SweepResults& results, const SweepGrid& grid) {
+  Json json = {{"run", results.runs}, {"seeds", grid.seeds_of_row}};
+  std::vector<std::size_t> point_of_row(results.rows(), 0);
+  std::map<int, std::size_t> index_of;
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    point_of_row[row] = index_of.try_emplace(results.points[row], index_of.size()).first->second;
+  }
+  json["point"] = point_of_row;
+  Json folders = Json::object();  // of the runs that have a page
+  Json failures = Json::object();
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    const std::string folder = fmt::format("runs/{}", results.runs[row]);
+    if (fs::exists(results.folder + "/" + folder + "/report.html")) {
+      folders[std::to_string(row)] = folder;
+    }
+    if (!results.failures[row].empty()) failures[std::to_string(row)] = results.failures[row];
+  }
+  json["folder"] = folders;
+  json["failures"] = failures;
+  for (const SweepColumn& metric : results.metrics) {
+    if (MainRank(metric.name) == 0) continue;
+    Json values = Json::array();
+    for (const double value : metric.values) values.push_back(Short(value));
+    json["metrics"][metric.name] = values;
+  }
+  return json;
+}
+
+Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
+  Json json;
+  json["planned"] = results.planned_runs;
+  json["finished"] = results.rows();
+  json["failed"] = std::count_if(results.failures.begin(), results.failures.end(),
+                                 [](const std::string& reason) { return !reason.empty(); });
+  json["environment"] = results.environment;
+  json["seed_keys"] = Json::array();
+  for (const SweepParameter& parameter : results.parameters) {
+    if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
+  }
+  if (grid.seed_axes > 1) {
+    std::vector<std::string> seeds;
+    for (std::size_t row = 0; row < results.rows(); ++row) {
+      if (grid.measurement_of_row[row] == row) seeds.push_back(grid.seeds_of_row[row]);
+    }
+    const SeedUnits units = UnitsOf(seeds);
+    if (!units.crossed().empty()) json["crossed_seeds"] = units.count();
+  }
+  json["axes"] = AxesJson(results, grid);
+  json["points"] = PointsJson(grid);
+  json["metrics"] = MetricsJson(results, grid);
+  json["runs"] = results.rows() <= kMostRunsListed ? RunsJson(results, grid) : Json(nullptr);
+  return json;
+}
+
+std::string TextOf(const SweepResults& results, const char* key) {
+  const auto found = results.environment.find(key);
+  return found != results.environment.end() ? found->second : "";
+}
+
+// What all runs have in common, as far as a head can say it.
+std::string MeasuredBy(const SweepResults& results) {
+  std::set<std::string> varied;
+  for (const SweepParameter& parameter : results.parameters) varied.insert(parameter.key);
+  const std::string experiment = TextOf(results, "experiment");
+  if (experiment.empty()) return "";
+  return MeasuredSettings(Config::FromText(experiment, results.folder), varied);
+}
+
+// What every run starts from: the keys given for it, so that an axis over a preset (slam.profile)
+// sets what it set in the sweep. A sweep of an earlier version knows every effective key alone.
+std::string ExperimentYaml(const SweepResults& results) {
+  const std::string given = TextOf(results, "given");
+  if (given.empty()) return TextOf(results, "experiment");
+  Config experiment;
+  for (const ConfigEntry& entry : Config::FromText(given, results.folder).Entries()) {
+    experiment.Set(entry.key, entry.text);
+  }
+  return experiment.ToYaml();
+}
+
+}  // namespace
+
+void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
+  const SweepResults results = ReadSweep(folder);
+  if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
+  const std::string experiment = ExperimentYaml(results);
+  if (!experiment.empty()) WriteFile(place.into + "/experiment.yaml", experiment);
+  const std::string again = TextOf(results, "again");
+  if (!again.empty()) WriteFile(place.into + "/sweep_again.yaml", again);
+  const std::string title = TextOf(results, "title");
+  Json json = SweepJson(results, GridOf(results));
+  json["back"] = place.back;
+  json["of"] = MeasuredBy(results);
+  WriteFile(place.into + "/report.html",
+            FillPage("sweep.html", title.empty() ? "Sweep" : title, JsonText(json)));
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,143 @@
+#include "eval/doubts/clock_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kNoFit = std::numeric_limits<double>::infinity();
+constexpr std::size_t kLeastPoses = 10;
+
+// The reference at a time, its position interpolated; empty outside of it and in its gaps.
+std::optional<StampedPose> At(const Trajectory& reference, double stamp_s) {
+  constexpr double kLongestGapS = 1.0;
+  const auto after =
+      std::lower_bound(reference.begin(), reference.end(), stamp_s,
+                       [](const StampedPose& pose, double stamp) { return pose.stamp_s < stamp; });
+  if (after == reference.end()) return std::nullopt;
+  if (after->stamp_s == stamp_s) return *after;
+  if (after == reference.begin()) return std::nullopt;
+  const StampedPose& before = *std::prev(after);
+  const double gap_s = after->stamp_s - before.stamp_s;
+  if (gap_s > kLongestGapS) return std::nullopt;
+  const double share = (stamp_s - before.stamp_s) / gap_s;
+  StampedPose pose{stamp_s, before.world_from_camera};
+  pose.world_from_camera.translation +=
+      share * (after->world_from_camera.translation - before.world_from_camera.translation);
+  return pose;
+}
+
+// Evenly chosen: as many as tell an offset.
+Trajectory SomeOf(const Trajectory& trajectory) {
+  constexpr std::size_t kMost = 500;
+  const std::size_t step = (trajectory.size() + kMost - 1) / kMost;
+  Trajectory some;
+  for (std::size_t i = 0; i < trajectory.size(); i += step) some.push_back(trajectory[i]);
+  return some;
+}
+
+class Clocks {
+ public:
+  Clocks(const Trajectory& reference, const Trajectory& estimate)
+      : reference_(reference), estimate_(SomeOf(estimate)) {
+    std::size_t most = 0;
+    for (double offset_s = -kMostClockOffsetS; offset_s <= kMostClockOffsetS;
+         offset_s += kStepsS[0]) {
+      most = std::max(most, PairsAt(offset_s, offset_s).size());
+    }
+    least_ =
+        std::max(kLeastPoses, static_cast<std::size_t>(kLeastShare * static_cast<double>(most)));
+  }
+
+  // Of the poses that the reference has at either offset.
+  double Misfit(double offset_s, double other_offset_s) const {
+    const std::vector<PosePair> pairs = PairsAt(offset_s, other_offset_s);
+    if (pairs.size() < least_) return kNoFit;
+    if (const auto fit = Align(pairs, Alignment::kSe3)) {
+      return Summarise(TranslationErrorsXyz(Aligned(pairs, *fit))).rmse;
+    }
+    const auto level = Align(pairs, Alignment::kSe2);
+    return level ? Summarise(TranslationErrorsXy(Aligned(pairs, *level))).rmse : kNoFit;
+  }
+
+  // The roundest that fits about as well as the best: no more digits than are known.
+  double BestOffset() const {
+    constexpr double kAlike = 1.05;
+    const double best_s = FinestOffset();
+    const double most_m = kAlike * Misfit(best_s, best_s);
+    for (const double unit_s : {1.0, 0.1, 0.01}) {
+      const double round_s = unit_s * std::round(best_s / unit_s);
+      if (round_s != 0.0 && Misfit(round_s, round_s) <= most_m) return round_s;
+    }
+    return best_s;
+  }
+
+ private:
+  static constexpr double kStepsS[] = {0.1, 0.01, 0.001};
+  // Of the poses that most offsets leave: the fewer, the better anything fits.
+  static constexpr double kLeastShare = 0.8;
+
+  std::vector<PosePair> PairsAt(double offset_s, double other_offset_s) const {
+    std::vector<PosePair> pairs;
+    for (const StampedPose& pose : estimate_) {
+      if (!At(reference_, pose.stamp_s + other_offset_s)) continue;
+      if (const auto truth = At(reference_, pose.stamp_s + offset_s)) {
+        pairs.push_back({*truth, pose});
+      }
+    }
+    return pairs;
+  }
+  double FinestOffset() const {
+    double best_s = 0.0;
+    double reach_s = kMostClockOffsetS;
+    for (const double step_s : kStepsS) {
+      best_s = BestAround(best_s, step_s, reach_s);
+      reach_s = step_s;
+    }
+    return best_s;
+  }
+  // The one nearest to `around_s` on ties.
+  double BestAround(double around_s, double step_s, double reach_s) const {
+    double best_s = around_s;
+    double least_m = Misfit(around_s, around_s);
+    const int steps = static_cast<int>(std::lround(reach_s / step_s));
+    for (int k = 1; k <= steps; ++k) {
+      for (const double offset_s : {around_s - k * step_s, around_s + k * step_s}) {
+        const double misfit_m = Misfit(offset_s, offset_s);
+        if (!(misfit_m < least_m)) continue;
+        least_m = misfit_m;
+        best_s = offset_s;
+      }
+    }
+    return best_s;
+  }
+
+  const Trajectory& reference_;
+  Trajectory estimate_;
+  std::size_t least_ = kLeastPoses;
+};
+
+}  // namespace
+
+std::optional<ClockOffset> FindClockOffset(const Trajectory& reference,
+                                           const Trajectory& estimate) {
+  constexpr double kBetter = 0.7;        // of the misfit
+  constexpr double kLeastGainM = 0.005;  // less is what poses jitter by
+  if (reference.size() < kLeastPoses || estimate.size() < kLeastPoses) return std::nullopt;
+  const Clocks clocks(reference, estimate);
+  ClockOffset found;
+  found.offset_s = clocks.BestOffset();
+  found.better_misfit_m = clocks.Misfit(found.offset_s, 0.0);
+  found.misfit_m = clocks.Misfit(0.0, found.offset_s);
+  if (!std::isfinite(found.better_misfit_m) || !std::isfinite(found.misfit_m)) return std::nullopt;
+  const double gain_m = found.misfit_m - found.better_misfit_m;
+  const bool is_better = found.better_misfit_m < kBetter * found.misfit_m;
+  return is_better && gain_m > kLeastGainM ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,121 @@
+#include "eval/doubts/place_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "mapper/core/counted.h"
+#include "mapper/grid/map_drawing.h"
+#include "mapper/map_start.h"
+#include "mapper/match/distance_field.h"
+#include "mapper/place_watch.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kOneOf = 10;
+// Those that a match counts for: hardly anything is seen by less.
+constexpr double kLeastExplained = 0.2;
+// So many frames on the map, and as many off it, are no accident.
+constexpr int kStretchFrames = 30;
+// A match is this sure along a line that it has seen the end of, rather than its noise.
+constexpr double kSeenSigmaM = 0.02;
+// Of directions that a match says nothing about.
+constexpr double kUnseenSigmaM = 100.0;
+
+// The index of the frame with which so many lost ones begin, after as many that were not.
+std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_lost) {
+  int lost_before = 0, in_a_row = 0;
+  for (int i = 0; i < static_cast<int>(index_and_lost.size()); ++i) {
+    if (!index_and_lost[static_cast<std::size_t>(i)].second) {
+      lost_before += in_a_row;
+      in_a_row = 0;
+    } else if (++in_a_row == kStretchFrames) {
+      const int begin = i + 1 - in_a_row;
+      const bool was_on_map = begin >= kStretchFrames && lost_before * kOneOf <= begin;
+      if (was_on_map) return index_and_lost[static_cast<std::size_t>(begin)].first;
+    }
+  }
+  return {};
+}
+
+// The first so many of them, but for a tenth.
+template <typename Iterator>
+bool IsOnMap(Iterator begin, Iterator end) {
+  if (end - begin < kStretchFrames) return false;
+  const auto is_lost = [](const std::pair<int, bool>& frame) { return frame.second; };
+  return std::count_if(begin, begin + kStretchFrames, is_lost) * kOneOf <= kStretchFrames;
+}
+
+}  // namespace
+
+std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
+  LostFrames count;
+  count.localised = localised;
+  std::vector<std::pair<int, bool>> index_and_lost;
+  for (const FrameReport& report : run.reports) {
+    const auto lost = IsOffMap(report);
+    if (!lost) continue;
+    count.lost += *lost ? 1 : 0;
+    ++count.frames;
+    index_and_lost.emplace_back(report.index, *lost);
+    if (!localised) break;
+  }
+  if (count.lost == 0 || count.lost * kOneOf < count.frames) return {};
+  count.left_at = LeftAt(index_and_lost);
+  count.comes_back = IsOnMap(index_and_lost.begin(), index_and_lost.end()) &&
+                     IsOnMap(index_and_lost.rbegin(), index_and_lost.rend());
+  return count;
+}
+
+std::string TextOf(const LostFrames& lost) {
+  if (!lost.localised) {
+    return "lost: of what the first frame sees, which was placed by this map alone, hardly "
+           "anything lies on it; the sequence is of another place or begins elsewhere in it";
+  }
+  const std::string leaves = lost.left_at ? fmt::format("from frame {} on it leaves", *lost.left_at)
+                                          : "in between it leaves";
+  std::string why = "the sequence is of another place, begins elsewhere in it or leaves it";
+  if (lost.left_at || lost.comes_back) {
+    why = leaves +
+          " the map, where poses are SLAM's motion alone (without --localise they extend it), ";
+    why += lost.comes_back ? "and comes back" : "or it is of another place";
+  }
+  return fmt::format(
+      "lost: in {} of the {} that were placed and see something hardly anything that is seen lies "
+      "on the map; {}",
+      lost.lost, Counted(lost.frames, "frame"), why);
+}
+
+std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {
+  MapDrawing before(grid);
+  for (const MappedFrame& frame : run.result.mapped) {
+    if (frame.of_prior_map()) before.Add(frame.frame, *frame.obstacles, frame.map_from_base);
+  }
+  const DistanceField walls(before.Map(), kOffWallM + grid.resolution_m);
+  MapAgreement agreement;
+  for (const MappedFrame& frame : run.result.mapped) {
+    if (!frame.of_prior_map()) Compare(*frame.obstacles, frame.map_from_base, walls, agreement);
+  }
+  if (agreement.share_against() <= kMuchAgainst) return {};
+  return agreement;
+}
+
+bool SeesAlong(const MappingRun& run, const UnsureAlong& line) {
+  return std::any_of(run.reports.begin(), run.reports.end(), [&](const FrameReport& report) {
+    if (!report.match.found || report.match.score < kLeastExplained) return false;
+    const double turn_rad = line.direction_rad - report.match.map_from_base.yaw_rad;
+    const Eigen::Vector3d along(std::cos(turn_rad), std::sin(turn_rad), 0.0);
+    const Eigen::Matrix3d known =
+        report.match.information +
+        Eigen::Matrix3d(
+            Eigen::Vector3d::Constant(1.0 / (kUnseenSigmaM * kUnseenSigmaM)).asDiagonal());
+    return along.dot(known.inverse() * along) < kSeenSigmaM * kSeenSigmaM;
+  });
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,60 @@
+#include "eval/doubts/storey_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "mapper/core/counted.h"
+#include "sim/mesh/floor.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kLeastStoreyM = 1.5;  // room to stand in, as under a ceiling (sim/mesh/floor.cc)
+constexpr double kLevelM = 0.05;       // heights this near count as one, as of floors
+
+// Of the surface straight below each pose, lowest first; none where nothing is.
+std::vector<double> HeightsBelow(const Trajectory& trajectory, const RayScene& rays) {
+  std::vector<double> heights_m;
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3f at_m = pose.world_from_camera.translation.cast<float>();
+    const auto hit = rays.NearestHit({.origin = at_m, .direction = -Eigen::Vector3f::UnitZ()});
+    if (hit) heights_m.push_back(static_cast<double>(at_m.z() - hit->distance));
+  }
+  std::sort(heights_m.begin(), heights_m.end());
+  return heights_m;
+}
+
+// The longest run of sorted heights within kLevelM.
+std::span<const double> MostAlike(const std::vector<double>& heights_m) {
+  std::span<const double> most;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < heights_m.size(); ++i) {
+    while (end < heights_m.size() && heights_m[end] <= heights_m[i] + kLevelM) ++end;
+    if (end - i > most.size()) most = std::span(heights_m).subspan(i, end - i);
+  }
+  return most;
+}
+
+// Meshes are of single precision: 0.2 - 0.2 is not 0 there.
+double InMillimetres(double z_m) { return std::round(1000.0 * z_m) / 1000.0 + 0.0; }
+
+}  // namespace
+
+std::optional<std::string> DoubtOfStorey(const Trajectory& trajectory, const Scene& scene,
+                                         const RayScene& rays) {
+  const std::vector<double> heights_m = HeightsBelow(trajectory, rays);
+  const std::span<const double> level_m = MostAlike(heights_m);
+  if (2 * level_m.size() <= trajectory.size()) return {};
+  const double z_m = InMillimetres(level_m[level_m.size() / 2]);
+  if (z_m < scene.floor_z_m + kLeastStoreyM || !HasFloorAt(scene.mesh, z_m)) return {};
+  return fmt::format(
+      "{} of {} are above level surface at z = {:g} m, but maps are of the storey whose floor is "
+      "at {:g} m; floor_z_m: {:g} in the scene's file takes that one",
+      level_m.size(), Counted(trajectory.size(), "pose"), z_m, InMillimetres(scene.floor_z_m), z_m);
+}
+
+}  // namespace depthgrid

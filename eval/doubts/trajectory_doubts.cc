@@ -1,0 +1,138 @@
+#include "eval/doubts/trajectory_doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "eval/doubts/clock_check.h"
+#include "eval/doubts/rotation_check.h"
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_metrics.h"
+#include "mapper/core/angle.h"
+#include "mapper/core/level.h"
+
+namespace depthgrid {
+namespace {
+
+using Doubt = std::optional<std::string>;
+
+constexpr double kLeastPathM = 1.0;  // of less, noise tells what is looked for
+
+bool StandsStill(const std::vector<PosePair>& pairs) {
+  constexpr double kLeastMotionM = 1e-4;
+  const Eigen::Vector3d first = pairs.front().estimate.world_from_camera.translation;
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d moved = pair.estimate.world_from_camera.translation - first;
+    if (moved.norm() > kLeastMotionM) return false;
+  }
+  return true;
+}
+
+Doubt DoubtOfScale(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
+  constexpr double kOtherScale = 1.5;  // no SLAM that knows its scale is off by half
+  const auto fit = Align(pairs, Alignment::kSim3);
+  if (!fit || (fit->scale <= kOtherScale && fit->scale * kOtherScale >= 1.0)) return {};
+  return fmt::format(
+      "{}: fits {} best {:.4g} times as large: is it in other units, or without scale?",
+      names.estimate, names.reference, fit->scale);
+}
+
+// The last pose at the first one's time, and so on. Positions do not tell: an eight backwards is
+// its mirror image, which fits upside down.
+Doubt DoubtOfDirection(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
+  std::vector<PosePair> backwards = pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    backwards[i].estimate.world_from_camera =
+        pairs[pairs.size() - 1 - i].estimate.world_from_camera;
+  }
+  if (PosesFit(pairs) || !PosesFit(backwards)) return {};
+  return fmt::format("{}: runs backwards in time against {}: in reverse order its poses fit",
+                     names.estimate, names.reference);
+}
+
+// A robot base's axes are x forward, y left, z up; a camera's x right, y down, z forward.
+Eigen::Quaterniond BaseFromCamera() { return CameraOf(Pose2{}, 0.0).rotation; }
+
+double AngleOf(const Eigen::Quaterniond& rotation) {
+  return rotation.angularDistance(Eigen::Quaterniond::Identity());
+}
+
+// Settings of the program that turns them: a camera need not look level and ahead.
+std::string MountText(const Eigen::Quaterniond& base_from_camera) {
+  constexpr double kLeastDeg = 1.0;
+  const Eigen::Vector3d forward = base_from_camera * Eigen::Vector3d::UnitZ().eval();
+  const double yaw_deg = DegFromRad(std::atan2(forward.y(), forward.x()));
+  const double pitch_deg = DegFromRad(std::asin(std::clamp(-forward.z(), -1.0, 1.0)));
+  std::string text = "docs/examples/base_poses.awk";
+  if (std::abs(yaw_deg) >= kLeastDeg) text += fmt::format(" -v yaw={:.0f}", yaw_deg);
+  if (std::abs(pitch_deg) >= kLeastDeg) text += fmt::format(" -v pitch={:.0f}", pitch_deg);
+  return text;
+}
+
+std::string ConstantText(const Eigen::Quaterniond& estimate_from_reference,
+                         const TrajectoryNames& names) {
+  constexpr double kMountRad = RadFromDeg(40.0);  // more than cameras look down
+  const Eigen::Quaterniond reference_from_estimate = estimate_from_reference.conjugate();
+  if (AngleOf(estimate_from_reference * BaseFromCamera().conjugate()) < kMountRad) {
+    return fmt::format(
+        "as if they were a robot base's poses (x forward), not a camera's (z forward) as {}'s; {} "
+        "makes camera poses of them",
+        names.reference, MountText(estimate_from_reference));
+  }
+  if (AngleOf(reference_from_estimate * BaseFromCamera().conjugate()) < kMountRad) {
+    return fmt::format(
+        "as if {}'s were a robot base's poses (x forward), not a camera's (z forward) as these; {} "
+        "makes camera poses of those",
+        names.reference, MountText(reference_from_estimate));
+  }
+  const Eigen::AngleAxisd turn(reference_from_estimate);
+  return fmt::format("turned by {:.0f} degrees about ({:.2f} {:.2f} {:.2f}) of their own axes",
+                     DegFromRad(turn.angle()), turn.axis().x(), turn.axis().y(), turn.axis().z());
+}
+
+Doubt DoubtOfRotations(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
+  const auto doubt = CheckRotations(pairs);
+  if (!doubt) return {};
+  std::string text =
+      fmt::format("{}: its positions fit {} but its rotations are off by {:.0f} degrees",
+                  names.estimate, names.reference, DegFromRad(doubt->error_rad));
+  if (doubt->w_first) {
+    text += ", and would fit with quaternions that begin with w; rows must be t x y z qx qy qz qw";
+  }
+  if (doubt->estimate_from_reference) {
+    text += fmt::format("{}, {}", doubt->w_first ? "; then" : " throughout",
+                        ConstantText(*doubt->estimate_from_reference, names));
+  }
+  return text + ": errors of rotation, of motion and with first poses aligned say little";
+}
+
+}  // namespace
+
+std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
+                                       const TrajectoryNames& names) {
+  if (pairs.empty() || ReferencePath(pairs).back() <= kLeastPathM) return {};
+  if (StandsStill(pairs)) {
+    return {fmt::format("{}: does not move, all its positions are the same, where {} moves",
+                        names.estimate, names.reference)};
+  }
+  std::vector<std::string> doubts;
+  for (const auto check : {DoubtOfScale, DoubtOfDirection, DoubtOfRotations}) {
+    if (const Doubt doubt = check(pairs, names)) doubts.push_back(*doubt);
+  }
+  return doubts;
+}
+
+std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
+                                       const TrajectoryNames& names, double added_s) {
+  const auto clock = FindClockOffset(reference, estimate);
+  if (!clock) return {};
+  return {fmt::format(
+      "{}: its stamps seem {:.3f} s {}: with {:+.3f} s added (--time-offset of eval trajectory) it "
+      "fits {} to {:.3f} m, not to {:.3f} m (aligned)",
+      names.estimate, std::abs(clock->offset_s), clock->offset_s < 0.0 ? "late" : "early",
+      added_s + clock->offset_s, names.reference, clock->better_misfit_m, clock->misfit_m)};
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,159 @@
+#include "eval/experiment/changed_settings.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "eval/experiment/experiment_options.h"
+#include "eval/experiment/idle_settings.h"
+#include "eval/files/run_files.h"
+#include "mapper/core/error.h"
+#include "mapper/io/sequence.h"
+#include "sim/slam/slam_options.h"
+
+namespace depthgrid {
+namespace {
+
+// All that a run.yaml of `run` or of `map` may have, files aside.
+struct AllSettings {
+  ExperimentOptions experiment;
+  SequenceOptions sequence;
+
+  void Visit(OptionsVisitor& v) {
+    experiment.Visit(v);
+    v.Group("sequence", sequence, "how the recorded sequence is read");
+  }
+};
+
+// Of the keys below a map, by their paths.
+std::vector<std::pair<std::string, std::string>> Leaves(const Config& tree,
+                                                        const std::string& prefix = "") {
+  std::vector<std::pair<std::string, std::string>> leaves;
+  for (const ConfigEntry& entry : tree.Entries()) {
+    if (!entry.map) {
+      leaves.emplace_back(prefix + entry.key, entry.text);
+      continue;
+    }
+    const auto below = Leaves(*entry.map, prefix + entry.key + ".");
+    leaves.insert(leaves.end(), below.begin(), below.end());
+  }
+  return leaves;
+}
+
+AllSettings DefaultsFor(const std::string& profile) {
+  AllSettings defaults;
+  Config config;
+  try {
+    config.Set("slam.profile", profile, "run.yaml");
+    config.Read(defaults);
+  } catch (const InputError&) {  // of another version: its values all show
+  }
+  return defaults;
+}
+
+bool IsKnownElsewhere(const std::string& key, bool noise_of_profile) {
+  static const std::set<std::string> kKeys = {"scene",
+                                              "trajectory",
+                                              "frames",
+                                              "seed",
+                                              "slam.profile",
+                                              "sensor.noise",
+                                              "mapper.method",
+                                              "mapper.fusion.mode",
+                                              "mapper.fusion.gain",
+                                              "sequence.camera",
+                                              "mapper.scan.floor_z_m"};
+  constexpr const char* kNoise = "mapper.fusion.slam_noise.";
+  return kKeys.contains(key) ||
+         (noise_of_profile && key.starts_with(kNoise) && !key.ends_with(".source"));
+}
+
+}  // namespace
+
+std::vector<std::string> ChangedSettings(const Config& run_yaml) {
+  const std::string profile = run_yaml.Text("slam.profile");
+  const bool noise_of_profile = run_yaml.Text("mapper.fusion.slam_noise.source") == "profile";
+  const std::string yaml = ToYaml(profile.empty() ? AllSettings() : DefaultsFor(profile));
+  std::map<std::string, std::string> defaults;
+  for (const auto& [key, value] : Leaves(Config::FromText(yaml, "defaults"))) defaults[key] = value;
+  std::vector<std::string> changed;
+  for (const auto& [key, value] : Leaves(run_yaml)) {
+    const auto usual = defaults.find(key);
+    if (usual == defaults.end() || usual->second == value) continue;
+    if (!IsKnownElsewhere(key, noise_of_profile)) changed.push_back(key + " " + value);
+  }
+  return changed;
+}
+
+std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls) {
+  std::vector<DifferingSetting> differing;
+  if (run_yamls.empty()) return differing;
+  for (const auto& [key, first] : Leaves(run_yamls.front())) {
+    const bool follows = key == "scene" || key == "mapper.scan.floor_z_m" ||
+                         key.starts_with("slam.") || key.starts_with("provenance.") ||
+                         key.starts_with("mapper.fusion.slam_noise.");
+    if (follows) continue;
+    DifferingSetting setting{key, {}};
+    bool same = true;
+    for (const Config& run_yaml : run_yamls) {
+      setting.values.push_back(SettingOf(run_yaml, key));
+      same = same && setting.values.back() == setting.values.front();
+    }
+    if (!same) differing.push_back(std::move(setting));
+  }
+  return differing;
+}
+
+std::string PoseSourceOf(const Config& run_yaml) {
+  const std::string profile = SettingOf(run_yaml, "slam.profile");
+  const SlamOptions exact = ProfileOptions(SlamProfile::kGroundTruth);
+  ExperimentOptions options;
+  if (profile != ValueOf(exact, "profile")) return profile;
+  try {
+    run_yaml.Only({"slam"}).Read(options);
+  } catch (const InputError&) {  // of another version
+    return profile;
+  }
+  options = WithoutIdleSettings(options);
+  return ToYaml(options.slam) == ToYaml(exact) ? profile : "own settings over " + profile;
+}
+
+namespace {
+
+std::string MainSettingsBut(const Config& run_yaml, const std::set<std::string>& left_out) {
+  std::string text;
+  const auto add_value = [&](const char* name, const std::string& value) {
+    if (!value.empty()) text += fmt::format(", {} {}", name, value);
+  };
+  const auto add = [&](const char* name, const char* key) {
+    if (!left_out.contains(key)) add_value(name, SettingOf(run_yaml, key));
+  };
+  add("trajectory", "trajectory");
+  if (!left_out.contains("slam.profile")) add_value("SLAM", PoseSourceOf(run_yaml));
+  add("depth noise", "sensor.noise");
+  add("seed", "seed");
+  add("mapper", "mapper.method");
+  add("fusion", "mapper.fusion.mode");
+  if (SettingOf(run_yaml, "mapper.fusion.mode") == "fixed") add("gain", "mapper.fusion.gain");
+  return text;
+}
+
+}  // namespace
+
+std::string MainSettings(const Config& run_yaml) { return MainSettingsBut(run_yaml, {}); }
+
+std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied) {
+  std::vector<std::string> parts;
+  const std::string scene = varied.contains("scene") ? "" : SettingOf(experiment, "scene");
+  if (!scene.empty()) parts.push_back(std::filesystem::path(scene).stem().string());
+  const std::string frames = varied.contains("frames") ? "" : SettingOf(experiment, "frames");
+  if (!frames.empty() && frames != "0") parts.push_back(frames + " frames");  // 0: the whole path
+  const std::string rest = MainSettingsBut(experiment, varied);
+  if (!rest.empty()) parts.push_back(rest.substr(2));  // after its first comma
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,88 @@
+#include "eval/experiment/experiment_options.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "eval/experiment/shipped.h"
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file name becomes absolute, so that run.yaml means the same from everywhere; a shipped or named
+// thing stays a name.
+void ResolveFile(std::string& name, const std::string& base_folder) {
+  if (IsFileName(name))
+    name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
+}
+
+}  // namespace
+
+void ExperimentOptions::Visit(OptionsVisitor& v) {
+  constexpr double kMaxFrames = 1e6;
+  v.Text("scene", scene, "a shipped scene, a scene file or a mesh file");
+  v.Text("trajectory", trajectory, "one the scene names, or a TUM file; empty is the first");
+  v.Text("movers", movers, "which of the scene's are there: none, all, or names joined by +");
+  v.Number("frames", frames, {0, kMaxFrames}, "0 is as many as the path needs");
+  v.Seed("seed", seed, "of the depth noise and SLAM's errors");
+  v.Seed("depth_seed", depth_seed, "of the depth noise alone; 0 is seed");
+  v.Seed("slam_seed", slam_seed, "of SLAM's errors alone; 0 is seed");
+  v.Seed("trajectory_seed", trajectory_seed, "of the hand's shake");
+  v.Group("sensor", sensor, "the depth camera");
+  v.Group("slam", slam, "the SLAM system");
+  v.Group("mapper", mapper, "the mapper");
+  v.Group("metrics", metrics, "the scores of the map");
+}
+
+ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
+                                 const std::string& base_folder) {
+  Require(!layers.empty(), "an experiment is read from something");
+  ExperimentOptions options;
+  for (const Config* layer : layers) layer->Read(options);
+  if (options.scene.empty()) throw InputError(layers.front()->Place(), "key 'scene' is missing");
+  ResolveFile(options.scene, base_folder);
+  ResolveFile(options.trajectory, base_folder);
+  ResolveNameAt(PlaceOfKey(layers, "scene"), options.scene, ShippedKind::kScene);
+  options.trajectory_place = PlaceOfKey(layers, "trajectory");
+  return options;
+}
+
+void RequireSound(const ExperimentOptions& options, const std::vector<const Config*>& layers) {
+  RequireSound(options, [&](const std::string& key) { return PlaceOfKey(layers, key); });
+}
+
+void RequireSound(const ExperimentOptions& options, const KeyPlaces& places) {
+  RequireInRange(options, "", places);
+  const std::string place = places("sensor");
+  SensorCamera(options.sensor, place.empty() ? "sensor" : place + ": sensor");
+}
+
+ExperimentOptions ReadExperiment(Config config, const std::string& base_folder) {
+  config.Take("provenance");  // a run.yaml may be run again
+  if (config.Has("cases")) {
+    throw InputError(config.Place(), "holds several experiments; only `depthgrid run` takes it");
+  }
+  ExperimentOptions options = ReadExperiment({&config}, base_folder);
+  RequireSound(options, {&config});
+  return options;
+}
+
+std::vector<std::string> KeptBesideProfile(Config file, const Config& changes,
+                                           const std::vector<std::string>& profiles) {
+  if (!file.Has("slam.profile")) return {};
+  const std::string own = file.Text("slam.profile");
+  const bool another = std::any_of(
+      profiles.begin(), profiles.end(),
+      [&](const std::string& profile) { return profile != own && profile != "ground_truth"; });
+  if (!another) return {};
+  std::vector<std::string> kept;
+  for (const std::string& key : file.Take("slam").Keys()) {
+    const std::string path = "slam." + key;
+    if (key != "profile" && !changes.Has(path)) kept.push_back(path);
+  }
+  return kept;
+}
+
+}  // namespace depthgrid

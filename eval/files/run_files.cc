@@ -1,0 +1,80 @@
+#include "eval/files/run_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "eval/files/one_grid.h"
+#include "mapper/core/error.h"
+#include "mapper/io/file.h"
+#include "mapper/io/map_file.h"
+#include "mapper/io/trajectory_file.h"
+
+namespace depthgrid {
+
+namespace fs = std::filesystem;
+namespace {
+
+std::size_t PriorScansOf(const RunFiles& run) {
+  if (run.only_placed) return run.scans.size();
+  const auto is_prior = [](const StoredScan& scan) { return scan.frame < 0; };
+  return static_cast<std::size_t>(std::count_if(run.scans.begin(), run.scans.end(), is_prior));
+}
+
+// The page shows both on each other. A map may be another one by now that a user has put there.
+void RequireOneGrid(const std::string& map_path, const StateMap& map, const std::string& other_path,
+                    const std::optional<StateMap>& other) {
+  if (!other) return;
+  if (other->geometry.resolution_m != map.geometry.resolution_m) {
+    throw InputError(
+        map_path, fmt::format("resolution is {:g}, must be the {:g} of {}",
+                              map.geometry.resolution_m, other->geometry.resolution_m, other_path));
+  }
+  OneGridAround(other->geometry, other_path, map.geometry, map_path);
+}
+
+}  // namespace
+
+void RequireRunFolder(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) throw InputError(folder, "no such folder");
+  if (!fs::exists(fs::path(folder) / "run.yaml", error)) {
+    throw InputError(folder, "is no run's folder: it has no run.yaml");
+  }
+}
+
+RunFiles ReadRunFolder(const std::string& folder) {
+  const auto path = [&](const char* name) { return (fs::path(folder) / name).string(); };
+  const auto exists = [&](const char* name) { return fs::exists(path(name)); };
+  RequireRunFolder(folder);
+  RunFiles run;
+  run.folder = folder;
+  run.settings = ReadFile(path("run.yaml"));
+  if (exists("metrics.json")) run.metrics_json = ReadFile(path("metrics.json"));
+  if (exists("warnings.txt")) run.warnings = ReadFile(path("warnings.txt"));
+  run.map = ReadStates(path("map.yaml"));
+  if (exists("input_map.yaml")) run.input_map = ReadStates(path("input_map.yaml"));
+  if (exists("truth_map.yaml")) run.truth_map = ReadStates(path("truth_map.yaml"));
+  RequireOneGrid(path("map.yaml"), run.map, path("input_map.yaml"), run.input_map);
+  RequireOneGrid(path("map.yaml"), run.map, path("truth_map.yaml"), run.truth_map);
+  if (exists("observable.yaml")) run.observable = ReadFreeCells(path("observable.yaml"));
+  if (exists("trajectory_truth.txt")) run.truth = ReadTrajectory(path("trajectory_truth.txt"));
+  run.slam = ReadTrajectoryFile(path("trajectory_slam.txt")).poses;
+  run.online = ReadTrajectoryFile(path("trajectory_online.txt")).poses;
+  run.est = ReadTrajectoryFile(path("trajectory_est.txt")).poses;
+  run.frames = ReadCsv(path("frames.csv"));
+  if (exists("scans.bin")) run.scans = ReadScans(path("scans.bin"));
+  const Config settings = Config::FromText(run.settings, path("run.yaml"));
+  run.only_placed = SettingOf(settings, "localise") == "true";
+  run.prior_scans = PriorScansOf(run);
+  return run;
+}
+
+std::string SettingOf(const Config& settings, const std::string& key) {
+  if (!settings.HasList(key)) return settings.Text(key);
+  return fmt::format("{}", fmt::join(settings.List(key), ", "));
+}
+
+}  // namespace depthgrid

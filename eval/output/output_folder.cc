@@ -1,0 +1,284 @@
+#include "eval/output/output_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "mapper/core/error.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Follows links, and drops a trailing slash, so that siblings are siblings.
+fs::path Resolved(const std::string& path) {
+  if (path.empty()) throw InputError("-o", "must name a folder");
+  RequireReachable(path);
+  fs::path resolved = fs::weakly_canonical(fs::absolute(path));
+  return resolved.has_filename() ? resolved : resolved.parent_path();
+}
+
+// Whether nothing in it can be renamed to a place beside it: a mount point, such as a folder that a
+// container shares with its host, or the top of a file system's own division.
+bool IsOnItsOwn(const fs::path& folder) {
+  struct statx inside {};
+  struct statx around {};
+  const auto about = [](const fs::path& path, struct statx& known) {
+    return ::statx(AT_FDCWD, path.c_str(), 0, STATX_BASIC_STATS, &known) == 0;
+  };
+  if (!about(folder, inside) || !about(folder.parent_path(), around)) return false;
+  // A folder of the same disk may be mounted as well.
+  if ((inside.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) return true;
+  return inside.stx_dev_major != around.stx_dev_major ||
+         inside.stx_dev_minor != around.stx_dev_minor;
+}
+
+fs::path WorkOf(const fs::path& target) {
+  const std::string name = fmt::format(".{}.partial", target.filename().string());
+  const fs::path around = target.parent_path();
+  const bool inside = IsOnItsOwn(target) ||
+                      (fs::is_directory(target) && ::access(around.c_str(), W_OK | X_OK) != 0);
+  return (inside ? target : around) / name;
+}
+
+// Apart from what a killed program left to work in.
+bool IsEmpty(const fs::path& target, const fs::path& work) {
+  return std::all_of(fs::directory_iterator(target), fs::directory_iterator(),
+                     [&](const fs::directory_entry& entry) { return entry.path() == work; });
+}
+
+void RequireUsable(const fs::path& target, const fs::path& work, const std::string& shown,
+                   bool force) {
+  if (!fs::exists(target)) return;
+  if (!fs::is_directory(target)) throw InputError(shown, "is a file, the output must be a folder");
+  if (!force && !IsEmpty(target, work)) {
+    throw InputError(shown, "is not empty; choose another folder, or --force to write into it");
+  }
+}
+
+// What it would be taken for is nothing that a killed program left.
+void RequireFolderOrNothing(const fs::path& work) {
+  std::error_code error;
+  const fs::file_status there = fs::symlink_status(work, error);
+  if (!fs::exists(there) || fs::is_directory(there)) return;
+  throw InputError(work.string(),
+                   fmt::format("is a {}, must be a folder or not be there: it is written first",
+                               fs::is_symlink(there) ? "link" : "file"));
+}
+
+// The topmost folder that create_directories(parent) is going to create.
+fs::path FirstMissing(const fs::path& parent) {
+  fs::path missing;
+  for (fs::path p = parent; !p.empty() && !fs::exists(p); p = p.parent_path()) missing = p;
+  return missing;
+}
+
+// Before anything is moved or removed: a file takes no folder's name, nor a folder a file's, nor
+// that of a link, behind which lies what is no part of the output.
+void RequireSameKinds(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path destination = to / entry.path().filename();
+    const fs::file_status there = fs::symlink_status(destination);
+    if (!fs::exists(there)) continue;
+    if (entry.is_directory() && !fs::is_directory(there)) {
+      throw std::runtime_error(fmt::format("{}: is a {}, must be a folder", destination.string(),
+                                           fs::is_symlink(there) ? "link" : "file"));
+    }
+    if (!entry.is_directory() && fs::is_directory(there)) {
+      throw std::runtime_error(destination.string() + ": is a folder, must be a file");
+    }
+    if (entry.is_directory()) RequireSameKinds(entry.path(), destination);
+  }
+}
+
+void MoveInto(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path destination = to / entry.path().filename();
+    if (entry.is_directory() && fs::is_directory(fs::symlink_status(destination))) {
+      MoveInto(entry.path(), destination);
+    } else {
+      fs::rename(entry.path(), destination);
+    }
+  }
+}
+
+void RemoveContents(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
+}
+
+// Whether the open folder is still the one of this name.
+bool IsNamed(int folder, const fs::path& name) {
+  struct stat open_one {};
+  struct stat named {};
+  return ::fstat(folder, &open_one) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         open_one.st_ino == named.st_ino && open_one.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+// An empty one would be replaced, and the shell be left in a folder that is no more.
+void RequireNotCurrent(const std::string& path) {
+  const fs::path target = Resolved(path);
+  std::error_code gone;
+  const fs::path current = fs::canonical(".", gone);
+  if (gone) return;
+  const auto [rest, inside] =
+      std::mismatch(target.begin(), target.end(), current.begin(), current.end());
+  if (rest != target.end()) return;
+  throw InputError("-o", fmt::format("{} {} the current folder, must be a folder of its own", path,
+                                     inside == current.end() ? "is" : "holds"));
+}
+
+void RequireReachable(const std::string& path) {
+  if (path.empty()) return;
+  // A link's name with a slash behind it is that of what it links to.
+  const fs::path given = path;
+  const fs::path plain = given.has_filename() ? given : given.parent_path();
+  std::error_code error;
+  const fs::file_status there = fs::status(plain, error);
+  if (there.type() == fs::file_type::not_found) {
+    if (!fs::is_symlink(fs::symlink_status(plain, error))) return;
+    throw InputError(path,
+                     fmt::format("is a link to {}, which is not there; the output must be a folder",
+                                 fs::read_symlink(plain).string()));
+  }
+  if (error) throw InputError(path, "cannot be created: " + error.message());
+  if (fs::is_directory(there) && ::access(plain.c_str(), R_OK | W_OK | X_OK) != 0) {
+    throw InputError(path, "cannot be written: " + std::generic_category().message(errno));
+  }
+}
+
+OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
+    : target_(Resolved(path)),
+      work_(WorkOf(target_)),
+      force_(force),
+      superseded_(std::move(superseded)) {
+  RequireNotCurrent(path);
+  RequireUsable(target_, work_, path, force);
+  RequireFolderOrNothing(work_);
+  const fs::path parent = target_.parent_path();
+  first_created_parent_ = FirstMissing(parent);
+  const EndDelay whole;
+  try {
+    fs::create_directories(parent);
+    Take(path);
+    RemoveContents(work_);  // of a program that was killed
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(path, "cannot be created: " + error.code().message());
+  }
+  try {
+    RequireUsable(target_, work_, path, force);  // another program may have written it meanwhile
+  } catch (...) {
+    fs::remove_all(work_);
+    ::close(lock_);
+    throw;
+  }
+  clean_.emplace([this] { Clean(); });
+}
+
+// One program at a time has the folder of that name open and locked.
+void OutputFolder::Take(const std::string& shown) {
+  while (lock_ < 0) {
+    fs::create_directory(work_);
+    lock_ = ::open(work_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (lock_ < 0) {
+      if (errno == ENOENT) continue;  // its owner has just finished
+      throw fs::filesystem_error("open", work_, std::error_code(errno, std::generic_category()));
+    }
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(lock_);
+      throw InputError(shown, "is being written by another depthgrid; choose another folder");
+    }
+    if (IsNamed(lock_, work_)) return;
+    ::close(lock_);
+    lock_ = -1;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  clean_.reset();
+  ::close(lock_);
+}
+
+void OutputFolder::Clean() const {
+  if (kept_) return;
+  std::error_code ignored;
+  // Once it took its place, the name may be another program's. When the program ends at once, its
+  // other threads may be writing still.
+  constexpr int kMostTries = 100;
+  for (int i = 0; i < kMostTries && IsNamed(lock_, work_); ++i) fs::remove_all(work_, ignored);
+  if (!committed_ && !first_created_parent_.empty()) {
+    // Only what is empty: another program may have put something there meanwhile.
+    for (fs::path p = target_.parent_path(); fs::remove(p, ignored); p = p.parent_path()) {
+      if (p == first_created_parent_) break;
+    }
+  }
+}
+
+void OutputFolder::RemoveSuperseded() const {
+  if (!superseded_) return;
+  std::vector<fs::path> superseded;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (auto entry = fs::recursive_directory_iterator(target_, options);
+       entry != fs::recursive_directory_iterator(); ++entry) {
+    if (entry->path() == work_) entry.disable_recursion_pending();
+    const fs::path relative = entry->path().lexically_relative(target_);
+    const bool is_file = entry->is_regular_file() && !entry->is_symlink();
+    if (is_file && superseded_(relative) && !fs::exists(work_ / relative)) {
+      superseded.push_back(entry->path());
+    }
+  }
+  for (const fs::path& file : superseded) {
+    fs::remove(file);
+    std::error_code not_empty;  // a folder of such files goes with the last of them
+    fs::path parent = file.parent_path();
+    while (parent != target_ && fs::remove(parent, not_empty)) parent = parent.parent_path();
+  }
+}
+
+void OutputFolder::PutInPlace() const {
+  if (work_.parent_path() != target_) {
+    std::error_code error;
+    fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
+    if (!error) return;
+    if (!fs::is_directory(fs::symlink_status(target_))) {
+      throw fs::filesystem_error("rename", target_, error);
+    }
+  }
+  if (!force_ && !IsEmpty(target_, work_)) {
+    throw std::runtime_error(target_.string() + ": is not empty any more");
+  }
+  RequireSameKinds(work_, target_);
+  RemoveSuperseded();
+  MoveInto(work_, target_);
+}
+
+void OutputFolder::Commit() {
+  const EndDelay whole;
+  const auto keep = [this](const std::string& why) {
+    kept_ = true;
+    return std::runtime_error(
+        fmt::format("{}; what was to be written is in {} until the next command that writes {}",
+                    why, work_.string(), target_.string()));
+  };
+  try {
+    PutInPlace();
+  } catch (const fs::filesystem_error& error) {
+    const fs::path& place = error.path2().empty() ? error.path1() : error.path2();
+    throw keep(place.string() + ": " + error.code().message());
+  } catch (const std::runtime_error& error) {
+    throw keep(error.what());
+  }
+  committed_ = true;
+}
+
+}  // namespace depthgrid

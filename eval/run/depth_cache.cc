@@ -1,0 +1,208 @@
+#include "eval/run/depth_cache.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "eval/files/hash.h"
+#include "mapper/core/error.h"
+#include "mapper/io/end_task.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Counts up whenever the depth camera may give other bits for the same input, or the layout below
+// changes.
+constexpr std::uint32_t kFormat = 1;
+constexpr std::uint32_t kMagic = 0x43474444;  // "DDGC"
+constexpr const char* kExtension = ".depth";
+constexpr std::string_view kWithIncidence = "-incidence";
+
+struct Header {
+  std::uint32_t magic = kMagic;
+  std::uint32_t format = kFormat;
+  std::uint32_t width_px = 0;
+  std::uint32_t height_px = 0;
+  std::uint64_t with_incidence = 0;
+  std::uint64_t checksum = 0;
+};
+
+std::uint64_t ChecksumOf(const DepthFrame& frame) {
+  ContentHash hash;
+  hash.Array(std::span<const float>(frame.depth.z_m));
+  hash.Array(std::span<const float>(frame.incidence_cos));
+  return hash.value();
+}
+
+std::string KeyOf(const std::string& scene_hash, const PinholeCamera& camera, RayIsa isa) {
+  ContentHash hash;
+  hash.Text(DEPTHGRID_VERSION);
+  hash.Text(DEPTHGRID_ARCH);
+  hash.Value(kFormat);
+  hash.Value(static_cast<int>(isa));
+  hash.Text(scene_hash);
+  hash.Value(camera.width_px);
+  hash.Value(camera.height_px);
+  for (const double v : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) hash.Value(v);
+  return hash.Hex();
+}
+
+bool ReadInto(std::ifstream& file, void* data, std::size_t size) {
+  return static_cast<bool>(file.read(static_cast<char*>(data), static_cast<std::streamsize>(size)));
+}
+
+template <typename T>
+bool ReadInto(std::ifstream& file, std::vector<T>& values) {
+  return ReadInto(file, values.data(), values.size() * sizeof(T));
+}
+
+struct Entry {
+  fs::path path;
+  fs::file_time_type used;
+  std::uint64_t bytes = 0;
+};
+
+bool IsEntry(const fs::path& path) {
+  if (path.extension() != kExtension) return false;
+  std::string name = path.stem().string();
+  if (name.ends_with(kWithIncidence)) name.resize(name.size() - kWithIncidence.size());
+  return ContentHash::IsHex(name);
+}
+
+// The user chose the folder, and may keep files of this ending in it as well (ICL-NUIM's are called
+// so): none but those that a cache wrote may ever be removed.
+std::vector<Entry> EntriesIn(const fs::path& root) {
+  std::vector<Entry> entries;
+  std::error_code error;
+  for (auto it = fs::recursive_directory_iterator(root, error);
+       !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    std::error_code vanished;  // another program may be cleaning up
+    if (it.depth() == 0) {
+      if (!ContentHash::IsHex(it->path().filename().string())) it.disable_recursion_pending();
+      continue;
+    }
+    it.disable_recursion_pending();
+    if (!IsEntry(it->path())) continue;
+    Entry entry{it->path(), it->last_write_time(vanished), it->file_size(vanished)};
+    if (!vanished) entries.push_back(entry);
+  }
+  return entries;
+}
+
+}  // namespace
+
+DepthCache::DepthCache(const std::string& folder, const std::string& scene_hash,
+                       const PinholeCamera& camera, RayIsa isa, std::uint64_t size_limit_bytes)
+    : root_(folder),
+      folder_(root_ / KeyOf(scene_hash, camera, isa)),
+      width_px_(camera.width_px),
+      height_px_(camera.height_px),
+      size_limit_bytes_(size_limit_bytes) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
+  for (const Entry& entry : EntriesIn(root_)) used_bytes_ += entry.bytes;
+}
+
+std::uint64_t DepthCache::BytesOf(bool with_incidence) const {
+  const auto pixels =
+      static_cast<std::uint64_t>(width_px_) * static_cast<std::uint64_t>(height_px_);
+  return sizeof(Header) + sizeof(float) * pixels * (with_incidence ? 2 : 1);
+}
+
+fs::path DepthCache::EntryOf(const Pose3& world_from_camera, bool with_incidence) const {
+  ContentHash hash;
+  for (const double v : world_from_camera.rotation.coeffs()) hash.Value(v);
+  for (const double v : world_from_camera.translation) hash.Value(v);
+  return folder_ /
+         fmt::format("{}{}{}", hash.Hex(), with_incidence ? kWithIncidence : "", kExtension);
+}
+
+void DepthCache::MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence) {
+  std::set<fs::path> missing;
+  for (const StampedPose& pose : world_from_camera) {
+    missing.insert(EntryOf(pose.world_from_camera, with_incidence));
+  }
+  // What is about to be loaded neither goes nor asks for room.
+  std::vector<Entry> entries = EntriesIn(root_);
+  std::erase_if(entries, [&](const Entry& entry) { return missing.erase(entry.path) > 0; });
+  const std::uint64_t wanted = missing.size() * BytesOf(with_incidence);
+  // Those of this scene and camera last: the next run is likely one of them.
+  std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+    const bool a_here = a.path.parent_path() == folder_;
+    const bool b_here = b.path.parent_path() == folder_;
+    return std::tie(a_here, a.used, a.path) < std::tie(b_here, b.used, b.path);
+  });
+  for (const Entry& entry : entries) {
+    if (used_bytes_ + wanted <= size_limit_bytes_) return;
+    std::error_code ignored;
+    if (fs::remove(entry.path, ignored)) used_bytes_ -= entry.bytes;
+    if (entry.path.parent_path() != folder_) fs::remove(entry.path.parent_path(), ignored);
+  }
+}
+
+std::optional<DepthFrame> DepthCache::Load(const Pose3& world_from_camera,
+                                           bool with_incidence) const {
+  const fs::path path = EntryOf(world_from_camera, with_incidence);
+  std::ifstream file(path, std::ios::binary);
+  Header header;
+  if (!file || !ReadInto(file, &header, sizeof header)) return std::nullopt;
+  const bool fits = header.magic == kMagic && header.format == kFormat &&
+                    header.width_px == static_cast<std::uint32_t>(width_px_) &&
+                    header.height_px == static_cast<std::uint32_t>(height_px_) &&
+                    header.with_incidence == (with_incidence ? 1U : 0U);
+  if (!fits) return std::nullopt;
+  DepthFrame frame;
+  frame.depth = DepthImage(width_px_, height_px_);
+  if (!ReadInto(file, frame.depth.z_m)) return std::nullopt;
+  if (with_incidence) {
+    frame.incidence_cos.resize(frame.depth.z_m.size());
+    if (!ReadInto(file, frame.incidence_cos)) return std::nullopt;
+  }
+  if (ChecksumOf(frame) != header.checksum) return std::nullopt;
+  std::error_code ignored;
+  fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+  return frame;
+}
+
+void DepthCache::Store(const Pose3& world_from_camera, const DepthFrame& frame) const {
+  const bool with_incidence = !frame.incidence_cos.empty();
+  const std::uint64_t bytes = BytesOf(with_incidence);
+  if (used_bytes_ + bytes > size_limit_bytes_) return;
+  Header header;
+  header.width_px = static_cast<std::uint32_t>(width_px_);
+  header.height_px = static_cast<std::uint32_t>(height_px_);
+  header.with_incidence = with_incidence ? 1 : 0;
+  header.checksum = ChecksumOf(frame);
+  const fs::path path = EntryOf(world_from_camera, with_incidence);
+  // Beside, then renamed: a reader never sees a part. The name is one thread's of one process.
+  const std::size_t thread = std::hash<std::thread::id>{}(std::this_thread::get_id());
+  const fs::path partial =
+      path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(thread);
+  const EndTask remove_half([&partial] {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+  });
+  std::ofstream file(partial, std::ios::binary);
+  const auto write = [&](const void* data, std::size_t size) {
+    file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  };
+  write(&header, sizeof header);
+  write(frame.depth.z_m.data(), frame.depth.z_m.size() * sizeof(float));
+  write(frame.incidence_cos.data(), frame.incidence_cos.size() * sizeof(float));
+  file.close();
+  std::error_code error;
+  if (file) fs::rename(partial, path, error);
+  if (file && !error) used_bytes_ += bytes;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,48 @@
+// Rendered depth kept on disk between runs. Each frame is stored under everything that shapes it,
+// so an entry is either exactly what would be rendered or not found.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mapper/core/camera.h"
+#include "mapper/core/pose3.h"
+#include "mapper/core/trajectory.h"
+#include "sim/depth/depth_camera.h"
+
+namespace depthgrid {
+
+constexpr std::uint64_t kDefaultCacheBytes = std::uint64_t{8} << 30U;
+
+class DepthCache {
+ public:
+  // Frames of one scene seen by one camera, in `folder`, which several programs may use at once.
+  // With `size_limit_bytes` all entries of the folder count; the longest unused go first.
+  DepthCache(const std::string& folder, const std::string& scene_hash, const PinholeCamera& camera,
+             RayIsa isa, std::uint64_t size_limit_bytes = kDefaultCacheBytes);
+
+  // Removes old entries until all frames of the path fit, or none but theirs is left.
+  void MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence);
+
+  // Nothing when the frame is not there, or is damaged. Thread-safe.
+  std::optional<DepthFrame> Load(const Pose3& world_from_camera, bool with_incidence) const;
+  // Does nothing when the limit is reached or the disk refuses: a cache may only save time.
+  // Thread-safe.
+  void Store(const Pose3& world_from_camera, const DepthFrame& frame) const;
+
+ private:
+  std::filesystem::path EntryOf(const Pose3& world_from_camera, bool with_incidence) const;
+  std::uint64_t BytesOf(bool with_incidence) const;
+
+  std::filesystem::path root_;
+  std::filesystem::path folder_;
+  int width_px_;
+  int height_px_;
+  std::uint64_t size_limit_bytes_;
+  mutable std::atomic<std::uint64_t> used_bytes_ = 0;
+};
+
+}  // namespace depthgrid

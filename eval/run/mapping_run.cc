@@ -1,0 +1,182 @@
+#include "eval/run/mapping_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "eval/metrics/association.h"
+#include "eval/run/saturation_check.h"
+#include "mapper/core/counted.h"
+#include "mapper/core/cpu_clock.h"
+#include "mapper/core/level.h"
+#include "mapper/io/pose_track.h"
+
+namespace depthgrid {
+namespace {
+
+// How many frames are kept whole for the report, evenly spread.
+constexpr int kSampleFrames = 5;
+
+bool IsSample(int position, int count) {
+  if (count <= kSampleFrames) return true;
+  // The middles of kSampleFrames equal parts.
+  for (int i = 0; i < kSampleFrames; ++i) {
+    if (position == count * (2 * i + 1) / (2 * kSampleFrames)) return true;
+  }
+  return false;
+}
+
+template <typename PoseOf>
+Trajectory Collect(const MappingRun& run, PoseOf pose_of) {
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    const std::optional<Pose3> pose = pose_of(i);
+    if (!pose) continue;
+    trajectory.push_back({run.reports[i].stamp_s, run.camera ? *pose : Lift(BaseOf(*pose))});
+  }
+  return trajectory;
+}
+
+// SLAM's final pose of each frame, by stamp; empty if there are none.
+std::vector<std::optional<Pose3>> FinalPosesOf(const std::vector<FrameReport>& reports,
+                                               const Trajectory& final_poses) {
+  if (final_poses.empty()) return {};
+  std::vector<double> stamps_s;
+  for (const StampedPose& pose : final_poses) stamps_s.push_back(pose.stamp_s);
+  std::vector<std::optional<Pose3>> found;
+  for (const FrameReport& report : reports) {
+    const auto entry = NearestStamp(stamps_s, report.stamp_s, kMaxStampDifferenceS);
+    found.push_back(entry ? std::optional(final_poses[*entry].world_from_camera) : std::nullopt);
+  }
+  return found;
+}
+
+}  // namespace
+
+FrameRecorder::FrameRecorder(const MapperOptions& options,
+                             const std::optional<PinholeCamera>& camera, int frame_count,
+                             const GainOracle& oracle, const MatchOracle& match_oracle)
+    : start_(std::chrono::steady_clock::now()),
+      frame_count_(frame_count),
+      mapper_(options, camera, {ThreadCpuUs, SteadyUs}, oracle) {
+  mapper_.SetMatchOracle(match_oracle);
+  run_.camera = camera;
+}
+
+void FrameRecorder::Add(const Frame& frame) {
+  run_.reports.push_back(mapper_.AddFrame(frame));
+  run_.cpu_s += run_.reports.back().times.total_us * 1e-6;
+  run_.loops.insert(run_.loops.end(), frame.loops.begin(), frame.loops.end());
+  const int position = static_cast<int>(run_.reports.size()) - 1;
+  if (frame.depth && IsSample(position, frame_count_)) {
+    run_.samples.push_back({frame.index, frame.depth});
+  }
+}
+
+MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
+  const double before_us = ThreadCpuUs();
+  run_.result = mapper_.Finish(FinalPosesOf(run_.reports, final_poses));
+  run_.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
+  run_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  return std::move(run_);
+}
+
+std::vector<double> TimesOfMappedFrames(const MappingRun& run) {
+  std::vector<double> frames_us;
+  for (const FrameReport& report : run.reports) {
+    if (report.slam_from_camera) frames_us.push_back(report.times.total_us);
+  }
+  return frames_us;
+}
+
+std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
+  const auto add = [&](bool FrameReport::*happened, const char* what,
+                       std::vector<std::string>& lines) {
+    constexpr std::size_t kMostNamed = 5;
+    std::vector<int> frames;
+    for (const FrameReport& report : reports) {
+      if (report.*happened) frames.push_back(report.index);
+    }
+    if (frames.empty()) return;
+    const std::size_t named = std::min(frames.size(), kMostNamed);
+    lines.push_back(fmt::format(
+        "poses: {} at frame{} {}{}", what, frames.size() == 1 ? "" : "s",
+        fmt::join(frames.begin(), frames.begin() + named, ", "),
+        named < frames.size() ? fmt::format(" and {} more", frames.size() - named) : ""));
+  };
+  std::vector<std::string> lines;
+  add(&FrameReport::slipped, "a sudden turn that the scans do not show was taken out", lines);
+  add(&FrameReport::relocated, "what was mapped since they were lost was moved to its place",
+      lines);
+  return lines;
+}
+
+std::optional<int> GuessedFrom(const MappingRun& run) {
+  std::optional<int> from;
+  for (const FrameReport& report : run.reports) {
+    if (!report.map_from_camera) continue;  // lost
+    if (!report.guessed) {
+      from.reset();
+    } else if (!from) {
+      from = report.index;
+    }
+  }
+  if (!from) return std::nullopt;
+  const auto& mapped = run.result.mapped;
+  const auto is_before = [&](int i) { return mapped[static_cast<std::size_t>(i)].frame < *from; };
+  const auto& loops = run.result.loops;
+  const bool joined = std::any_of(loops.begin(), loops.end(), [&](const PlanarLoop& loop) {
+    return is_before(loop.first) != is_before(loop.second);
+  });
+  return joined ? std::nullopt : from;
+}
+
+MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
+                     const Trajectory& final_poses, const Progress& progress,
+                     const GainOracle& oracle, const MatchOracle& match_oracle,
+                     const std::optional<PriorMap>& prior) {
+  const int count = source.FrameCount();
+  FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
+  if (prior) recorder.StartFrom(*prior);
+  int done = 0;
+  SaturationCheck saturation;
+  while (const std::optional<Frame> frame = source.Next()) {
+    recorder.Add(*frame);
+    if (frame->depth && frame->slam_from_camera) {
+      saturation.Add(*frame->depth, *frame->slam_from_camera);
+    }
+    if (progress) progress(++done, count);
+  }
+  MappingRun run = recorder.Finish(final_poses);
+  run.warnings = source.Warnings();
+  for (std::string& line : MendedPoses(run.reports)) run.warnings.push_back(std::move(line));
+  if (const auto cut = saturation.Found(); cut && cut->z_m < options.scan.max_range_m) {
+    run.warnings.push_back(fmt::format(
+        "depth images: {} hold {:.3f} m, the largest depth, all over whatever is behind: if all "
+        "that is farther is cut to it, it is drawn as walls; --set "
+        "mapper.scan.max_range_m={:.2f} takes it for free",
+        Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
+  }
+  if (const std::optional<int> frame = GuessedFrom(run)) {
+    run.warnings.push_back(fmt::format(
+        "poses: SLAM was lost before frame {}; where the map goes on from there is a guess, that "
+        "nothing seen since confirms",
+        *frame));
+  }
+  return run;
+}
+
+Trajectory SlamTrajectory(const MappingRun& run) {
+  return Collect(run, [&](std::size_t i) { return run.reports[i].slam_from_camera; });
+}
+
+Trajectory OnlineTrajectory(const MappingRun& run) {
+  return Collect(run, [&](std::size_t i) { return run.reports[i].map_from_camera; });
+}
+
+Trajectory FinalTrajectory(const MappingRun& run) {
+  return Collect(run, [&](std::size_t i) { return run.result.map_from_camera[i]; });
+}
+
+}  // namespace depthgrid

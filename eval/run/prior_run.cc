@@ -1,0 +1,121 @@
+#include "eval/run/prior_run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "eval/files/csv_table.h"
+#include "eval/files/hash.h"
+#include "eval/files/run_files.h"
+#include "mapper/core/error.h"
+#include "mapper/core/median.h"
+#include "mapper/io/config.h"
+#include "mapper/io/file.h"
+#include "mapper/io/scan_file.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The floor's height is that of a room.
+bool ShapesMap(const std::string& key, bool images) {
+  if (key == "mapper.method" || key.starts_with("mapper.grid.")) return true;
+  return images && key.starts_with("mapper.scan.") && key != "mapper.scan.floor_z_m";
+}
+
+// A run.yaml's part.
+struct MapperSettings {
+  MapperOptions mapper;
+
+  void Visit(OptionsVisitor& v) { v.Group("mapper", mapper, "the mapper"); }
+};
+
+// Keys of other versions are passed over.
+void RequirePossible(const Config& run) {
+  Config known;
+  for (const std::string& key : KeyPathsOf(MapperSettings{})) {
+    if (!ShapesMap(key, true) || !run.Has(key) || run.HasList(key)) continue;
+    known.Set(key, run.Text(key), run.PlaceOfKey(key));
+  }
+  MapperSettings settings;
+  known.Read(settings);
+}
+
+}  // namespace
+
+PriorMap ReadPriorRun(const std::string& folder) {
+  const fs::path drawn_path = fs::path(folder) / "scans.bin";
+  const fs::path matched_path = fs::path(folder) / "matched.bin";
+  RequireRunFolder(folder);
+  RequirePossible(Config::FromFile((fs::path(folder) / "run.yaml").string()));
+  const std::vector<StoredScan> drawn = ReadScans(drawn_path.string());
+  const std::vector<StoredScan> matched =
+      fs::exists(matched_path) ? ReadScans(matched_path.string()) : drawn;
+  if (drawn.empty()) throw InputError(drawn_path.string(), "holds no scan");
+  if (matched.size() != drawn.size()) {
+    throw InputError(matched_path.string(), "does not belong to scans.bin");
+  }
+  std::vector<int> frames;
+  for (const StoredScan& scan : drawn) frames.push_back(scan.frame);
+  const std::vector<int> numbers = PriorNumbers(frames);
+  PriorMap prior;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    MappedFrame frame;
+    frame.frame = numbers[i];
+    frame.stamp_s = drawn[i].stamp_s;
+    frame.obstacles = drawn[i].scan;
+    frame.scan = matched[i].scan;
+    frame.map_from_base = drawn[i].map_from_base;
+    prior.frames.push_back(std::move(frame));
+  }
+  return prior;
+}
+
+std::string HashOfPriorRun(const std::string& folder) {
+  ContentHash hash;
+  for (const char* name : {"scans.bin", "matched.bin"}) {
+    const fs::path path = fs::path(folder) / name;
+    if (fs::exists(path)) hash.Text(ReadFile(path.string()));
+  }
+  return hash.Hex();
+}
+
+std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,
+                                        bool images) {
+  const std::string path = (fs::path(folder) / "run.yaml").string();
+  const Config prior = Config::FromFile(path);
+  const MapperSettings settings{options};
+  const Config now = Config::FromText(ToYaml(settings), "settings");
+  std::vector<std::string> there, here;
+  for (const std::string& key : KeyPathsOf(settings)) {
+    if (!ShapesMap(key, images) || !prior.Has(key)) continue;
+    const std::string made_with = SettingOf(prior, key);
+    const std::string value = SettingOf(now, key);
+    if (made_with == value) continue;
+    there.push_back(key + "=" + made_with);
+    here.push_back(value);
+  }
+  if (there.empty()) return {};
+  return fmt::format("{}: the map was made with {}, and here it is {}: give the same --set", path,
+                     fmt::join(there, ", "), fmt::join(here, ", "));
+}
+
+std::optional<double> CameraHeightOfPrior(const std::string& folder) {
+  const fs::path run(folder);
+  const std::string frames = (run / "frames.csv").string();
+  if (Config::FromFile((run / "run.yaml").string()).Text("localise") == "true") return {};
+  std::vector<double> heights_m;
+  try {
+    heights_m = ReadCsv(frames).Column("camera_height_m");
+  } catch (const InputError&) {
+    return {};  // missing, damaged or of an earlier version: nothing else needs it
+  }
+  std::erase_if(heights_m, [](double height_m) { return std::isnan(height_m); });
+  if (heights_m.empty()) return {};
+  return UpperMedian(std::move(heights_m));
+}
+
+}  // namespace depthgrid

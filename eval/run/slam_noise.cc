@@ -1,0 +1,48 @@
+#include "eval/run/slam_noise.h"
+
+#include <cmath>
+
+#include "mapper/core/angle.h"
+
+namespace depthgrid {
+namespace {
+
+// Of one axis: variance of a single pose, and variance a second.
+struct AxisNoise {
+  double jitter2 = 0.0;
+  double walk2_per_s = 0.0;
+};
+
+AxisNoise AxisNoiseOf(const SlamOptions& slam, double jitter, double bias, double walk,
+                      double drift_rate, double jump) {
+  const auto square = [](double value) { return value * value; };
+  // Ornstein-Uhlenbeck: the integral of the rate grows by 2 sigma^2 tau a second once its
+  // correlation is over; a bias parts from its old value by 2 sigma^2 / tau a second.
+  const double walk2 =
+      square(slam.drift_scale) * (square(walk) + 2.0 * square(drift_rate) * slam.drift_time_s);
+  return {square(jitter),
+          walk2 + 2.0 * square(bias) / slam.bias_time_s + slam.jump_rate_hz * square(jump)};
+}
+
+}  // namespace
+
+SlamNoiseOptions NoiseOf(const SlamOptions& slam) {
+  const AxisNoise shift =
+      AxisNoiseOf(slam, slam.jitter_translation_m, slam.bias_translation_m, slam.walk_translation_m,
+                  slam.drift_speed_mps, slam.jump_translation_m);
+  const AxisNoise turn =
+      AxisNoiseOf(slam, RadFromDeg(slam.jitter_rotation_deg), RadFromDeg(slam.bias_rotation_deg),
+                  RadFromDeg(slam.walk_rotation_deg), RadFromDeg(slam.drift_turn_dps),
+                  RadFromDeg(slam.jump_rotation_deg));
+  // A turn about the pivot shifts the camera to the left, not forward.
+  const double pivot2 = 0.5 * slam.pivot_m * slam.pivot_m;
+  SlamNoiseOptions noise;
+  noise.source = SlamNoiseSource::kProfile;
+  noise.jitter_m = std::sqrt(shift.jitter2 + pivot2 * turn.jitter2);
+  noise.jitter_rad = std::sqrt(turn.jitter2);
+  noise.walk_m_per_sqrt_s = std::sqrt(shift.walk2_per_s + pivot2 * turn.walk2_per_s);
+  noise.walk_rad_per_sqrt_s = std::sqrt(turn.walk2_per_s);
+  return noise;
+}
+
+}  // namespace depthgrid

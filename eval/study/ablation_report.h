@@ -1,0 +1,15 @@
+// report.html of an ablation's folder, made from the files in it.
+#pragma once
+
+#include <string>
+
+#include "eval/report/report_place.h"
+
+namespace depthgrid {
+
+bool IsAblationFolder(const std::string& folder);
+
+// Throws InputError when the folder holds no ablation.
+void WriteAblationReport(const std::string& folder, const ReportPlace& place);
+
+}  // namespace depthgrid

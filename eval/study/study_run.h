@@ -1,0 +1,29 @@
+// A study from front to back: every case as a run's folder, and one page over all of them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/experiment/study.h"
+#include "eval/output/output_folder.h"
+#include "eval/run/experiment.h"
+#include "mapper/io/map_file.h"
+
+namespace depthgrid {
+
+struct CaseResult {
+  std::string name;
+  std::optional<double> published_mean_m;
+  RunScores scores;
+  MapScore input_map;  // of the map that SLAM's live poses make
+  std::vector<std::string> warnings;
+};
+
+// Runs the cases that share room and images jointly and writes into the folder's work area: a
+// folder a case, metrics.json, study.yaml (`text`, the study as it was given), overrides.txt and
+// report.html. The caller commits. Results are in the order of the cases.
+std::vector<CaseResult> RunStudy(const Study& study, const std::string& text, MapMode map_mode,
+                                 const OutputFolder& folder, const RunContext& context);
+
+}  // namespace depthgrid

@@ -1,0 +1,188 @@
+#include "sim/depth/depth_noise.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/error.h"
+#include "sim/depth/correlated_normals.h"
+#include "sim/depth/depth_noise_models.h"
+#include "sim/depth/depth_samples.h"
+#include "sim/depth/parallel_calls.h"
+#include "sim/depth/sensor_artifacts.h"
+
+namespace depthgrid {
+namespace {
+
+using noise::DepthSamples;
+using noise::SampleSource;
+using noise::Values;
+
+// Of the four normals of a pixel, the one along its ray.
+constexpr std::size_t kAxial = 2;
+
+bool SamplesBetweenPixels(DepthNoiseModel model) {
+  return model == DepthNoiseModel::kHanda || model == DepthNoiseModel::kAzure;
+}
+
+DepthSamples Sample(DepthNoiseModel model, const SampleSource& source, std::size_t first,
+                    std::size_t count, const NormalBlock& random, float scale) {
+  switch (model) {
+    case DepthNoiseModel::kNguyen:
+      return SampleAcrossEdges(source, first, count, random, scale);
+    case DepthNoiseModel::kHanda:
+      return SampleBetweenPixels(source, first, count, random, scale * noise::kHandaShiftPx);
+    case DepthNoiseModel::kAzure:
+      return SampleBetweenPixels(source, first, count, random, scale * noise::kAzureShiftPx);
+    default:
+      return SampleInPlace(source, first, count);
+  }
+}
+
+// z + sigma(z, theta) n
+template <typename Sigma>
+void AddAxial(const DepthSamples& clean, const Values& theta, const Values& normal, float scale,
+              Values& measured, const Sigma& sigma) {
+  for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
+    measured[i] = clean.z[i] + scale * sigma(clean.z[i], theta[i]) * normal[i];
+  }
+}
+
+void Measure(DepthNoiseModel model, const DepthSamples& clean, const Values& theta,
+             const Values& normal, float scale, float focal_px, Values& measured) {
+  switch (model) {
+    case DepthNoiseModel::kNone:
+      measured = clean.z;
+      return;
+    case DepthNoiseModel::kNguyen:
+      return AddAxial(clean, theta, normal, scale, measured, noise::NguyenSigma);
+    case DepthNoiseModel::kHanda:
+      for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
+        measured[i] = noise::HandaDepth(1.0F / clean.z[i],
+                                        scale * noise::kHandaDisparitySigmaSteps * normal[i]);
+      }
+      return;
+    case DepthNoiseModel::kD435:
+      return AddAxial(clean, theta, normal, scale, measured,
+                      [focal_px](float z, float) { return noise::D435Sigma(z, focal_px); });
+    case DepthNoiseModel::kKinectV2:
+      return AddAxial(clean, theta, normal, scale, measured, noise::KinectV2Sigma);
+    case DepthNoiseModel::kAzure:
+      return AddAxial(clean, theta, normal, scale, measured,
+                      [](float z, float) { return noise::AzureSigma(z); });
+  }
+}
+
+// Incidences beyond it are lost; at a right angle none, however soft the limit is.
+float GrazingLimitRad(const SensorOptions& options) {
+  if (options.grazing_limit_deg >= kNoGrazingLimitDeg) {
+    return std::numeric_limits<float>::infinity();
+  }
+  return static_cast<float>(RadFromDeg(options.grazing_limit_deg));
+}
+
+std::vector<float> InverseOf(const DepthImage& depth) {
+  std::vector<float> inverse(depth.z_m.size());
+  for (std::size_t i = 0; i < inverse.size(); ++i) {
+    inverse[i] = noise::Select(depth.z_m[i] > 0.0F, 1.0F / depth.z_m[i], 0.0F);
+  }
+  return inverse;
+}
+
+}  // namespace
+
+DepthNoise::DepthNoise(const SensorOptions& options, int threads)
+    : options_(options),
+      camera_(SensorCamera(options)),
+      range_(SensorRange(options)),
+      threads_(threads) {
+  Require(threads >= 1, "at least one thread");
+}
+
+bool DepthNoise::NeedsIncidence() const {
+  return options_.noise != DepthNoiseModel::kNone || options_.flying_pixels > 0.0;
+}
+
+DepthImage DepthNoise::Apply(const DepthFrame& clean, std::uint64_t seed,
+                             std::uint32_t frame) const {
+  Require(clean.depth.width_px == camera_.width_px && clean.depth.height_px == camera_.height_px,
+          "the image has the sensor's size");
+  Require(!NeedsIncidence() || clean.incidence_cos.size() == clean.depth.z_m.size(),
+          "a cosine a pixel");
+  DepthImage lit = options_.flying_pixels > 0.0
+                       ? WithFlyingPixels(clean, camera_, options_.flying_pixels, seed, frame)
+                       : clean.depth;
+  if (options_.shadow_baseline_m != 0.0) {
+    CastProjectorShadow(lit, camera_, options_.shadow_baseline_m);
+  }
+  if (options_.noise == DepthNoiseModel::kNone) {
+    ClampRange(lit);
+    return lit;
+  }
+  DepthImage measured = AddNoise(lit, clean.incidence_cos.data(), seed, frame);
+  if (options_.noise == DepthNoiseModel::kAzure) DropEdges(lit, noise::kAzureEdgeStepM, measured);
+  return measured;
+}
+
+void DepthNoise::ClampRange(DepthImage& depth) const {
+  const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
+  for (float& z : depth.z_m) z = z >= min_m && z <= max_m ? z : kInvalidDepth;
+}
+
+std::vector<float> DepthNoise::CorrelatedAxial(std::uint64_t seed, std::uint32_t frame) const {
+  const auto width = static_cast<std::size_t>(camera_.width_px);
+  const std::size_t pixels = width * static_cast<std::size_t>(camera_.height_px);
+  std::vector<float> white(pixels);
+  CallInParallel(
+      (pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, [&](std::size_t block) {
+        const std::size_t first = block * kNormalBlockItems;
+        NormalBlock random;
+        FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first),
+                    random);
+        std::copy_n(random.normals[kAxial].data(),
+                    std::min<std::size_t>(kNormalBlockItems, pixels - first), white.data() + first);
+      });
+  return Correlated(white, width, options_.noise_correlation_px, threads_);
+}
+
+DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_cos,
+                                std::uint64_t seed, std::uint32_t frame) const {
+  const DepthNoiseModel model = options_.noise;
+  const SampleSource source{lit, incidence_cos,
+                            SamplesBetweenPixels(model) ? InverseOf(lit) : std::vector<float>{},
+                            static_cast<float>(std::min(camera_.fx_px, camera_.fy_px))};
+  const auto scale = static_cast<float>(options_.noise_scale);
+  const auto focal_px = static_cast<float>(camera_.fx_px);
+  const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
+  const float limit = GrazingLimitRad(options_);
+  const auto softness = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
+  const std::size_t pixels = lit.z_m.size();
+  DepthImage noisy(lit.width_px, lit.height_px);
+  const std::vector<float> alike =
+      options_.noise_correlation_px > 0.0 ? CorrelatedAxial(seed, frame) : std::vector<float>{};
+  const auto add_to_block = [&](std::size_t block) {
+    const std::size_t first = block * kNormalBlockItems;
+    const std::size_t count = std::min<std::size_t>(kNormalBlockItems, pixels - first);
+    NormalBlock random;
+    FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first), random);
+    if (!alike.empty()) {
+      std::copy_n(alike.data() + first, count, random.normals[kAxial].data());
+    }
+    const DepthSamples clean = Sample(model, source, first, count, random, scale);
+    alignas(64) Values theta, measured;
+    for (std::size_t i = 0; i < kNormalBlockItems; ++i) theta[i] = noise::Acos(clean.cosine[i]);
+    Measure(model, clean, theta, random.normals[kAxial], scale, focal_px, measured);
+    for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
+      const float z = measured[i];
+      const bool is_kept = (clean.z[i] > 0.0F) & (z > 0.0F) & (z >= min_m) & (z <= max_m) &
+                           (theta[i] <= limit + softness * random.normals[3][i]);
+      measured[i] = noise::Select(is_kept, z, kInvalidDepth);
+    }
+    std::copy_n(measured.data(), count, noisy.z_m.data() + first);
+  };
+  CallInParallel((pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, add_to_block);
+  return noisy;
+}
+
+}  // namespace depthgrid

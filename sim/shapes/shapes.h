@@ -1,0 +1,18 @@
+// The shapes of a scene file by name (docs/scenes.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/shapes/wall_item.h"
+
+namespace depthgrid {
+
+// Names for `shape:`, without "use" and "mesh", which need the file around them.
+std::vector<std::string> ShapeNames();
+
+// Reads the item and uses it up. Throws InputError for anything wrong with it. `shape` is one of
+// ShapeNames().
+BuiltItem BuildShape(const std::string& shape, Config& config);
+
+}  // namespace depthgrid

@@ -1,0 +1,84 @@
+#include "sim/slam/slam_options.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr Interval kMetres = {0.0, 10.0};
+constexpr Interval kDegrees = {0.0, 90.0};
+constexpr Interval kCorrelationS = {0.01, 1e6};
+
+}  // namespace
+
+void SlamLoopOptions::Visit(OptionsVisitor& v) {
+  const LoopScenario before = scenario;
+  v.Choice("scenario", scenario,
+           {{LoopScenario::kNone, "none"},
+            {LoopScenario::kTrue, "true"},
+            {LoopScenario::kLate, "late"},
+            {LoopScenario::kMissed, "missed"},
+            {LoopScenario::kFalse, "false"}},
+           "presets recall, precision and delay_frames");
+  if (scenario != before) *this = WithScenario(*this, scenario);
+  v.Number("recall", recall, {0.0, 1.0}, "share of revisits that are closed");
+  // Below 0.05 a true closure would bring more than 19 false ones.
+  v.Number("precision", precision, {0.05, 1.0}, "share of closures that are true");
+  v.Number("delay_frames", delay_frames, {0, 1e6}, "from the revisit to the report");
+  v.Number("sigma_translation_m", sigma_translation_m, kMetres, "of the measured relative pose");
+  v.Number("sigma_rotation_deg", sigma_rotation_deg, kDegrees, "of the measured relative pose");
+  v.Flag("follow_false", follow_false, "SLAM's own estimate is bent by its false closures");
+  // Neither is 0: views are compared in these units. The scenario for no loops is `none`.
+  v.Number("max_distance_m", max_distance_m, {0.001, 10.0}, "a revisit is nearer to the old view");
+  v.Number("max_angle_deg", max_angle_deg, {0.01, 180.0}, "and turned less from it");
+  v.Number("min_gap_s", min_gap_s, {0.0, 1e6}, "and at least this much later");
+  v.Number("repeat_s", repeat_s, {0.1, 1e6}, "a revisit that lasts is offered again after this");
+}
+
+SlamLoopOptions WithScenario(SlamLoopOptions options, LoopScenario scenario) {
+  options.scenario = scenario;
+  options.recall = scenario == LoopScenario::kNone     ? 0.0
+                   : scenario == LoopScenario::kMissed ? 0.5
+                                                       : 1.0;
+  options.precision = scenario == LoopScenario::kFalse ? 0.5 : 1.0;
+  options.delay_frames = scenario == LoopScenario::kLate ? 90 : 0;
+  return options;
+}
+
+void SlamOptions::Visit(OptionsVisitor& v) {
+  const SlamProfile before = profile;
+  v.Choice("profile", profile,
+           {{SlamProfile::kGroundTruth, "ground_truth"},
+            {SlamProfile::kOrbSlam2, "orb_slam2"},
+            {SlamProfile::kPlanarSlam, "planar_slam"},
+            {SlamProfile::kPlanarSlamMh, "planar_slam_mh"},
+            {SlamProfile::kOrbSlam2Measured, "orb_slam2_measured"},
+            {SlamProfile::kPlanarSlamMeasured, "planar_slam_measured"},
+            {SlamProfile::kOrbSlam2Desk, "orb_slam2_desk"}},
+           "sets all keys below; those given override it");
+  if (profile != before) *this = ProfileOptions(profile);
+  v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and drift");
+  v.Number("pivot_m", pivot_m, {0.0, kMostPivotM},
+           "rotation errors turn about a point this far ahead");
+  v.Number("tilt_share", tilt_share, {0.0, 1.0}, "roll and pitch errors against yaw's");
+  v.Number("jitter_translation_m", jitter_translation_m, kMetres, "white error of a pose");
+  v.Number("jitter_rotation_deg", jitter_rotation_deg, kDegrees, "white error of a pose");
+  v.Number("bias_translation_m", bias_translation_m, kMetres, "slowly varying bias of a pose");
+  v.Number("bias_rotation_deg", bias_rotation_deg, kDegrees, "slowly varying bias of a pose");
+  v.Number("bias_time_s", bias_time_s, kCorrelationS, "correlation time of the bias");
+  v.Number("walk_translation_m", walk_translation_m, kMetres, "random walk in a second");
+  v.Number("walk_rotation_deg", walk_rotation_deg, kDegrees, "random walk in a second");
+  v.Number("drift_speed_mps", drift_speed_mps, kMetres, "slowly varying bias of the speed");
+  v.Number("drift_turn_dps", drift_turn_dps, kDegrees, "slowly varying bias of the turn rate");
+  v.Number("drift_time_s", drift_time_s, kCorrelationS, "correlation time of the drift");
+  v.Number("jump_rate_hz", jump_rate_hz, {0.0, 30.0}, "jumps in a second while tracking");
+  v.Number("jump_translation_m", jump_translation_m, kMetres, "sigma of such a jump");
+  v.Number("jump_rotation_deg", jump_rotation_deg, kDegrees, "sigma of such a jump");
+  v.Number("lost_rate_hz", lost_rate_hz, {0.0, 30.0}, "how often in a second tracking is lost");
+  v.Number("lost_mean_s", lost_mean_s, {0.0, 1e4}, "mean time until it is found again");
+  v.Number("relocalisation_translation_m", relocalisation_translation_m, kMetres,
+           "sigma of the jump when tracking is found again");
+  v.Number("relocalisation_rotation_deg", relocalisation_rotation_deg, kDegrees,
+           "sigma of the jump when tracking is found again");
+  v.Group("loops", loops, "loop closures");
+}
+
+}  // namespace depthgrid
