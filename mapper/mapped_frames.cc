@@ -29,10 +29,11 @@ MappedFrame MappedFrames::WithScans(MappedFrame frame, const FrameScans& scans) 
 }
 
 const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans,
-                                     const std::optional<double>& explained, int from) {
+                                     const std::optional<double>& explained,
+                                     std::span<const MapPart> matched, int from) {
   if (explained) {
     const bool well = *explained >= options_.min_explained;
-    frame.tied_to = keeping_.TieOf(frames_, frame.map_from_base, well, from).value_or(-1);
+    frame.tied_to = keeping_.TieOf(frames_, frame.map_from_base, well, matched, from).value_or(-1);
   }
   if (frame.kept()) {
     kept_.Keep(scans, frame);

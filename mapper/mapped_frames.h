@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mapper/scan/frame_scans.h"
@@ -25,10 +26,11 @@ class MappedFrames {
   // The frame with its scans, for now.
   MappedFrame WithScans(MappedFrame frame, const FrameScans& scans);
   // The frame and its scans, kept unless its place is well seen already. `explained` is the share
-  // of the scan that the map explains; empty: it is kept wherever it is. What was seen before the
-  // frame at `from` does not count.
+  // of the scan that the map explains; empty: it is kept wherever it is. `matched`: what it was
+  // matched against. What was seen before the frame at `from` does not count.
   const MappedFrame& Add(MappedFrame frame, const FrameScans& scans,
-                         const std::optional<double>& explained, int from = 0);
+                         const std::optional<double>& explained,
+                         std::span<const MapPart> matched = {}, int from = 0);
   // Corrected poses, one a frame. Matches of frames that are tied move with them.
   void MoveTo(const std::vector<Pose2>& map_from_base);
   // What SLAM says of the motion to this frame is wrong.

@@ -1,9 +1,12 @@
 #include "mapper/scan_keeping.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mapper/core/grid_geometry.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -51,7 +54,8 @@ double ScanKeeping::RoomAfter(std::size_t frames, bool explained) const {
 }
 
 std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
-                                      const Pose2& map_from_base, bool explained, int from) const {
+                                      const Pose2& map_from_base, bool explained,
+                                      std::span<const MapPart> matched, int from) const {
   const std::size_t count = frames.size();
   if (options_.first_frames == 0 || count < static_cast<std::size_t>(options_.first_frames)) {
     return std::nullopt;
@@ -76,7 +80,26 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
     least_apart = apart;
     nearest = kept.position;
   }
-  return counted < room ? std::nullopt : nearest;
+  if (counted < room) return std::nullopt;
+  const std::optional<int> drawn_by = DrawnBy(matched);
+  return drawn_by && *drawn_by >= from ? drawn_by : nearest;
+}
+
+// Where the map was bent, what is drawn at one place lies by frames that an adjustment will move
+// apart: a frame lies by those that it was matched to, not by those that were nearest.
+std::optional<int> ScanKeeping::DrawnBy(std::span<const MapPart> matched) const {
+  std::vector<Weighed> parts;
+  for (const MapPart& part : matched) {
+    parts.push_back({part.mapped, part.information.topLeftCorner<2, 2>().trace()});
+  }
+  if (parts.empty() || kept_.empty()) return std::nullopt;
+  const double middle = WeighedMedian(std::move(parts));
+  const auto after = std::lower_bound(kept_.begin(), kept_.end(), middle,
+                                      [](const Kept& kept, double m) { return kept.position < m; });
+  if (after == kept_.end()) return kept_.back().position;
+  if (after == kept_.begin()) return after->position;
+  const int before = (after - 1)->position;
+  return middle - before < after->position - middle ? before : after->position;
 }
 
 void ScanKeeping::Add(int position, const Pose2& map_from_base) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mapper/core/key_index.h"
@@ -36,10 +37,13 @@ class ScanKeeping {
  public:
   explicit ScanKeeping(const KeepOptions& options);
 
-  // The kept frame that one there is to be tied to: the nearest of a place that is well seen. Empty
-  // where its scan is to be kept. `frames` are those before it; those before `from` do not count.
+  // The kept frame that one there, whose place is well seen, is to be tied to: the one that drew
+  // what it was matched against, half of it before and half after; if that is not known the nearest
+  // of the place. Empty where its scan is to be kept. `frames` are those before it; those before
+  // `from` do not count.
   std::optional<int> TieOf(const std::vector<MappedFrame>& frames, const Pose2& map_from_base,
-                           bool explained, int from = 0) const;
+                           bool explained, std::span<const MapPart> matched = {},
+                           int from = 0) const;
   // The frame at this position was kept there.
   void Add(int position, const Pose2& map_from_base);
   // The frames were moved.
@@ -55,12 +59,14 @@ class ScanKeeping {
     int count = 0;
   };
   std::uint64_t KeyOf(const Pose2& map_from_base) const;
+  // The kept frame nearest in time to what these were drawn by.
+  std::optional<int> DrawnBy(std::span<const MapPart> matched) const;
   double RoomAfter(std::size_t frames, bool explained) const;
 
   KeepOptions options_;
   KeyIndex place_of_key_;
   std::vector<Place> places_;
-  std::vector<Kept> kept_;
+  std::vector<Kept> kept_;  // in order of time
 };
 
 }  // namespace depthgrid

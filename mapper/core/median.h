@@ -29,4 +29,26 @@ inline double UpperMedian(std::vector<double> values) {
   return UpperMedianAmong(std::span<double>(values));
 }
 
+struct Weighed {
+  double value = 0.0;
+  double weight = 0.0;
+};
+
+// Half of the weight lies below it and half above; where nothing has weight all count alike.
+inline double WeighedMedian(std::vector<Weighed> values) {
+  double all = 0.0;
+  for (const Weighed& v : values) all += v.weight;
+  if (all <= 0.0) {
+    for (Weighed& v : values) all += v.weight = 1.0;
+  }
+  std::stable_sort(values.begin(), values.end(),
+                   [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
+  double below = 0.0;
+  for (const Weighed& v : values) {
+    below += v.weight;
+    if (below > 0.5 * all) return v.value;
+  }
+  return values.back().value;
+}
+
 }  // namespace depthgrid

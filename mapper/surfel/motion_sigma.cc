@@ -41,11 +41,6 @@ ErrorRow RowOf(const GroupLink& link, int axis, const std::vector<Pose2>& map_fr
           Eigen::RowVector3d::Unit(axis) / link.sigma[axis]};
 }
 
-struct Weighed {
-  double value = 0.0;
-  double weight = 0.0;
-};
-
 // So many motions on either side of one are near it. Of so many they must count for: a few that
 // were seen among others that were not tell of themselves.
 constexpr std::size_t kNear = 5;
@@ -53,23 +48,6 @@ constexpr double kLeastNear = 6.0;
 // They err by more than all if by so much: medians of so few differ by a third by chance, and where
 // SLAM's error is a slowly varying bias neighbours are all as large.
 constexpr double kLeastGrowth = 5.0;
-
-// Half of the weight lies below it and half above; where nothing has weight all count alike.
-double WeighedMedian(std::vector<Weighed> values) {
-  double all = 0.0;
-  for (const Weighed& v : values) all += v.weight;
-  if (all <= 0.0) {
-    for (Weighed& v : values) all += v.weight = 1.0;
-  }
-  std::stable_sort(values.begin(), values.end(),
-                   [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
-  double below = 0.0;
-  for (const Weighed& v : values) {
-    below += v.weight;
-    if (below > 0.5 * all) return v.value;
-  }
-  return values.back().value;
-}
 
 // The sigma of errors of which this share was seen. Each of weight by its share.
 class ErrorSpread {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 
 #include "mapper/core/level.h"
@@ -56,8 +57,31 @@ TEST(ScanKeeping, WhatWasSeenBeforeALossDoesNotCount) {
   const std::vector<MappedFrame> frames = RowOf(6);
   keeping.Rebuild(frames);
   EXPECT_EQ(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true), 0);
-  EXPECT_EQ(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, 3), 3);  // three since then: enough
-  EXPECT_FALSE(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, 4));
+  EXPECT_EQ(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, {}, 3), 3);  // three since then: enough
+  EXPECT_FALSE(keeping.TieOf(frames, {0.01, 0.1, 0.1}, true, {}, 4));
+}
+
+// Of what it sees most was drawn by the fourth, whoever is nearest; but not by one that does not
+// count.
+TEST(ScanKeeping, TiesToTheFrameThatDrewWhatIsMatched) {
+  ScanKeeping keeping(Few());
+  std::vector<MappedFrame> frames = RowOf(6);
+  frames[4].tied_to = 0;
+  keeping.Rebuild(frames);
+  std::vector<MapPart> matched(5);
+  const std::array<double, 5> drawn = {0.0, 0.4, 3.2, 3.9, 5.0};
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    matched[i].mapped = drawn[i];
+    matched[i].information = (i == 3 ? 5.0 : 1.0) * Eigen::Matrix3d::Identity();
+  }
+  const Pose2 pose{0.01, 0.1, 0.1};
+  EXPECT_EQ(keeping.TieOf(frames, pose, true), 0);
+  EXPECT_EQ(keeping.TieOf(frames, pose, true, matched), 3);
+  EXPECT_EQ(keeping.TieOf(frames, pose, true, matched, 1), 3);
+  matched[3].information *= 0.1;
+  matched[2].mapped = 0.3;
+  EXPECT_EQ(keeping.TieOf(frames, pose, true, matched), 0);
+  EXPECT_EQ(keeping.TieOf(frames, pose, true, matched, 1), 1);
 }
 
 TEST(ScanKeeping, WhatTheMapDoesNotExplainHasMoreRoom) {
