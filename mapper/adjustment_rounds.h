@@ -28,7 +28,8 @@ class AdjustmentRounds {
       : options_(options), next_(options.first_frames) {}
 
   // Whether it is time with so many mapped frames of this run; asked once a frame. A prior map's do
-  // not count: where this run began in it is put right by the first round.
+  // not count: where this run began in it is put right by the first round. Nor do those to which
+  // SLAM stood, which tell nothing new.
   bool IsDue(int frames);
 
  private:

@@ -138,7 +138,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
     return;
   }
   if (frame.loops.empty()) {
-    if (rounds.IsDue(mapped.size() - prior_frames)) {
+    if (rounds.IsDue(mapped.size() - mapped.standing() - prior_frames)) {
       const std::optional<MotionSpread> spread = AdjustBetweenFrames();
       if (spread && beginning.lasts()) GoThroughAgain(frame, *spread);
     }

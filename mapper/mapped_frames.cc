@@ -31,6 +31,13 @@ MappedFrame MappedFrames::WithScans(MappedFrame frame, const FrameScans& scans) 
 const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans,
                                      const std::optional<double>& explained,
                                      std::span<const MapPart> matched, int from) {
+  if (frame.slam_motion) {
+    const MatchResult& match = frame.match;
+    frame.stands = standing_.After(*frame.slam_motion);
+    standing_.Add(*frame.slam_motion,
+                  match.found ? std::optional(match.map_from_base) : std::nullopt);
+    standing_frames_ += frame.stands ? 1 : 0;
+  }
   if (explained) {
     const bool well = *explained >= options_.min_explained;
     frame.tied_to = keeping_.TieOf(frames_, frame.map_from_base, well, matched, from).value_or(-1);
@@ -60,6 +67,7 @@ void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
     frame.map_from_base = map_from_base[i];
   }
   keeping_.Rebuild(frames_);
+  standing_.MapMoved();
 }
 
 void MappedFrames::ForgetMotionTo(int position) {

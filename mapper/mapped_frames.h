@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/core/standing.h"
 #include "mapper/scan/frame_scans.h"
 #include "mapper/scan_keeping.h"
 
@@ -20,6 +21,8 @@ class MappedFrames {
   bool empty() const { return frames_.empty(); }
   int size() const { return static_cast<int>(frames_.size()); }
   const MappedFrame& back() const { return frames_.back(); }
+  // Of these, those to which SLAM's pose stood.
+  int standing() const { return standing_frames_; }
 
   // Those of a prior map.
   void StartFrom(std::vector<MappedFrame> prior);
@@ -46,6 +49,8 @@ class MappedFrames {
   KeepOptions options_;
   std::size_t recent_frames_;
   std::vector<MappedFrame> frames_;
+  Standing standing_;
+  int standing_frames_ = 0;
   ScanKeeping keeping_;
   Archive kept_;
   Archive recent_;

@@ -28,6 +28,8 @@ struct MappedFrame {
   // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
   // Of a prior map's frame the motion between their final poses.
   std::optional<Pose2> slam_motion;
+  // SLAM's pose stood still to here from the frame before (Standing).
+  bool stands = false;
   MatchResult match;
 
   bool kept() const { return tied_to < 0; }

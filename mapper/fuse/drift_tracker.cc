@@ -56,8 +56,15 @@ void DriftTracker::StartAnew() {
   map_evidence_ = DriftEvidence();
 }
 
+int DriftTracker::FramesTo(const Pose2& slam_from_base) const {
+  const bool stands = frames_ <= kMostLearntFrames &&
+                      standing_.After(Between(last_->slam_from_base, slam_from_base));
+  return stands ? 0 : frames_;
+}
+
 DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
-  return Predicted(state_, Between(last_->slam_from_base, slam_from_base), frames_, noise_);
+  return Predicted(state_, Between(last_->slam_from_base, slam_from_base), FramesTo(slam_from_base),
+                   noise_);
 }
 
 Prediction DriftTracker::Predict(const Pose2& slam_from_base) const {
@@ -70,11 +77,11 @@ FusedPose DriftTracker::Fuse(const Pose2& slam_from_base, const MatchResult& mat
   return Updated(StateAt(slam_from_base), match, noise_).fused;
 }
 
-FilterStep DriftTracker::StepTo(const Pose2& predicted) const {
+FilterStep DriftTracker::StepTo(const Pose2& slam_from_base, const Pose2& predicted) const {
   FilterStep step;
   step.predicted = predicted;
   if (!last_) return step;
-  const MotionErrors errors = ErrorsOver(frames_, learnt_);
+  const MotionErrors errors = ErrorsOver(FramesTo(slam_from_base), learnt_);
   step.walk = errors.walk;
   step.jitter = learnt_.jitter;
   step.bias_added = errors.bias_added;
@@ -94,11 +101,12 @@ DriftState DriftTracker::AnewAt(const Pose2& map_from_base,
 
 void DriftTracker::Restart(const Pose2& slam_from_base, const Pose2& map_from_base,
                            const Eigen::Matrix3d& covariance) {
-  step_ = StepTo(map_from_base);
+  step_ = StepTo(slam_from_base, map_from_base);
   step_.new_bias = learnt_.bias;
   state_ = AnewAt(map_from_base, covariance);
   last_ = Last{slam_from_base, {}};
   frames_ = 1;
+  standing_.MapMoved();
   learner_.Break();
 }
 
@@ -106,7 +114,7 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
                           const Eigen::Matrix3d& covariance, const MatchResult& match) {
   DriftState next = AnewAt(map_from_base, covariance);
   std::optional<MatchResult> matched;
-  step_ = StepTo(map_from_base);
+  step_ = StepTo(slam_from_base, map_from_base);
   step_.new_bias = learnt_.bias;
   if (last_) {
     const DriftState predicted = StateAt(slam_from_base);
@@ -126,18 +134,21 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
       step_.new_bias.reset();
     }
   }
-  if (matched && last_->match && frames_ <= kMostLearntFrames) {
-    Learn(Between(last_->slam_from_base, slam_from_base), *last_->match, *matched);
-  } else {
-    learner_.Break();
+  const bool follows = matched && last_->match && frames_ <= kMostLearntFrames;
+  if (!follows) learner_.Break();
+  if (last_) {
+    const Pose2 motion = Between(last_->slam_from_base, slam_from_base);
+    if (follows) Learn(motion, FramesTo(slam_from_base) == 0, *last_->match, *matched);
+    standing_.Add(motion, match.found ? std::optional(match.map_from_base) : std::nullopt);
   }
   state_ = next;
   last_ = Last{slam_from_base, matched};
   frames_ = 1;
 }
 
-void DriftTracker::Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now) {
-  learner_.AddMatches(motion, before, now);
+void DriftTracker::Learn(const Pose2& motion, bool stands, const MatchResult& before,
+                         const MatchResult& now) {
+  learner_.AddMatches(motion, stands, before, now);
   if (learner_.motions() < next_fit_) return;
   learnt_ = learner_.Fit(FirstNoise());
   noise_ = learnt_;

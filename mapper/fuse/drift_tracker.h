@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "mapper/core/standing.h"
 #include "mapper/fuse/drift_evidence.h"
 #include "mapper/fuse/drift_filter.h"
 #include "mapper/fuse/filter_step.h"
@@ -54,9 +55,11 @@ class DriftTracker {
     std::optional<MatchResult> match;
   };
   DriftState AnewAt(const Pose2& map_from_base, const Eigen::Matrix3d& covariance) const;
+  // So many frames' errors are in the motion to there: none where SLAM stands.
+  int FramesTo(const Pose2& slam_from_base) const;
   DriftState StateAt(const Pose2& slam_from_base) const;
-  FilterStep StepTo(const Pose2& predicted) const;
-  void Learn(const Pose2& motion, const MatchResult& before, const MatchResult& now);
+  FilterStep StepTo(const Pose2& slam_from_base, const Pose2& predicted) const;
+  void Learn(const Pose2& motion, bool stands, const MatchResult& before, const MatchResult& now);
   bool ConfirmsItself(int axis) const;
   void BoundLearnt();  // by the spread, if that is known
   void TestBound(const Prediction& prediction, const MatchResult& match);
@@ -73,6 +76,7 @@ class DriftTracker {
   FilterStep step_;
   DriftState state_;
   std::optional<Last> last_;
+  Standing standing_;
   int frames_ = 1;  // from it to the next pose
 };
 

@@ -79,6 +79,11 @@ Fit3 FitParts(const std::vector<double>& lag, const std::vector<double>& varianc
 
 MotionErrors ErrorsOver(int frames, const MotionNoise& noise) {
   MotionErrors errors;
+  if (frames == 0) {
+    errors.bias_added.setZero();
+    errors.bias_kept.setOnes();
+    return errors;
+  }
   errors.walk = noise.walk;
   errors.bias_kept = noise.bias_kept;
   for (int axis = 0; frames > 1 && axis < 3; ++axis) {
@@ -140,12 +145,30 @@ void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d
   }
 }
 
-void MotionNoiseLearner::AddMatches(const Pose2& motion, const MatchResult& before,
+void MotionNoiseLearner::AddStanding(const Eigen::Vector3d& error,
+                                     const Eigen::Vector3d& match_sigma) {
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (match_sigma[i] < kSeenSigma[i]) {
+      axis.total += error[i];
+    } else {
+      axis.run = 0;
+    }
+  }
+}
+
+void MotionNoiseLearner::AddMatches(const Pose2& motion, bool stands, const MatchResult& before,
                                     const MatchResult& now) {
   const Pose2 matched_motion = Between(before.map_from_base, now.map_from_base);
   const Eigen::Matrix3d information =
       now.information + kUnseenInformation * Eigen::Matrix3d::Identity();
-  Add(Between(motion, matched_motion).vector(), information.inverse().diagonal().cwiseSqrt());
+  const Eigen::Vector3d error = Between(motion, matched_motion).vector();
+  const Eigen::Vector3d match_sigma = information.inverse().diagonal().cwiseSqrt();
+  if (stands) {
+    AddStanding(error, match_sigma);
+  } else {
+    Add(error, match_sigma);
+  }
 }
 
 void MotionNoiseLearner::Break() {

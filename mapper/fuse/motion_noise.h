@@ -29,7 +29,7 @@ struct MotionErrors {
   Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias before
   Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // added to it
 };
-// Over so many frames at once, where a recording paused.
+// Over so many frames at once, where a recording paused; 0: SLAM stands, and does not err.
 MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
 
 // Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds
@@ -44,8 +44,12 @@ class MotionNoiseLearner {
   // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma` is that of
   // the match; an axis that the match hardly sees says nothing.
   void Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
+  // The same where SLAM stands (Standing): no frame in which it erred. What poses and matches
+  // jitter by meanwhile is in the sums over frames before and after.
+  void AddStanding(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
   // The same from two matches in a row and SLAM's motion between them.
-  void AddMatches(const Pose2& motion, const MatchResult& before, const MatchResult& now);
+  void AddMatches(const Pose2& motion, bool stands, const MatchResult& before,
+                  const MatchResult& now);
   // The next motion does not follow the last.
   void Break();
 

@@ -48,12 +48,14 @@ class Equations {
     g_.segment<3>(kUnknowns * frame) += weight.cwiseProduct(InnovationOf(map_from_base, stay));
   }
 
-  // error = relative pose against motion * bias; weight is diagonal.
-  void AddMotion(int frame, const State& state, const Pose2& motion,
+  // error = relative pose against motion * bias; weight is diagonal. Where SLAM stands no bias is
+  // in its motion.
+  void AddMotion(int frame, const State& state, const Pose2& motion, bool stands,
                  const Eigen::Vector3d& weight) {
     const auto k = static_cast<std::size_t>(frame);
     const Pose2 relative = Between(state.map_from_base[k - 1], state.map_from_base[k]);
-    const Eigen::Vector3d error = InnovationOf(motion, relative) - state.bias[k];
+    Eigen::Vector3d error = InnovationOf(motion, relative);
+    if (!stands) error -= state.bias[k];
     const Eigen::Matrix3d by_before = -AdjointOf(Inverse(relative));
     const int before = kUnknowns * (frame - 1);
     const int pose = kUnknowns * frame;
@@ -62,17 +64,18 @@ class Equations {
     const Eigen::Matrix3d w_before = w * by_before;
     AddBlock(before, by_before.transpose() * w_before);
     AddBlock(pose, w);
-    AddBlock(bias, w);
     AddOff(pose, before, w_before);
-    AddOff(bias, before, -w_before);
-    AddOff(bias, pose, -w);
     g_.segment<3>(before) -= w_before.transpose() * error;
     g_.segment<3>(pose) -= weight.cwiseProduct(error);
+    if (stands) return;
+    AddBlock(bias, w);
+    AddOff(bias, before, -w_before);
+    AddOff(bias, pose, -w);
     g_.segment<3>(bias) += weight.cwiseProduct(error);
   }
 
-  // bias = kept * bias before + renewed.
-  void AddBias(int frame, const State& state, const MotionNoise& noise) {
+  // bias = kept * bias before + renewed. It stays as long as SLAM stands.
+  void AddBias(int frame, const State& state, const MotionNoise& noise, bool stands) {
     const auto k = static_cast<std::size_t>(frame);
     const Eigen::Vector3d sigma = noise.bias.cwiseMax(kLeastBias);
     const int bias = kUnknowns * frame + 3;
@@ -82,9 +85,11 @@ class Equations {
       g_.segment<3>(bias) -= weight.cwiseProduct(state.bias[k]);
       return;
     }
-    const Eigen::Vector3d kept = noise.bias_kept;
+    const Eigen::Vector3d kept =
+        stands ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : noise.bias_kept;
     const Eigen::Vector3d renewed = (1.0 - kept.array().square()).sqrt().matrix();
-    const Eigen::Vector3d weight = Inverted(renewed.cwiseProduct(sigma));
+    const Eigen::Vector3d weight =
+        Inverted(stands ? kLeastBias : Eigen::Vector3d(renewed.cwiseProduct(sigma)));
     const Eigen::Vector3d error = state.bias[k] - kept.cwiseProduct(state.bias[k - 1]);
     const Eigen::Vector3d weighted = weight.cwiseProduct(error);
     AddBlock(bias, weight.asDiagonal());
@@ -140,7 +145,7 @@ MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames) {
   MotionNoiseLearner learner;
   for (std::size_t k = 1; k < frames.size(); ++k) {
     if (frames[k].motion && frames[k].match.found && frames[k - 1].match.found) {
-      learner.AddMatches(*frames[k].motion, frames[k - 1].match, frames[k].match);
+      learner.AddMatches(*frames[k].motion, frames[k].stands, frames[k - 1].match, frames[k].match);
     } else {
       learner.Break();
     }
@@ -154,6 +159,7 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
   for (const SmootherFrame& frame : frames) state.map_from_base.push_back(frame.map_from_base);
   state.bias.assign(frames.size(), Eigen::Vector3d::Zero());
   const Eigen::Vector3d motion_weight = Inverted(noise.walk.cwiseMax(kLeastWalk));
+  const Eigen::Vector3d standing_weight = Inverted(kLeastWalk);
   const Eigen::Matrix3d jitter = Squared(noise.jitter);
   const Eigen::Vector3d stay_weight =
       stay_m > 0.0 ? Inverted({stay_m, stay_m, kStayTurn * stay_m}) : Eigen::Vector3d::Zero();
@@ -169,9 +175,10 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
                            WithAddedCovariance(InformationIn(pose, match), jitter));
       }
       equations.AddStay(frame, pose, frames[k].map_from_base, stay_weight);
-      equations.AddBias(frame, state, noise);
+      equations.AddBias(frame, state, noise, frames[k].stands);
       if (k > 0 && frames[k].motion) {
-        equations.AddMotion(frame, state, *frames[k].motion, motion_weight);
+        equations.AddMotion(frame, state, *frames[k].motion, frames[k].stands,
+                            frames[k].stands ? standing_weight : motion_weight);
       }
     }
     if (!equations.SolveInto(state)) break;

@@ -14,6 +14,7 @@ struct SmootherFrame {
   Pose2 map_from_base;          // a good guess
   MatchResult match;            // against the adjusted map; not found: the motion alone
   std::optional<Pose2> motion;  // the prior's, from the frame before
+  bool stands = false;          // it stood still
 };
 
 // How the prior's motion errs, as the matches tell.

@@ -51,9 +51,10 @@ UsualMotion UsualFrameMotion(const std::vector<MappedFrame>& frames) {
 }
 
 // How many usual steps it took from the frame before: more than one where the recording paused and
-// SLAM moved on meanwhile.
+// SLAM moved on meanwhile, none where it stood.
 int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
             const UsualMotion& usual) {
+  if (frame.stands) return 0;
   if (frame.frame != before.frame + 1) return 1;
   const int steps = StepsIn(frame.stamp_s - before.stamp_s, usual_s);
   return frame.slam_motion ? MovingStepsIn(steps, *frame.slam_motion, usual) : steps;
@@ -76,6 +77,7 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
                                frames[static_cast<std::size_t>(i) - 1], usual_s, usual);
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
+    motion.frames = std::max(motion.frames, 1);
     const auto first = static_cast<std::size_t>(groups[g].first_frame);
     const MappedFrame& before = frames[first - 1];
     if (!before.kept() && frames[first].slam_motion) {
@@ -155,8 +157,9 @@ std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
     that_saw += group.surfels.empty() ? 0 : 1;
   }
   if (that_saw < kMinGroupsForSpread) return std::nullopt;
-  const int new_frames = static_cast<int>(frames.size()) - first_new;
-  return MotionSpread{result.motion_sigma, static_cast<double>(new_frames) / new_groups, that_saw,
+  const auto moving = std::count_if(frames.begin() + first_new, frames.end(),
+                                    [](const MappedFrame& frame) { return !frame.stands; });
+  return MotionSpread{result.motion_sigma, static_cast<double>(moving) / new_groups, that_saw,
                       result.motion_seen};
 }
 
@@ -352,7 +355,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     } else {
       match.map_from_base = poses[i] * Between(frames[i].map_from_base, match.map_from_base);
     }
-    smoother.push_back({poses[i], match, frames[i].slam_motion});
+    smoother.push_back({poses[i], match, frames[i].slam_motion, frames[i].stands});
   }
   MotionNoise noise = NoiseOf(smoother);
   if (spread && spread->IsSure()) Bound(*spread, noise);

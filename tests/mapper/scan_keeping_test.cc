@@ -125,6 +125,19 @@ TEST(MappedFrames, TiedOnesLoseTheirScansAfterAWhile) {
   EXPECT_EQ(with_scan, 6);  // and the two newest
 }
 
+TEST(MappedFrames, CountsThoseToWhichSlamStood) {
+  MappedFrames frames({}, 2);
+  FrameScans scans;
+  scans.matched = scans.obstacles =
+      std::make_shared<const Scan>(ScanOf(FurnishedRoom(), {3.0, 1.5, 0.0}, {.beams = 20}));
+  for (int i = 0; i < 30; ++i) {
+    MappedFrame frame = MappedAt({i < 20 ? 0.0 : 0.1, 0.1, 0.1});
+    if (i > 0) frame.slam_motion = Pose2{i == 20 ? 0.1 : 0.0, 0.0, 0.0};
+    EXPECT_EQ(frames.Add(frame, scans, {}).stands, i > 0 && i < 20) << i;
+  }
+  EXPECT_EQ(frames.standing(), 19);
+}
+
 TEST(MappedFrames, MatchesOfTiedOnesMoveWithThem) {
   MappedFrames frames({}, 2);
   std::vector<MappedFrame> prior = RowOf(2);

@@ -1,0 +1,39 @@
+#include "mapper/core/standing.h"
+
+#include "mapper/core/frame_report.h"
+
+namespace depthgrid {
+namespace {
+
+// How far SLAM goes, in itself or 3 m away, before it has left a place: ten times what the last
+// digits of odometry jitter by, and a tenth of a frame's way at a walking pace.
+constexpr double kLeftM = 0.005;
+// And what is matched, which is noisy: no better match tells how SLAM errs (motion_noise.cc).
+constexpr double kSeenToLeaveM = 0.05;
+bool IsFarther(const Pose2& motion, double limit_m) {
+  return motion.vector().cwiseQuotient(kMotionUnit).norm() > limit_m;
+}
+
+}  // namespace
+
+bool Standing::After(const Pose2& motion) const {
+  return frames_ + 1 >= kMovingFrames && !IsFarther(since_left_ * motion, kLeftM);
+}
+
+void Standing::Add(const Pose2& motion, const std::optional<Pose2>& map_from_base) {
+  if (frames_ < kMovingFrames) ++frames_;
+  since_left_ = since_left_ * motion;
+  if (IsFarther(since_left_, kLeftM)) {
+    since_left_ = {};
+    frames_ = 0;
+    seen_ = map_from_base;
+    return;
+  }
+  if (!map_from_base) return;
+  if (!seen_) seen_ = map_from_base;
+  if (!IsFarther(Between(*seen_, *map_from_base), kSeenToLeaveM)) return;
+  frames_ = 0;
+  seen_ = map_from_base;
+}
+
+}  // namespace depthgrid
