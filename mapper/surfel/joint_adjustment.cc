@@ -18,8 +18,6 @@ namespace {
 // How well the online estimate joins neighbouring groups, before loops have bent it: what keeps the
 // chain together in the first step, which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
-// And how well a prior map's adjustment has: it had all that was seen, and loops.
-const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
 // Across a gap in SLAM's motion groups lie as the online estimate has them, or as loops have bent
 // it: what ties them together where both see nothing in common.
 constexpr double kGapHuberSigmas = 2.0;

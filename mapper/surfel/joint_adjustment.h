@@ -54,6 +54,10 @@ struct JointOptions {
   void Visit(OptionsVisitor& v);
 };
 
+// How well a prior map's adjustment joined its neighbouring groups: it had all that was seen, and
+// loops. m, m, rad.
+inline const Eigen::Vector3d kPriorMapSigma(0.0005, 0.0005, 0.0003);
+
 // The prior's motion from the group before, over so many frames; nothing is known when `known` is
 // false (SLAM jumped).
 struct GroupMotion {
@@ -62,8 +66,8 @@ struct GroupMotion {
   int frames = 0;
   // Between groups of a prior map: as it came out there, not as SLAM had it.
   bool of_prior_map = false;
-  // The frame before the group's first was tied to an earlier group: where it was matched there,
-  // and the motion from it.
+  // The frame before the group's first moves with an earlier group: where it is there, and the
+  // motion from it.
   std::optional<GroupLink> tie = {};
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/error.h"
 
@@ -16,6 +17,13 @@ constexpr double kMaxAngleDeg = 40.0;
 constexpr double kGroupAlongShare = 0.5;
 // Over more tied frames than this, a second, the online estimate does not join two to millimetres.
 constexpr std::size_t kLongestGapFrames = 30;
+// 1.2 m: farther on another part of the room is in view.
+constexpr int kMostJoined = 8;
+
+int PriorGroups(const std::vector<GroupStart>& starts) {
+  return static_cast<int>(std::count_if(
+      starts.begin(), starts.end(), [](const GroupStart& start) { return start.of_prior_map; }));
+}
 
 }  // namespace
 
@@ -26,9 +34,9 @@ void SurfelGroupOptions::Visit(OptionsVisitor& v) {
   v.Number("most", most, {1, 1e9}, "with more groups neighbouring ones are adjusted as one");
 }
 
-bool SurfelGroups::Ends(const Pose2& group_from_base) const {
-  return group_from_base.translation().norm() > options_.length_m ||
-         std::abs(group_from_base.yaw_rad) > RadFromDeg(options_.turn_deg);
+bool SurfelGroups::Ends(const Pose2& group_from_base, int times) const {
+  return group_from_base.translation().norm() > options_.length_m * times ||
+         std::abs(group_from_base.yaw_rad) > RadFromDeg(options_.turn_deg * times);
 }
 
 void SurfelGroups::Begin(int first_frame, const Pose2& map_from_group) {
@@ -92,48 +100,113 @@ SurfelGroups SurfelGroups::WithoutSurfels() const {
   return bare;
 }
 
-SurfelGroups SurfelGroups::JoinedBy(int factor, const std::vector<bool>& apart,
-                                    GroupContent content) const {
-  SurfelGroupOptions wider = options_;
-  wider.length_m *= factor;
-  wider.turn_deg *= factor;
-  SurfelGroups joined(wider);
-  std::vector<GroupPlace> place_of_group;  // in the joined groups
+int SurfelGroups::NearestAround(const Pose2& map_from_group, const std::vector<SurfelGroup>& joined,
+                                int times) const {
+  const double reach_m = options_.length_m * times;
+  const double reach_rad = RadFromDeg(options_.turn_deg * times);
+  int nearest = -1;
+  double least = 2.0;  // squares of shares of the reach
+  for (std::size_t i = 0; i < joined.size(); ++i) {
+    const Pose2& there = joined[i].map_from_group;
+    const double way2 = (there.translation() - map_from_group.translation()).squaredNorm();
+    if (way2 > reach_m * reach_m) continue;
+    const double turn = std::abs(WrapAngle(there.yaw_rad - map_from_group.yaw_rad));
+    if (turn > reach_rad) continue;
+    const double apart = way2 / (reach_m * reach_m) + turn * turn / (reach_rad * reach_rad);
+    if (apart >= least) continue;
+    least = apart;
+    nearest = static_cast<int>(i);
+  }
+  return nearest;
+}
+
+SurfelGroups::Joining SurfelGroups::JoinedBy(const JoinRule& rule,
+                                             const std::vector<GroupStart>& starts) const {
+  Joining joining;
+  int into = -1;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const SurfelGroup& group = groups_[g];
-    if (g == 0 || apart[g] ||
-        joined.Ends(Between(joined.groups_.back().map_from_group, group.map_from_group))) {
-      joined.Begin(group.first_frame, group.map_from_group);
+    const bool prior = starts[g].of_prior_map && rule.prior_times > 0;
+    const int times = prior ? rule.prior_times : rule.times;
+    const auto from = [&](int joined) {
+      return Between(joining.groups[static_cast<std::size_t>(joined)].map_from_group,
+                     group.map_from_group);
+    };
+    const bool goes_on = into >= 0 && !starts[g].apart && !Ends(from(into), times);
+    if (!goes_on) {
+      const bool in_place = prior || (rule.in_place && starts[g].settled);
+      into = in_place ? NearestAround(group.map_from_group, joining.groups, times) : -1;
     }
-    SurfelGroup& into = joined.groups_.back();
-    const Pose2 into_from_group = Between(into.map_from_group, group.map_from_group);
-    place_of_group.push_back({static_cast<int>(joined.groups_.size()) - 1, into_from_group});
-    into.frames += group.frames;
-    if (content == GroupContent::kPosesOnly) continue;
-    joined.Collect(group.surfels, into_from_group);
-    into.surfels = joined.newest_.surfels();
+    if (into < 0) {
+      into = static_cast<int>(joining.groups.size());
+      joining.groups.push_back({group.first_frame, 0, group.map_from_group, {}});
+    }
+    joining.groups[static_cast<std::size_t>(into)].frames += group.frames;
+    joining.places.push_back({into, from(into)});
   }
+  return joining;
+}
+
+SurfelGroups::Joining SurfelGroups::JoinedWithin(const GroupLimits& limits,
+                                                 const std::vector<GroupStart>& starts) const {
+  Joining joining;
+  JoinRule rule;
+  int most = limits.most;
+  auto count = static_cast<int>(groups_.size());
+  const auto fits = [&] {
+    joining = JoinedBy(rule, starts);
+    count = static_cast<int>(joining.groups.size());
+    return count <= most;
+  };
+  if (const int prior = PriorGroups(starts); prior > limits.most_of_prior_map) {
+    const int others = static_cast<int>(groups_.size()) - prior;
+    for (rule.prior_times = 2; !fits() && rule.prior_times < kMostJoined; ++rule.prior_times) {
+      if (count - others <= limits.most_of_prior_map) break;
+    }
+    // The run's own are not joined for a prior map of too wide an area.
+    most = std::max(most, count - others + limits.most - limits.most_of_prior_map);
+    if (count <= most) return joining;
+  }
+  rule.times = std::min((count + most - 1) / most, kMostJoined);
+  for (; !fits() && rule.times < kMostJoined; ++rule.times) {
+  }
+  if (count <= most || !limits.in_place) return joining;
+  rule.in_place = true;
+  for (rule.times = 2; !fits() && rule.times < kMostJoined; ++rule.times) {
+  }
+  return joining;
+}
+
+SurfelGroups SurfelGroups::Filled(Joining joining, GroupContent content) const {
+  SurfelGroups joined(options_);
   joined.places_.reserve(places_.size());
   for (const GroupPlace& place : places_) {
-    const GroupPlace& group = place_of_group[static_cast<std::size_t>(place.group)];
+    const GroupPlace& group = joining.places[static_cast<std::size_t>(place.group)];
     joined.places_.push_back({group.group, group.group_from_base * place.group_from_base});
+  }
+  joined.groups_ = std::move(joining.groups);
+  if (content == GroupContent::kPosesOnly) return joined;
+  std::vector<std::vector<std::size_t>> members(joined.groups_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    members[static_cast<std::size_t>(joining.places[g].group)].push_back(g);
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    joined.newest_.Clear();
+    for (const std::size_t g : members[i]) {
+      joined.Collect(groups_[g].surfels, joining.places[g].group_from_base);
+    }
+    joined.groups_[i].surfels = joined.newest_.surfels();
   }
   return joined;
 }
 
-SurfelGroups SurfelGroups::Joined(int most, const std::vector<bool>& apart,
+SurfelGroups SurfelGroups::Joined(const GroupLimits& limits, const std::vector<GroupStart>& starts,
                                   GroupContent content) const {
-  constexpr int kMostJoined = 8;  // 1.2 m: farther on another part of the room is in view
-  const int groups = static_cast<int>(groups_.size());
-  if (groups <= most) return content == GroupContent::kSurfels ? *this : WithoutSurfels();
-  int factor = (groups + most - 1) / most;
-  while (true) {
-    SurfelGroups joined = JoinedBy(std::min(factor, kMostJoined), apart, content);
-    if (factor >= kMostJoined || static_cast<int>(joined.groups_.size()) <= most) {
-      return joined;
-    }
-    ++factor;
+  const auto groups = static_cast<int>(groups_.size());
+  if (groups <= limits.most && PriorGroups(starts) <= limits.most_of_prior_map) {
+    return content == GroupContent::kSurfels ? *this : WithoutSurfels();
   }
+  return Filled(JoinedWithin(limits, starts), content);
 }
 
 void SurfelGroups::MoveTo(const std::vector<Pose2>& map_from_base) {

@@ -5,105 +5,13 @@
 #include <utility>
 
 #include "mapper/core/error.h"
-#include "mapper/core/usual_step.h"
 #include "mapper/fuse/fusion.h"
 #include "mapper/surfel/frame_smoother.h"
+#include "mapper/surfel/group_motions.h"
 #include "mapper/surfel/pose_covariance.h"
 
 namespace depthgrid {
 namespace {
-
-// A tied frame's pose is as good as its match, but neither better than this nor worse: m, m, rad.
-const Eigen::Vector3d kLeastTieSigma(0.005, 0.005, 0.003);
-const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
-// Matches against the same noisy map are worth less than they say (docs/math.md, "Scans that are
-// kept").
-constexpr double kTieOverconfidence = 4.0;
-constexpr double kTieHuberSigmas = 2.0;
-
-// From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
-GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
-  const Eigen::Matrix3d ridge =
-      kMostTieSigma.cwiseProduct(kMostTieSigma).cwiseInverse().asDiagonal();
-  Eigen::Matrix3d information = ridge;
-  if (match.found) information += match.information / kTieOverconfidence;
-  const Eigen::Vector3d sigma = information.inverse().diagonal().cwiseSqrt();
-  return {tied.group, group, tied.group_from_base * motion, sigma.cwiseMax(kLeastTieSigma),
-          kTieHuberSigmas};
-}
-
-// From a frame to the one that follows it; 0 where nothing tells.
-double UsualFrameStepS(const std::vector<MappedFrame>& frames) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    const double step_s = frames[i].stamp_s - frames[i - 1].stamp_s;
-    if (frames[i].slam_motion && step_s > 0.0) steps_s.push_back(step_s);
-  }
-  return UsualStepS(steps_s);
-}
-
-UsualMotion UsualFrameMotion(const std::vector<MappedFrame>& frames) {
-  UsualMotion usual;
-  for (const MappedFrame& frame : frames) {
-    if (frame.slam_motion) usual.Add(*frame.slam_motion);
-  }
-  return usual;
-}
-
-// How many usual steps it took from the frame before: more than one where the recording paused and
-// SLAM moved on meanwhile, none where it stood.
-int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
-            const UsualMotion& usual) {
-  if (frame.stands) return 0;
-  if (frame.frame != before.frame + 1) return 1;
-  const int steps = StepsIn(frame.stamp_s - before.stamp_s, usual_s);
-  return frame.slam_motion ? MovingStepsIn(steps, *frame.slam_motion, usual) : steps;
-}
-
-// SLAM's motion from each group to the next, from those of the frames between.
-std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
-  const std::vector<SurfelGroup>& groups = of.groups();
-  std::vector<GroupMotion> motions(groups.size());
-  const double usual_s = UsualFrameStepS(frames);
-  const UsualMotion usual = UsualFrameMotion(frames);
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    GroupMotion& motion = motions[g];
-    motion.known = true;
-    motion.of_prior_map = frames[static_cast<std::size_t>(groups[g].first_frame)].of_prior_map();
-    for (int i = groups[g - 1].first_frame + 1; i <= groups[g].first_frame; ++i) {
-      const std::optional<Pose2>& step = frames[static_cast<std::size_t>(i)].slam_motion;
-      motion.known = motion.known && step;
-      motion.frames += StepsTo(frames[static_cast<std::size_t>(i)],
-                               frames[static_cast<std::size_t>(i) - 1], usual_s, usual);
-      if (motion.known) motion.before_from_group = motion.before_from_group * *step;
-    }
-    motion.frames = std::max(motion.frames, 1);
-    const auto first = static_cast<std::size_t>(groups[g].first_frame);
-    const MappedFrame& before = frames[first - 1];
-    if (!before.kept() && frames[first].slam_motion) {
-      motion.tie = TieOf(of.places()[first - 1], before.match, *frames[first].slam_motion,
-                         static_cast<int>(g));
-    }
-  }
-  return motions;
-}
-
-// The position of the first frame that is not a prior map's.
-int FirstNew(const std::vector<MappedFrame>& frames) {
-  const auto first = std::find_if(frames.begin(), frames.end(),
-                                  [](const MappedFrame& frame) { return !frame.of_prior_map(); });
-  return static_cast<int>(first - frames.begin());
-}
-
-// Whether SLAM jumped, or began anew, between each group and the one before, or frames between were
-// not kept.
-std::vector<bool> GapsBefore(const SurfelGroups& groups, const std::vector<MappedFrame>& frames) {
-  std::vector<bool> gaps;
-  for (const GroupMotion& motion : MotionsOf(groups, frames)) {
-    gaps.push_back(!motion.known || motion.tie);
-  }
-  return gaps;
-}
 
 // The loop between two frames as one between their groups.
 GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) {
@@ -144,8 +52,27 @@ const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 // Fewer groups that saw something tell nothing of how the prior errs.
 constexpr int kMinGroupsForSpread = 4;
 
+// Whether some groups hold frames of several times (SurfelGroups::Joined).
+bool AreJoinedInPlace(const std::vector<GroupMotion>& motions) {
+  return std::any_of(motions.begin(), motions.end(),
+                     [](const GroupMotion& motion) { return motion.tie && !motion.known; });
+}
+
+// In the mean, of this run's own.
+double FramesAMotion(const std::vector<GroupMotion>& motions) {
+  double frames = 0.0;
+  int count = 0;
+  for (const GroupMotion& motion : motions) {
+    if (!motion.known || motion.of_prior_map) continue;
+    frames += motion.frames;
+    ++count;
+  }
+  return count > 0 ? frames / count : 1.0;
+}
+
 // How SLAM's motion errs from group to group of this run's own.
 std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
+                                     const std::vector<GroupMotion>& motions,
                                      const std::vector<MappedFrame>& frames,
                                      const JointResult& result) {
   const int first_new = FirstNew(frames);
@@ -159,8 +86,9 @@ std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
   if (that_saw < kMinGroupsForSpread) return std::nullopt;
   const auto moving = std::count_if(frames.begin() + first_new, frames.end(),
                                     [](const MappedFrame& frame) { return !frame.stands; });
-  return MotionSpread{result.motion_sigma, static_cast<double>(moving) / new_groups, that_saw,
-                      result.motion_seen};
+  double frames_a_group = static_cast<double>(moving) / new_groups;
+  if (AreJoinedInPlace(motions)) frames_a_group = FramesAMotion(motions);
+  return MotionSpread{result.motion_sigma, frames_a_group, that_saw, result.motion_seen};
 }
 
 }  // namespace
@@ -266,10 +194,11 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
     effort = AdjustEffort::kRefine;
   }
   const SurfelGroups groups = GroupsOf(frames, effort);
-  const JointOptions joint = JointOptionsFor(effort, groups_.groups().size());
+  const JointOptions joint = JointOptionsFor(effort);
   std::vector<GroupLink> links;
   for (const PlanarLoop& loop : loops) links.push_back(LinkOf(loop, groups.places()));
-  JointResult result = AdjustJointly(groups.groups(), MotionsOf(groups, frames), links, joint);
+  const std::vector<GroupMotion> motions = MotionsOf(groups, frames);
+  JointResult result = AdjustJointly(groups.groups(), motions, links, joint);
   const double shared_before = matcher_.shared_errors();
   if (effort != AdjustEffort::kBend) matcher_.ShareErrors(result.correlation);
   Adjustment adjustment;
@@ -279,7 +208,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
         PoseCovariance(*result.factored, result.map_from_group, GroupsAt(asked, groups.places()));
     result.factored.reset();
   }
-  adjustment.motion_spread = SpreadOf(groups.groups(), frames, result);
+  adjustment.motion_spread = SpreadOf(groups.groups(), motions, frames, result);
   adjustment.map_from_base =
       effort == AdjustEffort::kFinish
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)
@@ -305,8 +234,9 @@ bool SurfelMap::MoveLittle(const std::vector<PlanarLoop>& loops,
 SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort) {
   const auto joined = [&](const SurfelGroups& groups) {
     Require(groups.places().size() == frames.size(), "the frames are those inserted");
+    const std::vector<GroupStart> starts = StartsOf(groups, frames);
     return groups.Joined(
-        JointOptionsFor(effort, groups.groups().size()).groups.most, GapsBefore(groups, frames),
+        LimitsFor(effort, options_.joint, starts), starts,
         effort == AdjustEffort::kBend ? GroupContent::kPosesOnly : GroupContent::kSurfels);
   };
   if (groups_.places().size() >= frames.size()) return joined(groups_);
@@ -318,15 +248,11 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
   return joined(groups);
 }
 
-JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort, std::size_t groups) const {
+JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
   JointOptions joint = options_.joint;
   if (effort == AdjustEffort::kRefine) {
     joint.rounds = joint.refine_rounds;
     joint.first_gate_m = joint.refine_gate_m;
-  }
-  if (effort == AdjustEffort::kRefine || effort == AdjustEffort::kCloseLoops) {
-    const int two_as_one = static_cast<int>(2 * groups / 3);  // as some stay apart
-    joint.groups.most = std::min(joint.groups.most, std::max(joint.refine_groups, two_as_one));
   }
   if (effort == AdjustEffort::kBend) joint.rounds = 0;
   return joint;

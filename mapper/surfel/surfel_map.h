@@ -74,7 +74,7 @@ class SurfelMap : public ReferenceMap {
   bool MoveLittle(const std::vector<PlanarLoop>& loops, const std::vector<MappedFrame>& frames);
   // The frames' groups, joined as far as an adjustment wants them.
   SurfelGroups GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort);
-  JointOptions JointOptionsFor(AdjustEffort effort, std::size_t groups) const;
+  JointOptions JointOptionsFor(AdjustEffort effort) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,
                                   const std::vector<Pose2>& map_from_group,

@@ -1,0 +1,157 @@
+#include "mapper/surfel/group_motions.h"
+
+#include <algorithm>
+
+#include "mapper/core/usual_step.h"
+#include "mapper/fuse/fusion.h"
+
+namespace depthgrid {
+namespace {
+
+// A tied frame's pose is as good as its match, but neither better than this nor worse: m, m, rad.
+const Eigen::Vector3d kLeastTieSigma(0.005, 0.005, 0.003);
+const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
+// Matches against the same noisy map are worth less than they say (docs/math.md, "Scans that are
+// kept").
+constexpr double kTieOverconfidence = 4.0;
+constexpr double kTieHuberSigmas = 2.0;
+
+// A frame whose match says better than this where it is lies in the map as what was seen there
+// before: a group's own frames agree to as much (kGateM of surfel_groups.cc). m, m, rad.
+const Eigen::Vector3d kSettledSigma(0.02, 0.02, 0.01);
+
+Eigen::Vector3d SigmaOf(const MatchResult& match) {
+  const Eigen::Matrix3d ridge =
+      kMostTieSigma.cwiseProduct(kMostTieSigma).cwiseInverse().asDiagonal();
+  Eigen::Matrix3d information = ridge;
+  if (match.found) information += match.information / kTieOverconfidence;
+  return information.inverse().diagonal().cwiseSqrt();
+}
+
+// From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
+GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
+  return {tied.group, group, tied.group_from_base * motion, SigmaOf(match).cwiseMax(kLeastTieSigma),
+          kTieHuberSigmas};
+}
+
+// From a frame to the one that follows it; 0 where nothing tells.
+double UsualFrameStepS(const std::vector<MappedFrame>& frames) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const double step_s = frames[i].stamp_s - frames[i - 1].stamp_s;
+    if (frames[i].slam_motion && step_s > 0.0) steps_s.push_back(step_s);
+  }
+  return UsualStepS(steps_s);
+}
+
+UsualMotion UsualFrameMotion(const std::vector<MappedFrame>& frames) {
+  UsualMotion usual;
+  for (const MappedFrame& frame : frames) {
+    if (frame.slam_motion) usual.Add(*frame.slam_motion);
+  }
+  return usual;
+}
+
+// How many usual steps it took from the frame before: more than one where the recording paused and
+// SLAM moved on meanwhile, none where it stood.
+int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
+            const UsualMotion& usual) {
+  if (frame.stands) return 0;
+  if (frame.frame != before.frame + 1) return 1;
+  const int steps = StepsIn(frame.stamp_s - before.stamp_s, usual_s);
+  return frame.slam_motion ? MovingStepsIn(steps, *frame.slam_motion, usual) : steps;
+}
+
+// How the frame before a group's first lies to it: that frame moves with an earlier group.
+std::optional<GroupLink> TieBefore(const SurfelGroups& of, const std::vector<MappedFrame>& frames,
+                                   std::size_t g) {
+  const auto first = static_cast<std::size_t>(of.groups()[g].first_frame);
+  const std::optional<Pose2>& motion = frames[first].slam_motion;
+  if (!motion) return std::nullopt;
+  const GroupPlace& before = of.places()[first - 1];
+  const int group = static_cast<int>(g);
+  if (frames[first].of_prior_map()) {
+    return GroupLink{before.group, group, before.group_from_base * *motion, kPriorMapSigma};
+  }
+  return TieOf(before, frames[first - 1].match, *motion, group);
+}
+
+// Whether the last kept frame before a group's first is in the group before it: groups that are
+// joined in place (SurfelGroups::Joined) hold frames of many times.
+bool GoesOnFromLast(const SurfelGroups& of, const std::vector<MappedFrame>& frames, std::size_t g) {
+  auto before = static_cast<std::size_t>(of.groups()[g].first_frame) - 1;
+  while (!frames[before].kept()) --before;
+  return of.places()[before].group == static_cast<int>(g) - 1;
+}
+
+}  // namespace
+
+std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
+  const std::vector<SurfelGroup>& groups = of.groups();
+  std::vector<GroupMotion> motions(groups.size());
+  const double usual_s = UsualFrameStepS(frames);
+  const UsualMotion usual = UsualFrameMotion(frames);
+  for (std::size_t g = 1; g < groups.size(); ++g) {
+    GroupMotion& motion = motions[g];
+    const auto first = static_cast<std::size_t>(groups[g].first_frame);
+    motion.of_prior_map = frames[first].of_prior_map();
+    if (!GoesOnFromLast(of, frames, g)) {
+      motion.tie = TieBefore(of, frames, g);
+      continue;
+    }
+    motion.known = true;
+    for (auto i = static_cast<std::size_t>(groups[g - 1].first_frame) + 1; i <= first; ++i) {
+      const std::optional<Pose2>& step = frames[i].slam_motion;
+      motion.known = motion.known && step;
+      motion.frames += StepsTo(frames[i], frames[i - 1], usual_s, usual);
+      if (motion.known) motion.before_from_group = motion.before_from_group * *step;
+    }
+    motion.frames = std::max(motion.frames, 1);
+    if (!frames[first - 1].kept()) motion.tie = TieBefore(of, frames, g);
+  }
+  return motions;
+}
+
+std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
+  std::vector<GroupStart> starts;
+  bool in_place = false;  // since a frame was tied
+  for (const GroupMotion& motion : MotionsOf(of, frames)) {
+    const SurfelGroup& group = of.groups()[starts.size()];
+    const MatchResult& match = frames[static_cast<std::size_t>(group.first_frame)].match;
+    in_place = motion.tie || (in_place && motion.known);
+    const bool sure = (SigmaOf(match).array() <= kSettledSigma.array()).all();
+    starts.push_back({!motion.known || motion.tie, in_place && sure, motion.of_prior_map});
+  }
+  // The first one's motion says nothing.
+  if (!starts.empty()) starts[0].of_prior_map = frames[0].of_prior_map();
+  return starts;
+}
+
+GroupLimits LimitsFor(AdjustEffort effort, const JointOptions& joint,
+                      const std::vector<GroupStart>& starts) {
+  const int most = joint.groups.most;
+  const auto groups = static_cast<int>(starts.size());
+  const auto prior = static_cast<int>(std::count_if(
+      starts.begin(), starts.end(), [](const GroupStart& start) { return start.of_prior_map; }));
+  // Without surfels only loops and the chain of groups tell how they lie: the more the better.
+  if (effort == AdjustEffort::kBend) return {.most = most, .most_of_prior_map = prior};
+  if (effort == AdjustEffort::kFinish) {
+    return {.most = most,
+            .most_of_prior_map = std::max(most / 2, most - (groups - prior)),
+            .in_place = true};
+  }
+  // Two as one, as some stay apart.
+  const auto run = [&](int count) { return std::max(joint.refine_groups, 2 * count / 3); };
+  // A prior map was adjusted when it was made: few of its groups hold those of this run.
+  const int of_prior = std::min(prior, joint.refine_groups);
+  const int wanted = prior > of_prior ? of_prior + run(groups - prior) : run(groups);
+  return {.most = std::min(most, wanted), .most_of_prior_map = of_prior, .in_place = true};
+}
+
+int FirstNew(const std::vector<MappedFrame>& frames) {
+  const auto first = std::find_if(frames.begin(), frames.end(),
+                                  [](const MappedFrame& frame) { return !frame.of_prior_map(); });
+  return static_cast<int>(first - frames.begin());
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,156 @@
+#include "mapper/surfel/group_motions.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace depthgrid {
+namespace {
+
+constexpr int kSteps = 12;  // of a walk
+
+// A walk there and back along a line, again and again, a group each frame. In each walk but the
+// first every third frame is of a place that is well seen.
+struct Walks {
+  explicit Walks(int walks, bool of_prior_map = false) {
+    SurfelGroupOptions options;
+    options.length_m = 0.08;
+    groups = SurfelGroups(options);
+    for (int i = 0; i < walks * kSteps; ++i) Add(i, of_prior_map);
+  }
+
+  void Add(int i, bool of_prior_map) {
+    const int in_walk = i % kSteps;
+    const int to_and_fro = std::min(in_walk, kSteps - in_walk);
+    MappedFrame frame;
+    frame.frame = of_prior_map ? i - 100000 : i;
+    frame.map_from_base = {0.1 * to_and_fro, 0.0, 0.0};
+    frame.match.found = true;
+    frame.match.map_from_base = frame.map_from_base;
+    frame.match.information = Eigen::Vector3d(1e6, 1e6, 1e6).asDiagonal();
+    if (i > 0) frame.slam_motion = Between(frames.back().map_from_base, frame.map_from_base);
+    if (!of_prior_map && i >= kSteps && in_walk % 3 == 2) frame.tied_to = in_walk;
+    frames.push_back(frame);
+    if (frame.kept()) {
+      groups.Add({}, frame.map_from_base);
+    } else {
+      groups.AddTied(frame.tied_to, frame.map_from_base);
+    }
+  }
+
+  SurfelGroups Joined(int most) const {
+    return groups.Joined({.most = most, .most_of_prior_map = most, .in_place = true},
+                         StartsOf(groups, frames));
+  }
+
+  SurfelGroups groups{SurfelGroupOptions()};
+  std::vector<MappedFrame> frames;
+};
+
+TEST(GroupMotions, AGroupIsSettledOnceAFrameBeforeItWasTied) {
+  const Walks walks(3);
+  const std::vector<GroupStart> starts = StartsOf(walks.groups, walks.frames);
+  ASSERT_EQ(starts.size(), walks.groups.groups().size());
+  int settled = 0;
+  for (std::size_t g = 0; g < starts.size(); ++g) {
+    const bool after_a_tie = walks.groups.groups()[g].first_frame > kSteps + 2;
+    EXPECT_EQ(starts[g].settled, after_a_tie) << g;
+    settled += starts[g].settled ? 1 : 0;
+  }
+  EXPECT_EQ(settled, 14);
+}
+
+TEST(GroupMotions, NeitherIsOneThatWasHardlySeenNorOneAfterAJump) {
+  constexpr std::size_t kUnseen = 2 * kSteps;
+  constexpr std::size_t kJump = 2 * kSteps + 3;
+  Walks walks(3);
+  walks.frames[kUnseen].match.information(0, 0) = 1.0;
+  walks.frames[kJump].slam_motion.reset();
+  const std::vector<GroupStart> starts = StartsOf(walks.groups, walks.frames);
+  const auto group_of = [&](std::size_t frame) {
+    return static_cast<std::size_t>(walks.groups.places()[frame].group);
+  };
+  EXPECT_TRUE(starts[group_of(kUnseen - 2)].settled);
+  EXPECT_FALSE(starts[group_of(kUnseen)].settled);
+  EXPECT_TRUE(starts[group_of(kUnseen + 1)].settled);
+  EXPECT_FALSE(starts[group_of(kJump)].settled);
+  EXPECT_TRUE(starts[group_of(kJump)].apart);
+  EXPECT_FALSE(starts[group_of(kJump + 1)].settled);
+  EXPECT_TRUE(starts.back().settled);  // after the next tie
+}
+
+// However often the place is walked through.
+TEST(GroupMotions, ManyWalksBecomeAsManyGroupsAsAFew) {
+  for (const int count : {4, 40, 400}) {
+    const Walks walks(count);
+    EXPECT_GE(walks.groups.groups().size(), static_cast<std::size_t>(8 * count));
+    EXPECT_LE(walks.Joined(20).groups().size(), 20U) << count;
+  }
+}
+
+// What SLAM says between two frames whose groups follow each other in time; where frames between
+// are in other groups, how the frame before lies, with no word of SLAM's over all of them.
+TEST(GroupMotions, GroupsOfOnePlaceGoOnFromTheFrameBefore) {
+  Walks walks(6);
+  for (const int more : {0, 1}) walks.Add(6 * kSteps + more, false);
+  const Pose2 last = walks.frames.back().map_from_base;
+  MappedFrame elsewhere = walks.frames.back();
+  elsewhere.frame += 1;
+  elsewhere.map_from_base = last * Pose2{3.0, 1.0, 0.0};
+  elsewhere.slam_motion = Pose2{3.0, 1.0, 0.0};
+  walks.frames.push_back(elsewhere);
+  walks.groups.Add({}, elsewhere.map_from_base);
+  const SurfelGroups joined = walks.Joined(15);
+  ASSERT_LE(joined.groups().size(), 15U);
+  const std::vector<GroupMotion> motions = MotionsOf(joined, walks.frames);
+  const GroupMotion& motion = motions.back();
+  EXPECT_FALSE(motion.known);
+  ASSERT_TRUE(motion.tie);
+  EXPECT_LT(motion.tie->first, static_cast<int>(joined.groups().size()) - 2);
+  EXPECT_EQ(motion.tie->second, static_cast<int>(joined.groups().size()) - 1);
+  const Pose2 first = joined.groups()[static_cast<std::size_t>(motion.tie->first)].map_from_group;
+  EXPECT_NEAR(Separation(first * motion.tie->first_from_second, elsewhere.map_from_base), 0.0,
+              1e-9);
+  EXPECT_TRUE(motions[1].known);
+  EXPECT_FALSE(motions[1].tie);
+}
+
+TEST(GroupMotions, APriorMapsGroupsOfOnePlaceAreHeldAsItHadThem) {
+  Walks walks(6, true);
+  MappedFrame elsewhere = walks.frames.back();
+  elsewhere.map_from_base = elsewhere.map_from_base * Pose2{3.0, 0.0, 0.0};
+  elsewhere.slam_motion = Pose2{3.0, 0.0, 0.0};
+  walks.frames.push_back(elsewhere);
+  walks.groups.Add({}, elsewhere.map_from_base);
+  const SurfelGroups joined = walks.Joined(8);
+  ASSERT_LE(joined.groups().size(), 8U);
+  const GroupMotion motion = MotionsOf(joined, walks.frames).back();
+  ASSERT_TRUE(motion.tie);
+  EXPECT_TRUE(motion.of_prior_map);
+  EXPECT_EQ(motion.tie->sigma, kPriorMapSigma);
+}
+
+// A round during a run in a prior map takes of it what a place needs, however often it was seen
+// there, and of the run's own groups as many as without one.
+TEST(GroupMotions, ARoundTakesFewGroupsOfAPriorMapHoweverLongItWas) {
+  const JointOptions joint;
+  constexpr int kOwn = 600;
+  const auto limits_with = [&](int prior, AdjustEffort effort) {
+    std::vector<GroupStart> starts(static_cast<std::size_t>(prior), {.of_prior_map = true});
+    starts.resize(starts.size() + kOwn);
+    return LimitsFor(effort, joint, starts);
+  };
+  const GroupLimits without = limits_with(0, AdjustEffort::kRefine);
+  EXPECT_EQ(without.most, 2 * kOwn / 3);
+  for (const int prior : {1000, 10000}) {
+    const GroupLimits round = limits_with(prior, AdjustEffort::kRefine);
+    EXPECT_EQ(round.most_of_prior_map, joint.refine_groups);
+    EXPECT_EQ(round.most, without.most + joint.refine_groups);
+    const GroupLimits end = limits_with(prior, AdjustEffort::kFinish);
+    EXPECT_EQ(end.most, joint.groups.most);
+    EXPECT_EQ(end.most_of_prior_map, joint.groups.most / 2);
+  }
+}
+
+}  // namespace
+}  // namespace depthgrid
