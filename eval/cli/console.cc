@@ -64,8 +64,11 @@ void ProgressBar::Show(int done, int total) {
   last_drawn_ = now;
 }
 
-Progress ProgressBar::AsProgress() {
-  return [this](int done, int total) { Show(done, total); };
+Progress ProgressBar::AsProgress(const std::string& then) {
+  return [this, then](int done, int total) {
+    Show(done, total);
+    if (done == total && !then.empty()) Say(then);
+  };
 }
 
 void SayReport(const std::string& folder) {

@@ -16,6 +16,9 @@ namespace depthgrid::cli {
 // and what is being done goes on.
 void SayAside(const std::string& words);
 
+// After the last frame all poses are adjusted: of a long run for a minute or more.
+inline const char* const kFinishingMap = "finishing the map";
+
 // A bar with rate and time left; draws nothing unless standard error is a terminal.
 class ProgressBar {
  public:
@@ -29,7 +32,8 @@ class ProgressBar {
   void Say(const std::string& words);
   // Takes the bar away, so that something else can be said.
   void Clear();
-  Progress AsProgress();
+  // `then`: what is being done once all is shown to be done; empty: nothing.
+  Progress AsProgress(const std::string& then = "");
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -283,8 +283,8 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   std::optional<MapStart> begin;
   if (prior) begin = BeginAnew(*prior, request, warnings);
   ProgressBar bar("mapping");
-  const MappingRun run =
-      MapFrames(*input.source, settings.mapper, input.final_poses, bar.AsProgress(), {}, {}, prior);
+  const MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
+                                   bar.AsProgress(kFinishingMap), {}, {}, prior);
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());

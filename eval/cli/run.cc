@@ -94,7 +94,7 @@ RunContext ContextOf(const RunArguments& arguments, ProgressBar& bar) {
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);
   KeepShadersInCache(arguments.common);
-  context.progress = bar.AsProgress();
+  context.progress = bar.AsProgress(kFinishingMap);
   return context;
 }
 

@@ -183,6 +183,20 @@ TEST_F(ProgramOutput, WhatCanBeDoneIsSaid) {
                 {"depthgrid: nope: no such folder\n"});
 }
 
+// After the last frame of a long run the bar would stand full for a minute.
+TEST_F(ProgramOutput, ATerminalIsToldThatTheMapIsBeingFinished) {
+  const Outcome piped = Program("run ./small.yaml -o piped");
+  EXPECT_EQ(piped.exit_code, 0);
+  EXPECT_EQ(piped.err.find("finishing"), std::string::npos) << piped.err;
+  const std::string on_terminal = "cd '" + root_.string() + "' && script -qec \"'" + kProgramFile +
+                                  "' run ./small.yaml -o made\" typed </dev/null >/dev/null 2>&1";
+  ASSERT_EQ(std::system(on_terminal.c_str()), 0);
+  const std::string said = ReadFile(Path("typed"));
+  const std::size_t finishing = said.find("finishing the map ...");
+  EXPECT_LT(said.find("12/12"), finishing) << said;
+  EXPECT_LT(finishing, said.find("writing the folder and the report ...")) << said;
+}
+
 TEST_F(ProgramOutput, AnExperimentsFilesAreFoundFromAnywhere) {
   const std::filesystem::path elsewhere = Path("else where");
   std::filesystem::create_directories(elsewhere / "rooms");
