@@ -52,7 +52,7 @@ struct Floor {
   std::uint32_t seed = 1;
 };
 
-// The walls of the rooms around a place: more than 6 m in every direction.
+// The walls of the rooms around a place: 10 m in every direction.
 PlanarWorld WallsAround(const Eigen::Vector2d& place_m, const Floor& floor) {
   PlanarWorld world;
   const Cell here = CellOf(place_m, kRoomM);
@@ -122,7 +122,9 @@ struct Settings {
   int rows = 0;        // of rooms; 0: as many as columns
   std::uint32_t seed = 1;
   double drift = 1.0;
-  double noise = 0.01;
+  PlanarLaser laser{
+      .beams = 640, .field_of_view_rad = 0.0, .max_range_m = 6.0, .sigma_of_range = 0.01};
+  double field_of_view_deg = 58.0;
 };
 
 double ErrorM(const Pose3& map_from_camera, const Pose2& truth) {
@@ -169,10 +171,8 @@ struct Walked {
 
 Walked Walk(const Floor& floor, int frames, const Settings& settings, IncrementalMapper& mapper) {
   Walker walker(floor);
-  const PlanarLaser laser{.beams = 640,
-                          .field_of_view_rad = RadFromDeg(58.0),
-                          .max_range_m = 6.0,
-                          .sigma_of_range = settings.noise};
+  PlanarLaser laser = settings.laser;
+  laser.field_of_view_rad = RadFromDeg(settings.field_of_view_deg);
   Walked walked;
   Pose2 odometry, last;
   for (int k = 0; k < frames; ++k) {
@@ -279,7 +279,11 @@ int Measure(int argc, char** argv) {
   app.add_option("--rows", settings.rows, "of rooms; a square floor without");
   app.add_option("--seed", settings.seed, "of cupboards, noise and odometry, from 1");
   app.add_option("--drift", settings.drift, "of the odometry: 1 is 1 % and 0.1 degree a metre");
-  app.add_option("--noise", settings.noise, "of ranges, as a share");
+  app.add_option("--noise", settings.laser.sigma_of_range, "of ranges, as a share");
+  app.add_option("--beams", settings.laser.beams, "of a scan");
+  app.add_option("--fov", settings.field_of_view_deg, "degrees that they spread over");
+  app.add_option("--max-range", settings.laser.max_range_m, "metres, at most 10")
+      ->check(CLI::Range(0.5, 10.0));
   app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
   CLI11_PARSE(app, argc, argv);
   settings.mapper = depthgrid::MapperWith(sets);
