@@ -86,7 +86,7 @@ std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
   if (that_saw < kMinGroupsForSpread) return std::nullopt;
   const auto moving = std::count_if(frames.begin() + first_new, frames.end(),
                                     [](const MappedFrame& frame) { return !frame.stands; });
-  double frames_a_group = static_cast<double>(moving) / new_groups;
+  double frames_a_group = std::max(static_cast<double>(moving), 1.0) / new_groups;
   if (AreJoinedInPlace(motions)) frames_a_group = FramesAMotion(motions);
   return MotionSpread{result.motion_sigma, frames_a_group, that_saw, result.motion_seen};
 }
