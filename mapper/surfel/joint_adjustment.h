@@ -23,8 +23,7 @@ struct JointOptions {
   double refine_gate_m = 0.2;
   double little_m = 0.1;
   // Of more groups than these two neighbours are adjusted as one during the run: half the time and
-  // no less accurate (docs/tried.md, "Loops that hold up a frame"). As many of a
-  // prior map are kept.
+  // no less accurate (docs/tried.md, "Loops that hold up a frame"). Of a prior map, so many more.
   int refine_groups = 150;
   // What groups see is one landmark when it lies this near: in the first round, in the last.
   double first_gate_m = 0.5;
