@@ -139,7 +139,7 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
     }
     Match(scan, mended, report);
   }
-  slips.Placed(history.newest(), scan, ShareExplained(report));
+  slips.Placed(history.newest(), scan, report.match);
   return mended;
 }
 

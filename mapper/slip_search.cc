@@ -1,6 +1,9 @@
 #include "mapper/slip_search.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mapper/core/angle.h"
@@ -15,8 +18,19 @@ constexpr double kLongestSlipS = 0.5;
 constexpr double kSlippedShare = 0.5;
 // Of a laser's scans nearly all is explained. Of depth images it is half, and goes up and down.
 constexpr double kWhollyExplained = 0.8;
-// What a heading must explain of what the last scan's did.
+// What a heading must explain of what the last scan's did, as a share of the scan and as a number
+// of surfels: a wall that ends may take a quarter of them out of reach.
 constexpr double kMendedShare = 0.8;
+constexpr double kMendedNumber = 0.5;
+// Few surfels fit at some heading whatever they are of. Of slips that were none 12 and fewer were
+// explained, of true ones 23 and more, by a laser of 180 beams (docs/tried.md, "Slips").
+constexpr int kFewestSurfels = 15;
+// A heading is found where what is seen tells it: to the step of the search.
+constexpr double kKnownRad = RadFromDeg(1.0);
+// What SLAM's motion may well be off by, as far as its noise is learnt, is no slip: four sigmas,
+// none of which is taken for less than this.
+constexpr double kLeastChi2 = 16.0;
+const Eigen::Vector3d kLeastSigma(1e-3, 1e-3, 1e-3);
 // Somebody who fills the view was drawn lately and is found where they are now, so what has stood
 // for longer must want that heading as well.
 constexpr int kDrawnLatelyFrames = 30;
@@ -32,8 +46,42 @@ constexpr double kLeastSlipRad = RadFromDeg(2.0);
 constexpr double kHeadingStepDeg = 1.0;
 const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
 
-bool IsSlip(const Pose2& motion) {
-  return std::abs(motion.yaw_rad) >= kLeastSlipRad || motion.translation().norm() >= kLeastSlipM;
+bool IsSlip(const Pose2& motion, const Eigen::Matrix3d& covariance) {
+  if (std::abs(motion.yaw_rad) < kLeastSlipRad && motion.translation().norm() < kLeastSlipM) {
+    return false;
+  }
+  const Eigen::Vector3d off = motion.vector();
+  const Eigen::Matrix3d usual = covariance + Squared(kLeastSigma);
+  return off.dot(usual.ldlt().solve(off)) >= kLeastChi2;
+}
+
+// Where the scan and what bounds the match along a lone wall's direction tell the heading.
+bool KnowsHeading(const MatchResult& match, const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d known = match.information;
+  known.topLeftCorner<2, 2>() += covariance.topLeftCorner<2, 2>().inverse();
+  return std::sqrt(known.inverse()(2, 2)) <= kKnownRad;
+}
+
+// The scan's hits at whose bearing the other one has a hit as well: what comes into view or leaves
+// it between both says nothing of the motion.
+std::shared_ptr<const Scan> SeenByBoth(const Scan& scan, const Scan& other,
+                                       const Pose2& other_from_scan) {
+  constexpr int kBins = 180;
+  const auto bin = [](double bearing_rad) {
+    const double turns = WrapAngle(bearing_rad) / (2.0 * kPi) + 0.5;
+    return static_cast<std::size_t>(std::clamp(static_cast<int>(turns * kBins), 0, kBins - 1));
+  };
+  std::array<bool, kBins> has_hit{};
+  for (const Beam& beam : other.beams) {
+    if (beam.hit) has_hit[bin(beam.bearing_rad)] = true;
+  }
+  auto both = std::make_shared<Scan>(scan);
+  for (Beam& beam : both->beams) {
+    if (!beam.hit) continue;
+    const Eigen::Vector2d end = other_from_scan * EndPoint(beam);
+    beam.hit = has_hit[bin(std::atan2(end.y(), end.x()))];
+  }
+  return both;
 }
 
 }  // namespace
@@ -43,43 +91,61 @@ bool SlipSearch::IsSuspected(const FrameRecord& frame, double share,
   return slip_deg_ > 0.0 && last_scan_ && last_epoch_ == frame.epoch &&
          frame.stamp_s - last_stamp_s_ < kLongestSlipS &&
          usually.usual_share() >= kWhollyExplained && usually.IsUsual(last_share_) &&
-         share < kSlippedShare * last_share_;
+         last_explained_ >= kFewestSurfels && share < kSlippedShare * last_share_;
+}
+
+std::optional<MatchResult> SlipSearch::BestHeading(const std::shared_ptr<const Scan>& scan,
+                                                   const Prediction& prediction,
+                                                   ReferenceMap& reference) const {
+  const Eigen::Matrix3d covariance = prediction.covariance + Squared(kHeadingSigma);
+  const int most = static_cast<int>(slip_deg_ / kHeadingStepDeg);
+  const int fewest = std::max(kFewestSurfels, static_cast<int>(kMendedNumber * last_explained_));
+  std::optional<MatchResult> best;
+  double least_share = kMendedShare * last_share_;
+  for (int i = -most; i <= most; ++i) {
+    const Pose2 turned =
+        prediction.map_from_base * Pose2{0.0, 0.0, i * RadFromDeg(kHeadingStepDeg)};
+    const MatchResult match = reference.Match(scan, {turned, covariance});
+    if (!match.found || match.score <= least_share || match.explained < fewest) continue;
+    if (!KnowsHeading(match, covariance)) continue;
+    const Pose2 slip = Between(prediction.map_from_base, match.map_from_base);
+    if (!IsSlip(slip, prediction.covariance)) continue;
+    least_share = match.score;
+    best = match;
+  }
+  return best;
 }
 
 std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
                                       const Prediction& prediction, const Pose2& map_from_last,
                                       int mapped_frames, ReferenceMap& reference) const {
+  const std::optional<MatchResult> best = BestHeading(scan, prediction, reference);
+  if (!best) return {};
+  const Pose2 found = best->map_from_base;
   const int before = std::max(0, mapped_frames - kDrawnLatelyFrames);
-  const double lasting_share = reference.ShareSeenBefore(last_scan_, map_from_last, before);
-  const Eigen::Matrix3d covariance = prediction.covariance + Squared(kHeadingSigma);
-  const int most = static_cast<int>(slip_deg_ / kHeadingStepDeg);
-  std::optional<Pose2> found;
-  double best = kMendedShare * last_share_;
-  for (int i = -most; i <= most; ++i) {
-    const Pose2 turned =
-        prediction.map_from_base * Pose2{0.0, 0.0, i * RadFromDeg(kHeadingStepDeg)};
-    const MatchResult match = reference.Match(scan, {turned, covariance});
-    if (!match.found || match.score <= best) continue;
-    if (!IsSlip(Between(prediction.map_from_base, match.map_from_base))) continue;
-    best = match.score;
-    found = match.map_from_base;
-  }
-  if (!found) return {};
-  const double there = reference.ShareSeenBefore(scan, *found, before);
-  if (there >= kMendedShare * lasting_share) return found;
-  const Pose2 slip = Between(prediction.map_from_base, *found);
-  const double here = reference.ShareSeenBefore(scan, prediction.map_from_base, before);
+  const Pose2 last_from_found = Between(map_from_last, found);
+  const auto last_lasting = SeenByBoth(*last_scan_, *scan, Inverse(last_from_found));
+  const auto lasting = SeenByBoth(*scan, *last_scan_, last_from_found);
+  const double last = reference.ShareSeenBefore(last_lasting, map_from_last, before);
+  const double there = reference.ShareSeenBefore(lasting, found, before);
+  // Of few surfels by chance more or fewer lie nearer to old ones than to new ones.
+  const double scatter = std::sqrt(last * (1.0 - last) / best->explained);
+  if (there >= kMendedShare * last - scatter) return found;
+  const Pose2 slip = Between(prediction.map_from_base, found);
+  const double here = reference.ShareSeenBefore(lasting, prediction.map_from_base, before);
   const bool in_place = slip.translation().norm() < kInPlaceM;
-  const bool wants_turn = in_place && there > here && there >= kTurnedShare * lasting_share;
-  return wants_turn ? found : std::nullopt;
+  const bool wants_turn = in_place && there > here && there >= kTurnedShare * last;
+  if (wants_turn) return found;
+  return {};
 }
 
 void SlipSearch::Placed(const FrameRecord& frame, const std::shared_ptr<const Scan>& scan,
-                        double share) {
+                        const MatchResult& match) {
   last_frame_ = frame.index;
   last_stamp_s_ = frame.stamp_s;
   last_epoch_ = frame.epoch;
-  last_share_ = share;
+  last_share_ = match.found ? match.score : 0.0;
+  last_explained_ = match.found ? match.explained : 0;
   last_scan_ = scan;
 }
 

@@ -27,17 +27,24 @@ class SlipSearch {
                             const Pose2& map_from_last, int mapped_frames,
                             ReferenceMap& reference) const;
 
-  // A frame with a scan and a pose, of which the map explained this share where it was placed.
-  void Placed(const FrameRecord& frame, const std::shared_ptr<const Scan>& scan, double share);
+  // A frame with a scan and a pose, and what the map explained of it where it was placed.
+  void Placed(const FrameRecord& frame, const std::shared_ptr<const Scan>& scan,
+              const MatchResult& match);
   // FrameRecord::index of the last of them.
   int last_frame() const { return last_frame_; }
 
  private:
+  // Of all headings the match that explains most; empty where none is a slip's.
+  std::optional<MatchResult> BestHeading(const std::shared_ptr<const Scan>& scan,
+                                         const Prediction& prediction,
+                                         ReferenceMap& reference) const;
+
   double slip_deg_;
   int last_frame_ = -1;
   double last_stamp_s_ = 0.0;
   int last_epoch_ = 0;
-  double last_share_ = 0.0;
+  double last_share_ = 0.0;  // of its pieces that were explained, and how many these are
+  int last_explained_ = 0;
   std::shared_ptr<const Scan> last_scan_;  // null before the first
 };
 

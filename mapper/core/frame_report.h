@@ -29,6 +29,7 @@ struct MatchResult {
   // see (a corridor's axis).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;  // share of the beams that the map explains, 0..1
+  int explained = 0;   // how many pieces of surface these are; 0 where that is not counted
   int iterations = 0;
 };
 

@@ -91,7 +91,8 @@ class SurfelMap : public ReferenceMap {
   // The last scan asked for, and its pieces: matching and inserting want the same.
   std::shared_ptr<const Scan> scan_;
   std::vector<Surfel> pieces_;
-  std::vector<Surfel> all_pieces_;  // where beams are skipped: those of all
+  std::vector<Surfel> other_pieces_;  // of another scan that was asked for in between
+  std::vector<Surfel> all_pieces_;    // where beams are skipped: those of all
   std::vector<MapPart> parts_;
 };
 

@@ -183,6 +183,7 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
   match.found = true;
   match.map_from_base = solution.map_from_base * Pose2::FromVector(SeenStep(solution.seen));
   match.information = solution.seen.h;
+  match.explained = solution.evaluation.explained;
   match.score =
       static_cast<double>(solution.evaluation.explained) / static_cast<double>(pieces.size());
   return match;

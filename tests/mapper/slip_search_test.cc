@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 namespace depthgrid {
 namespace {
@@ -16,12 +18,21 @@ FrameRecord FrameAt(double stamp_s, int epoch = 0) {
   return frame;
 }
 
+MatchResult Explaining(double share, int surfels = 60) {
+  MatchResult match;
+  match.found = true;
+  match.information = 1e6 * Eigen::Matrix3d::Identity();
+  match.score = share;
+  match.explained = surfels;
+  return match;
+}
+
 // A map that explains all but a tenth, and the last scan at 1 s.
 class SlipSearchTest : public ::testing::Test {
  protected:
   SlipSearchTest() {
     for (int i = 0; i < 30; ++i) relocation_.Explained(0.9);
-    slips_.Placed(FrameAt(1.0), std::make_shared<const Scan>(), 0.9);
+    slips_.Placed(FrameAt(1.0), std::make_shared<const Scan>(), Explaining(0.9));
   }
   bool IsSuspected(const FrameRecord& frame, double share) const {
     return slips_.IsSuspected(frame, share, relocation_);
@@ -46,8 +57,16 @@ TEST_F(SlipSearchTest, NorWhereAnEpochBeganAnyway) {
 }
 
 TEST_F(SlipSearchTest, NorWhereTheLastScanWasNotExplainedEither) {
-  slips_.Placed(FrameAt(1.05), std::make_shared<const Scan>(), 0.3);
+  slips_.Placed(FrameAt(1.05), std::make_shared<const Scan>(), Explaining(0.3));
   EXPECT_FALSE(IsSuspected(FrameAt(1.1), 0.1));
+}
+
+// A pillar alone in view: what comes after it is new, not moved.
+TEST_F(SlipSearchTest, NorWhereLittleWasSeen) {
+  slips_.Placed(FrameAt(1.05), std::make_shared<const Scan>(), Explaining(0.9, 14));
+  EXPECT_FALSE(IsSuspected(FrameAt(1.1), 0.0));
+  slips_.Placed(FrameAt(1.05), std::make_shared<const Scan>(), Explaining(0.9, 15));
+  EXPECT_TRUE(IsSuspected(FrameAt(1.1), 0.0));
 }
 
 TEST_F(SlipSearchTest, NorBeforeTheFirstScan) {
@@ -56,11 +75,13 @@ TEST_F(SlipSearchTest, NorBeforeTheFirstScan) {
 
 TEST_F(SlipSearchTest, NorWhereItIsSwitchedOff) {
   SlipSearch off(0.0);
-  off.Placed(FrameAt(1.0), std::make_shared<const Scan>(), 0.9);
+  off.Placed(FrameAt(1.0), std::make_shared<const Scan>(), Explaining(0.9));
   EXPECT_FALSE(off.IsSuspected(FrameAt(1.1), 0.3, relocation_));
 }
 
-// Explains all of a scan at one pose, and says what of it has stood for long.
+const Pose2 kLastPose{-0.02, 0.0, 0.0};
+
+// Explains a scan at one pose, and says what of it has stood for long.
 class FakeMap : public ReferenceMap {
  public:
   struct Lasting {
@@ -68,18 +89,16 @@ class FakeMap : public ReferenceMap {
     double predicted = 0.0;  // of this one at the prediction, the origin
     double elsewhere = 0.0;  // and where it is found
   };
-  FakeMap(const Pose2& found, const Lasting& lasting, std::shared_ptr<const Scan> last)
-      : found_(found), lasting_(lasting), last_(std::move(last)) {}
-
-  MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
-    MatchResult match;
-    match.found = true;
-    match.score = 0.9;
-    match.map_from_base = found_;
-    return match;
+  FakeMap(const Pose2& found, const Lasting& lasting) : match_(Explaining(0.9)), lasting_(lasting) {
+    match_.map_from_base = found;
   }
-  double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2& pose, int) override {
-    if (scan == last_) return lasting_.last;
+
+  MatchResult& match() { return match_; }
+  MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
+    return match_;
+  }
+  double ShareSeenBefore(const std::shared_ptr<const Scan>&, const Pose2& pose, int) override {
+    if (pose == kLastPose) return lasting_.last;
     return pose == Pose2{} ? lasting_.predicted : lasting_.elsewhere;
   }
   std::span<const MapPart> MatchedParts() const override { return {}; }
@@ -92,15 +111,14 @@ class FakeMap : public ReferenceMap {
   void Rebuild(const std::vector<MappedFrame>&) override {}
 
  private:
-  Pose2 found_;
+  MatchResult match_;
   Lasting lasting_;
-  std::shared_ptr<const Scan> last_;
 };
 
 // How many headings were tried.
 class CountingMap : public FakeMap {
  public:
-  CountingMap() : FakeMap({}, {}, nullptr) {}
+  CountingMap() : FakeMap({}, {}) {}
   MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
     ++matches;
     return {};
@@ -111,19 +129,84 @@ class CountingMap : public FakeMap {
 TEST(SlipSearch, EveryDegreeToEitherSideIsTried) {
   for (const int slip_deg : {1, 12, 15, 30, 60, 122}) {
     SlipSearch slips(slip_deg);
-    slips.Placed(FrameAt(1.0), std::make_shared<const Scan>(), 0.9);
+    slips.Placed(FrameAt(1.0), std::make_shared<const Scan>(), Explaining(0.9));
     CountingMap map;
     slips.Find(std::make_shared<const Scan>(), {}, {}, 100, map);
     EXPECT_EQ(map.matches, 2 * slip_deg + 1);
   }
 }
 
-bool IsFound(const Pose2& slip, const FakeMap::Lasting& lasting) {
-  const auto last = std::make_shared<const Scan>();
+bool IsFoundIn(FakeMap map, const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero()) {
   SlipSearch slips(12.0);
-  slips.Placed(FrameAt(1.0), last, 0.9);
-  FakeMap map(slip, lasting, last);
-  return slips.Find(std::make_shared<const Scan>(), {}, {}, 100, map).has_value();
+  slips.Placed(FrameAt(1.0), std::make_shared<const Scan>(), Explaining(0.9));
+  return slips.Find(std::make_shared<const Scan>(), {{}, covariance}, kLastPose, 100, map)
+      .has_value();
+}
+
+bool IsFound(const Pose2& slip, const FakeMap::Lasting& lasting) {
+  return IsFoundIn(FakeMap(slip, lasting));
+}
+
+const FakeMap::Lasting kAllLasts{.last = 1.0, .predicted = 0.5, .elsewhere = 1.0};
+const Pose2 kTurn{0.0, 0.0, RadFromDeg(5.0)};
+
+// Few surfels fit at some heading whatever they are of.
+TEST(SlipSearch, AHeadingExplainsAboutAsManySurfelsAsTheLastScan) {
+  for (const int surfels : {29, 30}) {  // of 60
+    FakeMap map(kTurn, kAllLasts);
+    map.match().explained = surfels;
+    EXPECT_EQ(IsFoundIn(map), surfels == 30);
+  }
+}
+
+TEST(SlipSearch, AHeadingIsToldByWhatIsSeen) {
+  for (const double sigma_deg : {0.9, 1.1}) {
+    FakeMap map(kTurn, kAllLasts);
+    map.match().information(2, 2) = 1.0 / (RadFromDeg(sigma_deg) * RadFromDeg(sigma_deg));
+    EXPECT_EQ(IsFoundIn(map), sigma_deg < 1.0);
+  }
+  // Along a lone wall nothing is known but the heading.
+  FakeMap wall(kTurn, kAllLasts);
+  wall.match().information(1, 1) = 0.0;
+  EXPECT_TRUE(IsFoundIn(wall));
+}
+
+TEST(SlipSearch, WhatSlamErrsByUsuallyIsNoSlip) {
+  for (const double sigma_deg : {1.2, 1.3}) {  // of 5 degrees, four sigmas
+    const Eigen::Vector3d sigma(0.01, 0.01, RadFromDeg(sigma_deg));
+    const Eigen::Matrix3d covariance = sigma.cwiseProduct(sigma).asDiagonal();
+    EXPECT_EQ(IsFoundIn(FakeMap(kTurn, kAllLasts), covariance), sigma_deg < 1.25);
+  }
+}
+
+// Counts the hits that are asked for.
+class HitCountingMap : public FakeMap {
+ public:
+  HitCountingMap() : FakeMap(kTurn, kAllLasts) {}
+  double ShareSeenBefore(const std::shared_ptr<const Scan>& scan, const Pose2&, int) override {
+    hits.push_back(std::count_if(scan->beams.begin(), scan->beams.end(),
+                                 [](const Beam& beam) { return beam.hit; }));
+    return 1.0;
+  }
+  std::vector<std::ptrdiff_t> hits;
+};
+
+// 60 degrees wide, a beam a degree with a hit 100 m away; the view turns by 5 degrees.
+TEST(SlipSearch, WhatLeavesTheViewOrComesIntoItIsNoEvidence) {
+  auto scan = std::make_shared<Scan>();
+  for (int deg = -30; deg < 30; ++deg) {
+    Beam beam;
+    beam.bearing_rad = static_cast<float>(RadFromDeg(deg + 0.5));
+    beam.range_m = 100.0F;
+    beam.hit = true;
+    scan->beams.push_back(beam);
+  }
+  SlipSearch slips(12.0);
+  slips.Placed(FrameAt(1.0), scan, Explaining(0.9));
+  HitCountingMap map;
+  EXPECT_TRUE(slips.Find(scan, {}, {}, 100, map));
+  ASSERT_EQ(map.hits.size(), 2U);
+  for (const std::ptrdiff_t hits : map.hits) EXPECT_NEAR(static_cast<double>(hits), 55.0, 1.0);
 }
 
 TEST(SlipSearch, WhatHasStoodForLongMustWantTheHeading) {

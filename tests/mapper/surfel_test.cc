@@ -326,6 +326,27 @@ TEST(MotionNoise, IsBoundBySpread) {
 
 // Two frames, with which a group begins, see nothing where SLAM jumps by 6 cm; the third sees the
 // room again. Unless they move along, the group is that far off within itself.
+// What is asked of a scan that came before teaches the map nothing.
+TEST(SurfelMap, ALookAtAnEarlierScanChangesNoMatch) {
+  const auto scan_at = [](int i) {
+    return std::make_shared<const Scan>(ScanOf(Room(), {-1.0 + 0.02 * i, 0.0, 0.0},
+                                               NoisyLaser(0.01), 3, static_cast<std::uint32_t>(i)));
+  };
+  const Prediction prediction{{-0.9, 0.0, 0.0}, 1e-3 * Eigen::Matrix3d::Identity()};
+  std::vector<MatchResult> matches;
+  for (const bool looks : {false, true}) {
+    SurfelMap map((SurfelOptions()));
+    const auto first = scan_at(0);
+    map.Insert(first, {-1.0, 0.0, 0.0}, Eigen::Matrix3d::Zero());
+    const auto next = scan_at(5);
+    map.Match(next, prediction);
+    for (int k = 0; looks && k < 5; ++k) map.ShareSeenBefore(first, {-1.0, 0.0, 0.0}, 0);
+    matches.push_back(map.Match(next, prediction));
+  }
+  EXPECT_EQ(matches[0].map_from_base, matches[1].map_from_base);
+  EXPECT_EQ(matches[0].information, matches[1].information);
+}
+
 TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
   SurfelMap map((SurfelOptions()));
   std::vector<MappedFrame> frames;
