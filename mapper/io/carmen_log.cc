@@ -20,6 +20,7 @@
 #include "mapper/io/file.h"
 #include "mapper/io/held_poses.h"
 #include "mapper/io/number_rows.h"
+#include "mapper/io/scan_clock.h"
 #include "mapper/io/slam_jumps.h"
 
 namespace depthgrid {
@@ -32,6 +33,11 @@ constexpr std::size_t kMaxLineBytes = 1U << 20U;
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
   return IsTooFar((odom_from_next.translation() - odom_from_last.translation()).norm(), time_s);
 }
+
+// How long it took while the clock was set back is not known: what is farther than from one scan to
+// the next is no motion. Chosen, of no measurement.
+constexpr double kUntimedStepM = 0.5;
+constexpr double kUntimedStepRad = 0.5;
 
 double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
   return (b.odom_from_laser.translation() - a.odom_from_laser.translation()).norm() /
@@ -54,7 +60,6 @@ class CarmenLogSource : public FrameSource {
     RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
     RequireFieldOfView(options_.fov_deg);
-    Rewind();
     Survey();
     RequireScans();
     Rewind();
@@ -87,28 +92,49 @@ class CarmenLogSource : public FrameSource {
     std::string first_fault;  // ": field, value and rule", where that is known
   };
 
-  // Reads all of the log once: names its scans and says what may be wrong with them.
-  void Survey() {
+  // What may be wrong with the scans of the part.
+  struct Doubts {
+    CarmenCheck check;
     std::vector<double> speeds_mps;
+  };
+
+  // Reads all of the log, from its beginning, and names its scans.
+  Doubts ReadThrough() {
+    Rewind();
+    Doubts doubts{{options_.min_range_m, options_.fov_deg > 0.0}, {}};
     std::optional<CarmenScan> last;
-    CarmenCheck check(options_.min_range_m, options_.fov_deg > 0.0);
     while (auto scan = NextScan()) {
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
       if (place_ != Place::kInPart) continue;
       const double no_return_m = ReachOf(*scan, options_).no_return_m;
-      check.Add(*scan, no_return_m, line_number_);
+      doubts.check.Add(*scan, no_return_m, line_number_);
       held_.Add(scan->odom_from_laser, scan->range_m, options_.min_range_m, no_return_m);
-      if (last) speeds_mps.push_back(SpeedMps(*last, *scan));
+      if (last) doubts.speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
+    }
+    return doubts;
+  }
+
+  // Says what may be wrong with the log. Where stamps fall it is read once more, as only those
+  // after them tell which are wrong.
+  void Survey() {
+    Doubts doubts = ReadThrough();
+    if (clock_.Mend()) {
+      names_ = {};
+      held_ = {};
+      problems_.clear();
+      earlier_ = 0;
+      doubts = ReadThrough();
     }
     names_.part = FindPart(part_, names_.stamps_s, path_);
     std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
     WarnOfProblems();
+    WarnOfClock();
     WarnOfOrder();
     WarnOfHeldPoses();
-    for (std::string& doubt : check.Warnings(path_)) warnings_.push_back(std::move(doubt));
-    if (const auto speed_mps = ImpossibleSpeedMps(std::move(speeds_mps))) {
+    for (std::string& doubt : doubts.check.Warnings(path_)) warnings_.push_back(std::move(doubt));
+    if (const auto speed_mps = ImpossibleSpeedMps(std::move(doubts.speeds_mps))) {
       warnings_.push_back(fmt::format(
           "{}: the laser moves at {:.0f} m/s: is the odometry in metres, and are the stamps in "
           "seconds?",
@@ -164,6 +190,7 @@ class CarmenLogSource : public FrameSource {
     if (!file_) throw InputError(path_, "cannot be read");
     line_number_ = 0;
     lines_of_scans_ = 0;
+    clock_.Rewind();
     next_index_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
     odom_from_last_.reset();
@@ -183,6 +210,15 @@ class CarmenLogSource : public FrameSource {
     if (part_.from_s == 0.0) return;
     problems_.clear();
     earlier_ = 0;
+  }
+
+  // Also where it was set back before the part: whose stamps are others than the log's.
+  void WarnOfClock() {
+    const double end_s = part_.to_s > 0.0 ? names_.stamps_s.front() + part_.to_s
+                                          : std::numeric_limits<double>::infinity();
+    for (std::string& warning : clock_.Warnings(path_, end_s)) {
+      warnings_.push_back(std::move(warning));
+    }
   }
 
   // Sorting is not for the program: of a clock that was set back it would make one drive of two.
@@ -221,6 +257,22 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
+  // Whether no motion leads from the last scan to this one.
+  bool BreaksOff(const CarmenScan& scan) {
+    if (!odom_from_last_) return false;
+    if (IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
+      Note("the pose jumps by more than 10 m: no motion is taken there");
+      return true;
+    }
+    if (!clock_.IsSetBack()) return false;
+    const Pose2 step = Between(*odom_from_last_, scan.odom_from_laser);
+    if (step.translation().norm() <= kUntimedStepM && std::abs(step.yaw_rad) <= kUntimedStepRad) {
+      return false;
+    }
+    Note("the pose jumps where the clock was set back: no motion is taken there");
+    return true;
+  }
+
   // False for a scan that is not later than the one before it: it is left out.
   bool GoOnWith(const CarmenScan& scan) {
     const bool is_same = IsSameStamp(scan.stamp_s, last_stamp_s_);
@@ -233,11 +285,7 @@ class CarmenLogSource : public FrameSource {
       return false;
     }
     MoveTo(scan.stamp_s);
-    if (odom_from_last_ &&
-        IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
-      Note("the pose jumps by more than 10 m: no motion is taken there");
-      ++epoch_;
-    }
+    if (BreaksOff(scan)) ++epoch_;
     last_stamp_s_ = scan.stamp_s;
     odom_from_last_ = scan.odom_from_laser;
     return true;
@@ -261,6 +309,14 @@ class CarmenLogSource : public FrameSource {
       if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
         scan->max_range_m = front_max_m_;
       }
+      const std::optional<double> stamp_s = clock_.Take(scan->stamp_s, line_number_);
+      if (!stamp_s) {
+        ++lines_of_scans_;
+        Note("a scan whose stamp is later than all after it",
+             fmt::format("stamp {:.6f}", scan->stamp_s));
+        continue;
+      }
+      scan->stamp_s = *stamp_s;
       if (!GoOnWith(*scan)) continue;
       if (file_.eof()) Note("the last line has no line end; it is used, but may be cut");
       return std::move(*scan);
@@ -279,6 +335,7 @@ class CarmenLogSource : public FrameSource {
   int next_index_ = 0;
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
+  ScanClock clock_;
   double last_stamp_s_ = 0.0;
   std::optional<double> first_stamp_s_;
   enum class Place { kBeforePart, kInPart, kBehindPart };

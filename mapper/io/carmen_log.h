@@ -38,7 +38,7 @@ struct CarmenLogOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// The scans' stamps, and their numbers among the lines that are scans: damaged ones count, those
+// The scans' stamps as they are taken, and their numbers among the lines that are scans: damaged ones count, those
 // with the stamp of the scan before do not. All of them, and which are the part.
 FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {},
                         const PartOptions& part = {});
@@ -49,8 +49,9 @@ FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options
 // NaN, and for options out of range.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
-// Reads the file twice, line by line: once here to count its scans, once through Next(). Lines that
-// are damaged, truncated or out of time order are left out and counted in Warnings(). Throws
+// Reads the file twice, line by line: once here to count its scans, once through Next(); and once
+// more where stamps fall. Lines that are damaged, truncated or out of time order are left out and
+// counted in Warnings(). Where the clock was set back, stamps go on as if it had not been. Throws
 // InputError for a file that cannot be read or holds no scan at all.
 //
 // `loops`, ordered by the frame that reports them, join scans: the second laser's pose in the first

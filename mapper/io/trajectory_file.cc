@@ -12,6 +12,7 @@
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
+#include "mapper/io/stamp_order.h"
 
 namespace depthgrid {
 namespace {
@@ -65,6 +66,7 @@ std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const
   damage.left_out().AppendTo(warnings, name, "pose",
                              "with NaN, a zero quaternion or beyond 10,000 km ignored");
   WarnOfCount(warnings, name, unsorted_stamps, "row", "earlier than the row before, sorted");
+  if (clock_doubt) warnings.push_back(*clock_doubt);
   doubled_stamps.AppendTo(warnings, name, "row", "with a stamp already given, ignored");
   return warnings;
 }
@@ -74,8 +76,17 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
   const std::vector<TextRow> rows = SplitRows(text);
   RequirePlainColumns(rows, place);
   std::unordered_set<double> seen;
-  for (const TextRow& row : rows) file.damage.Try([&] { AddRow(row, place, seen, file); });
+  std::vector<int> lines;  // of the poses
+  for (const TextRow& row : rows) {
+    file.damage.Try([&] { AddRow(row, place, seen, file); });
+    if (lines.size() < file.poses.size()) lines.push_back(row.line);
+  }
   file.damage.RequireMostGood(text);
+  if (file.unsorted_stamps > 0) {
+    std::vector<double> stamps_s;
+    for (const StampedPose& pose : file.poses) stamps_s.push_back(pose.stamp_s);
+    file.clock_doubt = DoubtOfSorted(stamps_s, lines, place);
+  }
   const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
   const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };
   std::stable_sort(file.poses.begin(), file.poses.end(), stamp_less);

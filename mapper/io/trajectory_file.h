@@ -1,6 +1,7 @@
 // TUM trajectories: `stamp tx ty tz qx qy qz qw` a line, one space between columns, `#` comments.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace depthgrid {
 // mended is counted.
 struct TrajectoryFile {
   Trajectory poses;
-  int unsorted_stamps = 0;  // rows earlier than their predecessor: sorted
-  Tally doubled_stamps;     // all but the first row of one stamp: dropped
+  int unsorted_stamps = 0;                 // rows earlier than their predecessor: sorted
+  std::optional<std::string> clock_doubt;  // DoubtOfSorted
+  Tally doubled_stamps;                    // all but the first row of one stamp: dropped
   // Rows that are no pose, and left out those of NaN, a zero quaternion or too far away: dropped.
   RowDamage damage;
 

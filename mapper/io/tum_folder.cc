@@ -16,6 +16,7 @@
 #include "mapper/io/number_rows.h"
 #include "mapper/io/png.h"
 #include "mapper/io/pose_track.h"
+#include "mapper/io/stamp_order.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {
@@ -128,6 +129,8 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   StampedFileList list;
   RowDamage damage;
   int unsorted = 0;
+  std::vector<double> stamps_s;
+  std::vector<int> lines;
   for (const TextRow& row : SplitRows(text)) {
     const auto stamp_s = ParseNumber(row.fields.front());
     const bool good = damage.Try([&] {
@@ -138,6 +141,8 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
       RequireSeconds(*stamp_s, PlaceOfLine(place, row.line));
       if (!list.files.empty() && *stamp_s < list.files.back().stamp_s) ++unsorted;
       list.files.push_back({*stamp_s, std::string(RestOf(row, 1))});
+      stamps_s.push_back(*stamp_s);
+      lines.push_back(row.line);
     });
     // It keeps its place behind the row before, for the numbers of those that follow.
     if (!good)
@@ -150,6 +155,7 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
     WarnOfCount(list.warnings, place, count, thing, what);
   };
   warn(unsorted, "row", "earlier than the row before, sorted");
+  if (auto doubt = DoubtOfSorted(stamps_s, lines, place)) list.warnings.push_back(*doubt);
   warn(repeated, "row", "with a stamp already given, ignored");
   return list;
 }
