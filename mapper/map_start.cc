@@ -1,6 +1,7 @@
 #include "mapper/map_start.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -129,15 +130,21 @@ std::vector<PlacedScan> FirstViews(FirstFrames& frames) {
   return views;
 }
 
-// The same place by the first views alone, over which SLAM has hardly drifted. Few views fit in
-// more places than many: one that is not near the place found says nothing.
-FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
-                  const std::vector<PlacedScan>& scans) {
+// Over which SLAM has hardly drifted.
+std::vector<PlacedScan> FirstMetre(const std::vector<PlacedScan>& scans) {
   std::vector<PlacedScan> first;
   for (const PlacedScan& scan : scans) {
     if (Way(Between(scans.front().slam_from_base, scan.slam_from_base)) > kFirstPathM) break;
     first.push_back(scan);
   }
+  return first;
+}
+
+// The same place by the first views alone. Few views fit in more places than many: one that is not
+// near the place found says nothing.
+FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
+                  const std::vector<PlacedScan>& scans) {
+  const std::vector<PlacedScan> first = FirstMetre(scans);
   if (first.size() == scans.size()) return found;
   const auto again = FindPlace(map, first, found.map_from_slam);
   if (!again || again->score < found.score) return found;
@@ -207,9 +214,17 @@ double ReachOf(const std::vector<Frame>& frames) {
   return reach_m;
 }
 
-// The first metres mapped from each place.
+// Where the way back ends, the first views may fit plainly worse: among furniture that was moved it
+// goes astray.
+bool FitsThere(const OccupancyMap& map, const std::vector<PlacedScan>& views,
+               const Pose2& map_from_slam, const Pose2& map_from_other) {
+  const std::vector<PlacedScan> first = FirstMetre(views);
+  return FitsAsWell(FitAt(map, first, map_from_slam), FitAt(map, first, map_from_other));
+}
+
+// The first metres mapped from each place. One that is taken as it is given stays.
 void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
-            const MapperOptions& options, MapStart& start) {
+            const std::vector<PlacedScan>& views, const MapperOptions& options, MapStart& start) {
   double way_m = 0.0;
   while (frames.all().size() < kTrialFrames && way_m < kTrialPathM && frames.ReadOne()) {
     const std::size_t newest = frames.all().size() - 1;
@@ -236,8 +251,10 @@ void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
     if (!LedElsewhere(tried, best)) continue;
     trial.agreement_next = std::max(trial.agreement_next, tried.agreement);
   }
-  start.place.map_from_slam = Retraced(best, prior, walls, frames.all(), options);
   start.trial = trial;
+  start.place.map_from_slam = best.map_from_slam;
+  const Pose2 retraced = Retraced(best, prior, walls, frames.all(), options);
+  if (FitsThere(map, views, retraced, best.map_from_slam)) start.place.map_from_slam = retraced;
 }
 
 }  // namespace
@@ -261,10 +278,10 @@ bool MapStart::contradicted() const { return trial && trial->against > kMuchAgai
 
 namespace {
 
-// `place_of` finds it, with the map and the first views.
+// `place_of` finds it, with the map and the first views; so far off it may be put right.
 template <typename PlaceOf>
 std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
-                                const MapperOptions& options, PlaceOf place_of) {
+                                const MapperOptions& options, double within_m, PlaceOf place_of) {
   RequireSound(prior);
   MapDrawing drawing(options.grid);
   for (const MappedFrame& frame : prior.frames) {
@@ -275,8 +292,16 @@ std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
   const std::vector<PlacedScan> views = FirstViews(frames);
   std::optional<FoundPlace> place = place_of(map, views);
   if (!place) return {};
-  MapStart start{std::move(*place), {}};
-  if (!options.fusion.TrustsSlamAlone()) TryAll(frames, prior, map, options, start);
+  const Pose2& first_base = views.front().slam_from_base;
+  const Pose2 placed = place->map_from_slam * first_base;
+  MapStart start;
+  start.place = std::move(*place);
+  if (!options.fusion.TrustsSlamAlone()) TryAll(frames, prior, map, views, options, start);
+  start.map_from_base = start.place.map_from_slam * first_base;
+  if (within_m == 0.0 || Way(Between(placed, start.map_from_base)) > within_m) {
+    start.map_from_base = placed;
+    start.place.map_from_slam = placed * Inverse(first_base);
+  }
   return start;
 }
 
@@ -290,25 +315,27 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
     if (!found) return {};
     return Nearer(*found, map, views);
   };
-  return StartAt(prior, source, options, place_of);
+  return StartAt(prior, source, options, std::numeric_limits<double>::infinity(), place_of);
 }
 
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,
-                                      FrameSource& source, const MapperOptions& options) {
+                                      FrameSource& source, const MapperOptions& options,
+                                      double within_m) {
   const auto place_of = [&](const OccupancyMap& map,
                             const std::vector<PlacedScan>& views) -> std::optional<FoundPlace> {
     if (views.empty()) return {};
     const Pose2& slam_from_base = views.front().slam_from_base;
     const Pose2 map_from_slam = map_from_base * Inverse(slam_from_base);
-    auto near = FindPlaceNear(map, views, map_from_slam);
+    auto near = FindPlaceNear(map, views, map_from_slam, within_m);
     const auto any = FindPlace(map, views, map_from_slam);
     if (!near || !any) return {};
     const bool is_elsewhere =
         IsElsewhere(near->map_from_slam * slam_from_base, any->map_from_slam * slam_from_base);
     near->second_score = is_elsewhere ? any->score : any->second_score;
+    if (!is_elsewhere && within_m > 0.0) near->unsure = any->unsure;
     return near;
   };
-  auto start = StartAt(prior, source, options, place_of);
+  auto start = StartAt(prior, source, options, within_m, place_of);
   if (start) start->known = true;
   return start;
 }
@@ -323,9 +350,9 @@ std::optional<MapStart> FindStart(const PriorMap& prior, const std::vector<Frame
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,
                                       const std::vector<Frame>& first_frames,
                                       const std::optional<PinholeCamera>& camera,
-                                      const MapperOptions& options) {
+                                      const MapperOptions& options, double within_m) {
   CollectedFrames source(first_frames, camera);
-  return FindStartNear(prior, map_from_base, source, options);
+  return FindStartNear(prior, map_from_base, source, options, within_m);
 }
 
 }  // namespace depthgrid

@@ -31,6 +31,7 @@ struct MapStart {
   FoundPlace place;
   std::optional<StartTrial> trial;  // empty where SLAM is trusted alone
   bool known = false;               // FindStartNear() was told where, and only looked nearby
+  Pose2 map_from_base;              // of the first frame that has a pose and a scan
 
   // Whether the place is a guess: another one is nearly as good, or one of these:
   bool uncertain() const;
@@ -60,14 +61,16 @@ std::optional<MapStart> FindStart(const PriorMap& prior, const std::vector<Frame
                                   const MapperOptions& options);
 
 // Where it is known: `map_from_base` is the base's place in the map (that of the scans, a laser's
-// own) at the first frame that has a pose and a scan, to 1.5 m and 12 degrees, as a user of Nav2
-// gives it. It is made exact by what is seen; whether that fits, uncertain() and contradicted()
-// say.
+// own) at the first frame that has a pose and a scan, to `within_m` metres and 12 degrees, as a
+// user of Nav2 gives it. It is made exact by what is seen, unless that fits there about as well; 0
+// takes it as it is. Whether what is seen fits, uncertain() and contradicted() say.
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,
-                                      FrameSource& source, const MapperOptions& options);
+                                      FrameSource& source, const MapperOptions& options,
+                                      double within_m = kKnownWithinM);
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,
                                       const std::vector<Frame>& first_frames,
                                       const std::optional<PinholeCamera>& camera,
-                                      const MapperOptions& options);
+                                      const MapperOptions& options,
+                                      double within_m = kKnownWithinM);
 
 }  // namespace depthgrid

@@ -57,9 +57,10 @@ struct MapArguments {
   std::string format;  // the three replace keys of `sequence` when not empty
   std::string camera;
   std::string world_up;
-  std::string map;        // a run's folder to go on from; empty: none
-  std::string start;      // the base's place in that map, "X,Y,YAW_DEG"; empty: it is found
-  bool localise = false;  // in that map, without changing it
+  std::string map;           // a run's folder to go on from; empty: none
+  std::string start;         // the base's place in that map, "X,Y,YAW_DEG"; empty: it is found
+  std::string start_within;  // metres that it may be off; empty: the usual
+  bool localise = false;     // in that map, without changing it
   OutputArguments output;
   CommonArguments common;
 };

@@ -49,6 +49,21 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
                      map, WhyUncertain(start));
 }
 
+// A place that was given is moved to where what is seen fits, by so much without a word.
+constexpr double kLittleM = 0.05;
+constexpr double kLittleRad = RadFromDeg(3.0);
+
+std::optional<std::string> DoubtOfMove(const std::string& map, const Pose2& given,
+                                       const Pose2& taken) {
+  const Pose2 move = Between(given, taken);
+  if (move.translation().norm() <= kLittleM && std::abs(move.yaw_rad) <= kLittleRad) return {};
+  return fmt::format(
+      "{}: it begins {:.2f} m and {:.1f} degrees from where --start says, at {},{},{}: there what "
+      "is seen first fits better (--start-within 0 takes the place as it is given)",
+      map, move.translation().norm(), std::abs(DegFromRad(move.yaw_rad)), Number(taken.x_m, 2),
+      Number(taken.y_m, 2), Number(DegFromRad(taken.yaw_rad), 1));
+}
+
 void SayStart(const std::string& map, const PriorMap& prior, const MapStart& start, bool camera) {
   const Pose2& at = start.place.map_from_slam;
   fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}{}, ", map,
@@ -112,12 +127,17 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   // The paper's chain reads the last two submaps only: here one holds everything. Elsewhere this
   // only says over how many frames motions are told, and how many scans are at hand.
   if (options.method == MapperMethod::kPaper) options.submap.scans = kAllScansInOneSubmap;
-  auto start = request.start ? FindStartNear(prior, *request.start, source, options)
+  const double within_m = request.settings.start_within_m;
+  auto start = request.start ? FindStartNear(prior, *request.start, source, options, within_m)
                              : FindStart(prior, source, options);
   if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
   prior.map_from_slam = start->place.map_from_slam;
   SayStart(arguments.map, prior, *start, source.Camera().has_value());
   if (const auto doubt = DoubtOfStart(arguments.map, *start)) warnings.push_back(*doubt);
+  if (request.start) {
+    const auto moved = DoubtOfMove(arguments.map, *request.start, start->map_from_base);
+    if (moved) warnings.push_back(*moved);
+  }
   return *std::move(start);
 }
 

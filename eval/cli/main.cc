@@ -107,10 +107,13 @@ void AddMap(Program& program) {
          "Go on in the finished map of this run's folder: its scans stay, new ones are added")
       ->type_name("DIR");
   app->add_option("--start", arguments->start,
-                  "With --map: where in that map it begins, m and degrees, to 1.5 m and 12 "
-                  "degrees; without it the place is looked for")
+                  "With --map: where in that map it begins, m and degrees, to 12 degrees; without "
+                  "it the place is looked for")
       ->type_name("X,Y,YAW_DEG")
       ->check(RefusalUnlessPlace);
+  app->add_option("--start-within", arguments->start_within,
+                  "How far off --start may be (1.5); 0 takes it as it is")
+      ->type_name("M");
   app->add_flag("--localise", arguments->localise,
                 "With --map: find the poses in that map and leave it as it is")
       ->needs("--map");

@@ -36,6 +36,7 @@ Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& o
   set("sequence.camera", "--camera", arguments.camera);
   set("sequence.world_up", "--up", arguments.world_up);
   set("start", "--start", arguments.start);
+  set("start_within_m", "--start-within", arguments.start_within);
   for (const std::string& assignment : overrides) config.Set(assignment);
   return config;
 }
@@ -53,6 +54,7 @@ void RequireOptionsFor(const std::vector<std::string>& overrides) {
        {Named{"input", "the input is the command's argument"}, Named{"poses", "give --poses FILE"},
         Named{"final_poses", "give --final-poses FILE"}, Named{"loops", "give --loops FILE"},
         Named{"map", "give --map DIR"}, Named{"start", "give --map DIR --start X,Y,YAW_DEG"},
+        Named{"start_within_m", "give --start X,Y,YAW_DEG --start-within M"},
         Named{"localise", "give --map DIR --localise"}}) {
     if (!config.Has(named.key)) continue;
     throw InputError(config.PlaceOfKey(named.key),
@@ -82,7 +84,10 @@ void RequireMapFor(const MapRequest& request) {
     refuse("localise", "localise is true, must be false without a map to localise in");
   }
   const std::string& start = request.settings.start;
-  if (start.empty()) return;
+  if (start.empty()) {
+    if (arguments.start_within.empty()) return;
+    refuse("start_within_m", "is how far off --start may be: give --start X,Y,YAW_DEG");
+  }
   if (!request.start) refuse("start", fmt::format("start is '{}', {}", start, kPlaceRule));
   if (arguments.map.empty()) {
     refuse("start", fmt::format("start is '{}', must be empty without a map to begin in", start));
@@ -127,6 +132,8 @@ void MapSettings::Visit(OptionsVisitor& v) {
   v.Text("loops", loops, "SLAM's events");
   v.Text("map", map, "the finished run it went on from");
   v.Text("start", start, "where in that map it began, X,Y,YAW_DEG; empty: that was found");
+  v.Number("start_within_m", start_within_m, {0.0, 5.0},
+           "how far off that may be, metres; 0: it is taken as it is");
   v.Flag("localise", localise, "whether that map was left as it is");
   v.Group("sequence", sequence, "how the recorded sequence is read");
   v.Group("mapper", mapper, "the mapper");

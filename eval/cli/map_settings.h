@@ -11,6 +11,7 @@
 #include "mapper/io/config.h"
 #include "mapper/io/sequence.h"
 #include "mapper/mapper_options.h"
+#include "mapper/match/find_place.h"
 
 namespace depthgrid::cli {
 
@@ -21,6 +22,7 @@ struct MapSettings {
   std::string loops;
   std::string map;
   std::string start;  // X,Y,YAW_DEG
+  double start_within_m = kKnownWithinM;
   bool localise = false;
   SequenceOptions sequence;
   MapperOptions mapper;

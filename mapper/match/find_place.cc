@@ -33,7 +33,6 @@ constexpr double kElsewhereRad = RadFromDeg(30.0);
 // What lies this near to the guess (SLAM's drift since the map was made) needs this share of the
 // best score.
 constexpr double kGuessShare = 0.9;
-constexpr double kGuessReachM = 1.5;
 constexpr double kGuessReachRad = RadFromDeg(12.0);
 constexpr double kGuessStepM = 0.15;
 constexpr double kGuessStepRad = RadFromDeg(4.0);
@@ -112,9 +111,9 @@ PlaceCandidate Refined(const DistanceField& walls, const PlaceReturns& points, c
 
 // The best place within reach of `guess`.
 PlaceCandidate NearGuess(const DistanceField& walls, const PlaceReturns& coarse_points,
-                         const PlaceReturns& points, const Pose2& guess) {
+                         const PlaceReturns& points, const Pose2& guess, double reach_m) {
   std::vector<PlaceCandidate> around;
-  const int steps = static_cast<int>(kGuessReachM / kGuessStepM);
+  const int steps = static_cast<int>(reach_m / kGuessStepM);
   const int turns = static_cast<int>(kGuessReachRad / kGuessStepRad);
   for (int turn = -turns; turn <= turns; ++turn) {
     for (int y = -steps; y <= steps; ++y) {
@@ -129,7 +128,7 @@ PlaceCandidate NearGuess(const DistanceField& walls, const PlaceReturns& coarse_
       around.begin(), around.end(),
       [](const PlaceCandidate& a, const PlaceCandidate& b) { return a.score > b.score; });
   PlaceCandidate best = Refined(walls, points, guess);
-  for (std::size_t i = 0; i < kGuessesRefined; ++i) {
+  for (std::size_t i = 0; i < std::min(kGuessesRefined, around.size()); ++i) {
     const PlaceCandidate refined = Refined(walls, points, around[i].map_from_first);
     if (refined.score > best.score) best = refined;
   }
@@ -137,12 +136,19 @@ PlaceCandidate NearGuess(const DistanceField& walls, const PlaceReturns& coarse_
 }
 
 // The next one, unless another within reach is much better: what is known beforehand is kept where
-// little is seen, as along a corridor.
+// little is seen, as along a corridor. The known place itself where it fits as well.
 PlaceCandidate NextTo(const DistanceField& walls, const PlaceReturns& coarse_points,
-                      const PlaceReturns& points, const Pose2& known) {
+                      const PlaceReturns& points, const Pose2& known, double within_m) {
+  const PlaceCandidate given{known, ScoreOf(walls, points, known, kFineSigmaM)};
+  if (within_m == 0.0) return given;
+  const auto is_within = [&](const PlaceCandidate& place) {
+    return (place.map_from_first.translation() - known.translation()).norm() <= within_m;
+  };
   const PlaceCandidate next = Refined(walls, points, known);
-  const PlaceCandidate best = NearGuess(walls, coarse_points, points, known);
-  return next.score >= kGuessShare * best.score ? next : best;
+  const PlaceCandidate best = NearGuess(walls, coarse_points, points, known, within_m);
+  PlaceCandidate place = next.score >= kGuessShare * best.score ? next : best;
+  if (!is_within(place)) place = is_within(next) ? next : given;
+  return FitsAsWell(given.score, place.score) ? given : place;
 }
 
 // Those that may be the place too, best first.
@@ -197,16 +203,26 @@ bool IsElsewhere(const Pose2& map_from_base, const Pose2& map_from_other) {
   return AreApart(map_from_base, map_from_other, kElsewhereM, kElsewhereRad);
 }
 
+bool FitsAsWell(double score, double best_score) { return score >= kUnsureShare * best_score; }
+
+double FitAt(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
+             const Pose2& map_from_slam) {
+  const PlaceReturns points = PointsOf(scans, kPoints);
+  if (points.empty()) return 0.0;
+  const Pose2 map_from_first = map_from_slam * scans.front().slam_from_base;
+  return ScoreOf(DistanceField(map, kFarthestM), points, map_from_first, kFineSigmaM);
+}
+
 std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,
                                         const std::vector<PlacedScan>& scans,
-                                        const Pose2& map_from_slam) {
+                                        const Pose2& map_from_slam, double within_m) {
   if (scans.empty()) return {};
   const DistanceField walls(map, kFarthestM);
   const PlaceReturns points = PointsOf(scans, kPoints);
   if (!walls.any() || points.empty()) return {};
   const Pose2& slam_from_first = scans.front().slam_from_base;
-  const PlaceCandidate place =
-      NextTo(walls, PointsOf(scans, kCoarsePoints), points, map_from_slam * slam_from_first);
+  const PlaceCandidate place = NextTo(walls, PointsOf(scans, kCoarsePoints), points,
+                                      map_from_slam * slam_from_first, within_m);
   return FoundPlace{place.map_from_first * Inverse(slam_from_first), place.score, 0.0, {}, {}};
 }
 
@@ -222,7 +238,8 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
     candidates.push_back(Refined(walls, points, coarse.map_from_first));
   }
   const Pose2& slam_from_first = scans.front().slam_from_base;
-  const PlaceCandidate guessed = NearGuess(walls, coarse_points, points, guess * slam_from_first);
+  const PlaceCandidate guessed =
+      NearGuess(walls, coarse_points, points, guess * slam_from_first, kKnownWithinM);
   PlaceCandidate best = guessed;
   for (const PlaceCandidate& candidate : candidates) {
     if (candidate.score > best.score) best = candidate;

@@ -45,10 +45,22 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
 // Whether two places are so far apart.
 bool IsElsewhere(const Pose2& map_from_base, const Pose2& map_from_other);
 
-// Where it is known already, to 1.5 m and 12 degrees: the best place next to it. Nothing is said of
-// others, nor how sure it is.
+// A place may be wrong by as much where nobody says how well it is known, and 12 degrees.
+constexpr double kKnownWithinM = 1.5;
+
+// Where it is known already, to so many metres and 12 degrees: there, where the scans fit about as
+// well as anywhere near, or the best place next to it. Nothing is said of others, nor how sure it
+// is.
 std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,
                                         const std::vector<PlacedScan>& scans,
-                                        const Pose2& map_from_slam);
+                                        const Pose2& map_from_slam,
+                                        double within_m = kKnownWithinM);
+
+// How well scans fit at a place, as FoundPlace::score; 0 where they have no return.
+double FitAt(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
+             const Pose2& map_from_slam);
+
+// Whether one fit may be that of the right place beside a better one.
+bool FitsAsWell(double score, double best_score);
 
 }  // namespace depthgrid

@@ -221,11 +221,16 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   const Outcome outcome =
       Program("map robot.log --map first --localise --start 3.1,2.9,176 -o out");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.err, "");
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("first: it begins 0.1"),
+                                 HasSubstr(" degrees from where --start says, at 3.0")));
   EXPECT_THAT(outcome.out, HasSubstr(" where it is said to begin, elsewhere "));
   EXPECT_LT((begin_of("out") - Eigen::Vector3d(3.0, 3.0, 0.0)).norm(), 0.1);
   Succeed("map out/run.yaml -o again");
   ExpectSameBytes("out", "again");
+  // Taken as it is.
+  EXPECT_EQ(Program("map robot.log --map first --start 3.04,2.97,179 --start-within 0 -o as").err,
+            "");
+  EXPECT_THAT(ReadFile(Path("as/run.yaml")), HasSubstr("start_within_m: 0\n"));
   Succeed("map robot.log --map first --localise --start 3,1,0 -o near");
   EXPECT_LT((begin_of("near") - Eigen::Vector3d(3.0, 1.0, 0.0)).norm(), 0.1);
   EXPECT_THAT(Program("map robot.log --map first --start 3,2,90 -o wrong").err,

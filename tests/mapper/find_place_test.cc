@@ -63,6 +63,23 @@ PlacedScan ScanAt(const Pose2& map_from_base, const Pose2& map_from_slam,
   return {std::make_shared<const Scan>(scan), Inverse(map_from_slam) * map_from_base};
 }
 
+TEST(FindPlaceNear, AKnownPlaceIsLeftWhereTheScansFit) {
+  const OccupancyMap map = Drawn();
+  const Pose2 base{1.5, 1.0, 0.3};
+  const std::vector<PlacedScan> scans = {ScanAt(base, {}), ScanAt(base * Pose2{0, 0, 1.5}, {})};
+  const double fit = FitAt(map, scans, {});
+  EXPECT_GT(fit, 0.9);
+  for (const double off_m : {0.01, 0.2}) {
+    const Pose2 known{off_m, 0.0, 0.0};
+    EXPECT_EQ(FitsAsWell(FitAt(map, scans, known), fit), off_m < 0.1);
+    const auto near = FindPlaceNear(map, scans, known);
+    ASSERT_TRUE(near);
+    EXPECT_NEAR(near->map_from_slam.x_m, off_m < 0.1 ? off_m : 0.0, off_m < 0.1 ? 1e-12 : 0.03);
+    EXPECT_NEAR(FindPlaceNear(map, scans, known, 0.0)->map_from_slam.x_m, off_m, 1e-12);
+    EXPECT_LE(std::abs(FindPlaceNear(map, scans, known, 0.1)->map_from_slam.x_m - off_m), 0.1);
+  }
+}
+
 // Turning on the spot shows enough; SLAM's frame is anywhere.
 TEST(FindPlace, FindsTheFrameOfThePosesFromAFewScans) {
   const OccupancyMap map = Drawn();

@@ -188,6 +188,25 @@ TEST(FindStartNear, TakesThePlaceThatIsGiven) {
   }
 }
 
+// It fits there as well as anywhere near, or whoever says it knows.
+TEST(FindStartNear, APlaceThatIsKnownExactlyIsLeftAsItIs) {
+  const PriorMap map = MapOfHall();
+  const Pose2 begin{24.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 1.0);
+  const auto right = FindStartNear(map, begin, walk, MapperOptions{});
+  ASSERT_TRUE(right);
+  EXPECT_FALSE(AreApart(begin, right->map_from_base, 0.02, 0.01));
+  const Pose2 off = begin * Pose2{0.1, 0.05, 0.02};
+  for (const double within_m : {0.0, 0.05, 0.3}) {
+    WalkThroughHall again(begin, 1.0);
+    const auto start = FindStartNear(map, off, again, MapperOptions{}, within_m);
+    ASSERT_TRUE(start);
+    if (within_m == 0.0) EXPECT_FALSE(AreApart(off, start->map_from_base, 1e-9, 1e-9));
+    if (within_m == 0.05) EXPECT_FALSE(AreApart(off, start->map_from_base, 0.05, 0.2));
+    if (within_m == 0.3) EXPECT_FALSE(AreApart(begin, start->map_from_base, 0.03, 0.01));
+  }
+}
+
 TEST(FindStartNear, SaysThatAWrongPlaceDoesNotFit) {
   WalkThroughHall walk({24.0, 0.0, kPi}, 1.0);
   const auto start = FindStartNear(MapOfHall(), {12.5, 0.0, 0.5 * kPi}, walk, MapperOptions{});
