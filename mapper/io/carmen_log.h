@@ -38,8 +38,8 @@ struct CarmenLogOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// The scans' stamps as they are taken, and their numbers among the lines that are scans: damaged ones count, those
-// with the stamp of the scan before do not. All of them, and which are the part.
+// The scans' stamps as they are taken, and their numbers among the lines that are scans: damaged
+// ones count, those with the stamp of the scan before do not. All of them, and which are the part.
 FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options = {},
                         const PartOptions& part = {});
 

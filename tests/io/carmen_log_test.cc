@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "mapper/core/error.h"
@@ -284,13 +283,6 @@ std::string LogRefusal(const std::string& text) {
   return RefusalOf([&] { OpenCarmenLog(file.path()); });
 }
 
-std::string ScanAt(double x_m, double y_m, int stamp_s) {
-  std::ostringstream line;
-  line.precision(17);
-  line << "FLASER 2 1 1 " << x_m << " " << y_m << " 0 0 0 0 " << stamp_s << " h 1\n";
-  return line.str();
-}
-
 TEST(CarmenLog, TakesCoordinatesOfAMapGrid) {
   const TextFile utm(ScanAt(400000.5, 5300000.25, 1));
   const auto frame = OpenCarmenLog(utm.path())->Next();
@@ -346,56 +338,6 @@ TEST(CarmenLog, MostScansOutOfOrderAreSaidWithTheirCause) {
               testing::HasSubstr("9 of 10 scans are earlier than one before them"));
   // Several messages of one scan are usual.
   EXPECT_THAT(WarningsOf(doubled), testing::Not(testing::HasSubstr("order of time")));
-}
-
-// 30 scans a second apart; what `stamp_of` makes of the stamp of each; the last ten lie so far
-// ahead.
-template <typename StampOf>
-std::string LogWith(StampOf stamp_of, double x_behind_m = 0.0) {
-  std::string log;
-  for (int i = 0; i < 30; ++i) log += ScanAt(i < 20 ? 0.0 : x_behind_m, 0, stamp_of(i));
-  return log;
-}
-
-std::vector<double> StampsOf(const std::string& log) {
-  const TextFile file(log);
-  std::vector<double> stamps_s;
-  for (const Frame& frame : ReadAll(*OpenCarmenLog(file.path()))) stamps_s.push_back(frame.stamp_s);
-  return stamps_s;
-}
-
-TEST(CarmenLog, AStampThatAllLaterOnesContradictIsLeftOut) {
-  const std::string log = LogWith([](int i) { return i == 12 ? 1000000 : 100 + i; });
-  const std::vector<double> stamps_s = StampsOf(log);
-  ASSERT_EQ(stamps_s.size(), 29U);
-  EXPECT_EQ(stamps_s[12], 113.0);
-  EXPECT_THAT(WarningsOf(log),
-              HasSubstr("log:13: a scan whose stamp is later than all after it: stamp 1000000.0"));
-  const TextFile file(log);
-  EXPECT_EQ(CarmenFrames(file.path()).numbers[12], 13);  // it keeps its number
-}
-
-TEST(CarmenLog, AClockThatWasSetBackGoesOn) {
-  const std::string log = LogWith([](int i) { return 5000 + i - (i < 20 ? 0 : 3600); });
-  const std::vector<double> stamps_s = StampsOf(log);
-  ASSERT_EQ(stamps_s.size(), 30U);
-  for (std::size_t i = 0; i < 30; ++i)
-    EXPECT_NEAR(stamps_s[i], 5000.0 + static_cast<double>(i), 2e-3);
-  EXPECT_THAT(WarningsOf(log),
-              HasSubstr("log:21: the clock was set back, by about 3600.000 s: so much is added to "
-                        "the stamps of this scan and all after it"));
-}
-
-// How long it took is not known.
-TEST(CarmenLog, AJumpWhereTheClockWasSetBackIsNoMotion) {
-  for (const double x_m : {0.2, 3.0}) {
-    const TextFile file(LogWith([](int i) { return 100 + i - (i < 20 ? 0 : 10); }, x_m));
-    const auto source = OpenCarmenLog(file.path());
-    EXPECT_EQ(ReadAll(*source).back().slam_epoch, x_m > 1.0 ? 1 : 0);
-    EXPECT_EQ(testing::Matches(testing::Contains(HasSubstr("jumps where the clock was set back")))(
-                  source->Warnings()),
-              x_m > 1.0);
-  }
 }
 
 TEST(CarmenLog, OdometryFasterThanACarIsSaid) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,14 @@ inline std::string RobotLaserLine(const CarmenScan& scan) {
   }
   line += fmt::format(" 0 0 0 0 0 {0:.6f} sim {0:.6f}", scan.stamp_s);
   return line;
+}
+
+// Two readings, taken there and then.
+inline std::string ScanAt(double x_m, double y_m, int stamp_s) {
+  std::ostringstream line;
+  line.precision(17);
+  line << "FLASER 2 1 1 " << x_m << " " << y_m << " 0 0 0 0 " << stamp_s << " h 1\n";
+  return line.str();
 }
 
 inline std::vector<Frame> ReadAll(FrameSource& source) {

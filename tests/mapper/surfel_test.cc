@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include "mapper/core/level.h"
-#include "mapper/fuse/motion_noise.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/surfel/debias.h"
 #include "mapper/surfel/group_links.h"
@@ -284,48 +283,6 @@ TEST(GroupLinks, NormalEquationsAreThoseOfNumericDerivatives) {
   EXPECT_LT((g + jacobian.transpose() * weight * LinkError(link, poses)).norm(), 1e-3);
 }
 
-TEST(MotionNoiseLearner, TellsJitterWalkAndBiasApart) {
-  RandomStream random(13, RandomStage::kTest);
-  const double kept = std::exp(-1.0 / 40.0);
-  MotionNoiseLearner learner;
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
-  double jitter_before = 0.0;
-  for (int i = 0; i < 20000; ++i) {
-    const double jitter = 0.003 * random.Normal();
-    bias.x() = kept * bias.x() + std::sqrt(1.0 - kept * kept) * 0.001 * random.Normal();
-    const Eigen::Vector3d error(bias.x(), 0.002 * random.Normal(), jitter - jitter_before);
-    learner.Add(error, Eigen::Vector3d::Constant(1e-6));
-    jitter_before = jitter;
-  }
-  const MotionNoise noise = learner.Fit();
-  EXPECT_NEAR(noise.bias[0], 0.001, 3e-4);
-  EXPECT_NEAR(noise.walk[1], 0.002, 3e-4);
-  EXPECT_NEAR(noise.jitter[2], 0.003, 3e-4);
-  EXPECT_LT(noise.walk[2], 3e-4);
-  EXPECT_LT(noise.jitter[1], 5e-4);
-}
-
-TEST(MotionNoise, IsBoundBySpread) {
-  const MotionSpread spread{{0.001, 0.001, 0.001}, 4.0};
-  MotionNoise noise;
-  noise.walk = {0.0, 0.0012, 0.1};
-  noise.bias = {0.0, 0.0001, 0.1};
-  noise.bias_kept.setConstant(0.5);
-  Bound(spread, noise);
-  // Called perfect: all of it bias, which lasts as long as any before one is learnt.
-  EXPECT_EQ(noise.bias[0], 0.001);
-  EXPECT_EQ(noise.walk[0], 0.0);
-  EXPECT_EQ(noise.bias_kept[0], MotionNoise().bias_kept[0]);
-  // Called too good: over four frames the walk makes 0.6 of it.
-  EXPECT_NEAR(noise.bias[1], 0.0008, 1e-12);
-  EXPECT_EQ(noise.bias_kept[1], 0.5);
-  // Called too bad.
-  EXPECT_EQ(noise.bias[2], 0.002);
-  EXPECT_EQ(noise.walk[2], 0.004);
-}
-
-// Two frames, with which a group begins, see nothing where SLAM jumps by 6 cm; the third sees the
-// room again. Unless they move along, the group is that far off within itself.
 // What is asked of a scan that came before teaches the map nothing.
 TEST(SurfelMap, ALookAtAnEarlierScanChangesNoMatch) {
   const auto scan_at = [](int i) {
@@ -347,6 +304,8 @@ TEST(SurfelMap, ALookAtAnEarlierScanChangesNoMatch) {
   EXPECT_EQ(matches[0].information, matches[1].information);
 }
 
+// Two frames, with which a group begins, see nothing where SLAM jumps by 6 cm; the third sees the
+// room again. Unless they move along, the group is that far off within itself.
 TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
   SurfelMap map((SurfelOptions()));
   std::vector<MappedFrame> frames;
