@@ -53,15 +53,19 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
 constexpr double kLittleM = 0.05;
 constexpr double kLittleRad = RadFromDeg(3.0);
 
-std::optional<std::string> DoubtOfMove(const std::string& map, const Pose2& given,
-                                       const Pose2& taken) {
+std::string Numbers(const Pose2& pose) {
+  return fmt::format("{},{},{}", Number(pose.x_m, 2), Number(pose.y_m, 2),
+                     Number(DegFromRad(pose.yaw_rad), 1));
+}
+
+std::optional<std::string> DoubtOfMove(const Pose2& given, const Pose2& taken) {
   const Pose2 move = Between(given, taken);
   if (move.translation().norm() <= kLittleM && std::abs(move.yaw_rad) <= kLittleRad) return {};
   return fmt::format(
-      "{}: it begins {:.2f} m and {:.1f} degrees from where --start says, at {},{},{}: there what "
-      "is seen first fits better (--start-within 0 takes the place as it is given)",
-      map, move.translation().norm(), std::abs(DegFromRad(move.yaw_rad)), Number(taken.x_m, 2),
-      Number(taken.y_m, 2), Number(DegFromRad(taken.yaw_rad), 1));
+      "start {}: it begins {:.2f} m and {:.1f} degrees from there, at {}, where what is seen first "
+      "fits better (--start-within 0 takes the place as it is given)",
+      Numbers(given), move.translation().norm(), std::abs(DegFromRad(move.yaw_rad)),
+      Numbers(taken));
 }
 
 void SayStart(const std::string& map, const PriorMap& prior, const MapStart& start, bool camera) {
@@ -135,7 +139,7 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   SayStart(arguments.map, prior, *start, source.Camera().has_value());
   if (const auto doubt = DoubtOfStart(arguments.map, *start)) warnings.push_back(*doubt);
   if (request.start) {
-    const auto moved = DoubtOfMove(arguments.map, *request.start, start->map_from_base);
+    const auto moved = DoubtOfMove(*request.start, start->map_from_base);
     if (moved) warnings.push_back(*moved);
   }
   return *std::move(start);

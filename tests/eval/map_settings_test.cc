@@ -36,7 +36,7 @@ TEST_F(MapSettingsTest, AStartIsThreeNumbersInAMap) {
   ExpectRefusal("map one.log --map m -o out --start-within 0.3",
                 {"--start-within 0.3: is how far off --start may be: give --start X,Y,YAW_DEG"});
   ExpectRefusal("map one.log --map m -o out --start 1,2,3 --start-within -1",
-                {"--start-within -1", "start_within_m", "is -1, must be from 0 to 5"});
+                {"--start-within -1", "start_within_m is '-1', must be from 0 to 5"});
   std::string yaml = ReadFile(Path("m/run.yaml"));
   const std::string none = "start: \"\"";
   yaml.replace(yaml.find(none), none.size(), "start: 1,2");

@@ -221,8 +221,8 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   const Outcome outcome =
       Program("map robot.log --map first --localise --start 3.1,2.9,176 -o out");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("first: it begins 0.1"),
-                                 HasSubstr(" degrees from where --start says, at 3.0")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("start 3.10,2.90,176.0: it begins 0.1"),
+                                 HasSubstr(" degrees from there, at 3.0")));
   EXPECT_THAT(outcome.out, HasSubstr(" where it is said to begin, elsewhere "));
   EXPECT_LT((begin_of("out") - Eigen::Vector3d(3.0, 3.0, 0.0)).norm(), 0.1);
   Succeed("map out/run.yaml -o again");
