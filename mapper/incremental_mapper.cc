@@ -339,7 +339,8 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   if (ends_loops) explained.reset();
   // Where it lies to what was seen before a loss that is not understood is a guess.
   const int from = relocation.active() ? relocation.first_frame() : 0;
-  const auto matched = report.match.found ? reference->MatchedParts() : std::span<const MapPart>();
+  const bool matches = reference && report.match.found;
+  const auto matched = matches ? reference->MatchedParts() : std::span<const MapPart>();
   const MappedFrame& added = mapped.Add(std::move(frame), scans, explained, matched, from);
   report.inserted = added.kept();
   report.well_seen = !added.kept();
