@@ -131,8 +131,7 @@ GroupLimits LimitsFor(AdjustEffort effort, const JointOptions& joint,
                       const std::vector<GroupStart>& starts) {
   const int most = joint.groups.most;
   const auto groups = static_cast<int>(starts.size());
-  const auto prior = static_cast<int>(std::count_if(
-      starts.begin(), starts.end(), [](const GroupStart& start) { return start.of_prior_map; }));
+  const int prior = PriorGroups(starts);
   // Without surfels only loops and the chain of groups tell how they lie: the more the better.
   if (effort == AdjustEffort::kBend) return {.most = most, .most_of_prior_map = prior};
   if (effort == AdjustEffort::kFinish) {

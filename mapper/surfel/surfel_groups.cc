@@ -20,12 +20,12 @@ constexpr std::size_t kLongestGapFrames = 30;
 // 1.2 m: farther on another part of the room is in view.
 constexpr int kMostJoined = 8;
 
+}  // namespace
+
 int PriorGroups(const std::vector<GroupStart>& starts) {
   return static_cast<int>(std::count_if(
       starts.begin(), starts.end(), [](const GroupStart& start) { return start.of_prior_map; }));
 }
-
-}  // namespace
 
 void SurfelGroupOptions::Visit(OptionsVisitor& v) {
   v.Number("length_m", length_m, {0.0, 10.0}, "a group ends this far from where it began");

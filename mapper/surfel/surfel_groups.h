@@ -42,6 +42,8 @@ struct GroupStart {
   bool settled = false;  // where it is in the map was told by what was seen there before
   bool of_prior_map = false;
 };
+// How many are a prior map's.
+int PriorGroups(const std::vector<GroupStart>& starts);
 
 // How many groups there may be, as far as they can be joined.
 struct GroupLimits {

@@ -175,7 +175,9 @@ void SurfelMap::InsertTied(const std::shared_ptr<const Scan>&, const Pose2& map_
 double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
                                   const Pose2& map_from_base, int frame) {
   // A scan that is looked at again says nothing new of the ranges' noise.
-  if (scan != scan_) other_pieces_ = maker_.Make(*scan, noise_, noise_.stride(), {});
+  if (scan != scan_) {
+    other_pieces_ = maker_.Make(*scan, noise_, noise_.stride(), std::move(other_pieces_));
+  }
   const std::vector<Surfel>& pieces = scan == scan_ ? pieces_ : other_pieces_;
   if (pieces.empty()) return 0.0;
   const Motion2 motion(map_from_base);
