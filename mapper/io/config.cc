@@ -44,6 +44,17 @@ YAML::Node FindTopLevel(const YAML::Node& root, const std::string& key) {
 
 }  // namespace
 
+const ConfigOverride* Config::Tree::GivenBefore(const std::string& key_path) const {
+  const bool is_there = Find(root, key_path).IsDefined();
+  for (const ConfigOverride& set : overrides) {
+    // Of a group that was given whole, a key that it lacks may be added.
+    const bool lost = set.key_path == key_path || set.key_path.starts_with(key_path + ".");
+    const bool replaced = is_there && key_path.starts_with(set.key_path + ".");
+    if (set.by_user && (lost || replaced)) return &set;
+  }
+  return nullptr;
+}
+
 Config::Config() : tree_(std::make_unique<Tree>()) {}
 Config::Config(std::unique_ptr<Tree> tree) : tree_(std::move(tree)) {}
 Config::Config(Config&&) noexcept = default;
@@ -78,7 +89,13 @@ void Config::Set(const std::string& assignment) {
   if (equals == std::string::npos || equals == 0) {
     throw InputError("--set " + assignment, "must have the form key.path=value");
   }
-  Set(assignment.substr(0, equals), assignment.substr(equals + 1));
+  const std::string key_path = assignment.substr(0, equals);
+  if (const ConfigOverride* before = tree_->GivenBefore(key_path)) {
+    throw InputError("--set " + assignment, fmt::format("key '{}' is given twice, by {} as well",
+                                                        key_path, before->place));
+  }
+  Set(key_path, assignment.substr(equals + 1));
+  tree_->overrides.back().by_user = true;
 }
 
 void Config::Set(const std::string& key_path, const std::string& yaml_value,

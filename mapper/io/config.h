@@ -62,7 +62,8 @@ class Config {
   Config& operator=(const Config&);
   ~Config();
 
-  // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML.
+  // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML. Throws InputError, as for a
+  // file that has a key twice, where an assignment before has given this key.
   void Set(const std::string& assignment);
   // The same with the key and the YAML value apart, for sweeps; `place` is what errors name, the
   // assignment when empty.

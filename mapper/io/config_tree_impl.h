@@ -17,6 +17,7 @@ namespace depthgrid {
 struct ConfigOverride {
   std::string key_path;
   std::string place;
+  bool by_user = false;  // by an assignment such as --set has
 };
 
 struct Config::Tree {
@@ -32,6 +33,8 @@ struct Config::Tree {
   // Where a value came from, for errors: the assignment that set it, or one that set the group of
   // keys it is in, else file and line.
   std::string PlaceOfKey(const std::string& key_path, const YAML::Mark& mark) const;
+  // The assignment of a user's that has given a key already, or a group or a key of it; or null.
+  const ConfigOverride* GivenBefore(const std::string& key_path) const;
   // The overrides inside the subtree of a key, their paths counted from there.
   std::vector<ConfigOverride> OverridesBelow(const std::string& key) const;
 };

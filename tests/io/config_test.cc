@@ -123,7 +123,33 @@ TEST(Config, AnUnknownKeyIsLookedForInEveryGroup) {
             "--set map.step=1: unknown key 'map', did you mean 'step_m'?");
   EXPECT_EQ(ErrorAfterSet("fuson.gain=1"),
             "--set fuson.gain=1: unknown key 'fuson', did you mean 'fusion'?");
-  EXPECT_EQ(ErrorAfterSet("map={}"), "--set map={}: unknown key 'map'");
+  EXPECT_EQ(ErrorAfterSet("map={}"),
+            "--set map={}: unknown key 'map'");
+}
+
+// As a file that has a key twice is refused, also with one value.
+TEST(Config, AKeyIsSetOnce) {
+  const auto refusal = [](const std::vector<std::string>& assignments) {
+    Config config = Config::FromText("frames: 10\nfusion: {mode: kalman}\n", "run.yaml");
+    return RefusalOf([&] {
+      for (const std::string& assignment : assignments) config.Set(assignment);
+      const Config copy = config;  // has been given the same keys
+      Config(copy).Set("step_m=0.2");
+    });
+  };
+  EXPECT_EQ(refusal({"seed=1", "frames=2", "seed=2"}),
+            "--set seed=2: key 'seed' is given twice, by --set seed=1 as well");
+  EXPECT_EQ(refusal({"step_m=0.3"}),
+            "--set step_m=0.2: key 'step_m' is given twice, by --set step_m=0.3 as well");
+  EXPECT_EQ(refusal({"seed=1", "seed=1"}),
+            "--set seed=1: key 'seed' is given twice, by --set seed=1 as well");
+  EXPECT_EQ(refusal({"fusion.gain=0.1", "fusion={mode: fixed}"}),
+            "--set fusion={mode: fixed}: key 'fusion' is given twice, by --set fusion.gain=0.1 as "
+            "well");
+  EXPECT_EQ(refusal({"fusion={mode: fixed}", "fusion.mode=kalman"}),
+            "--set fusion.mode=kalman: key 'fusion.mode' is given twice, by --set fusion={mode: "
+            "fixed} as well");
+  EXPECT_EQ(refusal({"fusion={mode: fixed}", "fusion.gain=0.1", "fusions=1"}), "no error");
 }
 
 TEST(Config, APathWrittenAsAKeyIsToBeNested) {
