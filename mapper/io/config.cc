@@ -102,7 +102,7 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
                  const std::string& given_place) {
   const std::string place =
       given_place.empty() ? "--set " + key_path + "=" + yaml_value : given_place;
-  const YAML::Node value = ParseYaml(yaml_value, place);
+  const YAML::Node value = ParseYamlValue(yaml_value, place);
   const auto parts = SplitPath(key_path);
   if (parts.size() > kMaxYamlDepth) {
     throw InputError(place, fmt::format("keys are nested deeper than {}", kMaxYamlDepth));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
 
+#include <optional>
 #include <sstream>
 #include <unordered_set>
 #include <vector>
@@ -41,6 +42,12 @@ class BoundsCheck final : public YAML::EventHandler {
   }
   void OnMapEnd() override { groups_.pop_back(); }
 
+  // To be called at the text's end: a list that is never closed is taken for a key before the
+  // parser sees that.
+  void RequirePlainKeys() const {
+    if (odd_key_) Fail(*odd_key_, "a key must be a plain word");
+  }
+
  private:
   struct Group {
     bool is_map = false;
@@ -62,8 +69,11 @@ class BoundsCheck final : public YAML::EventHandler {
     if (groups_.empty() || !groups_.back().is_map) return;
     Group& map = groups_.back();
     if (map.key_is_next) {
-      if (word == nullptr) Fail(mark, "a key must be a plain word");
-      if (!map.keys.insert(*word).second) Fail(mark, "key '" + *word + "' is given twice");
+      if (word == nullptr) {
+        if (!odd_key_) odd_key_ = mark;
+      } else if (!map.keys.insert(*word).second) {
+        Fail(mark, "key '" + *word + "' is given twice");
+      }
     }
     map.key_is_next = !map.key_is_next;
   }
@@ -75,6 +85,7 @@ class BoundsCheck final : public YAML::EventHandler {
   const std::string& place_;
   std::vector<Group> groups_;
   std::size_t values_ = 0;
+  std::optional<YAML::Mark> odd_key_;  // the first
 };
 
 }  // namespace
@@ -91,17 +102,35 @@ YAML::Mark MarkOfKey(const YAML::Node& key, const YAML::Node& value) {
   return mark;
 }
 
+namespace {
+
+// Throws YAML::Exception for text that is not YAML.
+YAML::Node Parsed(const std::string& text, const std::string& place) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  BoundsCheck check(place);
+  parser.HandleNextDocument(check);
+  check.RequirePlainKeys();
+  return YAML::Load(text);
+}
+
+}  // namespace
+
 YAML::Node ParseYaml(const std::string& text, const std::string& place) {
   try {
-    std::istringstream stream(text);
-    YAML::Parser parser(stream);
-    BoundsCheck check(place);
-    parser.HandleNextDocument(check);
-    return YAML::Load(text);
+    return Parsed(text, place);
   } catch (const YAML::Exception& e) {
     const std::string where =
         e.mark.is_null() ? place : fmt::format("{}:{}", place, e.mark.line + 1);
     throw InputError(where, "not valid YAML: " + e.msg);
+  }
+}
+
+YAML::Node ParseYamlValue(const std::string& text, const std::string& place) {
+  try {
+    return Parsed(text, place);
+  } catch (const YAML::Exception& e) {
+    throw InputError(place, "the value is not valid YAML: " + e.msg);
   }
 }
 

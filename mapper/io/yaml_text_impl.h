@@ -15,6 +15,8 @@ inline constexpr int kMaxYamlDepth = 100;
 // key that is no plain word or is given twice, values nested deeper than kMaxYamlDepth, and more
 // than a million values.
 YAML::Node ParseYaml(const std::string& text, const std::string& place);
+// The same of the value of one key, given beside it.
+YAML::Node ParseYamlValue(const std::string& text, const std::string& place);
 
 // "place:line", or the place alone where the line is not known.
 std::string PlaceOf(const std::string& place, const YAML::Mark& mark);

@@ -77,6 +77,17 @@ TEST(YamlText, ManyKeysAreComparedInReasonableTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
+// A list that is never closed is no key.
+TEST(YamlText, WhatIsNotYamlIsSaidOfTheValue) {
+  EXPECT_EQ(SetRefusal("seed=[1"),
+            "--set seed=[1: the value is not valid YAML: end of sequence flow not found");
+  EXPECT_EQ(SetRefusal("slam={loops: {recall"),
+            "--set slam={loops: {recall: the value is not valid YAML: end of map flow not found");
+  EXPECT_EQ(SetRefusal("scene=\"a"),
+            "--set scene=\"a: the value is not valid YAML: illegal EOF in scalar");
+  EXPECT_EQ(YamlRefusal("[1"), "x:1: not valid YAML: end of sequence flow not found");
+}
+
 TEST(YamlText, KeysArePlainWordsGivenOnce) {
   EXPECT_EQ(YamlRefusal("a: 1\n[b]: 2\n"), "x:2: a key must be a plain word");
   EXPECT_EQ(YamlRefusal("a: 1\n? {b: 1}\n: 2\n"), "x:2: a key must be a plain word");
