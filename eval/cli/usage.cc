@@ -66,10 +66,11 @@ std::string KeyMeant(const CLI::App& app, const std::string& option) {
   return *std::find_if(keys.begin(), keys.end(), ends_so);
 }
 
-// `words`: what was not understood, from its first on.
+// `words`: what was not understood, from its first on; behind "--" none is an option.
 std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& words) {
-  const std::string& word = words.front();
-  if (word.starts_with('-')) {
+  const bool ended = words.front() == "--" && words.size() > 1;
+  const std::string& word = words[ended ? 1 : 0];
+  if (word.starts_with('-') && !ended) {
     const auto equals = word.find('=');
     const std::string name = word.substr(0, equals);
     const std::string key = name.starts_with("--") && name.size() > 2 ? KeyMeant(app, name) : "";
@@ -84,7 +85,10 @@ std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& wor
                        DidYouMean(WithoutDashes(name), LongOptions(app), "--"));
   }
   const std::vector<std::string> commands = Commands(app);
-  if (commands.empty()) return fmt::format("'{}' is one argument too many", word);
+  if (commands.empty()) {
+    return fmt::format("'{}' is one argument too many{}", word,
+                       ended ? ": behind -- nothing is an option" : "");
+  }
   return fmt::format("no command '{}'{}", word, DidYouMean(word, commands));
 }
 

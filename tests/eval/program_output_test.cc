@@ -262,6 +262,17 @@ TEST_F(ProgramOutput, RenderSaysWhatHasNoEffectOnImages) {
             "sensor.noise is none\n");
 }
 
+// Behind "--" nothing is an option.
+TEST_F(ProgramOutput, AFileMayBeginWithADash) {
+  Write("-small.yaml", kExperiment);
+  Succeed("run --set frames=2 -o one -- -small.yaml");
+  Succeed("compare --metric all -- one one");
+  ExpectRefusal("run -- -small.yaml -o out",
+                {"'-o' is one argument too many: behind -- nothing is an option (see depthgrid run "
+                 "--help)"});
+  ExpectRefusal("run -small.yaml -o out", {"no option '-s"});
+}
+
 TEST_F(ProgramOutput, RenderSaysThatNoImageShowsAnything) {
   const auto said = [&](const std::string& range_m) {
     return Program("render ./room.yaml --no-colour -o seq --force --set frames=2" + range_m).err;
