@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <new>
 #include <system_error>
@@ -42,6 +43,10 @@ int ComplainOf(const std::exception& error) {
     }
     return Complain(of_files->path1().string() + ": " + why,
                     IsOfName(*of_files) ? kBadInput : kFailed);
+  }
+  const auto* of_system = dynamic_cast<const std::system_error*>(&error);
+  if (of_system != nullptr && std::ferror(stdout) != 0) {  // fmt names no file
+    return Complain(CannotPrint(of_system->code().message()), kFailed);
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     return Complain("out of memory", kFailed);

@@ -107,12 +107,15 @@ void OpenStandardStreams() {
   }
 }
 
+std::string CannotPrint(const std::string& why) {
+  return "standard output: cannot be written: " + why;
+}
+
 void FinishOutput() {
   const bool flushed = std::fflush(stdout) == 0;
   const int error = errno;
   if (!flushed || std::ferror(stdout) != 0) {
-    throw std::runtime_error(std::string("standard output: cannot be written: ") +
-                             std::strerror(flushed ? EIO : error));
+    throw std::runtime_error(CannotPrint(std::strerror(flushed ? EIO : error)));
   }
 }
 

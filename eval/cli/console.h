@@ -60,6 +60,8 @@ void Warn(const std::vector<std::string>& warnings);
 // A standard stream that the caller closed would be the first file the program opens, and words for
 // the screen would be written into it.
 void OpenStandardStreams();
+// The message of results that could not be printed.
+std::string CannotPrint(const std::string& why);
 // What was printed reached its file or pipe; throws std::runtime_error when it did not (a full
 // disk), so that half a table is not taken for a whole one.
 void FinishOutput();

@@ -1,9 +1,12 @@
 // The `depthgrid` program: arguments in, exit code out. CLI11 is slow to compile and is included
 // here, in usage and in common_options only.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
+#include <sstream>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/common_options.h"
@@ -371,7 +374,9 @@ int Main(int argc, char** argv) {
       program.app.parse(argc, argv);
       program.chosen();
     } catch (const CLI::Success& asked) {  // --help, --keys, --version
-      program.app.exit(asked);
+      std::ostringstream text;
+      program.app.exit(asked, text, text);
+      fmt::print("{}", text.str());
     } catch (const CLI::ParseError& error) {
       return Complain(UsageMessage(program.app, error), kBadInput);
     }

@@ -243,12 +243,17 @@ TEST_F(ProgramErrors, ASweepsCacheIsRefusedBeforeItStarts) {
 
 TEST_F(ProgramErrors, WhatCannotBePrintedIsAFailure) {
   // Half a table would be taken for a whole one.
-  for (const char* arguments : {"scenes", "--help", "run --keys"}) {
-    const std::string command = std::string("'") + kProgramFile + "' " + arguments +
-                                " >/dev/full 2>'" + Path("full.txt") + "'";
+  Write("way.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 2 0 0 0 0 0 1\n");
+  for (const char* arguments :
+       {"scenes", "--help", "--version", "run --help", "run --keys", "sweep --keys", "map --keys",
+        "eval trajectory way.txt way.txt", "eval trajectory way.txt way.txt --json"}) {
+    const std::string command = "cd '" + root_.string() + "' && '" + kProgramFile + "' " +
+                                arguments + " >/dev/full 2>full.txt";
     const int status = std::system(command.c_str());
     EXPECT_EQ(WEXITSTATUS(status), 1) << arguments;
-    EXPECT_THAT(ReadFile(Path("full.txt")), HasSubstr("No space left")) << arguments;
+    EXPECT_EQ(ReadFile(Path("full.txt")),
+              "depthgrid: standard output: cannot be written: No space left on device\n")
+        << arguments;
   }
 }
 
