@@ -33,6 +33,8 @@ using Json = ReportJson;
 // More runs than a page can hold: it then has the grid points only.
 constexpr std::size_t kMostRunsListed = 20'000;
 constexpr int kSignificantDigits = 6;
+// Whole numbers below it are counts, and kept whole.
+constexpr double kMostCounted = 1e15;
 
 // What a reader looks at first; the first of them a sweep has is what its page opens with.
 constexpr std::array<const char*, 6> kMainMetrics = {"trajectory.est.mean_euclidean_m",
@@ -50,6 +52,7 @@ int MainRank(const std::string& metric) {
 
 Json Short(double value) {
   if (!std::isfinite(value)) return nullptr;
+  if (value == std::round(value) && std::abs(value) < kMostCounted) return value;
   // Not stod, which throws for a p-value below 1e-308.
   return std::strtod(fmt::format("{:.{}g}", value, kSignificantDigits).c_str(), nullptr);
 }

@@ -22,8 +22,8 @@ function svg(tag, attributes, ...children) {
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
-// To so many significant digits; of thousands to whole numbers, lest rounded ones look like exact counts.
-const rounded = (value, digits) => (Math.abs(value) >= 10 ** (digits - 1) && Math.abs(value) < 1e6 ? Math.round(value) : Number(value.toPrecision(digits)));
+// To so many significant digits; of thousands to whole numbers, lest rounded ones look like exact counts. No count has 16 digits.
+const rounded = (value, digits) => (Math.abs(value) >= 10 ** (digits - 1) && Math.abs(value) < 1e15 ? Math.round(value) : Number(value.toPrecision(digits)));
 // As many digits as tell something: 4 significant ones, no trailing zeros.
 const compact = (value) => (isNumber(value) ? String(rounded(value, 4)) : "–");
 // Metres as a person says them.

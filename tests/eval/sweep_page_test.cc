@@ -63,8 +63,9 @@ TEST_F(SweepPage, OfASweep) {
                 "0.05])).map(({label, unit}) => `${label} ${unit}`).join()"),
             "a.drift cm/s,a.drift cm/m");
   EXPECT_EQ(browser_->Evaluate("suitedUnit('a.drift_m_per_s', [0.003]).unit"), "mm/s");
-  EXPECT_EQ(browser_->Evaluate("[10897, 9108.3, 0.123456, 1234567].map(compact).join()"),
-            "10897,9108,0.1235,1235000");
+  EXPECT_EQ(browser_->Evaluate("[10897, 9108.3, 0.123456, 1234567, -2345678.4, 1.23456e20].map("
+                               "compact).join()"),
+            "10897,9108,0.1235,1234567,-2345678,123500000000000000000");
   // The best of a column is marked in its middle, where its value is.
   EXPECT_EQ(browser_->Evaluate(
                 "(() => { let at; drawBestMarks = (context, best, u) => { at = u; }; const p = "
