@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "mapper/core/error.h"
@@ -58,8 +59,13 @@ DepthImage Look(const Pose3& world_from_camera) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
-  const std::filesystem::path folder = argv[1];
+  const std::string first = argc > 1 ? argv[1] : "";
+  const bool asks = first == "--help" || first == "-h";
+  if (argc != 2 || asks) {
+    std::fprintf(asks ? stdout : stderr, "usage: depth_mapper FOLDER\n");
+    return asks ? 0 : 2;
+  }
+  const std::filesystem::path folder = first;
   std::filesystem::create_directories(folder);
   MapperOptions options;
   options.scan.beams = kCamera.width_px;  // not more than there are columns

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
@@ -31,7 +32,12 @@ void Show(const OccupancyMap& map) {  // a real node would publish it
               map.geometry.height_cells, static_cast<int>(walls));
 }
 
-int main() {
+int main(int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first == "--help" || first == "-h") {
+    std::printf("usage: live_mapper\n");
+    return 0;
+  }
   const MapperOptions options;  // the most accurate; mapper_options.h has them all
   IncrementalMapper mapper(options, std::nullopt);
   for (int i = 0; i < 300; ++i) {  // a turn on the spot, 30 frames a second

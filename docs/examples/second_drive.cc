@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "mapper/core/level.h"
@@ -113,9 +114,14 @@ PriorMap Load(const std::string& path) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
-  std::filesystem::create_directories(argv[1]);
-  const std::string file = (std::filesystem::path(argv[1]) / "scans.bin").string();
+  const std::string folder = argc > 1 ? argv[1] : "";
+  const bool asks = folder == "--help" || folder == "-h";
+  if (argc != 2 || asks) {
+    std::fprintf(asks ? stdout : stderr, "usage: second_drive FOLDER\n");
+    return asks ? 0 : 2;
+  }
+  std::filesystem::create_directories(folder);
+  const std::string file = (std::filesystem::path(folder) / "scans.bin").string();
   const MapperOptions options;
 
   IncrementalMapper first(options, std::nullopt);
