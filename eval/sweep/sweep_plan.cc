@@ -233,10 +233,34 @@ void RequireSweep(const Config& config, const std::string& path) {
   if (config.Has("scene")) throw InputError(path, "is an experiment; `depthgrid run` takes it");
 }
 
+std::vector<std::string> KeysOfSweep() {
+  std::vector<std::string> keys = Config::FromText(ToYaml(SweepFileOptions{}), "").Keys();
+  keys.insert(keys.end(), {"axes", "set"});
+  return keys;
+}
+
+// All that is unknown would be compared with the sweep's own few keys.
+void RefuseExperimentsKeys(const Config& config) {
+  const std::vector<std::string> own = KeysOfSweep();
+  const std::vector<std::string> of_experiment =
+      Config::FromText(ToYaml(ExperimentOptions{}), "").Keys();
+  const auto holds = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  for (const ConfigEntry& entry : config.Entries()) {
+    const std::string group = entry.key.substr(0, entry.key.find('.'));
+    if (holds(own, entry.key) || !holds(of_experiment, group)) continue;
+    const std::string example = entry.map ? entry.key + ".KEY" : entry.key;
+    throw InputError(entry.place,
+                     fmt::format("'{}' is a key of the experiment, in a sweep it stands in 'set': "
+                                 "set: {{{}: ...}}",
+                                 entry.key, example));
+  }
+}
+
 // A required key that is missing may stand there with a slip in it.
 void RequireKeys(const Config& config, const std::string& path) {
-  std::vector<std::string> known = Config::FromText(ToYaml(SweepFileOptions{}), "").Keys();
-  known.insert(known.end(), {"axes", "set"});
+  const std::vector<std::string> known = KeysOfSweep();
   for (const std::string required : {"axes", "experiment"}) {
     if (config.Has(required)) continue;
     for (const ConfigEntry& entry : config.Entries()) {
@@ -308,6 +332,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   Config config = Config::FromFile(path);
   RequireSweep(config, path);
   RequireKeys(config, path);
+  RefuseExperimentsKeys(config);
   SweepPlan plan;
   plan.title = fs::path(path).stem().string();
   const std::string place_of_axes = config.PlaceOfKey("axes");

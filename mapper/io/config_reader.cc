@@ -15,6 +15,9 @@
 namespace depthgrid {
 namespace {
 
+// More keys are no help on one line.
+constexpr std::size_t kMostListed = 12;
+
 class YamlReader final : public OptionsVisitor {
  public:
   YamlReader(const Config::Tree& tree, std::function<std::vector<std::string>()> all_keys)
@@ -193,7 +196,11 @@ class YamlReader final : public OptionsVisitor {
     const std::string near_sibling = DidYouMean(key, siblings, prefix);
     const std::string same = DidYouMeanKey(path, paths, false);
     if (!same.empty() && (near_sibling.empty() || !value.IsMap())) return same;
-    return near_sibling.empty() ? DidYouMeanKey(path, paths, true) : near_sibling;
+    if (!near_sibling.empty()) return near_sibling;
+    const std::string near = DidYouMeanKey(path, paths, true);
+    return near.empty() && siblings.size() <= kMostListed
+               ? ", must be one of " + Joined({siblings.begin(), siblings.end()})
+               : near;
   }
   // Of a key or of a group of keys.
   static bool IsPathIn(const std::vector<std::string>& paths, const std::string& path) {

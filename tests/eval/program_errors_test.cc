@@ -205,6 +205,16 @@ TEST_F(ProgramErrors, ASlipInARequiredKeyOfASweepIsFound) {
                 {"unknown key 'experimnet', did you mean 'experiment'?"});
 }
 
+TEST_F(ProgramErrors, AnExperimentsKeyInASweepIsToldItsPlace) {
+  const std::string sweep = "experiment: ./small.yaml\naxes: {seed: [1, 2]}\n";
+  Write("many.yaml", sweep + "sensor: {width: 320}\n");
+  ExpectRefusal("sweep ./many.yaml -o out",
+                {"many.yaml:3: 'sensor' is a key of the experiment, in a sweep it stands in 'set': "
+                 "set: {sensor.KEY: ...}\n"});
+  Write("many.yaml", sweep + "frames: 3\n");
+  ExpectRefusal("sweep ./many.yaml -o out", {"many.yaml:3: 'frames'", "set: {frames: ...}\n"});
+}
+
 TEST_F(ProgramErrors, SettingsThatContradictEachOther) {
   for (const char* command : {"run", "render"}) {
     ExpectRefusal(std::string(command) + " ./small.yaml --set mapper.scan.band_low_m=10 -o out",

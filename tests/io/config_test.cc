@@ -124,7 +124,8 @@ TEST(Config, AnUnknownKeyIsLookedForInEveryGroup) {
   EXPECT_EQ(ErrorAfterSet("fuson.gain=1"),
             "--set fuson.gain=1: unknown key 'fuson', did you mean 'fusion'?");
   EXPECT_EQ(ErrorAfterSet("map={}"),
-            "--set map={}: unknown key 'map'");
+            "--set map={}: unknown key 'map', must be one of scene, frames, seed, step_m, loops, "
+            "invalid, fusion");
 }
 
 // As a file that has a key twice is refused, also with one value.
