@@ -142,7 +142,8 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
     images.erase(end, images.end());
   }
   for (const NumberedImage& image : images) {
-    recording.images.push_back({StampS(image.number, options), image.path.string(), image.number});
+    const double stamp_s = image.stamp_s ? *image.stamp_s : StampS(image.number, options);
+    recording.images.push_back({stamp_s, image.path.string(), image.number});
   }
   const auto poses = PosesOf(images, images_folder, listed);
   for (std::size_t i = 0; i < images.size(); ++i) {

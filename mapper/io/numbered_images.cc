@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <string_view>
+
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -14,6 +17,41 @@ std::optional<long> TrailingNumber(const std::string& stem) {
   const auto [stop, error] = std::from_chars(stem.data() + begin, end, number);
   if (begin == stem.size() || error != std::errc{} || stop != end) return {};
   return number;
+}
+
+// Of "12.160407", also behind a word such as "frame_" or "frame-". "1.12" may be the twelfth image
+// of the first camera: a stamp has milliseconds or more, or is a time since 1970.
+std::optional<double> StampIn(const std::string& stem) {
+  constexpr std::size_t kLeastDigits = 3;
+  constexpr double kLeastSince1970S = 1e8;
+  const std::size_t begin = stem.find_last_not_of("0123456789.") + 1;
+  const std::size_t point = stem.find('.', begin);
+  if (begin > 0 && stem[begin - 1] != '-' && stem[begin - 1] != '_') return {};
+  if (point == begin || point == std::string::npos || point + 1 == stem.size()) return {};
+  if (stem.find('.', point + 1) != std::string::npos) return {};
+  const auto stamp_s = ParseNumber(std::string_view(stem).substr(begin));
+  const bool is_stamp =
+      stamp_s && (stem.size() - point > kLeastDigits || *stamp_s >= kLeastSince1970S);
+  return is_stamp ? stamp_s : std::nullopt;
+}
+
+// Nothing where one of them is none.
+void TakeStamps(std::vector<NumberedImage>& images) {
+  for (NumberedImage& image : images) image.stamp_s = StampIn(image.stem.filename().string());
+  const bool all = std::all_of(images.begin(), images.end(),
+                               [](const NumberedImage& image) { return image.stamp_s; });
+  if (!all) {
+    for (NumberedImage& image : images) image.stamp_s.reset();
+    return;
+  }
+  std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) {
+    return a.stamp_s != b.stamp_s ? a.stamp_s < b.stamp_s : a.path < b.path;
+  });
+  long number = 0;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (i > 0 && images[i].stamp_s != images[i - 1].stamp_s) ++number;
+    images[i].number = number;
+  }
 }
 
 }  // namespace
@@ -33,6 +71,7 @@ std::vector<NumberedImage> NumberedImagesIn(const std::filesystem::path& folder,
   std::sort(images.begin(), images.end(), [](const auto& a, const auto& b) {
     return a.number != b.number ? a.number < b.number : a.path < b.path;
   });
+  TakeStamps(images);
   return images;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,13 @@ namespace depthgrid {
 struct NumberedImage {
   long number = 0;
   std::filesystem::path path;
-  std::filesystem::path stem;  // the path less its ending
+  std::filesystem::path stem;          // the path less its ending
+  std::optional<double> stamp_s = {};  // of names that are seconds
 };
 
-// The folder's files with this ending and a number before it, in order of their numbers.
+// The folder's files with this ending and a number before it, in order of their numbers. Where all
+// names are seconds with a fraction (1305031102.160407, as TUM's), they are in order of these, and
+// their numbers are their places, from 0.
 std::vector<NumberedImage> NumberedImagesIn(const std::filesystem::path& folder,
                                             const std::string& ending);
 

@@ -190,6 +190,29 @@ TEST_F(FrameFolderTest, NamesOfMicroAndNanosecondsAreStamps) {
   }
 }
 
+// A TUM folder's images without its depth.txt. By their last digits the third would come first.
+TEST_F(FrameFolderTest, NamesOfSecondsWithAFractionAreStamps) {
+  for (const std::string& before : {std::string("depth/"), std::string("depth/left-")}) {
+    SetUp();
+    for (const char* stamp : {"1305031102.960407", "1305031103.000000", "1305031103.040407"}) {
+      WriteDepth(before + stamp + ".png", 1000);
+    }
+    Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+    const FrameFolder listed = ListFrameFolder(folder_, {});
+    ASSERT_EQ(listed.recording.images.size(), 3U);
+    EXPECT_EQ(listed.recording.images[0].stamp_s, 1305031102.960407);
+    EXPECT_EQ(listed.recording.images[1].stamp_s, 1305031103.0);
+    EXPECT_EQ(listed.recording.images[2].stamp_s, 1305031103.040407);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(listed.recording.images[i].number, i);
+  }
+  // The ninth and the tenth image of a camera.
+  SetUp();
+  for (const char* name : {"depth/1.9.png", "depth/1.10.png"}) WriteDepth(name, 1000);
+  const FrameFolder listed = ListFrameFolder(folder_, {});
+  EXPECT_EQ(listed.recording.images[0].number, 9);
+  EXPECT_DOUBLE_EQ(listed.recording.images[1].stamp_s, 10.0 / 30.0);
+}
+
 // The map's files hold stamps of seconds: it would be refused when it is written.
 TEST_F(FrameFolderTest, ANumberThatIsNoStampIsRefusedFirst) {
   WriteSevenScenes("");
