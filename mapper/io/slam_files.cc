@@ -34,6 +34,11 @@ std::string LoopRow(const LoopClosure& loop, int epoch, const std::vector<SlamPo
                      stamp_s(loop.first_frame), stamp_s(loop.second_frame));
 }
 
+// A loop at this frame is then not all that SLAM corrected.
+bool IsFoundAgain(const std::vector<SlamPose>& live, std::size_t frame) {
+  return frame > 0 && live[frame].slam_from_camera && !live[frame - 1].slam_from_camera;
+}
+
 struct FramedPose {
   std::size_t frame = 0;
   StampedPose pose;
@@ -200,16 +205,16 @@ std::string LoopsText(const SlamOutput& output) {
   auto loop = output.loops.begin();
   int epoch = 0;
   for (std::size_t i = 0; i < output.live.size(); ++i) {
-    bool explained = output.live[i].epoch == epoch;
+    const auto is_here = [&] {
+      return loop != output.loops.end() && static_cast<std::size_t>(loop->reported_at_frame) == i;
+    };
+    const bool corrected = output.live[i].epoch != epoch;
     epoch = output.live[i].epoch;
-    for (; loop != output.loops.end() && static_cast<std::size_t>(loop->reported_at_frame) == i;
-         ++loop) {
-      text += LoopRow(*loop, epoch, output.live);
-      explained = true;
+    if (corrected && (!is_here() || IsFoundAgain(output.live, i))) {
+      text += fmt::format("relocalisation,{},{},,,,,,,,,,,,{:.6f},,\n", i, epoch,
+                          output.live[i].stamp_s);
     }
-    if (explained) continue;
-    text +=
-        fmt::format("relocalisation,{},{},,,,,,,,,,,,{:.6f},,\n", i, epoch, output.live[i].stamp_s);
+    for (; is_here(); ++loop) text += LoopRow(*loop, epoch, output.live);
   }
   Require(loop == output.loops.end(), "loops are ordered by the frame that reports them");
   return text;

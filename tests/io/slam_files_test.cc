@@ -19,6 +19,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Near the others, so that no step between two is a jump.
 Pose3 RandomPose(RandomStream& random) {
@@ -92,6 +93,18 @@ TEST_F(SlamFiles, ReadBackTheVerySameOutput) {
   EXPECT_THAT(bytes, HasSubstr("\nrelocalisation,6,1,,,"));
   EXPECT_THAT(bytes, HasSubstr("\nloop,8,2,0,7,"));
   EXPECT_THAT(bytes, HasSubstr("\nloop,10,2,3,9,"));
+}
+
+TEST_F(SlamFiles, ARelocalisationStaysBesideALoopOfItsFrame) {
+  SlamOutput written = Example();
+  written.loops.insert(written.loops.begin(), {6, 1, 6, Pose3{}, 0.02, 0.01});
+  WriteSlamFiles(folder_, written);
+  EXPECT_THAT(ReadFile(folder_ + "/loops.csv"),
+              AllOf(HasSubstr("\nrelocalisation,6,1,,,,,,,,,,,,0.200000,,\nloop,6,1,1,6,"),
+                    Not(HasSubstr("relocalisation,8"))));
+  const SlamOutput read = ReadSlamFiles(Paths(), {Stamps(written)}).slam;
+  EXPECT_EQ(read.live, written.live);
+  EXPECT_EQ(read.loops, written.loops);
 }
 
 TEST_F(SlamFiles, ALiveTrajectoryAloneIsEnough) {
