@@ -228,9 +228,7 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
   if (image_path == fs::path(yaml_path)) {
     throw InputError(yaml_path, "is the name that the map's image has, must be the YAML file's");
   }
-  // Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
-  const StateThresholds written =
-      mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : StateThresholds{};
+  const StateThresholds written = internal::WrittenThresholds(mode);
   const Eigen::Vector2d origin = map.geometry.OriginM();
   // Fifteen digits: those of a lattice's corner in any place of the earth, without a double's last.
   WriteFile(image_path.string(), internal::EncodeMapImage(map, mode));

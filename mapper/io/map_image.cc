@@ -55,16 +55,29 @@ void RequireDrawable(int width_px, int height_px, const std::string& path) {
                                      kMaxMapCells));
 }
 
+// The pixel nearest to `value` that is read back as a cell of the same state: rounded over a
+// threshold, the cell would become another.
+std::uint8_t PixelOfState(float occupied_prob, double value, double whole, const ShadeRule& rule) {
+  const double nearest = std::round(value);
+  const double second = value < nearest ? nearest - 1.0 : nearest + 1.0;
+  const auto keeps_state = [&](double pixel) {
+    return StateOf(OccupiedProb(pixel / kWhite, true, rule)) == StateOf(occupied_prob);
+  };
+  const bool takes_second = second >= 0.0 && second <= whole && !keeps_state(nearest);
+  return static_cast<std::uint8_t>(takes_second ? second : nearest);
+}
+
 std::uint8_t PixelOf(float occupied_prob, MapMode mode) {
+  const ShadeRule rule{mode, false, WrittenThresholds(mode)};
   if (mode == MapMode::kRaw) {
     return std::isnan(occupied_prob)
                ? kUnknownRawPixel
-               : static_cast<std::uint8_t>(std::lround(occupied_prob * kFullPercent));
+               : PixelOfState(occupied_prob, occupied_prob * kFullPercent, kFullPercent, rule);
   }
   if (mode == MapMode::kScale) {
     return std::isnan(occupied_prob)
                ? kUnknownPixel
-               : static_cast<std::uint8_t>(std::lround((1.0 - occupied_prob) * kWhite));
+               : PixelOfState(occupied_prob, (1.0 - occupied_prob) * kWhite, kWhite, rule);
   }
   switch (StateOf(occupied_prob)) {
     case CellState::kOccupied:
@@ -78,6 +91,11 @@ std::uint8_t PixelOf(float occupied_prob, MapMode mode) {
 }
 
 }  // namespace
+
+// Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
+StateThresholds WrittenThresholds(MapMode mode) {
+  return mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : StateThresholds{};
+}
 
 ShadeImage ReadShades(const std::string& path, MapMode mode) {
   const std::string bytes = ReadFile(path);

@@ -27,7 +27,11 @@ ShadeImage ReadShades(const std::string& path, MapMode mode);
 
 float OccupiedProb(double shade, bool opaque, const ShadeRule& rule);
 
-// The image's bytes: PGM, or PNG with transparency for kScale.
+// What the YAML file of a map that is written in this mode states.
+StateThresholds WrittenThresholds(MapMode mode);
+
+// The image's bytes, in which every cell keeps its state by these: PGM, or PNG with transparency
+// for kScale.
 std::string EncodeMapImage(const OccupancyMap& map, MapMode mode);
 
 }  // namespace depthgrid::internal

@@ -167,9 +167,27 @@ TEST_F(MapFileTest, ScaleAndRawRoundTripKeepTheProbabilities) {
     for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
       EXPECT_EQ(std::isnan(read.occupied_prob[i]), std::isnan(map.occupied_prob[i]));
       if (!std::isnan(map.occupied_prob[i])) {
-        EXPECT_NEAR(read.occupied_prob[i], map.occupied_prob[i], 0.5 * step + 1e-6);
+        EXPECT_NEAR(read.occupied_prob[i], map.occupied_prob[i], step);
       }
     }
+  }
+}
+
+// The shades do not fall on the thresholds: what is rounded over one would be another cell.
+TEST_F(MapFileTest, EveryModeKeepsTheStates) {
+  OccupancyMap map(GridGeometry{0.05, {0, 0}, 400, 250});
+  const auto cells = static_cast<float>(map.occupied_prob.size());
+  for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
+    map.occupied_prob[i] = static_cast<float>(i) / (cells - 1.0F);
+  }
+  for (const MapMode mode : {MapMode::kTrinary, MapMode::kScale, MapMode::kRaw}) {
+    WriteMap(Path("map.yaml"), map, mode);
+    const OccupancyMap read = ReadMap(Path("map.yaml")).map;
+    EXPECT_EQ(StatesOf(read), StatesOf(map)) << static_cast<int>(mode);
+    // Once read, it is written as it was.
+    const std::string bytes = ReadFile(MapImageOf(Path("map.yaml"), mode));
+    WriteMap(Path("again.yaml"), read, mode);
+    EXPECT_EQ(ReadFile(MapImageOf(Path("again.yaml"), mode)), bytes);
   }
 }
 
