@@ -16,10 +16,11 @@ struct ScoreSurface {
   std::vector<std::uint32_t> sums;  // yaw by yaw, row by row, as LatticeScore
 
   std::size_t Index(const LatticeStep& step) const {
-    const int side = 2 * lattice.half_cells + 1;
-    const int row =
-        (step.yaw_steps + lattice.half_yaw_steps) * side + step.y_cells + lattice.half_cells;
-    return static_cast<std::size_t>(row * side + step.x_cells + lattice.half_cells);
+    const auto side = static_cast<std::size_t>(2 * lattice.half_cells + 1);
+    const auto yaw = static_cast<std::size_t>(step.yaw_steps + lattice.half_yaw_steps);
+    const auto y = static_cast<std::size_t>(step.y_cells + lattice.half_cells);
+    const auto x = static_cast<std::size_t>(step.x_cells + lattice.half_cells);
+    return (yaw * side + y) * side + x;
   }
 };
 

@@ -35,6 +35,17 @@ TEST(ScoreSurface, HoldsEveryScore) {
   EXPECT_EQ(static_cast<std::size_t>(cases), surface.sums.size());
 }
 
+// A window of 300 m in cells of 5 mm has more candidates than an int counts.
+TEST(ScoreSurface, CountsCandidatesBeyondAnInt) {
+  ScoreSurface surface;
+  surface.lattice.half_cells = 30'000;
+  surface.lattice.half_yaw_steps = 1;
+  const std::size_t side = 60'001;
+  EXPECT_EQ(surface.Index({-30'000, -30'000, -1}), 0U);
+  EXPECT_EQ(surface.Index({0, 0, 0}), (3 * side * side - 1) / 2);
+  EXPECT_EQ(surface.Index({30'000, 30'000, 1}), 3 * side * side - 1);
+}
+
 // A surface that is a Gaussian with given standard deviations in steps.
 ScoreSurface GaussianSurface(const Pose2& pose, const Eigen::Vector3d& sigma_steps) {
   ScoreSurface surface;
