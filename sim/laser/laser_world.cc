@@ -8,6 +8,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -74,6 +75,7 @@ LaserWorld ReadLaserWorld(const std::string& path) {
   LaserWorld world;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1) line = std::string(WithoutByteOrderMark(line));
     line.erase(std::min(line.find('#'), line.size()));
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     std::istringstream fields(line);

@@ -117,6 +117,8 @@ TEST_F(LaserWorldFile, ReadsSegmentsAndRefusesOthers) {
   const LaserWorld world = ReadLaserWorld(Path("world.txt"));
   ASSERT_EQ(world.walls.size(), 2U);
   EXPECT_EQ(world.walls[1].b_m, Eigen::Vector2d(1.0, 2.5));
+  Write("world.txt", "\xEF\xBB\xBF" + std::string("0 0 1 0.5\n"));
+  EXPECT_EQ(ReadLaserWorld(Path("world.txt")).walls.at(0).b_m, Eigen::Vector2d(1.0, 0.5));
   Write("world.txt", "0 0 1\n");
   EXPECT_THROW(ReadLaserWorld(Path("world.txt")), InputError);
   Write("world.txt", "# nothing\n");
