@@ -48,6 +48,16 @@ std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
   return pairs;
 }
 
+bool IsMostlyCut(const DepthImage& image) {
+  const float largest_m = *std::max_element(image.z_m.begin(), image.z_m.end());
+  std::size_t measured = 0, held = 0;
+  for (const float z_m : image.z_m) {
+    measured += z_m != kInvalidDepth ? 1 : 0;
+    held += z_m != kInvalidDepth && z_m == largest_m ? 1 : 0;
+  }
+  return 2 * held > measured;
+}
+
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
                 DepthMeaning meaning) {
   const DepthImage& first = *pair.first;

@@ -24,6 +24,10 @@ struct ImagePair {
 // a second later. None across a pause.
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images);
 
+// Whether most of an image holds its largest depth, as a sensor or simulator gives for all that is
+// farther than it sees: those surfaces lie elsewhere, and tell nothing of poses.
+bool IsMostlyCut(const DepthImage& image);
+
 // What the numbers of a depth image are.
 enum class DepthMeaning { kZ, kRayLength };
 

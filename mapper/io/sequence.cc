@@ -149,6 +149,7 @@ std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
     while (const auto first = source->Next()) {
       const auto second = source->Next();
       if (!first->depth || !second->depth) continue;
+      if (IsMostlyCut(*first->depth) || IsMostlyCut(*second->depth)) continue;
       pairs.push_back({first->stamp_s, second->stamp_s, first->depth, second->depth});
     }
     return DoubtOfPoses(pairs, *source->Camera(), sequence.slam.live, options, sequence.y_up);

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <string>
 
 #include "mapper/io/file.h"
+#include "mapper/io/png.h"
 #include "tests/eval/program.h"
 
 namespace depthgrid {
@@ -49,6 +51,22 @@ TEST_F(ProgramView, AMapOfACameraAtAnotherHeightIsWarnedOf) {
   EXPECT_THAT(said("frame,camera_height_m\n0,0.95\n1,\n"), Not(HasSubstr("height")));
   EXPECT_THAT(said("frame\n0\n"), Not(HasSubstr("height")));  // of an earlier version
   EXPECT_THAT(said(""), Not(HasSubstr("frames.csv")));  // damaged, and needed for nothing else
+}
+
+// A sensor that gives its farthest depth for all that is beyond it, with some wrong pixels.
+TEST_F(ProgramView, ImagesThatAreCutSayNothingOfPoses) {
+  Succeed("render ./small.yaml --no-colour -o seq --set frames=60");
+  int pixel = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(Path("seq/depth"))) {
+    DepthImage image(80, 60);
+    std::fill(image.z_m.begin(), image.z_m.end(), 8.0F);
+    image.z_m[static_cast<std::size_t>(37 * ++pixel)] = 7.0F;
+    WriteDepthPng(entry.path().string(), image, 5000.0);
+  }
+  const Outcome outcome = Program("map seq -o out");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("show depth from 7 to 8 m"), Not(HasSubstr("do not fit the poses"))));
 }
 
 // Three rows of an image make an obstacle, but no slice of so few pixels has them.
