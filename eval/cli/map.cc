@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 #include "eval/cli/command_output.h"
@@ -21,11 +22,14 @@
 #include "mapper/core/angle.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/slam_files.h"
 
 namespace depthgrid::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 void Say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
@@ -65,6 +69,29 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
        options.recording.max_interpolation_gap_s});
 }
 
+// Where the program that rendered a folder says that its floor is.
+std::optional<double> RenderedFloor(const std::string& render_file) {
+  std::error_code error;  // such as of a name that is too long
+  if (!fs::is_regular_file(render_file, error)) return {};
+  return ParseNumber(Config::FromFile(render_file).Text("mapper.scan.floor_z_m"));
+}
+
+// Where no floor was looked for, as up was given: that of a rendered folder. Poses of others may
+// count heights from elsewhere; the images tell.
+void TakeRenderedFloor(const MapArguments& arguments, const Config& config, Sequence& sequence,
+                       MapSettings& settings) {
+  const std::string file = (fs::path(arguments.input) / "render.yaml").string();
+  if (settings.sequence.world_up != WorldUp::kZ || config.Has("mapper.scan.floor_z_m")) return;
+  const auto floor_z_m = RenderedFloor(file);
+  if (!floor_z_m || *floor_z_m == settings.mapper.scan.floor_z_m) return;
+  const auto& seen_z_m = sequence.seen_floor_z_m;
+  const bool fits =
+      seen_z_m ? std::abs(*seen_z_m - *floor_z_m) < std::abs(*seen_z_m) : arguments.poses.empty();
+  if (!fits) return;
+  settings.mapper.scan.floor_z_m = *floor_z_m;
+  sequence.notes.push_back(fmt::format("the floor is at z = {:.2f}, as {} says", *floor_z_m, file));
+}
+
 Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSettings& settings,
                    std::vector<std::string>& warnings) {
   const auto slam = ReadSlam(arguments, settings.sequence);
@@ -83,6 +110,7 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   if (!config.Has("mapper.scan.floor_z_m") && sequence.floor_z_m) {
     settings.mapper.scan.floor_z_m = *sequence.floor_z_m;
   }
+  TakeRenderedFloor(arguments, config, sequence, settings);
   fmt::print("{}: {}, {}\n", arguments.input, sequence.kind,
              Counted(sequence.source->FrameCount(), "frame"));
   Say(sequence.notes);

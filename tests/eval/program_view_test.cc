@@ -53,6 +53,47 @@ TEST_F(ProgramView, AMapOfACameraAtAnotherHeightIsWarnedOf) {
   EXPECT_THAT(said(""), Not(HasSubstr("frames.csv")));  // damaged, and needed for nothing else
 }
 
+// The floor of a scene need not be at 0; where up is given it is not looked for.
+TEST_F(ProgramView, ARenderedFoldersFloorIsTaken) {
+  Write("high.yaml", R"(
+floor_z_m: 1.5
+shapes:
+  - {shape: box, size: [3, 4, 0.1], at: [1.5, 2, 1.4]}
+  - {shape: box, size: [3, 0.1, 2.5], at: [1.5, 4, 1.5]}
+  - {shape: box, size: [0.1, 4, 2.5], at: [0, 2, 1.5]}
+  - {shape: box, size: [0.5, 0.5, 1.5], at: [0.4, 2.0, 1.5]}
+trajectories:
+  look_around:
+    kind: handheld
+    waypoints:
+      - {at: [1.5, 1.0, 2.6], look_at: [1.5, 4.0, 2.5]}
+      - {at: [1.9, 2.0, 2.6], look_at: [0.0, 3.0, 2.5]}
+)");
+  Succeed(
+      "render ./high.yaml --no-colour -o seq --set frames=20 --set sensor.width=80 --set "
+      "sensor.height=60");
+  const Outcome own = Program("map seq --up z -o out");
+  EXPECT_THAT(own.out, HasSubstr("the floor is at z = 1.50, as seq/render.yaml says\n"));
+  EXPECT_THAT(own.err, Not(HasSubstr("the floor seen in the images")));
+  // A setting counts, and so do poses whose floor is elsewhere.
+  EXPECT_THAT(Program("map seq --up z -o out --force --set mapper.scan.floor_z_m=1.4").out,
+              Not(HasSubstr("the floor is at")));
+  std::string moved;
+  std::istringstream poses(ReadFile(Path("seq/groundtruth.txt")));
+  for (std::string stamp, x, y, rest; poses >> stamp;) {
+    double z = 0.0;
+    if (stamp != "#") {
+      poses >> x >> y >> z;
+      moved += stamp + " " + x + " " + y + " " + std::to_string(z - 1.5);
+    }
+    std::getline(poses, rest);
+    if (stamp != "#") moved += rest + "\n";
+  }
+  Write("moved.txt", moved);
+  EXPECT_THAT(Program("map seq --poses moved.txt --up z -o out --force").out,
+              Not(HasSubstr("the floor is at")));
+}
+
 // A sensor that gives its farthest depth for all that is beyond it, with some wrong pixels.
 TEST_F(ProgramView, ImagesThatAreCutSayNothingOfPoses) {
   Succeed("render ./small.yaml --no-colour -o seq --set frames=60");
