@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -47,6 +48,13 @@ std::string AxesOf(const Eigen::Matrix3d& camera_from_own) {
 
 // A slow camera moves a centimetre in it.
 constexpr double kSureOfTimeS = 0.04;
+
+std::string OffsetRemedyOf(const PoseDoubt& doubt) {
+  const std::string setting = fmt::format(
+      "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
+  if (doubt.time_unsure_s < kSureOfTimeS) return setting;
+  return fmt::format("{}, {:.2f} s more or less fit alike", setting, doubt.time_unsure_s);
+}
 
 std::string RemedyOf(const PoseDoubt& doubt) {
   switch (doubt.reading) {
@@ -95,15 +103,13 @@ std::string RemedyOf(const PoseDoubt& doubt) {
       return "with images that hold lengths of rays; they must hold depth along the camera's z "
              "axis, the ray's length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1)";
     case PoseReading::kShifted:
+      return OffsetRemedyOf(doubt);
     case PoseReading::kStanding:
     case PoseReading::kUnturned:
     case PoseReading::kNone:
       break;
   }
-  const std::string setting = fmt::format(
-      "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
-  if (doubt.time_unsure_s < kSureOfTimeS) return setting;
-  return fmt::format("{}, {:.2f} s more or less fit alike", setting, doubt.time_unsure_s);
+  Broken("poses that are read otherwise have a remedy");
 }
 
 }  // namespace
@@ -114,17 +120,17 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
       "the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their depth "
       "apart",
       kPercent * doubt.misfit);
-  switch (doubt.reading) {
-    case PoseReading::kStanding:
-      return apart + ": the poses do not move, all positions are the same";
-    case PoseReading::kUnturned:
-      return apart + ": the poses do not turn, all quaternions are the same";
-    case PoseReading::kNone:
-      return apart + ", and no reading of them fits: are they of these images, in this order?";
-    default:
-      return fmt::format("{}; they would, at {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
-                         RemedyOf(doubt));
+  if (doubt.reading == PoseReading::kStanding) {
+    return apart + ": the poses do not move, all positions are the same";
   }
+  if (doubt.reading == PoseReading::kUnturned) {
+    return apart + ": the poses do not turn, all quaternions are the same";
+  }
+  if (doubt.reading == PoseReading::kNone) {
+    return apart + ", and no reading of them fits: are they of these images, in this order?";
+  }
+  return fmt::format("{}; they would, at {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
+                     RemedyOf(doubt));
 }
 
 }  // namespace depthgrid::cli

@@ -20,7 +20,7 @@ const char* WordFor(ShippedKind kind) {
     case ShippedKind::kSweep:
       return "sweep";
   }
-  return "";
+  Broken("a shipped file is of one of the kinds");
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::string ShippedFolder(ShippedKind kind) {
     case ShippedKind::kSweep:
       return (scenes / "sweeps").string();
   }
-  return "";
+  Broken("a shipped file is of one of the kinds");
 }
 
 std::vector<std::string> ShippedNames(ShippedKind kind) {

@@ -84,7 +84,7 @@ std::optional<Similarity> Align(const std::vector<PosePair>& pairs, Alignment al
     case Alignment::kSim3:
       return AlignSpatially(pairs, true);
   }
-  return std::nullopt;
+  Broken("an alignment is one of the ways");
 }
 
 std::vector<PosePair> Aligned(std::vector<PosePair> pairs, const Similarity& transform) {

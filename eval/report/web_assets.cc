@@ -40,8 +40,7 @@ std::string_view WebAsset(std::string_view name) {
   for (std::size_t i = 0; i < internal::kWebAssetCount; ++i) {
     if (internal::kWebAssets[i].name == name) return internal::kWebAssets[i].text;
   }
-  Require(false, "a page names files of eval/web");
-  return "";
+  Broken("a page names files of eval/web");
 }
 
 std::string FillPage(std::string_view template_name, std::string_view title,

@@ -31,9 +31,15 @@ class SettingError : public InputError {
   std::string message_;
 };
 
-// Throws std::logic_error when a precondition of the calling code does not hold.
+// Throws std::logic_error: where a precondition of the calling code did not hold. Behind a switch
+// over all values of an enum it says that there are no others (the compiler asks for all).
+[[noreturn]] inline void Broken(const char* rule) {
+  throw std::logic_error(std::string("broken precondition: ") + rule);
+}
+
+// Throws it when the precondition does not hold.
 inline void Require(bool condition, const char* rule) {
-  if (!condition) throw std::logic_error(std::string("broken precondition: ") + rule);
+  if (!condition) Broken(rule);
 }
 
 }  // namespace depthgrid

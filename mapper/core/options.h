@@ -29,6 +29,10 @@ struct Interval {
 // "from 0 to 1", "at least 0", "a finite number".
 std::string Shown(const Interval& interval);
 
+// A value that is chosen by its name.
+template <typename Enum>
+using ChoiceName = std::pair<Enum, std::string_view>;
+
 class OptionsVisitor {
  public:
   virtual ~OptionsVisitor() = default;
@@ -61,8 +65,7 @@ class OptionsVisitor {
 
   // One of a fixed set of names.
   template <typename Enum>
-  void Choice(std::string_view key, Enum& value,
-              std::initializer_list<std::pair<Enum, std::string_view>> allowed,
+  void Choice(std::string_view key, Enum& value, std::span<const ChoiceName<Enum>> allowed,
               std::string_view meaning) {
     std::vector<std::string_view> names;
     int index = -1;  // a value of none of the names
@@ -71,7 +74,18 @@ class OptionsVisitor {
       names.push_back(name);
     }
     ChoiceIndex(key, index, names, meaning);
-    if (index >= 0) value = (allowed.begin() + index)->first;
+    if (index >= 0) value = allowed[static_cast<std::size_t>(index)].first;
+  }
+  template <typename Enum>
+  void Choice(std::string_view key, Enum& value, std::initializer_list<ChoiceName<Enum>> allowed,
+              std::string_view meaning) {
+    Choice(key, value, std::span<const ChoiceName<Enum>>(allowed.begin(), allowed.size()), meaning);
+  }
+  // Of a table, which others go through as well.
+  template <typename Enum, std::size_t kCount>
+  void Choice(std::string_view key, Enum& value,
+              const std::array<ChoiceName<Enum>, kCount>& allowed, std::string_view meaning) {
+    Choice(key, value, std::span<const ChoiceName<Enum>>(allowed), meaning);
   }
 
   // A nested struct with a Visit of its own.

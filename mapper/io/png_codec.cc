@@ -73,7 +73,7 @@ const char* NameOf(PngKind kind) {
     case PngKind::kRgba8:
       return "8-bit RGBA";
   }
-  return "";
+  Broken("a PNG has one of the kinds");
 }
 
 int ColourType(PngKind kind) {
@@ -155,7 +155,7 @@ int PixelBytes(PngKind kind) {
     case PngKind::kRgba8:
       return 4;
   }
-  return 0;
+  Broken("a PNG has one of the kinds");
 }
 
 PngPixels DecodePng(std::string_view png, PngKind wanted, const std::string& place) {

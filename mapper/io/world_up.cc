@@ -32,8 +32,7 @@ Eigen::Vector3d AxisOf(WorldUp up) {
     case WorldUp::kAuto:
       break;
   }
-  Require(false, "an axis that is to be found has no direction yet");
-  return Eigen::Vector3d::Zero();
+  Broken("an axis that is to be found has no direction yet");
 }
 
 std::string NameOf(WorldUp up) {

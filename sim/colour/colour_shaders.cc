@@ -1,5 +1,7 @@
 #include "sim/colour/colour_shaders.h"
 
+#include "mapper/core/error.h"
+
 namespace depthgrid {
 namespace {
 
@@ -309,7 +311,7 @@ const char* TextureSource(TextureKind texture) {
     case TextureKind::kStone:
       return kStone;
   }
-  return kPlain;
+  Broken("a texture has its shader");
 }
 
 const char* AxesOf(Drawn drawn) { return drawn == Drawn::kStanding ? kStandingAxes : kMovingAxes; }

@@ -35,9 +35,12 @@ DepthSamples Sample(DepthNoiseModel model, const SampleSource& source, std::size
       return SampleBetweenPixels(source, first, count, random, scale * noise::kHandaShiftPx);
     case DepthNoiseModel::kAzure:
       return SampleBetweenPixels(source, first, count, random, scale * noise::kAzureShiftPx);
-    default:
+    case DepthNoiseModel::kNone:
+    case DepthNoiseModel::kD435:
+    case DepthNoiseModel::kKinectV2:
       return SampleInPlace(source, first, count);
   }
+  Broken("a noise model samples in one of the ways");
 }
 
 // z + sigma(z, theta) n
@@ -72,6 +75,7 @@ void Measure(DepthNoiseModel model, const DepthSamples& clean, const Values& the
       return AddAxial(clean, theta, normal, scale, measured,
                       [](float z, float) { return noise::AzureSigma(z); });
   }
+  Broken("a noise model has its formula");
 }
 
 // Incidences beyond it are lost; at a right angle none, however soft the limit is.

@@ -48,7 +48,7 @@ PinholeCamera PresetCamera(CameraPreset preset) {
     case CameraPreset::kTof540x360:
       return Nominal(540, 360, 60.0);
   }
-  return {};
+  Broken("a preset has its camera");
 }
 
 // What the sensors' makers state (docs/sensors.md); Handa's model has no limits of its own.
@@ -66,7 +66,7 @@ DepthRange ModelRange(DepthNoiseModel model) {
     case DepthNoiseModel::kAzure:
       return {0.5, 3.86};
   }
-  return {};
+  Broken("a noise model has its range");
 }
 
 DepthRange RangeOf(const SensorOptions& options) {

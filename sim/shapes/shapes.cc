@@ -43,8 +43,7 @@ BuiltItem BuildShape(const std::string& shape, Config& config) {
   for (const auto& [name, builder] : Builders()) {
     if (name == shape) return builder(config);
   }
-  Require(false, "the shape's name is one of ShapeNames()");
-  return {};
+  Broken("the shape's name is one of ShapeNames()");
 }
 
 }  // namespace depthgrid

@@ -45,15 +45,7 @@ SlamLoopOptions WithScenario(SlamLoopOptions options, LoopScenario scenario) {
 
 void SlamOptions::Visit(OptionsVisitor& v) {
   const SlamProfile before = profile;
-  v.Choice("profile", profile,
-           {{SlamProfile::kGroundTruth, "ground_truth"},
-            {SlamProfile::kOrbSlam2, "orb_slam2"},
-            {SlamProfile::kPlanarSlam, "planar_slam"},
-            {SlamProfile::kPlanarSlamMh, "planar_slam_mh"},
-            {SlamProfile::kOrbSlam2Measured, "orb_slam2_measured"},
-            {SlamProfile::kPlanarSlamMeasured, "planar_slam_measured"},
-            {SlamProfile::kOrbSlam2Desk, "orb_slam2_desk"}},
-           "sets all keys below; those given override it");
+  v.Choice("profile", profile, kSlamProfiles, "sets all keys below; those given override it");
   if (profile != before) *this = ProfileOptions(profile);
   v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and drift");
   v.Number("pivot_m", pivot_m, {0.0, kMostPivotM},

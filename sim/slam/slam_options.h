@@ -3,6 +3,8 @@
 // the vertical (see tilt_share).
 #pragma once
 
+#include <array>
+
 #include "mapper/core/options.h"
 
 namespace depthgrid {
@@ -18,6 +20,15 @@ enum class SlamProfile {
   kPlanarSlamMeasured,
   kOrbSlam2Desk,  // ORB-SLAM2 on TUM fr2/desk, from its error over time lag
 };
+// All of them.
+inline constexpr std::array kSlamProfiles = {
+    ChoiceName<SlamProfile>{SlamProfile::kGroundTruth, "ground_truth"},
+    ChoiceName<SlamProfile>{SlamProfile::kOrbSlam2, "orb_slam2"},
+    ChoiceName<SlamProfile>{SlamProfile::kPlanarSlam, "planar_slam"},
+    ChoiceName<SlamProfile>{SlamProfile::kPlanarSlamMh, "planar_slam_mh"},
+    ChoiceName<SlamProfile>{SlamProfile::kOrbSlam2Measured, "orb_slam2_measured"},
+    ChoiceName<SlamProfile>{SlamProfile::kPlanarSlamMeasured, "planar_slam_measured"},
+    ChoiceName<SlamProfile>{SlamProfile::kOrbSlam2Desk, "orb_slam2_desk"}};
 
 // The scenario presets precision, recall and delay of loop closures.
 enum class LoopScenario {

@@ -1,4 +1,5 @@
 // The values of each SLAM profile; docs/slam_surrogate.md tells where they come from.
+#include "mapper/core/error.h"
 #include "sim/slam/slam_options.h"
 
 namespace depthgrid {
@@ -130,7 +131,7 @@ SlamOptions SettingsOf(SlamProfile profile) {
     case SlamProfile::kOrbSlam2Desk:
       return OrbSlam2Desk();
   }
-  return {};
+  Broken("a SLAM profile has its settings");
 }
 
 }  // namespace

@@ -51,6 +51,16 @@ TEST(SlamSurrogate, WithoutErrorGivesTheTruthBitForBit) {
   }
 }
 
+TEST(SlamSurrogate, EveryOtherProfileErrs) {
+  const Trajectory truth = Circling(0.2);
+  for (const auto& [profile, name] : kSlamProfiles) {
+    if (profile == SlamProfile::kGroundTruth) continue;
+    const SlamOutput output = DisturbTrajectory(truth, ProfileOptions(profile), 7);
+    ASSERT_EQ(output.live.size(), truth.size()) << name;
+    EXPECT_NE(*output.live.back().slam_from_camera, truth.back().world_from_camera) << name;
+  }
+}
+
 TEST(SlamSurrogate, JitterHasItsSigmaAndNoMemory) {
   SlamOptions options;
   options.jitter_translation_m = 0.003;
