@@ -25,10 +25,10 @@ std::optional<std::string> DoubtOfCentre(const PinholeCamera& camera) {
 // As where only one side of the image was set, which scales only one of the preset's focal lengths,
 // or only one of these.
 std::optional<std::string> DoubtOfPixels(const SensorOptions& sensor, const PinholeCamera& camera) {
-  constexpr double kMostRatio = 1.05;  // the presets have 1.007
+  constexpr double kMostApart = 1.05;  // the presets have 1.007
   const auto [least_px, most_px] = std::minmax(camera.fx_px, camera.fy_px);
   const bool has_fx = sensor.fx_px > 0.0, has_fy = sensor.fy_px > 0.0;
-  if ((has_fx && has_fy) || most_px <= kMostRatio * least_px) return {};
+  if ((has_fx && has_fy) || most_px <= kMostApart * least_px) return {};
   if (has_fx || has_fy) {
     return fmt::format("sensor.fx is {:g} and fy {:g}, of which only {} was set: set both",
                        camera.fx_px, camera.fy_px, has_fx ? "fx" : "fy");

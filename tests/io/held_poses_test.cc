@@ -54,8 +54,12 @@ TEST(HeldPoses, AreThoseThatStayWhileTheScansMove) {
     const HeldPoses poses = Drive(30, sigma_m);
     for (int i = 0; i < 60; ++i) {
       // The scan at which they stopped is right; the next ones lie within noise.
-      if (i <= 30) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i << " " << sigma_m;
-      if (i > 34) EXPECT_TRUE(poses.held()[static_cast<std::size_t>(i)]) << i << " " << sigma_m;
+      const bool held = poses.held()[static_cast<std::size_t>(i)];
+      if (i <= 30) {
+        EXPECT_FALSE(held) << i << " " << sigma_m;
+      } else if (i > 34) {
+        EXPECT_TRUE(held) << i << " " << sigma_m;
+      }
     }
     EXPECT_GE(poses.count(), 25) << sigma_m;
   }
@@ -91,8 +95,11 @@ TEST(HeldPoses, OfALogHaveNoPose) {
   const CarmenLog opened = OpenCarmenLog(path, {}, {}, {.from_s = 2.0, .to_s = 5.7});
   int posed = 0, held = 0;
   while (const auto frame = opened.source->Next()) {
-    if (frame->index <= 40) EXPECT_TRUE(frame->slam_from_camera) << frame->index;
-    if (frame->index > 44) EXPECT_FALSE(frame->slam_from_camera) << frame->index;
+    if (frame->index <= 40) {
+      EXPECT_TRUE(frame->slam_from_camera) << frame->index;
+    } else if (frame->index > 44) {
+      EXPECT_FALSE(frame->slam_from_camera) << frame->index;
+    }
     ++(frame->slam_from_camera ? posed : held);
   }
   EXPECT_GE(posed, 21);

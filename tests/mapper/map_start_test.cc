@@ -201,9 +201,13 @@ TEST(FindStartNear, APlaceThatIsKnownExactlyIsLeftAsItIs) {
     WalkThroughHall again(begin, 1.0);
     const auto start = FindStartNear(map, off, again, MapperOptions{}, within_m);
     ASSERT_TRUE(start);
-    if (within_m == 0.0) EXPECT_FALSE(AreApart(off, start->map_from_base, 1e-9, 1e-9));
-    if (within_m == 0.05) EXPECT_FALSE(AreApart(off, start->map_from_base, 0.05, 0.2));
-    if (within_m == 0.3) EXPECT_FALSE(AreApart(begin, start->map_from_base, 0.03, 0.01));
+    if (within_m == 0.0) {
+      EXPECT_FALSE(AreApart(off, start->map_from_base, 1e-9, 1e-9));
+    } else if (within_m == 0.05) {
+      EXPECT_FALSE(AreApart(off, start->map_from_base, 0.05, 0.2));
+    } else {
+      EXPECT_FALSE(AreApart(begin, start->map_from_base, 0.03, 0.01));
+    }
   }
 }
 
