@@ -144,14 +144,11 @@ void AddNoiseCase(const std::string& name, const SensorOptions& options) {
     AddCameraCase(1280, 100'000, isa, false, true);
     AddCameraCase(640, 100'000, isa, true, false);
   }
-  for (const auto& [name, model] : {std::pair{"Nguyen", DepthNoiseModel::kNguyen},
-                                    {"Handa", DepthNoiseModel::kHanda},
-                                    {"D435", DepthNoiseModel::kD435},
-                                    {"Kinect v2", DepthNoiseModel::kKinectV2},
-                                    {"Azure", DepthNoiseModel::kAzure}}) {
+  for (const auto& [model, name] : kDepthNoiseModels) {
+    if (model == DepthNoiseModel::kNone) continue;
     SensorOptions options;
     options.noise = model;
-    AddNoiseCase(name, options);
+    AddNoiseCase(std::string(name), options);
   }
   SensorOptions artifacts;
   artifacts.flying_pixels = 0.5;

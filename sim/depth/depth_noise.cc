@@ -1,6 +1,7 @@
 #include "sim/depth/depth_noise.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "sim/depth/correlated_normals.h"
 #include "sim/depth/depth_noise_models.h"
 #include "sim/depth/depth_samples.h"
+#include "sim/depth/noise_traits.h"
 #include "sim/depth/parallel_calls.h"
 #include "sim/depth/sensor_artifacts.h"
 
@@ -16,66 +18,25 @@ namespace depthgrid {
 namespace {
 
 using noise::DepthSamples;
+using noise::NoiseTraits;
 using noise::SampleSource;
+using noise::Sampling;
 using noise::Values;
 
 // Of the four normals of a pixel, the one along its ray.
 constexpr std::size_t kAxial = 2;
 
-bool SamplesBetweenPixels(DepthNoiseModel model) {
-  return model == DepthNoiseModel::kHanda || model == DepthNoiseModel::kAzure;
-}
-
-DepthSamples Sample(DepthNoiseModel model, const SampleSource& source, std::size_t first,
+DepthSamples Sample(const NoiseTraits& traits, const SampleSource& source, std::size_t first,
                     std::size_t count, const NormalBlock& random, float scale) {
-  switch (model) {
-    case DepthNoiseModel::kNguyen:
-      return SampleAcrossEdges(source, first, count, random, scale);
-    case DepthNoiseModel::kHanda:
-      return SampleBetweenPixels(source, first, count, random, scale * noise::kHandaShiftPx);
-    case DepthNoiseModel::kAzure:
-      return SampleBetweenPixels(source, first, count, random, scale * noise::kAzureShiftPx);
-    case DepthNoiseModel::kNone:
-    case DepthNoiseModel::kD435:
-    case DepthNoiseModel::kKinectV2:
+  switch (traits.sampling) {
+    case Sampling::kInPlace:
       return SampleInPlace(source, first, count);
+    case Sampling::kAcrossEdges:
+      return SampleAcrossEdges(source, first, count, random, scale);
+    case Sampling::kBetweenPixels:
+      return SampleBetweenPixels(source, first, count, random, scale * traits.shift_px);
   }
-  Broken("a noise model samples in one of the ways");
-}
-
-// z + sigma(z, theta) n
-template <typename Sigma>
-void AddAxial(const DepthSamples& clean, const Values& theta, const Values& normal, float scale,
-              Values& measured, const Sigma& sigma) {
-  for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
-    measured[i] = clean.z[i] + scale * sigma(clean.z[i], theta[i]) * normal[i];
-  }
-}
-
-void Measure(DepthNoiseModel model, const DepthSamples& clean, const Values& theta,
-             const Values& normal, float scale, float focal_px, Values& measured) {
-  switch (model) {
-    case DepthNoiseModel::kNone:
-      measured = clean.z;
-      return;
-    case DepthNoiseModel::kNguyen:
-      return AddAxial(clean, theta, normal, scale, measured, noise::NguyenSigma);
-    case DepthNoiseModel::kHanda:
-      for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
-        measured[i] = noise::HandaDepth(1.0F / clean.z[i],
-                                        scale * noise::kHandaDisparitySigmaSteps * normal[i]);
-      }
-      return;
-    case DepthNoiseModel::kD435:
-      return AddAxial(clean, theta, normal, scale, measured,
-                      [focal_px](float z, float) { return noise::D435Sigma(z, focal_px); });
-    case DepthNoiseModel::kKinectV2:
-      return AddAxial(clean, theta, normal, scale, measured, noise::KinectV2Sigma);
-    case DepthNoiseModel::kAzure:
-      return AddAxial(clean, theta, normal, scale, measured,
-                      [](float z, float) { return noise::AzureSigma(z); });
-  }
-  Broken("a noise model has its formula");
+  Broken("a pixel is sampled in one of the ways");
 }
 
 // Incidences beyond it are lost; at a right angle none, however soft the limit is.
@@ -125,7 +86,8 @@ DepthImage DepthNoise::Apply(const DepthFrame& clean, std::uint64_t seed,
     return lit;
   }
   DepthImage measured = AddNoise(lit, clean.incidence_cos.data(), seed, frame);
-  if (options_.noise == DepthNoiseModel::kAzure) DropEdges(lit, noise::kAzureEdgeStepM, measured);
+  const float most_step_m = noise::TraitsOf(options_.noise).most_step_m;
+  if (std::isfinite(most_step_m)) DropEdges(lit, most_step_m, measured);
   return measured;
 }
 
@@ -152,9 +114,10 @@ std::vector<float> DepthNoise::CorrelatedAxial(std::uint64_t seed, std::uint32_t
 
 DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_cos,
                                 std::uint64_t seed, std::uint32_t frame) const {
-  const DepthNoiseModel model = options_.noise;
+  const NoiseTraits traits = noise::TraitsOf(options_.noise);
+  const bool looks_between = traits.sampling == Sampling::kBetweenPixels;
   const SampleSource source{lit, incidence_cos,
-                            SamplesBetweenPixels(model) ? InverseOf(lit) : std::vector<float>{},
+                            looks_between ? InverseOf(lit) : std::vector<float>{},
                             static_cast<float>(std::min(camera_.fx_px, camera_.fy_px))};
   const auto scale = static_cast<float>(options_.noise_scale);
   const auto focal_px = static_cast<float>(camera_.fx_px);
@@ -173,10 +136,10 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
     if (!alike.empty()) {
       std::copy_n(alike.data() + first, count, random.normals[kAxial].data());
     }
-    const DepthSamples clean = Sample(model, source, first, count, random, scale);
+    const DepthSamples clean = Sample(traits, source, first, count, random, scale);
     alignas(64) Values theta, measured;
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) theta[i] = noise::Acos(clean.cosine[i]);
-    Measure(model, clean, theta, random.normals[kAxial], scale, focal_px, measured);
+    traits.measure({clean, theta, random.normals[kAxial], scale, focal_px}, measured);
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
       const float z = measured[i];
       const bool is_kept = (clean.z[i] > 0.0F) & (z > 0.0F) & (z >= min_m) & (z <= max_m) &

@@ -5,6 +5,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
+#include "sim/depth/noise_traits.h"
 
 namespace depthgrid {
 namespace {
@@ -51,26 +52,8 @@ PinholeCamera PresetCamera(CameraPreset preset) {
   Broken("a preset has its camera");
 }
 
-// What the sensors' makers state (docs/sensors.md); Handa's model has no limits of its own.
-DepthRange ModelRange(DepthNoiseModel model) {
-  switch (model) {
-    case DepthNoiseModel::kNone:
-    case DepthNoiseModel::kHanda:
-      return {};
-    case DepthNoiseModel::kNguyen:
-      return {0.4, 8.0};
-    case DepthNoiseModel::kD435:
-      return {0.2, 10.0};
-    case DepthNoiseModel::kKinectV2:
-      return {0.5, 4.5};
-    case DepthNoiseModel::kAzure:
-      return {0.5, 3.86};
-  }
-  Broken("a noise model has its range");
-}
-
 DepthRange RangeOf(const SensorOptions& options) {
-  DepthRange range = ModelRange(options.noise);
+  DepthRange range = noise::TraitsOf(options.noise).range;
   if (options.min_range_m > 0) range.min_m = options.min_range_m;
   if (options.max_range_m > 0) range.max_m = options.max_range_m;
   return range;
@@ -98,14 +81,7 @@ void SensorOptions::Visit(OptionsVisitor& v) {
   v.Number("cx", cx_px, {-1, 1e6}, "principal point in pixels, -1: the camera's");
   v.Number("cy", cy_px, {-1, 1e6}, "principal point in pixels, -1: the camera's");
   v.Number("hfov_deg", hfov_deg, {0, 170}, "horizontal field of view in degrees, 0: the camera's");
-  v.Choice("noise", noise,
-           {{DepthNoiseModel::kNone, "none"},
-            {DepthNoiseModel::kNguyen, "nguyen"},
-            {DepthNoiseModel::kHanda, "handa"},
-            {DepthNoiseModel::kD435, "d435"},
-            {DepthNoiseModel::kKinectV2, "kinect_v2"},
-            {DepthNoiseModel::kAzure, "azure"}},
-           "depth noise model");
+  v.Choice("noise", noise, kDepthNoiseModels, "depth noise model");
   v.Number("noise_scale", noise_scale, {0, 100}, "factor on the model's standard deviations");
   v.Number("noise_correlation_px", noise_correlation_px, {0, 100},
            "pixels over which errors along the rays are alike, 0: each errs by itself");

@@ -1,6 +1,7 @@
 // The simulated depth sensor: which camera, which noise, which of a real sensor's weaknesses.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 
@@ -32,6 +33,14 @@ enum class DepthNoiseModel {
   kKinectV2,  // time of flight: Fankhauser et al. 2015
   kAzure,     // time of flight, Azure Kinect-like
 };
+// All of them; what differs between them is in noise_traits.h.
+inline constexpr std::array kDepthNoiseModels = {
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kNone, "none"},
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kNguyen, "nguyen"},
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kHanda, "handa"},
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kD435, "d435"},
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kKinectV2, "kinect_v2"},
+    ChoiceName<DepthNoiseModel>{DepthNoiseModel::kAzure, "azure"}};
 
 // Of an image: what the colour camera draws in memory that most have (1 GB); each run
 // makes some such pictures.
