@@ -160,16 +160,13 @@ TEST(TrajectoryDoubts, StandingStillOrBackwardsOrOfAnotherScale) {
 }
 
 TEST(ClockCheck, FindsTheOffsetEitherWay) {
-  int cases = 0;
   for (const double late_s : {-4.0, -0.35, -0.02, 0.02, 1.0, 4.9}) {
     SCOPED_TRACE(late_s);
     const auto found = FindClockOffset(Eight(), Later(Eight(0.005), late_s));
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->offset_s, -late_s, 0.006);
     EXPECT_LT(found->better_misfit_m, 0.7 * found->misfit_m);
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
   EXPECT_FALSE(FindClockOffset(Eight(), Later(Eight(), 9.0)));  // further than is looked for
   EXPECT_THAT(DoubtsOfClock(Eight(), Later(Eight(), 1.0), kNames),
               ElementsAre(HasSubstr("estimate: its stamps seem 1.000 s late: with -1.000 s added "
@@ -178,7 +175,6 @@ TEST(ClockCheck, FindsTheOffsetEitherWay) {
 
 // Drift that grows towards the ends is no clock's.
 TEST(ClockCheck, DriftIsNoOffset) {
-  int cases = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomStream random(seed, RandomStage::kTest);
     Trajectory drifting = Eight();
@@ -188,9 +184,7 @@ TEST(ClockCheck, DriftIsNoOffset) {
       pose.world_from_camera.translation += drift_m;
     }
     EXPECT_FALSE(FindClockOffset(Eight(), drifting)) << seed;
-    ++cases;
   }
-  EXPECT_EQ(cases, 20);
 }
 
 TEST(TimeCoverage, OfGapsAndEnds) {

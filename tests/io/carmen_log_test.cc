@@ -212,15 +212,13 @@ TEST(CarmenLog, MotionIsNotTakenAcrossAJumpOfThePose) {
 
 TEST(CarmenLog, EveryTruncationOfALineIsSurvived) {
   const std::string good = kRobotLaser;
-  int cases = 0;
-  for (std::size_t length = 0; length < good.size(); ++length, ++cases) {
+  for (std::size_t length = 0; length < good.size(); ++length) {
     const auto line = ParseCarmenLine(std::string_view(good).substr(0, length));
     const auto* scan = std::get_if<CarmenScan>(&line);
     if (scan == nullptr) continue;
     EXPECT_EQ(scan->stamp_s, 10.5);  // only what is not used may be missing
     EXPECT_EQ(scan->odom_from_laser, (Pose2{1.5, -2.0, 0.25}));
   }
-  EXPECT_EQ(cases, 107);
 }
 
 TEST(CarmenLog, ADamagedLineIsSaidWithItsFieldValueAndRule) {

@@ -158,7 +158,6 @@ TEST_F(PartOfASequence, LoopsThatLeaveItAreCountedInANote) {
 TEST_F(PartOfASequence, MatricesPairWithEither) {
   const FrameNames names = SequenceFrames(Path("seq"), options_);
   std::string text;
-  int cases = 0;
   for (const int count : {4, 12}) {
     text.clear();
     for (int i = 0; i < count; ++i) text += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", i);
@@ -167,9 +166,7 @@ TEST_F(PartOfASequence, MatricesPairWithEither) {
     EXPECT_THAT(warnings, IsEmpty());
     ASSERT_EQ(poses.size(), static_cast<std::size_t>(count));
     EXPECT_EQ(poses[0].stamp_s, count == 4 ? 0.5 : 0.0);
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 TEST_F(PartOfASequence, HardlyAnyPosesAreSaidOfThePart) {

@@ -100,7 +100,6 @@ TEST_F(MapFileTest, YawAndOffLatticeOriginsArePoses) {
 TEST_F(MapFileTest, HalfACellOffNoCellIsLostOrDoubled) {
   std::string pgm = "P2 40 1 255";
   for (int i = 0; i < 40; ++i) pgm += i % 2 == 0 ? " 0" : " 254";
-  int cases = 0;
   for (const char* x : {"0.025", "-10.025", "7.325"}) {
     const MapFile file = Read(pgm, "resolution: 0.05\norigin: [" + std::string(x) + ", 0, 0]\n");
     const OccupancyMap aligned = AlignedMap(file);
@@ -108,9 +107,7 @@ TEST_F(MapFileTest, HalfACellOffNoCellIsLostOrDoubled) {
     for (int i = 0; i < 40; ++i) {
       EXPECT_EQ(aligned.At({first.x + i, 0}), i % 2 == 0 ? 1.0F : 0.0F) << x << " " << i;
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST_F(MapFileTest, AMapThatTurnsIntoTooManyCellsIsRefused) {

@@ -114,12 +114,9 @@ TEST(PoseCheck, MisfitIsTheShareOfDepthThatSurfacesAreApart) {
 }
 
 TEST(PoseCheck, RightPosesAreNotDoubted) {
-  int cases = 0;
   for (const double noise : {0.0, 0.01, 0.03}) {
     EXPECT_FALSE(DoubtOfPoses(Pairs(noise), kCamera, Given(AsItIs), {})) << noise;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(PoseCheck, NamesHowPosesAreMeant) {
@@ -148,7 +145,6 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
     EXPECT_LT(doubt->better_misfit, 0.02);
     ++cases;
   }
-  EXPECT_EQ(cases, 4);
 }
 
 // Stands, turns, and stands; all pairs lie where it turns, with time to spare on either side.
@@ -170,7 +166,6 @@ TEST(PoseCheck, SaysHowUnsureAClockIsThatNothingTells) {
 
 TEST(PoseCheck, NamesAnotherClock) {
   const std::vector<ImagePair> pairs = Pairs(0.01);
-  int cases = 0;
   for (const double ahead_s : {-1.5, -0.5, 0.25, 0.5, 1.5}) {
     const auto doubt = DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), {});
     ASSERT_TRUE(doubt) << ahead_s;
@@ -180,9 +175,7 @@ TEST(PoseCheck, NamesAnotherClock) {
     RecordingOptions mended;
     mended.time_offset_s = doubt->time_offset_s;
     EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), mended)) << ahead_s;
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 }
 
 // The order of numbers is that of the file, whatever the poses were turned to since.
@@ -197,7 +190,6 @@ TEST(PoseCheck, ReadsYUpPosesAsTheyWereWritten) {
 // Not another clock, though the images fit better at a time at which the camera moved less.
 TEST(PoseCheck, NamesAnotherScale) {
   const std::vector<ImagePair> pairs = Pairs(0.01);
-  int cases = 0;
   for (const double scale : {0.2, 5.0, 1000.0}) {
     const auto scaled = [&](const Pose3& pose) {
       return Pose3{pose.rotation, scale * pose.translation};
@@ -206,14 +198,11 @@ TEST(PoseCheck, NamesAnotherScale) {
     ASSERT_TRUE(doubt) << scale;
     EXPECT_EQ(doubt->reading, PoseReading::kScaled);
     EXPECT_NEAR(doubt->scale * scale, 1.0, 0.05);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(PoseCheck, NamesAnotherCamera) {
   const std::vector<ImagePair> pairs = Pairs(0.002);
-  int cases = 0;
   for (const double factor : {0.5, 0.8, 1.3}) {
     PinholeCamera focal = kCamera;
     focal.fx_px *= factor;
@@ -229,9 +218,7 @@ TEST(PoseCheck, NamesAnotherCamera) {
     ASSERT_TRUE(wrong_size) << factor;
     EXPECT_EQ(wrong_size->reading, PoseReading::kImageSize) << factor;
     EXPECT_NEAR(wrong_size->scale * factor, 1.0, 0.03) << factor;
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 // As little as SLAM's own errors look like over a few seconds.
@@ -248,7 +235,6 @@ TEST(PoseCheck, ACameraThatIsSlightlyOffIsNotNamed) {
 // Of a robot's axes, and of a camera's that were not tilted with it.
 TEST(PoseCheck, NamesAMountingAngle) {
   const std::vector<ImagePair> pairs = Pairs(0.002);
-  int cases = 0;
   for (const double down_deg : {-20.0, 15.0, 30.0}) {
     const Eigen::Quaterniond level_from_camera(
         Eigen::AngleAxisd(-RadFromDeg(down_deg), Eigen::Vector3d::UnitX()));
@@ -267,9 +253,7 @@ TEST(PoseCheck, NamesAMountingAngle) {
     ASSERT_TRUE(of_body) << down_deg;
     EXPECT_EQ(of_body->reading, PoseReading::kPitchedBodyAxes) << down_deg;
     EXPECT_NEAR(DegFromRad(of_body->down_rad), down_deg, 2.0);
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {

@@ -77,7 +77,6 @@ TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
                      {1, 2, 3}};
   // As a SLAM system says it: the first camera is the world.
   const Pose3 first = Inverse(truth.front().world_from_camera);
-  int cases = 0;
   for (const Pose3& by : {tilted, first}) {
     const Trajectory given = Turned(truth, by);
     const Sequence sequence = OpenSequence(folder_, {}, SlamOutputOf(given));
@@ -91,9 +90,7 @@ TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
       EXPECT_NEAR(down(pose), down(truth[i].world_from_camera), 0.01);
       EXPECT_EQ(sequence.final_poses[i].world_from_camera, pose);
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 2);
 }
 
 // SLAM saw every second image alone, and none of those that would be looked at first.

@@ -49,7 +49,6 @@ TEST(DepthToScan, NoiseDoesNotPullWallsNearer) {
   const auto d435 = [](double z) { return 0.00377 * z * z; };
   const auto flight_time = [](double) { return 0.005; };
   RandomStream random(1, RandomStage::kTest);
-  int cases = 0;
   const auto check = [&](const auto& sigma_m) {
     for (const double wall_m : {1.0, 2.0, 3.0, 4.0, 5.2}) {
       for (const double pitch_deg : {0.0, 15.0}) {
@@ -65,14 +64,12 @@ TEST(DepthToScan, NoiseDoesNotPullWallsNearer) {
         EXPECT_NEAR(bias.mean_m, 0.0, std::max(0.001, edges_m))
             << wall_m << " m " << pitch_deg << " deg";
         EXPECT_LT(bias.sigma_m, 0.1 * sigma_m(wall_m)) << wall_m << " m " << pitch_deg << " deg";
-        ++cases;
       }
     }
   };
   check(kinect);
   check(d435);
   check(flight_time);
-  EXPECT_EQ(cases, 30);
 }
 
 // Of a wall beyond the reach the returns that noise made short of it are no wall.

@@ -64,7 +64,6 @@ TEST(DepthToScan, AgreesWithTheLevelScanAtAnyTiltAndRoll) {
       ++cases;
     }
   }
-  EXPECT_EQ(cases, 20);
 }
 
 TEST(DepthToScan, NoBeamIsEmptyWhenLevel) {
@@ -82,7 +81,6 @@ TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
   const AnalyticRoom room = RoomWithPillars();
   PinholeCamera camera;
   const DepthToScan converter(camera, {});
-  int cases = 0;
   for (const double roll_deg : {90.0, -90.0, 180.0, 80.0, -130.0}) {
     const Pose3 pose =
         TiltedCamera({-1.5, 0.3, 0.1}, kCameraHeightM, RadFromDeg(5.0), RadFromDeg(roll_deg));
@@ -92,9 +90,7 @@ TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
     EXPECT_LT(errors.Rms(), 0.001) << roll_deg;
     EXPECT_GE(errors.hits, errors.beams * 0.9) << roll_deg;
     EXPECT_GT(errors.hits, 300) << roll_deg;
-    ++cases;
   }
-  EXPECT_EQ(cases, 5);
 }
 
 TEST(DepthToScan, ThinThingsAreFoundAndStrayPixelsAreNot) {

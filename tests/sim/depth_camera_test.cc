@@ -218,7 +218,6 @@ TEST(DepthCamera, AnySizeIsPartOfTheFullImage) {
   const RayScene scene(test::ClutteredRoom(5000));
   const Pose3 pose = CameraOf({2.0, 2.0, 0.4}, 1.15);
   const DepthImage full = DepthCamera(scene, PinholeCamera{}).Render(pose);
-  int cases = 0;
   for (const auto& [width, height] :
        std::vector<std::pair<int, int>>{{1, 1}, {541, 361}, {3, 5}, {640, 1}, {1, 480}, {4, 4}}) {
     PinholeCamera part;
@@ -229,9 +228,7 @@ TEST(DepthCamera, AnySizeIsPartOfTheFullImage) {
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) ASSERT_EQ(image.At(u, v), full.At(u, v));
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 6);
 }
 
 TEST(DepthCamera, RefusesWhatItCannotRender) {

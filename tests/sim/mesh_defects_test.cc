@@ -68,7 +68,6 @@ TEST_F(MeshDefects, RequiredExtensionsThatChangeTheGeometryAreRefused) {
   const auto gltf = [](const std::string& more) {
     return TriangleJson("\"uri\":\"corners.bin\",", more);
   };
-  int names = 0;
   for (const std::string name : {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
                                  "EXT_meshopt_compression", "X_of_nobody"}) {
     const std::string more = Requiring("\"KHR_materials_unlit\",\"" + name + "\"");
@@ -76,9 +75,7 @@ TEST_F(MeshDefects, RequiredExtensionsThatChangeTheGeometryAreRefused) {
         ": extensionsRequired has '" + name + "', which is not supported: save the mesh without it";
     EXPECT_EQ(Refusal("t.gltf", gltf(more)), "~/t.gltf" + rule);
     EXPECT_EQ(Refusal("t.glb", TriangleGlb(more)), "~/t.glb" + rule);
-    ++names;
   }
-  EXPECT_EQ(names, 4);
   for (const std::string& more :
        {std::string(), std::string("\"extensionsUsed\":[\"X_of_nobody\"],"),
         std::string("\"extras\":{\"extensionsRequired\":[\"X_of_nobody\"]},"),
@@ -121,16 +118,13 @@ TEST_F(MeshDefects, TextMayBeginWithAByteOrderMark) {
 
 // A vertex that is not equal to itself is lost where equal ones are joined.
 TEST_F(MeshDefects, AVertexThatIsNotFiniteIsAlwaysRefused) {
-  int cases = 0;
   for (const std::string wild : {"nan", "inf", "-inf", "1e999"}) {
     for (const std::string face : {"f 1 2 3", "f 1 2 3 4", "f 4 3 2", "f 1 2 3 4 5"}) {
       EXPECT_EQ(Refusal("t.obj",
                         "v 0 0 0\nv " + wild + " 0 0\nv 6 5 0\nv 0 5 0\nv -1 1 0\n" + face + "\n"),
                 fmt::format("~/t.obj: vertex {} is not finite", face == "f 4 3 2" ? 2 : 1));
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 16);
 }
 
 std::string AsciiStl(int facets) {

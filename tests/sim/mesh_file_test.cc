@@ -335,7 +335,6 @@ TEST_F(MeshFiles, CornersThatADaeCannotHoldAreRefused) {
 
 // Cut off anywhere, a file of any format is refused or gives what is whole, and never hangs.
 TEST_F(MeshFiles, FilesCutOffAnywhereAreSurvived) {
-  int cases = 0;
   for (const auto& [name, text] : {std::pair<std::string, std::string>{"t.ply", kPly},
                                    {"t.ply", BinaryPly(false)},
                                    {"t.obj", kObj},
@@ -343,11 +342,10 @@ TEST_F(MeshFiles, FilesCutOffAnywhereAreSurvived) {
                                    {"t.dae", Dae("Z_UP", "1")},
                                    {"t.gltf", Gltf()},
                                    {"t.glb", Glb()}}) {
-    for (std::size_t tenth = 1; tenth < 10; ++tenth, ++cases) {
+    for (std::size_t tenth = 1; tenth < 10; ++tenth) {
       ErrorOf(name, text.substr(0, text.size() * tenth / 10));
     }
   }
-  EXPECT_EQ(cases, 63);
 }
 
 TEST_F(MeshFiles, AMeshFileIsASceneWhenItHasAFloor) {

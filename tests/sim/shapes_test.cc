@@ -96,16 +96,13 @@ TEST(Shapes, SuperellipsoidHasBarrsVolume) {
     return std::tgamma(a) * std::tgamma(b) / std::tgamma(a + b);
   };
   const Eigen::Vector3d size(1.0, 0.6, 0.4);
-  int cases = 0;
   for (const double upright : {0.3, 1.0, 1.6}) {
     for (const double level : {0.3, 1.0, 1.6}) {
       const double volume = 2.0 * size.prod() / 8.0 * upright * level *
                             beta(upright / 2 + 1, upright) * beta(level / 2, level / 2);
       ExpectSolid(MakeSuperellipsoid(size, upright, level, 256), volume, 5e-3);
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 9);
   EXPECT_NEAR(BoundsOf(MakeSuperellipsoid(size, 0.4, 0.4, 32)).max().x(), 0.5, 1e-6);
 }
 
@@ -275,7 +272,6 @@ TEST(Shapes, EveryKindOfTheFileIsASolid) {
       {"prism", "outline: [[0, 0], [1, 0], [0, 1]]"},
       {"tube", "path: [[0, 0, 0], [0, 0, 1]]"},
       {"wall", "openings: [{along_m: 0.2, width_m: 0.3, height_m: 1.0}]"}};
-  int kinds = 0;
   for (const auto& name : ShapeNames()) {
     const auto need = needs.find(name);
     const std::string text =
@@ -284,9 +280,7 @@ TEST(Shapes, EveryKindOfTheFileIsASolid) {
     const BuiltItem built = BuildShape(name, config);
     EXPECT_TRUE(IsClosed(built.mesh)) << name;
     EXPECT_GT(test::SignedVolume(built.mesh), 0.0) << name;
-    ++kinds;
   }
-  EXPECT_EQ(kinds, 12);
 }
 
 }  // namespace

@@ -201,7 +201,6 @@ TEST(Trajectory, APartOfALapOrSeveralLapsStayOnTheirWay) {
   // Most of them within the first 30 degrees.
   for (int i = 0; i < 30; ++i) uneven.push_back(i);
   for (int i = 1; i < 12; ++i) uneven.push_back(30.0 * i);
-  int cases = 0;
   for (const auto& angles_deg : {even, uneven}) {
     for (const double laps : {0.25, 0.5, 0.9, 1.0, 1.5, 2.0, 2.75}) {
       const Trajectory trajectory = AtTheBounds(Options(CirclePath(angles_deg, laps)));
@@ -218,10 +217,8 @@ TEST(Trajectory, APartOfALapOrSeveralLapsStayOnTheirWay) {
       // Chords, which count as the way, are shorter than their arcs by 1.1 % where 30 degrees
       // apart.
       EXPECT_NEAR(DegFromRad(turned_rad), 360.0 * laps, 2.0) << laps;
-      ++cases;
     }
   }
-  EXPECT_EQ(cases, 14);
 }
 
 TEST(Trajectory, RefusesWhatItCannotDo) {
