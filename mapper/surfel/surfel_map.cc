@@ -138,7 +138,7 @@ MatchResult SurfelMap::Match(const std::shared_ptr<const Scan>& scan,
 void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                            const Pose2& map_from_surfels, double frame) const {
   const Motion2 motion(map_from_surfels);
-  const double min_cosine = std::cos(RadFromDeg(options_.match.max_angle_deg));
+  const double min_cosine = GateOf(options_.match).min_cosine;
   for (const Surfel& surfel : surfels) {
     const double off_m =
         options_.merge_gate_m + options_.merge_gate_sigmas / std::sqrt(surfel.information);
@@ -181,8 +181,7 @@ double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
   const std::vector<Surfel>& pieces = scan == scan_ ? pieces_ : other_pieces_;
   if (pieces.empty()) return 0.0;
   const Motion2 motion(map_from_base);
-  const AssociationGate gate{options_.match.along_m, options_.match.gate_m,
-                             std::cos(RadFromDeg(options_.match.max_angle_deg))};
+  const AssociationGate gate = GateOf(options_.match);
   const int before = surfels_before_[static_cast<std::size_t>(frame)];
   const auto seen = std::count_if(pieces.begin(), pieces.end(), [&](const Surfel& piece) {
     const int surfel = map_.Nearest(motion * piece, gate);

@@ -61,7 +61,8 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("gate_m", gate_m, {0.01, 10.0},
            "farther along the normal than this and 2 sigmas nothing is associated");
   v.Number("along_m", along_m, {0.01, 10.0}, "farther along the wall nothing is associated");
-  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between associated normals, at most");
+  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0},
+           "between associated normals, at most; in the map's surfels none farther apart mix");
   v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
   v.Flag("judge_misfit", judge_misfit,
          "whether a match whose surfels fit worse than their noise explains is believed less");
@@ -78,12 +79,12 @@ void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("max_iterations", max_iterations, {1, 1000}, "of the least squares");
 }
 
+AssociationGate GateOf(const SurfelMatchOptions& options) {
+  return {options.along_m, options.gate_m, std::cos(RadFromDeg(options.max_angle_deg))};
+}
+
 PairGates SurfelMatcher::Gates() const {
-  return {options_.along_m,
-          options_.gate_m,
-          std::cos(RadFromDeg(options_.max_angle_deg)),
-          options_.huber_sigmas,
-          options_.normal_floor_rad,
+  return {GateOf(options_), options_.huber_sigmas, options_.normal_floor_rad,
           options_.normal_floor_share};
 }
 

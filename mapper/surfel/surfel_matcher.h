@@ -11,9 +11,9 @@
 namespace depthgrid {
 
 struct SurfelMatchOptions {
-  double gate_m = 0.15;             // farther along the normal nothing is associated
+  double gate_m = 0.15;             // farther along the normal nothing is associated (GateOf)
   double along_m = 0.075;           // nor farther along the wall: the map's surfels are 5 cm apart
-  double max_angle_deg = 45.0;      // nor with normals farther apart
+  double max_angle_deg = 45.0;      // nor with normals farther apart; none such are merged
   double huber_sigmas = 2.5;        // larger residuals count linearly
   bool judge_misfit = true;         // information over the Misfit of the matched surfels
   bool judge_sharing = true;        // and over what neighbours share of their errors
@@ -25,6 +25,11 @@ struct SurfelMatchOptions {
 
   void Visit(OptionsVisitor& v);
 };
+
+// Where a match looks for a piece's surfel, but for two sigmas of the piece along the normal. What
+// was seen before (SurfelMap::ShareSeenBefore) is judged by it as it is, and the map merges within
+// its angle.
+AssociationGate GateOf(const SurfelMatchOptions& options);
 
 class SurfelMatcher {
  public:

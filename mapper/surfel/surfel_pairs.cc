@@ -93,8 +93,9 @@ void SurfelPairs::AssociateOne(const SurfelStore& map, const PairGates& gates,
   const Surfel& piece = (*pieces_)[index];
   const Surfel moved = motion * piece;
   const double piece_variance = 1.0 / piece.information;
-  const Association found = map.NearestFirmly(
-      moved, {gates.along_m, gates.off_m + 2.0 * std::sqrt(piece_variance), gates.min_cosine});
+  AssociationGate gate = gates.association;
+  gate.off_m += 2.0 * std::sqrt(piece_variance);
+  const Association found = map.NearestFirmly(moved, gate);
   Block& block = blocks_[index / kLanes];
   const std::size_t lane = index % kLanes;
   block.at_x_m[lane] = moved.point_m.x();

@@ -13,9 +13,7 @@
 namespace depthgrid {
 
 struct PairGates {
-  double along_m = 0.0;  // as AssociationGate
-  double off_m = 0.0;    // and two sigmas of the piece
-  double min_cosine = 0.0;
+  AssociationGate association;      // and two sigmas of the piece along the normal
   double huber_sigmas = 0.0;        // larger residuals count linearly
   double normal_floor_rad = 0.0;    // no normal is known better
   double normal_floor_share = 0.0;  // nor than this share of the variance of the piece's own
