@@ -42,6 +42,8 @@ void PrintTable(const TrajectoryScore& score) {
                     StatisticsRow("xyz, first pose aligned (m)", score.xyz_origin),
                     StatisticsRow("xyz, SE(3) aligned (m)", score.xyz_se3),
                     StatisticsRow("xyz, Sim(3) aligned (m)", score.xyz_sim3),
+                    StatisticsRow("heading, not aligned (rad)", score.heading_unaligned),
+                    StatisticsRow("heading, SE(2) aligned (rad)", score.heading_se2),
                     StatisticsRow("rotation, not aligned (rad)", score.rotation_unaligned),
                     StatisticsRow("rotation, SE(3) aligned (rad)", score.rotation_se3),
                     StatisticsRow("relative, 1 pose apart (m)", score.rpe_frame_translation),
@@ -123,11 +125,12 @@ std::string ErrorsCsv(const std::vector<PosePair>& pairs, bool has_seconds) {
   const std::vector<double> xy_m = TranslationErrorsXy(pairs);
   const std::vector<double> xyz_m = TranslationErrorsXyz(pairs);
   const std::vector<double> rotation_rad = RotationErrors(pairs);
-  std::string csv = fmt::format("{},error_xy_m,error_xyz_m,error_rotation_rad\n",
+  const std::vector<double> heading_rad = HeadingErrors(pairs);
+  std::string csv = fmt::format("{},error_xy_m,error_xyz_m,error_rotation_rad,error_heading_rad\n",
                                 has_seconds ? "stamp_s" : "row");
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    csv += fmt::format("{:.{}f},{},{},{}\n", pairs[i].reference.stamp_s, has_seconds ? 6 : 0,
-                       xy_m[i], xyz_m[i], rotation_rad[i]);
+    csv += fmt::format("{:.{}f},{},{},{},{}\n", pairs[i].reference.stamp_s, has_seconds ? 6 : 0,
+                       xy_m[i], xyz_m[i], rotation_rad[i], heading_rad[i]);
   }
   return csv;
 }

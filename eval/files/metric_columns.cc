@@ -16,8 +16,9 @@ namespace {
 using Columns = std::vector<std::pair<std::string, double>>;
 
 bool IsBreakdown(const std::string& key) {
-  constexpr std::array<std::string_view, 9> kBreakdowns = {
-      "xy", "xyz", "rotation_rad", "rpe", "drift", "confusion", "low", "high", "samples"};
+  constexpr std::array<std::string_view, 10> kBreakdowns = {
+      "xy",    "xyz",       "rotation_rad", "heading_rad", "rpe",
+      "drift", "confusion", "low",          "high",        "samples"};
   return key.starts_with("tolerance_") || key.ends_with("_cells") || key.ends_with("_poses") ||
          std::find(kBreakdowns.begin(), kBreakdowns.end(), key) != kBreakdowns.end();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "eval/metrics/alignment.h"
+#include "mapper/core/level.h"
 #include "mapper/core/median.h"
 
 namespace depthgrid {
@@ -40,11 +41,14 @@ void ScoreAbsolute(const std::vector<PosePair>& pairs, TrajectoryScore& score) {
   score.xy_unaligned = Summarise(TranslationErrorsXy(pairs));
   score.xyz_unaligned = Summarise(TranslationErrorsXyz(pairs));
   score.rotation_unaligned = Summarise(RotationErrors(pairs));
+  score.heading_unaligned = Summarise(HeadingErrors(pairs));
   score.xy_origin =
       Summarise(TranslationErrorsXy(AlignedAtOrigin(pairs, Alignment::kPlanarOrigin)));
   score.xyz_origin = Summarise(TranslationErrorsXyz(AlignedAtOrigin(pairs, Alignment::kOrigin)));
   if (const auto transform = Align(pairs, Alignment::kSe2)) {
-    score.xy_se2 = Summarise(TranslationErrorsXy(Aligned(pairs, *transform)));
+    const auto aligned = Aligned(pairs, *transform);
+    score.xy_se2 = Summarise(TranslationErrorsXy(aligned));
+    score.heading_se2 = Summarise(HeadingErrors(aligned));
   }
   if (const auto transform = Align(pairs, Alignment::kSe3)) {
     const auto aligned = Aligned(pairs, *transform);
@@ -91,6 +95,14 @@ std::vector<double> RotationErrors(const std::vector<PosePair>& pairs) {
   return ErrorOfEach(pairs, [](const PosePair& pair) {
     return AngleOf(pair.estimate.world_from_camera.rotation.conjugate() *
                    pair.reference.world_from_camera.rotation);
+  });
+}
+
+std::vector<double> HeadingErrors(const std::vector<PosePair>& pairs) {
+  return ErrorOfEach(pairs, [](const PosePair& pair) {
+    const double turn_rad = BaseOf(pair.estimate.world_from_camera).yaw_rad -
+                            BaseOf(pair.reference.world_from_camera).yaw_rad;
+    return std::abs(WrapAngle(turn_rad));
   });
 }
 

@@ -15,6 +15,8 @@ namespace depthgrid {
 std::vector<double> TranslationErrorsXy(const std::vector<PosePair>& pairs);   // metres, in xy
 std::vector<double> TranslationErrorsXyz(const std::vector<PosePair>& pairs);  // metres
 std::vector<double> RotationErrors(const std::vector<PosePair>& pairs);        // radians, 0..pi
+// Of the bases alone, whatever the cameras' tilt: radians, 0..pi.
+std::vector<double> HeadingErrors(const std::vector<PosePair>& pairs);
 
 // Pairs of pairs between which relative motion is compared, consecutive: 0, d, 2d, ...
 struct RelativeStep {
@@ -53,6 +55,8 @@ struct TrajectoryScore {
   std::optional<double> sim3_scale;
   Statistics rotation_unaligned;  // radians
   std::optional<Statistics> rotation_se3;
+  Statistics heading_unaligned;  // radians
+  std::optional<Statistics> heading_se2;
   std::optional<Statistics> rpe_frame_translation;  // metres, delta one pose
   std::optional<Statistics> rpe_frame_rotation;     // radians
   std::optional<Statistics> rpe_metre_translation;  // metres, delta 1 m of path

@@ -115,11 +115,14 @@ function furtherMapNumbers(map) {
   return rows;
 }
 
-// Of each path: headings, relative errors, drift, and how much of it was compared.
+// Of each path: turns, relative errors, drift, and how much of it was compared.
 const degrees = (rad) => (isNumber(rad) ? `${fixed(rad * 180 / Math.PI, 3)}°` : "–");
 const FURTHER_OF_PATHS = [
-  ["heading, mean, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.mean)],
-  ["heading, rmse, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.rmse)],
+  ["heading, mean, not aligned", (s) => degrees(s.heading_mean_rad)],
+  ["heading, rmse, not aligned", (s) => degrees(s.heading_rmse_rad)],
+  ["heading, rmse, SE(2) aligned", (s) => degrees(s.heading_rmse_se2_rad)],
+  ["rotation with tilt, mean, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.mean)],
+  ["rotation with tilt, rmse, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.rmse)],
   ["relative turn a frame, rmse", (s) => degrees(s.rpe_frame_rmse_rad)],
   ["relative turn a metre, rmse", (s) => degrees(s.rpe_metre_rmse_rad)],
   ["drift a second, over 10 s", (s) => (isNumber(s.drift_m_per_s) ? `${metres(s.drift_m_per_s)}/s` : "–")],

@@ -47,8 +47,9 @@ TEST_F(EvalTrajectory, WritesTheErrorsOverTime) {
   Succeed("eval trajectory truth.txt estimate.txt --errors errors.csv");
   const std::string csv = ReadFile(Path("errors.csv"));
   EXPECT_THAT(csv,
-              StartsWith("stamp_s,error_xy_m,error_xyz_m,error_rotation_rad\n0.000000,0,0,0\n"));
-  EXPECT_THAT(csv, HasSubstr("\n5.000000,0.09999999999999964,0.09999999999999964,0\n"));
+              StartsWith("stamp_s,error_xy_m,error_xyz_m,error_rotation_rad,error_heading_rad\n"
+                         "0.000000,0,0,0,0\n"));
+  EXPECT_THAT(csv, HasSubstr("\n5.000000,0.09999999999999964,0.09999999999999964,0,0\n"));
 }
 
 TEST_F(EvalTrajectory, AFileOfErrorsIsCheckedBeforeTheWork) {
@@ -167,8 +168,9 @@ TEST_F(EvalTrajectory, MatricesPairRowByRow) {
                 HasSubstr("13 of 13 reference and 13 estimated poses matched, row by row"));
   }
   Succeed("eval trajectory truth_kitti.txt estimate_kitti.txt --errors errors.csv");
-  EXPECT_THAT(ReadFile(Path("errors.csv")), StartsWith("row,error_xy_m,error_xyz_m,error_rotation_"
-                                                       "rad\n0,0,0,0\n1,0.02"));
+  EXPECT_THAT(ReadFile(Path("errors.csv")),
+              StartsWith("row,error_xy_m,error_xyz_m,error_rotation_rad,error_heading_rad\n"
+                         "0,0,0,0,0\n1,0.02"));
 }
 
 TEST_F(EvalTrajectory, MatricesThatDoNotPairAreRefused) {

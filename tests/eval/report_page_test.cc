@@ -73,7 +73,8 @@ TEST_F(ReportPage, OfARun) {
   browser_->WaitFor("plots().every((p) => p.max !== null)");
   EXPECT_EQ(browser_->Evaluate("allPlots.map((p) => p.state())"), states);
   EXPECT_THAT(browser_->Evaluate("document.getElementById('numbers').textContent"),
-              ::testing::AllOf(::testing::HasSubstr("heading, mean, not aligned"),
+              ::testing::AllOf(::testing::HasSubstr("heading, rmse, SE(2) aligned"),
+                               ::testing::HasSubstr("rotation with tilt, mean, not aligned"),
                                ::testing::HasSubstr("log loss"), ::testing::HasSubstr("(MCC)")));
   ExpectEveryPlotIsDrawn();
   EXPECT_THAT(browser_->problems(), IsEmpty());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "eval/metrics/alignment.h"
+#include "mapper/core/level.h"
 #include "mapper/core/rng.h"
 
 namespace depthgrid {
@@ -84,6 +85,27 @@ TEST(Ape, RotationAngleByHand) {
   // The same rotation in the quaternion's other sign.
   estimate[0].world_from_camera.rotation.coeffs() *= -1.0;
   EXPECT_NEAR(RotationErrors(Associate(reference, estimate))[0], 0.25, 1e-15);
+}
+
+// Seen level, a camera that nods by 0.3 rad and errs by 0.1 rad in heading is 0.1 rad off.
+TEST(Ape, HeadingIsThatOfTheBasesWhateverTheTilt) {
+  Trajectory truth, estimate;
+  for (int i = 0; i < 4; ++i) {
+    const Pose2 base{1.0 * i, 0.2 * i * i, 3.1};
+    const Eigen::Quaterniond nod(Eigen::AngleAxisd(i == 2 ? 0.3 : 0.0, Eigen::Vector3d::UnitX()));
+    truth.push_back({1.0 * i, CameraOf(base, 1.0)});
+    // Across the seam of angles at pi.
+    estimate.push_back({1.0 * i, CameraOf({base.x_m, base.y_m, WrapAngle(3.2)}, 1.0)});
+    estimate.back().world_from_camera.rotation *= nod;
+  }
+  const auto score = ScoreTrajectory(truth, estimate);
+  ASSERT_TRUE(score);
+  EXPECT_NEAR(score->heading_unaligned.min, 0.1, 1e-12);
+  EXPECT_NEAR(score->heading_unaligned.max, 0.1, 1e-12);
+  EXPECT_NEAR(score->rotation_unaligned.min, 0.1, 1e-12);
+  EXPECT_GT(score->rotation_unaligned.max, 0.3);
+  ASSERT_TRUE(score->heading_se2);  // the positions are right, so it turns nothing
+  EXPECT_NEAR(score->heading_se2->mean, 0.1, 1e-9);
 }
 
 TEST(Alignment, UndoesTheTransformItCanExpress) {
