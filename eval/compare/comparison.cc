@@ -1,32 +1,16 @@
 #include "eval/compare/comparison.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "eval/compare/comparison_pairs.h"
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
 #include "eval/statistics/sample_size.h"
+#include "eval/statistics/score_names.h"
 
 namespace depthgrid {
 namespace {
-
-// What is compared when nothing is asked for: one or two figures of each kind, those first that
-// should be tested where there are pairs for a few only.
-constexpr std::array<const char*, 13> kHeadlines = {"trajectory.est.mean_euclidean_m",
-                                                    "map.observable.occupied.f1",
-                                                    "trajectory.est.ate_rmse_se2_m",
-                                                    "map.chamfer_m",
-                                                    "trajectory.online.mean_euclidean_m",
-                                                    "map.coverage",
-                                                    "map.observable.free.f1",
-                                                    "map.registered.chamfer_m",
-                                                    "map.double_wall_rate",
-                                                    "map.ssim",
-                                                    "map.calibration.brier",
-                                                    "map.navigability.success_rate",
-                                                    "map.navigability.collision_rate"};
 
 bool HasMetric(const SweepResults& table, const std::string& name) {
   return std::any_of(table.metrics.begin(), table.metrics.end(),
@@ -39,7 +23,7 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   if (asked == std::vector<std::string>{"all"}) {
     for (const SweepColumn& column : a.metrics) names.push_back(column.name);
   } else if (asked.empty()) {
-    names.assign(kHeadlines.begin(), kHeadlines.end());
+    names.assign(ScoresToCompare().begin(), ScoresToCompare().end());
   } else {
     for (const std::string& name : asked) {  // one asked for twice is one test
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -20,6 +19,7 @@
 #include "eval/report/report_json_impl.h"
 #include "eval/report/web_assets.h"
 #include "eval/statistics/metric_direction.h"
+#include "eval/statistics/score_names.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -36,18 +36,11 @@ constexpr int kSignificantDigits = 6;
 // Whole numbers below it are counts, and kept whole.
 constexpr double kMostCounted = 1e15;
 
-// What a reader looks at first; the first of them a sweep has is what its page opens with.
-constexpr std::array<const char*, 6> kMainMetrics = {"trajectory.est.mean_euclidean_m",
-                                                     "trajectory.est.ate_rmse_se2_m",
-                                                     "map.observable.occupied.f1",
-                                                     "map.chamfer_m",
-                                                     "map.coverage",
-                                                     "trajectory.slam.mean_euclidean_m"};
-
-// Its place among them, counted from 1; 0 for the others.
+// Its place among what a reader looks at first, counted from 1; 0 for the others.
 int MainRank(const std::string& metric) {
-  const auto found = std::find(kMainMetrics.begin(), kMainMetrics.end(), metric);
-  return found == kMainMetrics.end() ? 0 : static_cast<int>(found - kMainMetrics.begin()) + 1;
+  const auto main = ScoresOfASweepsPage();
+  const auto found = std::find(main.begin(), main.end(), metric);
+  return found == main.end() ? 0 : static_cast<int>(found - main.begin()) + 1;
 }
 
 Json Short(double value) {

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
+#include "eval/statistics/score_names.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -15,18 +13,10 @@ namespace {
 
 using Columns = std::vector<std::pair<std::string, double>>;
 
-bool IsBreakdown(const std::string& key) {
-  constexpr std::array<std::string_view, 10> kBreakdowns = {
-      "xy",    "xyz",       "rotation_rad", "heading_rad", "rpe",
-      "drift", "confusion", "low",          "high",        "samples"};
-  return key.starts_with("tolerance_") || key.ends_with("_cells") || key.ends_with("_poses") ||
-         std::find(kBreakdowns.begin(), kBreakdowns.end(), key) != kBreakdowns.end();
-}
-
 void Collect(const nlohmann::ordered_json& json, const std::string& path, Columns& columns) {
   for (const auto& [key, value] : json.items()) {
-    if (IsBreakdown(key)) continue;
     const std::string name = path.empty() ? key : path + "." + key;
+    if (IsBreakdown(name)) continue;
     if (value.is_object()) {
       Collect(value, name, columns);
     } else if (value.is_number()) {

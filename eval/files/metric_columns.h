@@ -7,9 +7,7 @@
 
 namespace depthgrid {
 
-// The figures of a metrics.json under their paths there, NaN for null, less what only breaks a
-// figure down: full statistics of an error, other tolerances, confusion, reliability, counts of
-// cells and poses.
+// The figures of a metrics.json under their paths there, NaN for null, less what IsBreakdown().
 // `place` names the text in errors.
 std::vector<std::pair<std::string, double>> MetricColumns(const std::string& metrics_json,
                                                           const std::string& place);

@@ -9,17 +9,23 @@
 namespace depthgrid {
 namespace {
 
-bool ContainsAny(std::string_view text, std::span<const std::string_view> words) {
-  return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
-    return text.find(word) != std::string_view::npos;
-  });
+// Whether one of the parts of a text between separators is among these words.
+bool HasAny(std::string_view text, char separator, std::span<const std::string_view> words) {
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, from), text.size());
+    const std::string_view part = text.substr(from, end - from);
+    if (std::find(words.begin(), words.end(), part) != words.end()) return true;
+    from = end + 1;
+  }
+  return false;
 }
 
 bool IsDescription(std::string_view metric, std::string_view last) {
-  constexpr std::array<std::string_view, 2> kGroups = {"wall_thickness.", "truthless"};
+  constexpr std::array<std::string_view, 4> kGroups = {"wall_thickness", "true_wall_thickness",
+                                                       "truthless", "truthless_of_truth"};
   constexpr std::array<std::string_view, 6> kCounts = {"cells",      "pairs",   "planned",
                                                        "collisions", "samples", "reference_path_m"};
-  return ContainsAny(metric, kGroups) || last.ends_with("_cells") || last.ends_with("_poses") ||
+  return HasAny(metric, '.', kGroups) || last.ends_with("_cells") || last.ends_with("_poses") ||
          std::find(kCounts.begin(), kCounts.end(), last) != kCounts.end();
 }
 
@@ -53,7 +59,7 @@ Better BetterOf(std::string_view metric) {
   const std::string_view last = metric.substr(metric.rfind('.') + 1);
   if (TargetOf(metric)) return Better::kLower;
   if (IsDescription(metric, last)) return Better::kNeither;
-  return ContainsAny(last, kHigher) ? Better::kHigher : Better::kLower;
+  return HasAny(last, '_', kHigher) ? Better::kHigher : Better::kLower;
 }
 
 const char* NameOf(Better better) {

@@ -8,10 +8,12 @@
 
 namespace depthgrid {
 
-// By its path in metrics.json: shares of success are better when higher, errors, distances and
-// times when lower. Of a score with a target this is said of its distance from it: lower.
-// Neither is what only describes the run: counts, the length of the path, the truth's own figures
-// and those that must be held beside them (thickness of walls, corners).
+// By its path in metrics.json: shares of success, whose last key has a word for it (between `_`:
+// precision, recall, f1, iou, mcc, coverage, ssim, success, accuracy), are better when higher, all
+// else, such as errors, distances and times, when lower. Of a score with a target this is said of
+// its distance from it: lower. Neither is what only describes the run: counts, the length of the
+// path, the truth's own figures and those that must be held beside them (thickness of walls,
+// corners).
 Better BetterOf(std::string_view metric);
 // "lower", "higher" or "neither".
 const char* NameOf(Better better);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,15 +10,12 @@
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
+#include "eval/statistics/score_names.h"
 #include "eval/study/ablation.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
-
-constexpr std::array<const char*, 5> kScores = {
-    "trajectory.online.mean_euclidean_m", "trajectory.est.mean_euclidean_m",
-    "map.observable.occupied.f1", "map.chamfer_m", "map.navigability.success_rate"};
 
 double ValueOf(const AblationRun& run, const std::string& metric) {
   for (const auto& [name, value] : run.metrics) {
@@ -113,7 +109,8 @@ std::vector<AblationRun> WithoutRepeatedSeeds(const std::vector<AblationRun>& ru
 std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs) {
   Require(!runs.empty(), "shares are of at least one run");
   std::vector<ErrorShares> all;
-  for (const char* metric : kScores) {
+  for (const std::string_view name : ScoresOfAnAblation()) {
+    const std::string metric(name);
     if (AllFinite(runs, metric)) all.push_back(SharesOfScore(runs, metric));
   }
   return all;

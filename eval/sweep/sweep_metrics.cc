@@ -9,8 +9,8 @@ NamedValues SweepMetrics(const RunScores& scores) {
   return MetricColumns(MetricsOf(scores), "metrics.json");
 }
 
-std::vector<std::string> SweepMetricNames() {
-  RunScores scores;  // with everything that a run may lack
+RunScores FullScores() {
+  RunScores scores;
   scores.slam.emplace();
   scores.online.emplace();
   scores.est.emplace();
@@ -22,8 +22,12 @@ std::vector<std::string> SweepMetricNames() {
   quality.true_thickness.emplace();
   quality.calibration.emplace();
   quality.navigability.emplace();
+  return scores;
+}
+
+std::vector<std::string> SweepMetricNames() {
   std::vector<std::string> names;
-  for (const auto& [name, value] : SweepMetrics(scores)) names.push_back(name);
+  for (const auto& [name, value] : SweepMetrics(FullScores())) names.push_back(name);
   return names;
 }
 

@@ -9,11 +9,12 @@
 
 namespace depthgrid {
 
-// The figures of metrics.json under their paths there, less what only breaks a figure down: full
-// statistics of an error, other tolerances, confusion, counts of cells and poses. A run gives all.
+// MetricColumns() of the run's metrics.json. A run gives all.
 NamedValues SweepMetrics(const RunScores& scores);
 
-// Their names.
+// With everything that a run may lack.
+RunScores FullScores();
+// The names of its columns.
 std::vector<std::string> SweepMetricNames();
 
 }  // namespace depthgrid

@@ -5,7 +5,11 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "eval/output/run_folder.h"
+#include "eval/statistics/score_names.h"
 #include "eval/sweep/sweep_metrics.h"
 
 namespace depthgrid {
@@ -54,6 +58,48 @@ TEST(MetricDirection, OfEveryScoreOfASweep) {
         << metric;
   }
   EXPECT_GT(by_aim["higher"].size() + by_aim["lower"].size(), 35U);
+}
+
+TEST(MetricDirection, IsOfWholeWords) {
+  EXPECT_EQ(BetterOf("map.occupied.iou"), Better::kHigher);
+  EXPECT_EQ(BetterOf("map.iou_of_rooms"), Better::kHigher);
+  EXPECT_EQ(BetterOf("map.walls_of_previous_run_m"), Better::kLower);  // "iou"
+  EXPECT_EQ(BetterOf("map.inaccuracy"), Better::kLower);
+  EXPECT_EQ(BetterOf("map.wall_thickness.mean_m"), Better::kNeither);
+  EXPECT_EQ(BetterOf("map.wall_thickness_error.mean_m"), Better::kLower);
+}
+
+// Keys of what a metrics.json has besides columns; a score that should be one needs another name.
+void CollectBreakdowns(const nlohmann::json& json, const std::string& path,
+                       std::set<std::string>& keys) {
+  for (const auto& [key, value] : json.items()) {
+    const std::string name = path.empty() ? key : path + "." + key;
+    if (IsBreakdown(name)) {
+      keys.insert(key);
+    } else if (value.is_object()) {
+      CollectBreakdowns(value, name, keys);
+    }
+  }
+}
+
+TEST(ScoreNames, WhatIsNoColumn) {
+  std::set<std::string> keys;
+  CollectBreakdowns(nlohmann::json::parse(MetricsOf(FullScores())), "", keys);
+  EXPECT_THAT(keys, ElementsAre("confusion", "drift", "estimate_poses", "estimated_cells",
+                                "found_cells", "heading_rad", "high", "low", "matched_poses",
+                                "reference_poses", "right_cells", "rotation_rad", "rpe", "samples",
+                                "scored_cells", "tolerance_0", "tolerance_2", "tolerance_cells",
+                                "true_cells", "xy", "xyz"));
+  EXPECT_FALSE(IsBreakdown("map.walls.low"));  // of consistency alone
+}
+
+TEST(ScoreNames, ThoseThatComeFirstAreColumns) {
+  const std::vector<std::string> names = SweepMetricNames();
+  for (const auto& list : {ScoresOfASweepsPage(), ScoresToCompare(), ScoresOfAnAblation()}) {
+    for (const std::string_view score : list) {
+      EXPECT_THAT(names, testing::Contains(std::string(score)));
+    }
+  }
 }
 
 }  // namespace
