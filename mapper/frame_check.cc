@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mapper/core/error.h"
+#include "mapper/core/level.h"
 
 namespace depthgrid {
 namespace {
@@ -109,6 +110,16 @@ void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera
   RequireMetres(frame, depth);
 }
 
+// What is taken for a camera's pose, but is the base's own: about z, so that it looks up. A scan
+// that was made from an image comes with a stand.
+void RequireHeading(const Frame& frame) {
+  if (!frame.scan || frame.stand || !frame.slam_from_camera) return;
+  if (!LooksUpOrDown(*frame.slam_from_camera)) return;
+  Refuse(frame,
+         "has a scan, but its camera looks straight up or down, so that it has no heading: the "
+         "pose of a laser must be CameraOf() of its planar pose (mapper/core/level.h)");
+}
+
 void RequireLoop(const Frame& frame, const LoopClosure& loop) {
   const std::string name = "the loop closure of frames " + std::to_string(loop.first_frame) +
                            " and " + std::to_string(loop.second_frame);
@@ -128,6 +139,7 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
   }
   if (frame.slam_from_camera) RequirePose(NameOf(frame), *frame.slam_from_camera, "its pose");
   if (frame.depth) RequireDepth(frame, camera);
+  RequireHeading(frame);
   if (frame.matched_scan && !frame.scan) Refuse(frame, "has a matched_scan, but no scan");
   if (frame.stand && !frame.scan) Refuse(frame, "has a stand, but no scan that it belongs to");
   if (frame.stand) {

@@ -81,16 +81,24 @@ class IncrementalMapper {
   //   10,000 km, a sigma positive;
   // - its image is not the camera's size, there is no camera, or a scan as well; or all depths are
   //   beyond 100 m, as millimetres are;
+  // - it has a scan and no stand, and its camera looks up or down, to 10 degrees, as where a
+  //   laser's planar pose came without CameraOf();
   // - a scan's max_range_m is negative or not finite, or there is a matched_scan or a stand alone;
   // - the stand is not made of finite numbers, or of a quaternion that is none.
+  //
   // What else is amiss is lived with: without a pose nothing is known of the frame, without image
   // or scan only its pose is corrected; beams and pixels that are no distances say nothing
   // (mapper/scan/frame_scans.h); stamps that repeat or go back tell no speed; a loop with a frame
   // that never came or has no pose counts as rejected.
-  // Mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens to hundreds of ms and more
-  // with many loops, or fill up what is remembered of all frames, which is then moved: 0.1 s each
-  // hour or so. A frame leaves 0.6 kB
-  // behind, 60 MB an hour, and its scan where that is kept (KeepOptions), 3 kB and more.
+  //
+  // Time: mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens to hundreds of ms and
+  // more with many loops, or fill up what is remembered of all frames, which is then moved: 0.1 s
+  // each hour or so.
+  //
+  // Memory: a frame leaves 0.6 kB behind, 60 MB an hour, and its scan where that is kept
+  // (KeepOptions), 3 kB and more.
+  //
+  // The report's pose is of the camera, as the frame's was: of a laser, BaseOf(*map_from_camera).
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses. It takes
   // seconds after tens of thousands of frames; frames may come after it, and another end.

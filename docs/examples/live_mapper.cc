@@ -45,12 +45,16 @@ int main(int argc, char** argv) {
     Frame frame;
     frame.index = i;
     frame.stamp_s = i / 30.0;
-    frame.slam_from_camera = CameraOf(base, 1.15);  // SLAM's pose; empty while it is lost
-    frame.slam_epoch = 0;                           // counts SLAM's corrections of itself
+    // SLAM's pose; empty while it is lost. A camera's goes in as it is; CameraOf() makes one of a
+    // planar pose, BaseOf() a planar one of the report's.
+    frame.slam_from_camera = CameraOf(base);
+    frame.slam_epoch = 0;  // counts SLAM's corrections of itself
     frame.scan = std::make_shared<Scan>(Look(base));
     try {
       const FrameReport report = mapper.AddFrame(frame);  // the pose to navigate by, at once
       if (!report.map_from_camera) continue;              // SLAM is lost
+      const Pose2 map_from_base = BaseOf(*report.map_from_camera);
+      if (i % 90 == 89) std::printf("at %.2f, %.2f m: ", map_from_base.x_m, map_from_base.y_m);
     } catch (const InputError& error) {  // what no mapper can use; the next frame may be sound
       std::fprintf(stderr, "left out: %s\n", error.what());
       continue;

@@ -17,7 +17,6 @@
 using namespace depthgrid;
 
 constexpr Pose2 kBaseFromLaser{.x_m = 0.2};  // 20 cm before the robot's axle
-constexpr double kLaserHeightM = 0.3;
 constexpr int kFrames = 250;
 constexpr int kFramesToFindPlace = 120;  // 6 m of way
 
@@ -82,8 +81,9 @@ std::vector<Frame> Drive(int first_step) {
     // ScanOf() knows what readings of nothing, glass and faults mean.
     frame.scan =
         std::make_shared<Scan>(ScanOf(Readings(Truth(first_step + i) * kBaseFromLaser), {}));
-    // The mapper's `base` is where the scans are taken from: the laser.
-    frame.slam_from_camera = CameraOf(odom_from_base * kBaseFromLaser, kLaserHeightM);
+    // The mapper's `base` is where the scans are taken from: the laser. CameraOf() gives its pose
+    // the axes of a camera, BaseOf() takes them off again.
+    frame.slam_from_camera = CameraOf(odom_from_base * kBaseFromLaser);
     frames.push_back(frame);
   }
   return frames;

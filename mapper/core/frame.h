@@ -46,8 +46,10 @@ struct Frame {
   // from. Empty: as the pose has it.
   std::optional<CameraStand> stand;
   // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
-  // metres (docs/conventions.md). Empty while SLAM is lost. With a ready scan of a sensor that has
-  // no optical axes it is CameraOf() of `base` (mapper/core/level.h).
+  // metres (docs/conventions.md). Empty while SLAM is lost. A laser has no optical axes; with its
+  // planar pose (x forward, y left), and back (mapper/core/level.h):
+  //   frame.slam_from_camera = CameraOf(odom_from_laser);
+  //   const Pose2 map_from_laser = BaseOf(*report.map_from_camera);
   std::optional<Pose3> slam_from_camera;
   // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
   // two poses is a motion only within an epoch, and a jump that is taken for one bends the map for

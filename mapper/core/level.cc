@@ -12,9 +12,13 @@ Eigen::Quaterniond LevelFromOptical() {
   return Eigen::Quaterniond(level_from_optical);
 }
 
+bool IsNearVertical(const Eigen::Vector3d& axis_in_world) {
+  return std::hypot(axis_in_world.x(), axis_in_world.y()) < std::sin(kVerticalAxisLimitRad);
+}
+
 double HeadingOf(const Eigen::Quaterniond& world_from_camera) {
   const Eigen::Vector3d axis_in_world = world_from_camera * Eigen::Vector3d::UnitZ();
-  if (std::hypot(axis_in_world.x(), axis_in_world.y()) >= std::sin(kVerticalAxisLimitRad)) {
+  if (!IsNearVertical(axis_in_world)) {
     return std::atan2(axis_in_world.y(), axis_in_world.x());
   }
   // Looking down, the image's up direction points ahead; looking up, it points behind.
@@ -40,6 +44,10 @@ Eigen::Quaterniond LevelFromCamera(const Pose3& world_from_camera) {
   const Eigen::Quaterniond level_from_world(
       Eigen::AngleAxisd(-HeadingOf(world_from_camera.rotation), Eigen::Vector3d::UnitZ()));
   return (level_from_world * world_from_camera.rotation).normalized();
+}
+
+bool LooksUpOrDown(const Pose3& world_from_camera) {
+  return IsNearVertical(world_from_camera.rotation * Eigen::Vector3d::UnitZ());
 }
 
 Pose3 CameraOf(const Pose2& world_from_base, double height_m) {

@@ -25,8 +25,11 @@ Pose2 PlanarPoseOf(const Pose3& world_from_base);
 Eigen::Quaterniond LevelFromCamera(const Pose3& world_from_camera);
 
 // A level camera looking along base's x axis from the given height: the inverse of BaseOf for
-// planar sensors.
-Pose3 CameraOf(const Pose2& world_from_base, double height_m);
+// planar sensors, for whose ready scans the height says nothing.
+Pose3 CameraOf(const Pose2& world_from_base, double height_m = 0.0);
+
+// Whether the optical axis is so near to vertical that BaseOf takes the image's up direction.
+bool LooksUpOrDown(const Pose3& world_from_camera);
 
 // A relative camera pose i_from_j projected to SE(2) through both cameras' level rotations:
 // base_i_from_base_j.

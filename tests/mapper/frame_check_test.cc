@@ -92,6 +92,13 @@ const std::vector<Case>& Cases() {
        },
        "its scan's max_range_m is nan, must be 0 (unknown) or more"},
       {[](Frame& f) {
+         f.depth.reset();
+         f.scan = std::make_shared<Scan>();
+         f.slam_from_camera = Lift({1.0, 2.0, 0.5});
+       },
+       "looks straight up or down, so that it has no heading: the pose of a laser must be "
+       "CameraOf"},
+      {[](Frame& f) {
          f.loops = {LoopOf(f)};
          f.loops[0].sigma_rotation_rad = 0.0;
        },
@@ -113,6 +120,28 @@ TEST(FrameCheck, SaysWhichFrameAndWhatIsWrongWithIt) {
     EXPECT_THAT(why, HasSubstr(c.why));
     EXPECT_THAT(why, HasSubstr("frame " + std::to_string(frame.index) + ": "));
   }
+}
+
+// As of a depth camera under a ceiling.
+TEST(FrameCheck, AnImageAndAScanOfOneMayBeTakenStraightDown) {
+  Frame frame = CheckedFrame(4);
+  const auto nod = [&](double down_rad) {
+    frame.slam_from_camera->rotation *=
+        Eigen::Quaterniond(Eigen::AngleAxisd(-down_rad, Eigen::Vector3d::UnitX()));
+  };
+  nod(kPi / 2.0);
+  EXPECT_TRUE(LooksUpOrDown(*frame.slam_from_camera));
+  EXPECT_EQ(WhyRefused(frame), "");
+  frame.depth.reset();
+  EXPECT_EQ(WhyRefused(frame), "");
+  frame.scan = std::make_shared<Scan>();
+  frame.stand = StandOf(*frame.slam_from_camera, 0.0);
+  EXPECT_EQ(WhyRefused(frame), "");
+  frame.stand.reset();
+  EXPECT_THAT(WhyRefused(frame), HasSubstr("has no heading"));
+  // 11 degrees from it is enough.
+  nod(-RadFromDeg(11.0));
+  EXPECT_EQ(WhyRefused(frame), "");
 }
 
 TEST(FrameCheck, PosesOfFloatsAndFramesThatLackAllButANumberAreSound) {
