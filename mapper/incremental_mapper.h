@@ -8,6 +8,7 @@
 
 #include "mapper/core/frame.h"
 #include "mapper/core/frame_report.h"
+#include "mapper/core/mapped_frame.h"
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/reference_map.h"
 #include "mapper/frame_timer.h"

@@ -9,6 +9,7 @@
 #include "eval/files/csv_table.h"
 #include "eval/files/hash.h"
 #include "eval/files/run_files.h"
+#include "mapper/core/drives.h"
 #include "mapper/core/error.h"
 #include "mapper/core/median.h"
 #include "mapper/io/config.h"

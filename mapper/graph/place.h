@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "mapper/core/mapped_frame.h"
 #include "mapper/core/occupancy_map.h"
 #include "mapper/core/options.h"
-#include "mapper/core/reference_map.h"
 
 namespace depthgrid {
 

@@ -1,7 +1,7 @@
 // Mapped frames of a planar world without any mapper, for tests of places and loops.
 #pragma once
 
-#include "mapper/core/reference_map.h"
+#include "mapper/core/mapped_frame.h"
 #include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
