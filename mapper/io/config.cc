@@ -63,6 +63,7 @@ Config::Config(const Config& other) : tree_(std::make_unique<Tree>()) {
   tree_->root = YAML::Clone(other.tree_->root);
   tree_->place = other.tree_->place;
   tree_->subject = other.tree_->subject;
+  tree_->within = other.tree_->within;
   tree_->overrides = other.tree_->overrides;
 }
 Config& Config::operator=(const Config& other) {
@@ -130,10 +131,11 @@ void Config::Set(const std::string& key_path, const std::string& yaml_value,
 Config Config::Take(const std::string& key) {
   auto taken = std::make_unique<Tree>();
   taken->place = tree_->place;
+  taken->within = tree_->WholePath(key);
   const YAML::Node node = FindTopLevel(tree_->root, key);
   if (node.IsDefined()) {
     if (!node.IsMap())
-      throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a map of keys");
+      throw InputError(tree_->At(node.Mark()), "'" + taken->within + "' must be a map of keys");
     taken->root.reset(node);
     taken->overrides = tree_->OverridesBelow(key);
     tree_->root.remove(key);
@@ -141,18 +143,22 @@ Config Config::Take(const std::string& key) {
   return Config(std::move(taken));
 }
 
-void Config::NameSubject(const std::string& subject) { tree_->subject = subject; }
+void Config::NameSubject(const std::string& subject) {
+  tree_->subject = subject;
+  tree_->within.clear();
+}
 
 std::vector<Config> Config::TakeMaps(const std::string& key) {
   std::vector<Config> maps;
   const YAML::Node node = FindTopLevel(tree_->root, key);
   if (!node.IsDefined()) return maps;
   if (!node.IsSequence()) {
-    throw InputError(tree_->At(node.Mark()), "'" + key + "' must be a list");
+    throw InputError(tree_->At(node.Mark()), "'" + tree_->WholePath(key) + "' must be a list");
   }
   for (const auto& item : node) {
     if (!YAML::Node(item).IsMap()) {
-      throw InputError(tree_->At(item.Mark()), "each item of '" + key + "' must be a map");
+      throw InputError(tree_->At(item.Mark()),
+                       "each item of '" + tree_->WholePath(key) + "' must be a map");
     }
     auto taken = std::make_unique<Tree>();
     taken->place = tree_->place;
@@ -190,6 +196,7 @@ Config Config::Only(const std::vector<std::string>& keys) const {
   auto kept = std::make_unique<Tree>();
   kept->place = tree_->place;
   kept->subject = tree_->subject;
+  kept->within = tree_->within;
   kept->overrides = tree_->overrides;
   for (const auto& entry : tree_->root) {
     if (std::find(keys.begin(), keys.end(), entry.first.Scalar()) != keys.end()) {
@@ -207,7 +214,9 @@ std::vector<std::string> Config::Keys() const {
 
 std::vector<std::string> Config::List(const std::string& key_path) const {
   const YAML::Node node = Find(tree_->root, key_path);
-  if (!node.IsDefined()) throw InputError(tree_->place, "key '" + key_path + "' is missing");
+  if (!node.IsDefined()) {
+    throw InputError(tree_->place, "key '" + tree_->WholePath(key_path) + "' is missing");
+  }
   if (!node.IsSequence()) return {FlowText(node)};
   std::vector<std::string> items;
   for (const auto& item : node) items.push_back(FlowText(item));

@@ -69,12 +69,14 @@ class Config {
   // assignment when empty.
   void Set(const std::string& key_path, const std::string& yaml_value,
            const std::string& place = "");
-  // Removes a top-level key, dots and all, and returns its subtree; an empty tree if absent.
+  // Removes a top-level key, dots and all, and returns its subtree; an empty tree if absent. Errors
+  // name the subtree's keys by their whole path in the file.
   Config Take(const std::string& key);
   // Removes a top-level key, dots and all, whose value is a list of maps and returns them in order;
   // none if absent.
   std::vector<Config> TakeMaps(const std::string& key);
-  // What this tree is about, "trajectory 'tour'": errors name it behind file and line.
+  // What this tree is about, "trajectory 'tour'": errors name it behind file and line, and its keys
+  // without the path to it.
   void NameSubject(const std::string& subject);
   bool Has(const std::string& key_path) const;
   bool HasList(const std::string& key_path) const;

@@ -183,17 +183,18 @@ class YamlReader final : public OptionsVisitor {
       if (used) continue;
       const std::string prefix = level.path.empty() ? "" : level.path + ".";
       throw InputError(tree_.PlaceOfKey(prefix + key, MarkOfKey(entry.first, entry.second)),
-                       fmt::format("unknown key '{}{}'{}", prefix, Shortened(key),
+                       fmt::format("unknown key '{}'{}", tree_.WholePath(prefix + Shortened(key)),
                                    Hint(prefix, key, entry.second, level.known)));
     }
   }
   // A group is known by its own name before the keys in it are; a key may be of another group.
   std::string Hint(const std::string& prefix, const std::string& key, const YAML::Node& value,
                    const std::vector<std::string>& siblings) const {
-    const std::vector<std::string> paths = all_keys_();
+    std::vector<std::string> paths = all_keys_();
     if (IsPathIn(paths, prefix + key)) return ", write it as " + Nested(key);
-    const std::string path = prefix + key + FirstPathIn(value);
-    const std::string near_sibling = DidYouMean(key, siblings, prefix);
+    for (std::string& known : paths) known = tree_.WholePath(known);
+    const std::string path = tree_.WholePath(prefix + key + FirstPathIn(value));
+    const std::string near_sibling = DidYouMean(key, siblings, tree_.WholePath(prefix));
     const std::string same = DidYouMeanKey(path, paths, false);
     if (!same.empty() && (near_sibling.empty() || !value.IsMap())) return same;
     if (!near_sibling.empty()) return near_sibling;
@@ -284,7 +285,7 @@ void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
   const std::string shown = node.IsNull() ? "empty" : "'" + text + "'";
   throw InputError(tree.PlaceOfKey(key_path, MarkOf(tree, key_path, node)),
-                   fmt::format("{} is {}, must be {}", key_path, shown, rule));
+                   fmt::format("{} is {}, must be {}", tree.WholePath(key_path), shown, rule));
 }
 
 std::string TextIn(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node) {

@@ -26,8 +26,13 @@ struct Config::Tree {
   YAML::Node root{YAML::NodeType::Map};
   std::string place;
   std::string subject;  // what errors name behind file and line; may be empty
+  std::string within;   // the key path of the root in its file, for errors: of a tree taken out
   std::vector<ConfigOverride> overrides;
 
+  // A key path as it is in the file.
+  std::string WholePath(const std::string& key_path) const {
+    return within.empty() ? key_path : within + "." + key_path;
+  }
   // The place of a node's mark, for errors: "file:line", and the subject.
   std::string At(const YAML::Mark& mark) const;
   // Where a value came from, for errors: the assignment that set it, or one that set the group of

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "mapper/core/error.h"
 #include "tests/refusal.h"
 
@@ -200,8 +202,36 @@ TEST(Config, ASubtreeStillKnowsWhatWasSet) {
     config.Take("fusion").Read(inner);
     FAIL() << "a gain of 7 was taken";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::StartsWith("--set fusion.gain=7: gain is '7'"));
+    EXPECT_THAT(error.what(), ::testing::StartsWith("--set fusion.gain=7: fusion.gain is '7'"));
   }
+}
+
+TEST(Config, ErrorsOfASubtreeNameTheWholeKey) {
+  const std::string text = "robot:\n  mapper:\n    rate: [1]\n    inner: {gian: 1}\n  list: 3\n";
+  const auto refusal = [&](const std::function<void(Config&)>& read) {
+    Config robot = Config::FromText(text, "run.yaml").Take("robot");
+    return RefusalOf([&] { read(robot); });
+  };
+  const auto of_inner = [&](Config& robot) {
+    Inner inner;
+    robot.Take("mapper").Take("inner").Read(inner);
+  };
+  EXPECT_EQ(refusal(of_inner),
+            "run.yaml:4: unknown key 'robot.mapper.inner.gian', did you mean "
+            "'robot.mapper.inner.gain'?");
+  EXPECT_EQ(refusal([](Config& robot) { robot.TakeMaps("list"); }),
+            "run.yaml:5: 'robot.list' must be a list");
+  EXPECT_EQ(refusal([](Config& robot) { robot.Take("list"); }),
+            "run.yaml:5: 'robot.list' must be a map of keys");
+  EXPECT_EQ(refusal([](Config& robot) { robot.Take("mapper").Text("rate"); }),
+            "run.yaml:3: robot.mapper.rate is '[1]', must be a text");
+  // What has a name of its own goes by that.
+  EXPECT_EQ(refusal([](Config& robot) {
+              Config mapper = robot.Take("mapper");
+              mapper.NameSubject("mapper 'b'");
+              mapper.Text("rate");
+            }),
+            "run.yaml:3: mapper 'b': rate is '[1]', must be a text");
 }
 
 TEST(Config, ACopyIsIndependent) {

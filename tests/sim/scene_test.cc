@@ -246,8 +246,9 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
             "~/s.yaml:1: file is 'none.obj': no such file");
   EXPECT_EQ(ErrorOf("shapes: [{shape: mesh}]\n"), "~/s.yaml:1: 'file' is missing");
   EXPECT_EQ(ErrorOf("materials: {a: {texture: wod}}\n"),
-            "~/s.yaml:1: texture is 'wod', must be one of plain, wood, checker, stripes, fabric, "
-            "plaster, tiles, planks, carpet, paper, painting, stone (did you mean 'wood'?)");
+            "~/s.yaml:1: materials.a.texture is 'wod', must be one of plain, wood, checker, "
+            "stripes, fabric, plaster, tiles, planks, carpet, paper, painting, stone (did you mean "
+            "'wood'?)");
 }
 
 TEST_F(SceneFiles, ScenesOfInsaneSizeAreRefused) {
