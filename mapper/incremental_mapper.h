@@ -39,10 +39,10 @@ using MatchOracle = std::function<Pose2(int frame)>;
 struct PriorMap {
   // In order of time, at final poses, each with both its scans, which may be one; their `frame` is
   // below 0 and increases, by one within a drive: what a later drive saw counts more
-  // (GridOptions::earlier_scans). `mapped` of a result, or of a mapper that runs, becomes this with
-  // PriorNumbers(), or by counting it -size() to -1 as one drive; read from files
-  // (mapper/io/scan_file.h) frame, stamp, pose and scans are enough
-  // (docs/examples/second_drive.cc).
+  // (GridOptions::earlier_scans). WriteMapped() saves `mapped` of a result, or of a mapper that
+  // runs, and ReadMapped() gives it back as this (mapper/io/mapped_files.h,
+  // docs/examples/second_drive.cc); without a file PriorNumbers() counts it so
+  // (mapper/core/drives.h). Of a frame its number, stamp, pose and scans are enough.
   std::vector<MappedFrame> frames;
   // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees; FindStart()
   // in mapper/map_start.h finds it. Nothing puts right one that is farther off.

@@ -11,7 +11,7 @@
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/io/carmen_log.h"
-#include "mapper/io/scan_file.h"
+#include "mapper/io/mapped_files.h"
 #include "mapper/map_start.h"
 
 using namespace depthgrid;
@@ -89,30 +89,6 @@ std::vector<Frame> Drive(int first_step) {
   return frames;
 }
 
-// What was matched, MappedFrame::scan, lacks what may move, and of a depth camera is another scan:
-// a second such file keeps it. Here one does for both.
-void Save(const std::string& path, const std::vector<MappedFrame>& mapped) {
-  std::vector<StoredScan> scans;
-  for (const MappedFrame& frame : mapped) {
-    scans.push_back({frame.frame, frame.stamp_s, frame.map_from_base, frame.obstacles});
-  }
-  WriteScans(path, scans);
-}
-
-PriorMap Load(const std::string& path) {
-  PriorMap prior;
-  const std::vector<StoredScan> scans = ReadScans(path);
-  for (const StoredScan& stored : scans) {
-    MappedFrame frame;
-    frame.frame = static_cast<int>(prior.frames.size()) - static_cast<int>(scans.size());
-    frame.stamp_s = stored.stamp_s;
-    frame.map_from_base = stored.map_from_base;
-    frame.scan = frame.obstacles = stored.scan;
-    prior.frames.push_back(frame);
-  }
-  return prior;
-}
-
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : "";
   const bool asks = folder == "--help" || folder == "-h";
@@ -121,20 +97,20 @@ int main(int argc, char** argv) {
     return asks ? 0 : 2;
   }
   std::filesystem::create_directories(folder);
-  const std::string file = (std::filesystem::path(folder) / "scans.bin").string();
   const MapperOptions options;
 
   IncrementalMapper first(options, std::nullopt);
   for (const Frame& frame : Drive(0)) {
     first.AddFrame(frame);
     // Now and then, so that a flat battery does not cost the map.
-    if (frame.index % 100 == 99) Save(file, first.CurrentMapped());
+    if (frame.index % 100 == 99) WriteMapped(folder, first.CurrentMapped());
   }
-  Save(file, first.Finish().mapped);
+  WriteMapped(folder, first.Finish().mapped);
 
   constexpr int kSecondBegin = 60;
   const std::vector<Frame> frames = Drive(kSecondBegin);
-  PriorMap prior = Load(file);
+  PriorMap prior;
+  prior.frames = ReadMapped(folder);
   const std::vector<Frame> seen(frames.begin(), frames.begin() + kFramesToFindPlace);
   const auto start = FindStart(prior, seen, std::nullopt, options);
   // Go on collecting, or ask somebody: FindStartNear() takes their word for it.
@@ -149,7 +125,7 @@ int main(int argc, char** argv) {
   const Pose2 estimate = BaseOf(*report.map_from_camera) * Inverse(kBaseFromLaser);
   const Pose2 truth = Between(Truth(0), Truth(kSecondBegin + kFrames - 1));
   const double error_m = (estimate.translation() - truth.translation()).norm();
-  std::printf("%s: %d scans; the second drive's last pose is %.1f mm off\n", file.c_str(),
+  std::printf("%s: %d scans; the second drive's last pose is %.1f mm off\n", folder.c_str(),
               static_cast<int>(second.Finish().mapped.size()), 1e3 * error_m);
   return error_m < 0.03 ? 0 : 1;
 }

@@ -15,9 +15,9 @@
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
+#include "mapper/io/mapped_files.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/png.h"
-#include "mapper/io/scan_file.h"
 #include "mapper/io/slam_files.h"
 #include "mapper/io/trajectory_file.h"
 
@@ -61,25 +61,6 @@ std::string Lines(const std::vector<std::string>& lines) {
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
   return text;
-}
-
-// matched.bin only where what is matched is not what the map is drawn from.
-void WriteStoredScans(const OutputFolder& folder, const MappingRun& run) {
-  std::vector<StoredScan> drawn;
-  std::vector<StoredScan> matched;
-  bool same = true;
-  const auto& frames = run.result.mapped;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const MappedFrame& frame = frames[i];
-    // A prior map's frames have numbers below 0, however many maps it came from.
-    const int number =
-        frame.frame < 0 ? static_cast<int>(i) - static_cast<int>(frames.size()) : frame.frame;
-    drawn.push_back({number, frame.stamp_s, frame.map_from_base, frame.obstacles});
-    matched.push_back({number, frame.stamp_s, frame.map_from_base, frame.scan});
-    same = same && frame.scan == frame.obstacles;
-  }
-  WriteScans(folder.File("scans.bin"), drawn);
-  if (!same) WriteScans(folder.File("matched.bin"), matched);
 }
 
 }  // namespace
@@ -139,7 +120,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   }
   if (record.slam != nullptr) WriteFile(folder.File("loops.csv"), LoopsText(*record.slam));
   WriteFile(folder.File("frames.csv"), FramesCsv(*record.mapping, truth));
-  WriteStoredScans(folder, *record.mapping);
+  WriteMapped(folder.work().string(), record.mapping->result.mapped);
   WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
   WriteDepthPictures(folder.work().string(), *record.mapping, record.scan);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));

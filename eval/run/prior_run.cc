@@ -9,12 +9,11 @@
 #include "eval/files/csv_table.h"
 #include "eval/files/hash.h"
 #include "eval/files/run_files.h"
-#include "mapper/core/drives.h"
 #include "mapper/core/error.h"
 #include "mapper/core/median.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
-#include "mapper/io/scan_file.h"
+#include "mapper/io/mapped_files.h"
 
 namespace depthgrid {
 namespace {
@@ -48,30 +47,10 @@ void RequirePossible(const Config& run) {
 }  // namespace
 
 PriorMap ReadPriorRun(const std::string& folder) {
-  const fs::path drawn_path = fs::path(folder) / "scans.bin";
-  const fs::path matched_path = fs::path(folder) / "matched.bin";
   RequireRunFolder(folder);
   RequirePossible(Config::FromFile((fs::path(folder) / "run.yaml").string()));
-  const std::vector<StoredScan> drawn = ReadScans(drawn_path.string());
-  const std::vector<StoredScan> matched =
-      fs::exists(matched_path) ? ReadScans(matched_path.string()) : drawn;
-  if (drawn.empty()) throw InputError(drawn_path.string(), "holds no scan");
-  if (matched.size() != drawn.size()) {
-    throw InputError(matched_path.string(), "does not belong to scans.bin");
-  }
-  std::vector<int> frames;
-  for (const StoredScan& scan : drawn) frames.push_back(scan.frame);
-  const std::vector<int> numbers = PriorNumbers(frames);
   PriorMap prior;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    MappedFrame frame;
-    frame.frame = numbers[i];
-    frame.stamp_s = drawn[i].stamp_s;
-    frame.obstacles = drawn[i].scan;
-    frame.scan = matched[i].scan;
-    frame.map_from_base = drawn[i].map_from_base;
-    prior.frames.push_back(std::move(frame));
-  }
+  prior.frames = ReadMapped(folder);
   return prior;
 }
 

@@ -17,7 +17,7 @@ constexpr double kSameFrameS = 0.005;
 // Steps on each side that say what motion is usual.
 constexpr int kStepsAround = 4;
 // So few poses can be far apart in truth.
-constexpr std::size_t kFewSteps = 3;
+constexpr std::size_t kFewSpeeds = 3;
 // A loop's two frames: this much path apart, and this near in the revised trajectory.
 constexpr double kMinPathM = 2.0;
 constexpr double kMaxDistanceM = 1.0;
@@ -159,7 +159,7 @@ std::vector<LoopClosure> LoopsFromRevision(const std::vector<SlamPose>& live,
 }
 
 std::optional<double> ImpossibleSpeedMps(std::vector<double> speeds_mps) {
-  if (speeds_mps.size() <= kFewSteps) return {};
+  if (speeds_mps.size() <= kFewSpeeds) return {};
   const double usual_mps = UpperMedian(std::move(speeds_mps));
   return usual_mps > kFastestMps ? std::optional(usual_mps) : std::nullopt;
 }
@@ -177,7 +177,7 @@ std::optional<std::string> DoubtOf(const std::vector<SlamPose>& live,
     }
     last = &pose;
   }
-  if (speeds_mps.size() <= kFewSteps) return {};
+  if (speeds_mps.size() <= kFewSpeeds) return {};
   if (const auto speed_mps = ImpossibleSpeedMps(speeds_mps)) {
     return "the camera moves at " + std::to_string(std::llround(*speed_mps)) +
            " m/s: are the poses in metres, and the stamps in seconds?";
