@@ -28,10 +28,13 @@ bool NoneToMatch(const MappingRun& run) {
 // all but the first; where it is three in four, errors have been those of SLAM.
 constexpr double kFewestMatched = 0.9;
 
+// Where the others' beams see more often than that, the scan is not what keeps them from a match.
+constexpr double kFewBeams = 0.25;
+
 struct MatchedFrames {
   int matched = 0;
   int frames = 0;      // that had an image, a pose and something mapped before them
-  double beams = 0.0;  // with a hit, mean
+  double beams = 0.0;  // with a hit, of those that were not matched, mean
 
   bool AreFew() const { return matched < kFewestMatched * frames; }
 };
@@ -45,11 +48,12 @@ MatchedFrames CountMatched(const MappingRun& run) {
     if (any_mapped || report.match.found) {
       count.matched += report.match.found ? 1 : 0;
       ++count.frames;
-      count.beams += report.beams;
+      if (!report.match.found) count.beams += report.beams;
     }
     any_mapped = any_mapped || report.inserted;
   }
-  if (count.frames > 0) count.beams /= count.frames;
+  const int unmatched = count.frames - count.matched;
+  if (unmatched > 0) count.beams /= unmatched;
   return count;
 }
 
@@ -73,6 +77,21 @@ std::string ImagesOf(const MappingRun& run) {
   const double width_rad = 2.0 * std::atan(0.5 * camera.width_px / camera.fx_px);
   return fmt::format("the images, {}x{} pixels and {:.3g} degrees wide, {}", camera.width_px,
                      camera.height_px, DegFromRad(width_rad), DepthSeen(run));
+}
+
+// Of frames of which few were matched: what was not seen, or was seen and not taken.
+std::string WhyFewMatched(const MatchedFrames& count, const MapperOptions& options) {
+  if (count.beams < kFewBeams * options.scan.beams) {
+    return fmt::format(
+        "of theirs on average {:.0f} of {} beams see what is matched (in mapper.scan: mode, "
+        "slice_half_height_m, min_range_m, max_range_m)",
+        count.beams, options.scan.beams);
+  }
+  const bool is_surfel = options.method == MapperMethod::kSurfel;
+  return fmt::format(
+      "of theirs on average {:.0f} of {} beams see what is matched, but it does not fit what was "
+      "mapped: limits of {} are too narrow, or the poses err by more than these",
+      count.beams, options.scan.beams, is_surfel ? "mapper.surfel.match" : "mapper.match");
 }
 
 }  // namespace
@@ -109,10 +128,8 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
     const MatchedFrames count = CountMatched(run);
     if (!count.AreFew()) return {};
     return fmt::format(
-        "{} of {} frames could be matched, the poses of the others are those given: on average "
-        "{:.0f} of {} beams see what is matched (mapper.scan.mode, slice_half_height_m, "
-        "min_range_m, max_range_m); {}",
-        count.matched, count.frames, count.beams, scan.beams, ImagesOf(run));
+        "{} of {} frames could be matched, the poses of the others are those given: {}; {}",
+        count.matched, count.frames, WhyFewMatched(count, options), ImagesOf(run));
   }
   return fmt::format(
       "nothing could be matched, the poses are those given: no frame sees anything within {:g} m "

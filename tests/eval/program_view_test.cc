@@ -144,9 +144,21 @@ TEST_F(ProgramView, ThatFewFramesCouldBeMatchedIsSaid) {
   EXPECT_LT(matched, 50);
   EXPECT_THAT(said, AllOf(HasSubstr("warning: " + std::to_string(matched) +
                                     " of 59 frames could be matched, the poses of the others are "
-                                    "those given: on average "),
-                          HasSubstr("mapper.scan.mode, slice_half_height_m"),
+                                    "those given: of theirs on average "),
+                          HasSubstr("(in mapper.scan: mode, slice_half_height_m"),
                           HasSubstr("80x60 pixels"), Not(HasSubstr("path"))));
+}
+
+TEST_F(ProgramView, WhereEnoughIsSeenTheMatchIsToBlame) {
+  const auto said = [&](const std::string& settings) {
+    return Program("run ./small.yaml -o out --force --set frames=60 " + settings).err;
+  };
+  EXPECT_THAT(said("--set mapper.surfel.match.max_angle_deg=0.001"),
+              AllOf(HasSubstr("does not fit what was mapped: limits of mapper.surfel.match are"),
+                    Not(HasSubstr("mapper.scan"))));
+  EXPECT_THAT(said("--set mapper.method=paper --set mapper.match.min_score=1"),
+              AllOf(HasSubstr("does not fit what was mapped: limits of mapper.match are"),
+                    Not(HasSubstr("mapper.scan"))));
 }
 
 // They are said by their count, and match nothing.
