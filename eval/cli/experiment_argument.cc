@@ -102,19 +102,32 @@ std::vector<std::string> DoubtsOfRecord(const std::string& name,
   const std::string path = ResolveName(name, ShippedKind::kExperiment);
   Config given;
   for (const std::string& assignment : set) given.Set(assignment);
-  return depthgrid::DoubtsOfRecord(path, ExperimentFile(path).Take("provenance"),
-                                   ExperimentNamed(name, set),
-                                   {given.Has("scene"), given.Has("trajectory")});
+  Config file = ExperimentFile(path);
+  // A file of the same name is the same room somewhere else, as where somebody else repeats a run.
+  const auto name_of = [](const Config& config) {
+    return fs::path(config.Text("scene")).filename();
+  };
+  const bool other_scene = given.Has("scene") && name_of(given) != name_of(file);
+  return depthgrid::DoubtsOfRecord(path, file.Take("provenance"), ExperimentNamed(name, set),
+                                   {other_scene, given.Has("trajectory")});
 }
 
 std::vector<std::string> DoubtsOfSettings(const std::string& name,
                                           const std::vector<std::string>& set) {
   std::vector<std::string> doubts = DoubtsOfRecord(name, set);
-  if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
   const ExperimentOptions options = ExperimentNamed(name, set);
   const std::vector<std::string> of_camera = DoubtsOfCamera(options.sensor);
   doubts.insert(doubts.end(), of_camera.begin(), of_camera.end());
-  AddIdle(name, set, IdleSettings(options), doubts);
+  std::vector<std::string> of_keys;
+  AddIdle(name, set, IdleSettings(options), of_keys);
+  // Of a profile that sets nothing at all it is said there.
+  const bool sets_nothing = std::any_of(of_keys.begin(), of_keys.end(), [](const auto& doubt) {
+    return doubt.starts_with("--set slam.profile=");
+  });
+  if (!sets_nothing) {
+    if (const auto doubt = DoubtOfProfile(name, set)) doubts.push_back(*doubt);
+  }
+  doubts.insert(doubts.end(), of_keys.begin(), of_keys.end());
   return doubts;
 }
 

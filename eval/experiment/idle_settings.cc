@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "eval/experiment/default_values.h"
@@ -13,7 +15,11 @@ namespace {
 struct StatedKey {
   std::string key;
   std::string place;
+  std::string text;
 };
+
+// They set other keys, but none that is given.
+constexpr std::array<std::string_view, 2> kPresets = {"slam.profile", "slam.loops.scenario"};
 
 // The single values of a tree, those in groups by their whole path.
 void AddStated(const Config& config, const std::string& prefix, std::vector<StatedKey>& stated) {
@@ -21,7 +27,7 @@ void AddStated(const Config& config, const std::string& prefix, std::vector<Stat
     if (entry.map) {
       AddStated(*entry.map, prefix + entry.key + ".", stated);
     } else {
-      stated.push_back({prefix + entry.key, entry.place});
+      stated.push_back({prefix + entry.key, entry.place, entry.text});
     }
   }
 }
@@ -41,6 +47,16 @@ const IdleSetting* Find(const IdleSettingList& idle, const std::string& key) {
 
 std::string SettingText(const std::string& yaml, const std::string& key) {
   return fmt::format("{}", fmt::join(Config::FromText(yaml, "").List(key), ", "));
+}
+
+// Whether two experiments, as YAML of every effective key, differ in this one alone.
+bool DifferInOnly(const std::string& key, const std::string& a, const std::string& b) {
+  const std::vector<StatedKey> of_a = StatedKeys(Config::FromText(a, ""));
+  const std::vector<StatedKey> of_b = StatedKeys(Config::FromText(b, ""));
+  const auto alike = [&](const StatedKey& one, const StatedKey& other) {
+    return one.key == other.key && (one.text == other.text) == (one.key != key);
+  };
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), alike);
 }
 
 // Were it not for the scale.
@@ -265,18 +281,21 @@ std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,
   for (std::size_t i = 0; i < set.size(); ++i) {
     Config assignment;
     assignment.Set(set[i]);
+    std::vector<std::string> others = set;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     for (const StatedKey& stated : StatedKeys(assignment)) {
       const IdleSetting* setting = Find(idle, stated.key);
-      if (setting == nullptr) continue;
-      std::vector<std::string> others = set;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      if (SettingText(settings_with(set), stated.key) ==
-          SettingText(settings_with(others), stated.key)) {
-        continue;
-      }
+      const bool presets =
+          std::find(kPresets.begin(), kPresets.end(), stated.key) != kPresets.end();
+      if (setting == nullptr && !presets) continue;
+      const std::string with = settings_with(set);
+      const std::string without = settings_with(others);
+      if (SettingText(with, stated.key) == SettingText(without, stated.key)) continue;
+      if (setting == nullptr && !DifferInOnly(stated.key, with, without)) continue;
       const bool is_all = set[i].starts_with(stated.key + "=");
-      doubts.push_back(fmt::format("--set {}: {}has no effect because {}", set[i],
-                                   is_all ? "" : stated.key + " ", setting->reason));
+      doubts.push_back(fmt::format(
+          "--set {}: {}has no effect because {}", set[i], is_all ? "" : stated.key + " ",
+          setting == nullptr ? "all keys that it sets are given" : setting->reason));
     }
   }
   return doubts;
@@ -295,7 +314,7 @@ std::vector<std::string> DoubtsOfFile(const Config& file, const IdleSettingList&
   const std::string values = ToYaml(own);
   const std::string usual = ToYaml(ExperimentOptions{});
   std::vector<std::string> doubts;
-  for (const auto& [key, place] : stated) {
+  for (const auto& [key, place, text] : stated) {
     const IdleSetting* setting = Find(own_idle, key);
     if (setting == nullptr || SettingText(values, key) == SettingText(usual, key)) continue;
     doubts.push_back(fmt::format("{}: {} has no effect because {}", place, key, setting->reason));

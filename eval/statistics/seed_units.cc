@@ -65,6 +65,15 @@ struct Mean {
   double Value() const { return sum / count; }  // NaN of nothing
 };
 
+// Units of different sizes count as equals, so their mean may be off that of all runs.
+void MoveMeanTo(double mean, std::vector<double>& figures) {
+  Mean units;
+  for (const double figure : figures) {
+    if (std::isfinite(figure)) units.Add(figure);
+  }
+  for (double& figure : figures) figure += mean - units.Value();
+}
+
 // Means of `size` that cancel, as where most scores are 0, leave no more than their rounding.
 double WithoutRounding(double figure, double size) {
   constexpr double kRounding = 1e-12;
@@ -112,6 +121,7 @@ std::vector<double> SeedUnits::Figures(const std::vector<double>& values) const 
       sizes[unit] = std::max(sizes[unit], std::abs(means[unit].Value()));
     }
   }
+  if (unit_of_run_.size() > 1) MoveMeanTo(all.Value(), figures);
   for (std::size_t unit = 0; unit < count_; ++unit) {
     figures[unit] = WithoutRounding(figures[unit], sizes[unit]);
   }

@@ -42,8 +42,9 @@ function headsOf(table) {
 }
 // `unit`: of all columns but the first, where the head does not say it.
 function csvOfTable(table, unit) {
-  const text = (cell) => (cell.textContent === "–" ? "" : cell.textContent.replaceAll("\u00a0", " "));
-  const heads = headsOf(table).map((head, c) => (unit && c > 0 ? `${head} (${unit})` : head));
+  const plain = (text) => text.replaceAll("\u00a0", " ");
+  const text = (cell) => (cell.textContent === "–" ? "" : plain(cell.textContent));
+  const heads = headsOf(table).map((head, c) => plain(unit && c > 0 ? `${head} (${unit})` : head));
   return csvText([heads, ...[...table.tBodies[0].rows].map((row) => [...row.cells].map(text))]);
 }
 

@@ -9,6 +9,8 @@ namespace depthgrid {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 ExperimentOptions FromYaml(const std::string& text) {
@@ -143,6 +145,31 @@ TEST(IdleSettings, SeedsAreThoseOfExactPoses) {
                      "jitter_rotation_deg: 0, bias_rotation_deg: 0, loops: {recall: 0}}"),
               Contains("slam_seed"));
   EXPECT_THAT(IdleIn("slam: {loops: {scenario: true}}"), Not(Contains("slam_seed")));
+}
+
+std::vector<std::string> DoubtsOfSet(const std::string& yaml, const std::vector<std::string>& set) {
+  const auto with = [&](const std::vector<std::string>& some) {
+    Config config = Config::FromText(yaml, "test");
+    for (const std::string& assignment : some) config.Set(assignment);
+    ExperimentOptions options;
+    config.Read(options);
+    return ToYaml(options);
+  };
+  return DoubtsOfOverrides(set, IdleSettings(FromYaml(with(set))), with);
+}
+
+// A run.yaml states all that a profile or scenario would set.
+TEST(IdleSettings, PresetsOfWhatIsGivenAre) {
+  const std::string all = ToYaml(FromYaml("slam: {profile: orb_slam2, loops: {scenario: true}}"));
+  for (const std::string set : {"slam.loops.scenario=none", "slam.profile=ground_truth"}) {
+    EXPECT_THAT(
+        DoubtsOfSet(all, {set}),
+        ElementsAre("--set " + set + ": has no effect because all keys that it sets are given"));
+  }
+  EXPECT_THAT(DoubtsOfSet(all, {"slam.loops.scenario=true"}), IsEmpty());
+  EXPECT_THAT(DoubtsOfSet(all, {"slam={profile: ground_truth}"}), IsEmpty());
+  const std::string some = "slam: {profile: orb_slam2, loops: {scenario: true, recall: 0.5}}";
+  EXPECT_THAT(DoubtsOfSet(some, {"slam.loops.scenario=late"}), IsEmpty());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 class ProgramOutput : public ProgramTest {};
 
@@ -160,6 +161,14 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   Write("sweep.yaml", "experiment: out/run.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
   EXPECT_THAT(Program("sweep ./sweep.yaml --dry-run -o sweep").err,
               HasSubstr(of_scene.substr(of_scene.find("out/run.yaml"))));
+  // Somebody else's copy of the room has its name; another room is another run on purpose.
+  fs::create_directories(Path("copy"));
+  fs::copy_file(Path("room.yaml"), Path("copy/room.yaml"));
+  fs::copy_file(Path("room.yaml"), Path("copy/hall.yaml"));
+  EXPECT_THAT(Program("run out/run.yaml -o again --force --set scene=copy/room.yaml").err,
+              HasSubstr("out/run.yaml: scene_hash is "));
+  EXPECT_THAT(Program("run out/run.yaml -o again --force --set scene=copy/hall.yaml").err,
+              Not(HasSubstr("scene_hash")));
   Write("rooms.yaml", "experiment: out/run.yaml\naxes: {scene: [" + Path("room.yaml") + "]}\n");
   EXPECT_EQ(Program("sweep ./rooms.yaml --dry-run -o sweep").err, "");
   EXPECT_EQ(Program("render ./room.yaml --no-colour -o scene --set frames=2").err, "");

@@ -74,6 +74,23 @@ TEST(SeedUnits, TheLongerAxisIsSharedOut) {
   EXPECT_THAT(SeedUnits(seeds).Figures(values), ElementsAre(0.5, 12.5));
 }
 
+// Three seeds with two: of the three two go to the first. Their mean is that of all runs all the
+// same, as others compute it.
+TEST(SeedUnits, HaveTheMeanOfAllRuns) {
+  Seeds seeds;
+  std::vector<double> values;
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      seeds.push_back({std::to_string(k), std::to_string(i)});
+      values.push_back(100.0 * i + 10.0 * k * k);
+    }
+  }
+  const std::vector<double> figures = SeedUnits(seeds).Figures(values);
+  // Rows 16.7 and 116.7, columns 5 and 40, all 66.7: the spread is that of both.
+  EXPECT_NEAR(figures[0] + figures[1], 2.0 * 400.0 / 6.0, 1e-9);
+  EXPECT_NEAR(figures[1] - figures[0], 135.0, 1e-9);
+}
+
 // Where there is no difference a test at 5 % finds one in about 5 % of all cases, whichever seed
 // the errors hang on. Each run counted alone would be 50 %, the means of one axis up to 50 %.
 TEST(SeedUnits, OfCrossedSeedsKeepTheLevelOfATest) {
