@@ -153,10 +153,12 @@ TEST_F(ProgramView, WhereEnoughIsSeenTheMatchIsToBlame) {
   const auto said = [&](const std::string& settings) {
     return Program("run ./small.yaml -o out --force --set frames=60 " + settings).err;
   };
-  EXPECT_THAT(said("--set mapper.surfel.match.max_angle_deg=0.001"),
+  const std::string match = " --set mapper.surfel.match.";
+  EXPECT_THAT(said("--set sensor.noise_scale=4" + match + "gate_m=0.01" + match + "along_m=0.01" +
+                   match + "max_angle_deg=1"),
               AllOf(HasSubstr("does not fit what was mapped: limits of mapper.surfel.match are"),
                     Not(HasSubstr("mapper.scan"))));
-  EXPECT_THAT(said("--set mapper.method=paper --set mapper.match.min_score=1"),
+  EXPECT_THAT(said("--set mapper.method=paper --set mapper.match.min_points=1000"),
               AllOf(HasSubstr("does not fit what was mapped: limits of mapper.match are"),
                     Not(HasSubstr("mapper.scan"))));
 }
