@@ -173,7 +173,7 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   EXPECT_EQ(Program("sweep ./rooms.yaml --dry-run -o sweep").err, "");
   EXPECT_EQ(Program("render ./room.yaml --no-colour -o scene --set frames=2").err, "");
   EXPECT_EQ(Program("run again/run.yaml -o third").err, "");  // it has the new hashes
-  EXPECT_EQ(Program("run out/run.yaml -o other --set scene=./room.yaml").err, "");
+  EXPECT_EQ(Program("run out/run.yaml -o other --set scene=./room.yaml").err, of_scene);
   Write("room.yaml", room);
   EXPECT_EQ(Program("run out/run.yaml -o fourth --set frames=11").err, "");
 }
