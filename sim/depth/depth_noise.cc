@@ -137,9 +137,9 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
       std::copy_n(alike.data() + first, count, random.normals[kAxial].data());
     }
     const DepthSamples clean = Sample(traits, source, first, count, random, scale);
-    alignas(64) Values theta, measured;
+    alignas(64) Values theta;
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) theta[i] = noise::Acos(clean.cosine[i]);
-    traits.measure({clean, theta, random.normals[kAxial], scale, focal_px}, measured);
+    Values measured = traits.measure({clean, theta, random.normals[kAxial], scale, focal_px});
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
       const float z = measured[i];
       const bool is_kept = (clean.z[i] > 0.0F) & (z > 0.0F) & (z >= min_m) & (z <= max_m) &

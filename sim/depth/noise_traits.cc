@@ -8,38 +8,38 @@ namespace {
 
 // z + sigma(z, theta) n
 template <typename Sigma>
-void AddAxial(const Unmeasured& block, Values& measured, const Sigma& sigma) {
+Values AddAxial(const Unmeasured& block, const Sigma& sigma) {
+  Values measured;
   const float scale = block.scale;
   const Values& z = block.clean.z;
   for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
     measured[i] = z[i] + scale * sigma(z[i], block.theta[i]) * block.normal[i];
   }
+  return measured;
 }
 
-void MeasureExactly(const Unmeasured& block, Values& measured) { measured = block.clean.z; }
+Values MeasureExactly(const Unmeasured& block) { return block.clean.z; }
 
-void MeasureNguyen(const Unmeasured& block, Values& measured) {
-  AddAxial(block, measured, NguyenSigma);
-}
+Values MeasureNguyen(const Unmeasured& block) { return AddAxial(block, NguyenSigma); }
 
-void MeasureHanda(const Unmeasured& block, Values& measured) {
+Values MeasureHanda(const Unmeasured& block) {
+  Values measured;
   const float sigma_steps = block.scale * kHandaDisparitySigmaSteps;
   for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
     measured[i] = HandaDepth(1.0F / block.clean.z[i], sigma_steps * block.normal[i]);
   }
+  return measured;
 }
 
-void MeasureD435(const Unmeasured& block, Values& measured) {
-  AddAxial(block, measured,
-           [focal_px = block.focal_px](float z, float) { return D435Sigma(z, focal_px); });
+Values MeasureD435(const Unmeasured& block) {
+  return AddAxial(block,
+                  [focal_px = block.focal_px](float z, float) { return D435Sigma(z, focal_px); });
 }
 
-void MeasureKinectV2(const Unmeasured& block, Values& measured) {
-  AddAxial(block, measured, KinectV2Sigma);
-}
+Values MeasureKinectV2(const Unmeasured& block) { return AddAxial(block, KinectV2Sigma); }
 
-void MeasureAzure(const Unmeasured& block, Values& measured) {
-  AddAxial(block, measured, [](float z, float) { return AzureSigma(z); });
+Values MeasureAzure(const Unmeasured& block) {
+  return AddAxial(block, [](float z, float) { return AzureSigma(z); });
 }
 
 }  // namespace

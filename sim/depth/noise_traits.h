@@ -25,7 +25,7 @@ struct NoiseTraits {
   DepthRange range = {};
   Sampling sampling = Sampling::kInPlace;
   float shift_px = 0.0F;  // kBetweenPixels: its standard deviation
-  void (*measure)(const Unmeasured& block, Values& measured) = nullptr;
+  Values (*measure)(const Unmeasured& block) = nullptr;
   // Pixels at larger steps of depth are lost (DropEdges).
   float most_step_m = std::numeric_limits<float>::infinity();
 };
