@@ -135,6 +135,16 @@ function missingText(axis) {
 // Points that were stopped early, or of which a run failed, have other seeds than their neighbours.
 const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs)).size > 1;
 
+// What the table says as numbers, a row a value, for who goes on with them.
+function csvOfBest(lines, axis) {
+  const unit = metric.unit ? ` (${metric.unit})` : "";
+  const heads = ["held", axis.key, `mean${unit}`, `95 % low${unit}`, `95 % high${unit}`, "p (Holm)", "best in resamples", `regret${unit}`, "is best", "best 95 % low", "best 95 % high", "seeds"];
+  const rows = lines.flatMap((line) => line.points.map((i, k) => [heldText(line), axis.labels[POINTS[i].values[along.axis]],
+    metric.mean[i], metric.low[i], metric.high[i], k === line.best ? "" : line.p?.[k], line.share_best?.[k],
+    line.regret_of_seed ? line.regret_of_seed[k] * metric.factor : "", k === line.best ? 1 : 0, line.low, line.high, line.seeds]));
+  return csvText([heads, ...rows]);
+}
+
 function drawBest() {
   const axis = AXES[along.axis];
   const lines = linesAlong(along.axis);
@@ -165,7 +175,7 @@ function drawBest() {
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
   table.id = "best";
   byId("best").replaceWith(table);
-  byId("best-note").append(saveButtons(`best ${axis.key} for ${metric.label}`, { CSV: () => csvOfTable(table) }));
+  byId("best-note").append(saveButtons(`best ${axis.key} for ${metric.label}`, { CSV: () => csvOfBest(lines, axis) }));
   const longest = Math.max(...lines.map((line) => line.points.length + line.left_out.length));
   if (longest < 3) return;
   const shown = lines.filter((line) => line.points.length + line.left_out.length === longest);

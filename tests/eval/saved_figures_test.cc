@@ -110,7 +110,13 @@ TEST_F(SavedFigures, OfASweep) {
   EXPECT_THAT(heat.text, HasSubstr("Red: "));
   EXPECT_THAT(Save("#heat-controls", "CSV").text,
               HasSubstr("mapper.fusion.gain down, slam.drift_scale across\",1,2\n0,3.35,6.35\n"));
-  EXPECT_THAT(Save("#best-note", "CSV").text, HasSubstr("\ndrift_scale 1,0.5,0.5,100.0 %,"));
+  const std::string best = Save("#best-note", "CSV").text;
+  EXPECT_THAT(best, StartsWith("held,mapper.fusion.gain,mean (cm),95 % low (cm),95 % high (cm),"
+                               "p (Holm),best in resamples,regret (cm),is best,best 95 % low,"
+                               "best 95 % high,seeds\n"));
+  EXPECT_THAT(best, HasSubstr("\ndrift_scale 1,0,3.35,"));
+  EXPECT_THAT(best, HasSubstr(",,1,0,1,0.5,0.5,6\n"));  // of 0.5, which is the best of every seed
+  EXPECT_EQ(std::count(best.begin(), best.end(), '\n'), 7);
   const Saved table = Save("#table-note", "CSV");
   EXPECT_EQ(table.name, "gains_points.csv");
   EXPECT_THAT(table.text, StartsWith("slam.drift_scale,mapper.fusion.gain,runs,"
