@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -163,6 +164,26 @@ TEST(Arrows, NoFileIsLongerThan400Lines) {
       EXPECT_LE(lines, 400) << entry.path() << " is to be divided by concept";
     }
   }
+}
+
+// Some lists are read by `./dev fuzz` alone, which nobody runs with each change.
+TEST(Arrows, SourcesThatListsNameAreThere) {
+  const fs::path root = kSourceFolder;
+  const std::regex source(R"(\$\{CMAKE_SOURCE_DIR\}/([\w/.]+\.cc))");
+  int named = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "tests")) {
+    if (entry.path().filename() != "CMakeLists.txt") continue;
+    std::ifstream stream(entry.path());
+    for (std::string line; std::getline(stream, line);) {
+      for (std::sregex_iterator match(line.begin(), line.end(), source), end; match != end;
+           ++match) {
+        ++named;
+        EXPECT_TRUE(fs::exists(root / (*match)[1].str()))
+            << entry.path() << " names " << (*match)[1];
+      }
+    }
+  }
+  EXPECT_GT(named, 0);
 }
 
 // The type that a line begins to define at a namespace's own level, nothing where it is a forward
