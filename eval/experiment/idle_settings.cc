@@ -274,6 +274,15 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   return used;
 }
 
+bool IsPreset(const std::string& key) {
+  return std::find(kPresets.begin(), kPresets.end(), key) != kPresets.end();
+}
+
+std::string WhyPresetIsIdle(const std::string& key, const std::string& with,
+                            const std::string& without) {
+  return DifferInOnly(key, with, without) ? "all keys that it sets are given" : "";
+}
+
 std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,
                                            const IdleSettingList& idle,
                                            const SettingsWith& settings_with) {
@@ -285,17 +294,16 @@ std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     for (const StatedKey& stated : StatedKeys(assignment)) {
       const IdleSetting* setting = Find(idle, stated.key);
-      const bool presets =
-          std::find(kPresets.begin(), kPresets.end(), stated.key) != kPresets.end();
-      if (setting == nullptr && !presets) continue;
+      if (setting == nullptr && !IsPreset(stated.key)) continue;
       const std::string with = settings_with(set);
       const std::string without = settings_with(others);
       if (SettingText(with, stated.key) == SettingText(without, stated.key)) continue;
-      if (setting == nullptr && !DifferInOnly(stated.key, with, without)) continue;
+      const std::string reason =
+          setting == nullptr ? WhyPresetIsIdle(stated.key, with, without) : setting->reason;
+      if (reason.empty()) continue;
       const bool is_all = set[i].starts_with(stated.key + "=");
-      doubts.push_back(fmt::format(
-          "--set {}: {}has no effect because {}", set[i], is_all ? "" : stated.key + " ",
-          setting == nullptr ? "all keys that it sets are given" : setting->reason));
+      doubts.push_back(fmt::format("--set {}: {}has no effect because {}", set[i],
+                                   is_all ? "" : stated.key + " ", reason));
     }
   }
   return doubts;

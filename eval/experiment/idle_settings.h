@@ -37,6 +37,13 @@ IdleSettingList InBoth(const IdleSettingList& a, const IdleSettingList& b);
 // The same experiment for the same result: what has no effect is at its default.
 ExperimentOptions WithoutIdleSettings(ExperimentOptions options);
 
+// Keys that set others: the SLAM profile, the loop scenario.
+bool IsPreset(const std::string& key);
+// Why one of them sets nothing; empty where it does, or is the same without. `with` and `without`
+// it: every effective key as YAML.
+std::string WhyPresetIsIdle(const std::string& key, const std::string& with,
+                            const std::string& without);
+
 // What of the overrides (--set) is idle, a line each. `settings_with` gives every effective key as
 // YAML with some of them: one that changes nothing at all is no mistake.
 using SettingsWith = std::function<std::string(const std::vector<std::string>& set)>;

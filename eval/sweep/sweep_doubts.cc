@@ -29,6 +29,25 @@ IdleSettingList IdleInEveryRun(const SweepPlan& plan) {
   return idle;
 }
 
+// A profile or scenario under `set` of an experiment that states all it would set, as a run.yaml.
+std::vector<std::string> DoubtsOfFixedPresets(const SweepPlan& plan, const SweepLayers& layers,
+                                              const std::string& with) {
+  std::vector<std::string> doubts;
+  for (const ConfigEntry& fixed : layers.fixed.Entries()) {
+    if (!IsPreset(fixed.key)) continue;
+    Config others = layers.experiment;
+    for (const ConfigEntry& entry : layers.fixed.Entries()) {
+      if (entry.key != fixed.key) others.Set(entry.key, entry.text);
+    }
+    const std::string without = ToYaml(ReadExperiment(others, plan.base_folder));
+    const std::string reason = WhyPresetIsIdle(fixed.key, with, without);
+    if (reason.empty()) continue;
+    doubts.push_back(
+        fmt::format("{}: {} has no effect because {}", fixed.place, fixed.key, reason));
+  }
+  return doubts;
+}
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
@@ -53,6 +72,7 @@ std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers
   const auto is_overridden = [&](const std::string& key) { return overrides.Has(key); };
   add(DoubtsOfFile(
       layers.fixed, idle, [&] { return options_with({}); }, is_overridden));
+  add(DoubtsOfFixedPresets(plan, layers, ToYaml(options_with({}))));
   if (is_shipped) return doubts;
   for (const ConfigEntry& entry : layers.fixed.Entries()) overrides.Set(entry.key, entry.text);
   add(DoubtsOfFile(

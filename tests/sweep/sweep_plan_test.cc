@@ -308,6 +308,20 @@ TEST_F(SweepPlanTest, WhatIsSetOfAnAxisIsSaid) {
                                 "mapper.fusion.gain is an axis of the sweep"));
 }
 
+TEST_F(SweepPlanTest, AScenarioThatSetsNothingIsSaid) {
+  Write("said.yaml",
+        "scene: living_room\n"
+        "slam: {profile: orb_slam2, loops: {recall: 1, precision: 1, delay_frames: 0}}\n");
+  Write("late.yaml",
+        "experiment: ./said.yaml\nset: {frames: 9, slam.loops.scenario: late}\n"
+        "axes: {slam.drift_scale: [1, 2]}\n");
+  const std::vector<std::string> warnings = ReadSweepPlan(Path("late.yaml"), {}).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(Short(warnings[0]),
+            "~/late.yaml:2: slam.loops.scenario has no effect because all keys that it sets are "
+            "given");
+}
+
 TEST_F(SweepPlanTest, WhatIsNoSweepIsSaidToBeWhatItIs) {
   const auto refusal = [&](const std::string& text) {
     Write("other.yaml", text);
