@@ -59,7 +59,7 @@ void PrintDrift(const TrajectoryScore& score) {
     rows.push_back({fmt::format("{:g} {}", drift.over, unit), std::to_string(drift.motions),
                     fmt::format("{:.6f}", drift.translation_rms_m),
                     fmt::format("{:.6f}", drift.rotation_rms_rad),
-                    fmt::format("{:.6f}", drift.translation_mean_m / drift.over)});
+                    fmt::format("{:.6f}", drift.PerUnit())});
   };
   for (const Drift& drift : score.drift_over_time) add("s", drift);
   for (const Drift& drift : score.drift_over_path) add("m", drift);

@@ -179,7 +179,9 @@ void AddSlam(Program& program) {
   const auto [app, arguments] = program.Add<SlamArguments>(
       program.app, "slam", "Disturb a sequence's true trajectory as a SLAM system would",
       "depthgrid slam /tmp/living_room --profile orb_slam2 --seed 1 -o /tmp/slam", &Slam);
-  app->add_option("sequence", arguments->sequence, "A TUM folder with groundtruth.txt")->required();
+  app->add_option("sequence", arguments->sequence,
+                  "A TUM folder with depth.txt and groundtruth.txt")
+      ->required();
   app->add_option("--profile", arguments->profile, "Which system, as slam.profile of an experiment")
       ->capture_default_str();
   AddSeed(*app, "--seed", arguments->seed, "Of the errors");

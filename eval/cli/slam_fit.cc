@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
@@ -35,6 +37,13 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
     run.estimate.push_back(pair.estimate);
   }
   if (run.truth.empty()) throw InputError(estimate_path, "shares no stamp with " + truth_path);
+  const bool all_same = std::all_of(pairs.begin(), pairs.end(), [](const PosePair& pair) {
+    return pair.reference.world_from_camera == pair.estimate.world_from_camera;
+  });
+  if (all_same) {
+    Warn({fmt::format("{} has the poses of {}: there are no errors to fit", estimate_path,
+                      truth_path)});
+  }
   Warn(DoubtsOfPairs(pairs, {truth_path, estimate_path}));
   Warn(DoubtsOfClock(truth, estimate, {truth_path, estimate_path}));
   return run;

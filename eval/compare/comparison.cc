@@ -22,6 +22,9 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   std::vector<std::string> names;
   if (asked == std::vector<std::string>{"all"}) {
     for (const SweepColumn& column : a.metrics) names.push_back(column.name);
+    for (const SweepColumn& column : b.metrics) {
+      if (!HasMetric(a, column.name)) names.push_back(column.name);
+    }
   } else if (asked.empty()) {
     names.assign(ScoresToCompare().begin(), ScoresToCompare().end());
   } else {
@@ -30,7 +33,7 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
     }
     return names;
   }
-  std::erase_if(names, [&](const std::string& n) { return !HasMetric(a, n) || !HasMetric(b, n); });
+  std::erase_if(names, [&](const std::string& n) { return !HasMetric(a, n) && !HasMetric(b, n); });
   return names;
 }
 
@@ -172,7 +175,8 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   const RunPairs pairs = PairsOf(a, b, options, comparison);
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
-    auto compared = CompareMetric(a, b, name, pairs, options);
+    const bool both_have_it = HasMetric(a, name) && HasMetric(b, name);
+    auto compared = both_have_it ? CompareMetric(a, b, name, pairs, options) : std::nullopt;
     if (!compared) comparison.undefined.push_back(name);
     if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
     comparison.metrics.push_back(std::move(*compared));

@@ -15,17 +15,23 @@ std::optional<Drift> DriftAlong(const std::vector<PosePair>& pairs,
   constexpr double kSlack = 1e-9;
   constexpr double kLongest = 1.5;  // times what is wanted: across gaps it is another thing
   std::vector<RelativeStep> steps;
+  double total = 0.0;
   for (std::size_t from = 0; from < pairs.size(); ++from) {
     const auto reached = std::lower_bound(along.begin() + static_cast<std::ptrdiff_t>(from),
                                           along.end(), along[from] + over - kSlack);
     if (reached == along.end() || *reached - along[from] > kLongest * over) continue;
     steps.push_back({from, static_cast<std::size_t>(reached - along.begin())});
+    total += *reached - along[from];
   }
   if (steps.empty()) return std::nullopt;
   const RelativeErrors errors = ErrorsOf(pairs, steps);
   const Statistics translation = Summarise(errors.translation_m);
-  return Drift{over, static_cast<int>(steps.size()), translation.rmse,
-               Summarise(errors.rotation_rad).rmse, translation.mean};
+  return Drift{over,
+               static_cast<int>(steps.size()),
+               translation.rmse,
+               Summarise(errors.rotation_rad).rmse,
+               translation.mean,
+               total / static_cast<double>(steps.size())};
 }
 
 }  // namespace

@@ -15,7 +15,12 @@ struct Drift {
   int motions = 0;
   double translation_rms_m = 0.0;
   double rotation_rms_rad = 0.0;
-  double translation_mean_m = 0.0;  // divided by `over`: drift a second, or a metre
+  double translation_mean_m = 0.0;
+  // What the motions are really over, mean: longer than `over` by up to one step between poses.
+  double mean_over = 0.0;
+
+  // Drift a second, or a metre.
+  double PerUnit() const { return translation_mean_m / mean_over; }
 };
 
 // The times and lengths drift is told for; 10 s and 1 m are where relative motion errs by drift and

@@ -1,5 +1,7 @@
 #include "eval/run/metrics_json.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 namespace depthgrid {
@@ -68,7 +70,8 @@ Json ToJson(const std::vector<Drift>& drifts, const char* over) {
                     {"motions", drift.motions},
                     {"translation_rms_m", drift.translation_rms_m},
                     {"rotation_rms_rad", drift.rotation_rms_rad},
-                    {"translation_mean_m", drift.translation_mean_m}});
+                    {"translation_mean_m", drift.translation_mean_m},
+                    {fmt::format("mean_{}", over), drift.mean_over}});
   }
   return rows;
 }
@@ -76,7 +79,7 @@ Json ToJson(const std::vector<Drift>& drifts, const char* over) {
 // Mean drift a unit, from the motions over so much of it.
 Json DriftAt(const std::vector<Drift>& drifts, double over) {
   for (const Drift& drift : drifts) {
-    if (drift.over == over) return drift.translation_mean_m / drift.over;
+    if (drift.over == over) return drift.PerUnit();
   }
   return nullptr;
 }

@@ -209,6 +209,14 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   // A score that is defined in no pair is named, not only missing.
   a.metrics[0].values.assign(a.rows(), NAN);
   EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
+  // Nor is one that a side knows nothing of, whichever that is.
+  a.metrics.erase(a.metrics.begin());
+  EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
+  EXPECT_THAT(Compare(b, a, {}).undefined, ElementsAre(kError));
+  CompareOptions all;
+  all.metrics = {"all"};
+  EXPECT_THAT(Compare(a, b, all).undefined, ElementsAre(kError));
+  EXPECT_THAT(Compare(b, a, all).undefined, ElementsAre(kError));
 }
 
 // Six runs of what does not hang on the seed are one measurement: no test tells it from chance.

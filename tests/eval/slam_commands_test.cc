@@ -131,6 +131,7 @@ TEST_F(SlamCommands, FitOfATruthWithItselfErrsNowhere) {
   WriteSequence("seq");
   const Outcome fit = Program("slam-fit seq/groundtruth.txt seq/groundtruth.txt");
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("groundtruth.txt: there are no errors to fit"));
   EXPECT_THAT(fit.out, HasSubstr("scenario: none\n"));
   std::istringstream lines(fit.out);
   int lags = 0;

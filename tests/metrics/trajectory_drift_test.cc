@@ -33,6 +33,21 @@ TEST(Drift, HandWorked) {
   EXPECT_FALSE(DriftOverPath(Straight(1.0, 0.0), 20.0));
 }
 
+// A motion runs to the first pose that far ahead, which sparse poses have well beyond.
+TEST(Drift, OfSparsePosesIsDividedByWhatTheMotionsCover) {
+  std::vector<PosePair> sparse;
+  for (int i = 0; i <= 20; ++i) {
+    const double t = 0.7 * i;
+    sparse.push_back({{t, At(0.55 * t)}, {t, At(0.57 * t)}});
+  }
+  const auto second = DriftOverTime(sparse, 1.0);
+  ASSERT_TRUE(second);
+  EXPECT_NEAR(second->mean_over, 1.4, 1e-12);
+  EXPECT_NEAR(second->translation_mean_m, 0.028, 1e-12);
+  EXPECT_NEAR(second->PerUnit(), 0.02, 1e-12);
+  EXPECT_NEAR(DriftOverPath(sparse, 1.0)->PerUnit(), 0.02 / 0.55, 1e-12);
+}
+
 TEST(Drift, AcrossAGapNothingIsSaid) {
   std::vector<PosePair> pairs = Straight(1.02, 0.0);
   pairs.erase(pairs.begin() + 20, pairs.begin() + 60);
