@@ -37,16 +37,20 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
     run.estimate.push_back(pair.estimate);
   }
   if (run.truth.empty()) throw InputError(estimate_path, "shares no stamp with " + truth_path);
-  const bool all_same = std::all_of(pairs.begin(), pairs.end(), [](const PosePair& pair) {
-    return pair.reference.world_from_camera == pair.estimate.world_from_camera;
-  });
-  if (all_same) {
-    Warn({fmt::format("{} has the poses of {}: there are no errors to fit", estimate_path,
-                      truth_path)});
-  }
   Warn(DoubtsOfPairs(pairs, {truth_path, estimate_path}));
   Warn(DoubtsOfClock(truth, estimate, {truth_path, estimate_path}));
   return run;
+}
+
+// A file given twice, for one.
+void WarnOfSamePoses(const SlamRun& run, const std::string& truth_path,
+                     const std::string& estimate_path) {
+  const auto same = [](const StampedPose& a, const StampedPose& b) {
+    return a.world_from_camera == b.world_from_camera;
+  };
+  if (!std::equal(run.truth.begin(), run.truth.end(), run.estimate.begin(), same)) return;
+  Warn({fmt::format("{} has the poses of {}: there are no errors to fit", estimate_path,
+                    truth_path)});
 }
 
 // What the fitted surrogate, less its loops, makes of the same true paths, over several seeds.
@@ -114,6 +118,9 @@ void FitSlam(const SlamFitArguments& arguments) {
                                               : fmt::format("{}, the last of {}", files.back(),
                                                             Counted(runs.size(), "run"));
   SlamFit fit = FitSlamErrors(runs, place);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    WarnOfSamePoses(runs[i], files[2 * i], files[2 * i + 1]);
+  }
   SlamLoopOptions& loops = fit.options.loops;
   if (fit.corrections > 0) loops = WithScenario(loops, LoopScenario::kTrue);
   PrintComments(fmt::format(

@@ -175,8 +175,11 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   const RunPairs pairs = PairsOf(a, b, options, comparison);
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
-    const bool both_have_it = HasMetric(a, name) && HasMetric(b, name);
-    auto compared = both_have_it ? CompareMetric(a, b, name, pairs, options) : std::nullopt;
+    // One that was asked for by name is an error, which CompareMetric() tells.
+    const bool by_name = !options.metrics.empty() && !of_all;
+    const bool is_everywhere = HasMetric(a, name) && HasMetric(b, name);
+    auto compared =
+        by_name || is_everywhere ? CompareMetric(a, b, name, pairs, options) : std::nullopt;
     if (!compared) comparison.undefined.push_back(name);
     if (!compared || (of_all && IsLeftOut(*compared, comparison))) continue;
     comparison.metrics.push_back(std::move(*compared));
