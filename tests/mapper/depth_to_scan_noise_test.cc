@@ -72,6 +72,18 @@ TEST(DepthToScan, NoiseDoesNotPullWallsNearer) {
   check(flight_time);
 }
 
+// Of an image that shows nothing nearer than 4 m nothing nearer was measured: what lies there is
+// taken to be as noisy, not as a Kinect's.
+TEST(NoiseWindow, NearerThanAnythingMeasuredItIsThatOfTheNearest) {
+  RandomStream random(2, RandomStage::kTest);
+  const PinholeCamera camera;
+  DepthImage wall(camera.width_px, camera.height_px);
+  std::fill(wall.z_m.begin(), wall.z_m.end(), 4.25F);
+  const NoiseWindow window(WithNoise(wall, random, [](double z) { return 0.004 * z * z; }));
+  EXPECT_NEAR(window.SigmaM(4.25) / (4.25 * 4.25), 0.004, 0.0005);
+  EXPECT_NEAR(window.SigmaM(1.0), 0.004, 0.0005);
+}
+
 // Of a wall beyond the reach the returns that noise made short of it are no wall.
 TEST(DepthToScan, NoiseDoesNotPullWallsIntoTheReach) {
   const PinholeCamera camera;

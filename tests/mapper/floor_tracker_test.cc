@@ -145,6 +145,21 @@ TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
   }
 }
 
+// In a new epoch SLAM's heights mean something else: what was seen before them does not keep the
+// floor from being found where it is, at once.
+TEST(FloorTracker, ANewEpochBeginsAnew) {
+  const PinholeCamera camera = SmallCamera();
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+  FloorTracker tracker(camera, {});
+  tracker.Follow(RoomWithTable().Render(camera, pose), pose, 0);
+  Pose3 raised = pose;
+  raised.translation.z() += 0.3;
+  const DepthImage higher_up = RoomWithTable().Render(camera, raised);
+  Pose3 in_new_epoch = raised;
+  in_new_epoch.translation.z() += 7.0;
+  EXPECT_NEAR(tracker.Follow(higher_up, in_new_epoch, 1).height_m, kCameraHeightM + 0.3, 0.01);
+}
+
 // Only floor farther off than 3 m is seen, of which noise leaves little, and height and tilt run
 // away together: what agrees with the last frame's plane is less and less of it.
 TEST(FloorTracker, ATiltThatRunsAwayIsCaught) {

@@ -59,5 +59,30 @@ TEST(Smoothed, GoesWhereMatchesSay) {
   }
 }
 
+// SLAM's bias after a stand is the one before: what is known of it does not fade meanwhile, so that
+// a frame after it goes where the motion less that bias leads.
+TEST(Smoothed, ABiasOutlastsAStand) {
+  constexpr int kMoving = 40, kStanding = 400;
+  constexpr double kTooFarM = 0.002;
+  std::vector<SmootherFrame> run;
+  for (int k = 0; k < kMoving + kStanding + 20; ++k) {
+    SmootherFrame frame;
+    frame.stands = k >= kMoving && k < kMoving + kStanding;
+    const double x_m = 0.02 * std::min(k, kMoving) + 0.02 * std::max(k - kMoving - kStanding, 0);
+    frame.map_from_base = {x_m, 0.0, 0.0};
+    frame.match.found = true;
+    frame.match.map_from_base = frame.map_from_base;
+    const double forward = k < kMoving + kStanding ? 1e6 : 0.0;
+    frame.match.information = Eigen::Vector3d(forward, 1e6, 1e7).asDiagonal();
+    if (k > 0) {
+      frame.motion = Pose2{x_m - run.back().map_from_base.x_m, 0.0, 0.0};
+      if (!frame.stands) frame.motion->x_m += kTooFarM;
+    }
+    run.push_back(frame);
+  }
+  const std::vector<Pose2> smoothed = Smoothed(run, LastingBias(), 0.0);
+  EXPECT_NEAR(smoothed.back().x_m, run.back().map_from_base.x_m, 0.2 * 20 * kTooFarM);
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -273,6 +273,43 @@ TEST(MapDrawing, NoisyWallsAreAsThickAsTheirSurface) {
   EXPECT_LE(far, 8);
 }
 
+// Ten scans see a wall in one cell. One ended in the cell before it, which the ten passed, and one
+// in the cell behind it, which then three passed: before a wall more passes than hits make a free
+// cell, behind it many more are needed.
+TEST(MapDrawing, BesideAWallACellInFrontIsFreeSoonerThanOneBehind) {
+  MapDrawing drawing{GridOptions{}};
+  const auto add = [&](float range_m, int scans) {
+    const float step_rad = 0.05F / range_m;
+    for (int i = 0; i < scans; ++i) {
+      drawing.Add({{HitAt(0.0F, range_m), HitAt(step_rad, range_m)}, 6.0}, {0.025, 0.025, 0.0});
+    }
+  };
+  add(1.0F, 10);
+  add(0.95F, 1);
+  add(1.05F, 1);
+  add(1.2F, 3);
+  const OccupancyMap map = drawing.Map();
+  EXPECT_EQ(map.At({20, 0}), 5.0F * 10 / (5.0F * 10 + 4));
+  EXPECT_EQ(map.At({19, 0}), 0.0F);
+  EXPECT_TRUE(std::isnan(map.At({21, 0})));
+}
+
+// A far scan that is off counts less than a near one: its range is not known as well.
+TEST(MapDrawing, ASurfaceIsWhereNearScansSawIt) {
+  MapDrawing drawing{GridOptions{}};
+  const auto add = [&](float range_m, double from_x_m, int scans) {
+    const float step_rad = 0.05F / range_m;
+    for (int i = 0; i < scans; ++i) {
+      drawing.Add({{HitAt(0.0F, range_m), HitAt(step_rad, range_m)}, 6.0}, {from_x_m, 0.025, 0.0});
+    }
+  };
+  add(1.0F, 4.025, 4);  // cell 100
+  add(5.1F, 0.025, 6);  // cell 102, from five times as far
+  const OccupancyMap map = drawing.Map();
+  EXPECT_GT(map.At({100, 0}), 0.65F);
+  EXPECT_FALSE(map.At({102, 0}) > 0.65F);
+}
+
 TEST(MapDrawing, TheLogOddsRuleIsTheGridsRule) {
   GridOptions options;
   options.raster = RasterRule::kLogOdds;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid {
 namespace {
@@ -149,6 +150,41 @@ TEST(GroupMotions, ARoundTakesFewGroupsOfAPriorMapHoweverLongItWas) {
     const GroupLimits end = limits_with(prior, AdjustEffort::kFinish);
     EXPECT_EQ(end.most, joint.groups.most);
     EXPECT_EQ(end.most_of_prior_map, joint.groups.most / 2);
+  }
+}
+
+// A tied frame lies as well as its match says, which is believed a quarter, but not to more than
+// 5 mm and 3 mrad.
+TEST(GroupMotions, ATieIsAsSureAsAQuarterOfItsMatch) {
+  Walks walks(2);
+  MappedFrame& tied = walks.frames[kSteps + 2];
+  ASSERT_FALSE(tied.kept());
+  tied.match.information = Eigen::Vector3d(1e4, 1e3, 1e8).asDiagonal();
+  const std::vector<GroupMotion> motions = MotionsOf(walks.groups, walks.frames);
+  const int after = walks.groups.places()[kSteps + 3].group;
+  const GroupMotion& motion = motions[static_cast<std::size_t>(after)];
+  ASSERT_TRUE(motion.tie);
+  EXPECT_NEAR(motion.tie->sigma.x(), 2.0 / std::sqrt(1e4), 1e-4);
+  EXPECT_NEAR(motion.tie->sigma.y(), 2.0 / std::sqrt(1e3), 1e-3);
+  EXPECT_EQ(motion.tie->sigma.z(), 0.003);
+}
+
+// Frames that came without a scan between two are no pause of the recording.
+TEST(GroupMotions, OnlyFramesThatFollowEachOtherHaveAPauseBetweenThem) {
+  for (const bool is_pause : {true, false}) {
+    Walks walks(1);
+    for (std::size_t i = 0; i < walks.frames.size(); ++i) {
+      MappedFrame& frame = walks.frames[i];
+      frame.stamp_s = 0.1 * static_cast<double>(i);
+      if (i < 6) continue;
+      frame.stamp_s += 1.0;  // ten steps
+      if (!is_pause) frame.frame += 10;
+    }
+    walks.frames[6].slam_motion = Pose2{1.1, 0.0, 0.0};
+    const std::vector<GroupMotion> motions = MotionsOf(walks.groups, walks.frames);
+    const auto group = static_cast<std::size_t>(walks.groups.places()[6].group);
+    ASSERT_EQ(walks.groups.groups()[group].first_frame, 6);
+    EXPECT_EQ(motions[group].frames, is_pause ? 11 : 1);
   }
 }
 

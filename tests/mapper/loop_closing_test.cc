@@ -122,6 +122,21 @@ TEST(ProjectLoop, MovesToTheNearestMappedFrameWithinAnEpoch) {
   EXPECT_FALSE(ProjectLoop(CameraLoop(0, 17, measured), history, -1));
 }
 
+// The loop's end that is not mapped is the later one.
+TEST(ProjectLoop, SoDoesItsSecondEnd) {
+  const std::vector<Pose2> slam = {{0, 0, 0}, {0.1, 0, 0.1}, {0.2, 0.1, 0.2}};
+  FrameHistory history;
+  for (int i = 0; i < 3; ++i) {
+    history.Start(PosedFrame(i, slam[static_cast<std::size_t>(i)], 0));
+    if (i < 2) history.newest().mapped = i;
+  }
+  const Pose2 measured{0.5, 0.1, -0.2};
+  const auto loop = ProjectLoop(CameraLoop(0, 2, measured), history, -1);
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->second, 1);
+  ExpectNear(loop->first_from_second, measured * Between(slam[2], slam[1]), 1e-12);
+}
+
 TEST(FrameHistory, RefusesAnIndexTwice) {
   FrameHistory history;
   history.Start(PosedFrame(3, {}, 0));
@@ -161,6 +176,18 @@ TEST(FinalPoses, UnmappedFramesFollowTheNearestMappedOne) {
   }
   ExpectNear(BaseOf(*poses[4]), {0.4, 0.0, 0.0},
              1e-12);  // another epoch: the correction known then
+}
+
+// Ten seconds after the last mapped frame its correction is no better than the one of the time.
+TEST(FinalPoses, UnlessThatIsTenSecondsAway) {
+  FrameHistory history;
+  for (int i = 0; i < 303; ++i) {
+    history.Start(PosedFrame(i, {0.1 * i, 0, 0}, 0));
+    if (i == 1) history.newest().mapped = 0;
+  }
+  const auto poses = FinalPoses(history, {{0.1, 0.3, 0.0}}, StandBlend(0.0));
+  ExpectNear(BaseOf(*poses[301]), {30.1, 0.3, 0.0}, 1e-9);
+  ExpectNear(BaseOf(*poses[302]), {30.2, 0.0, 0.0}, 1e-9);
 }
 
 }  // namespace

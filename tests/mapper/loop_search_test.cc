@@ -96,6 +96,39 @@ TEST(PlaceMatcher, RefusesARoomThatLooksAlike) {
   EXPECT_FALSE(LoopOf(other));
 }
 
+// Between the visits a box came into view.
+TEST(PlaceMatcher, RefusesWhatExplainsTooLittleOfTheScans) {
+  const Pose2 start{0.5, 1.0, 0.2};
+  auto frames = TwoVisits(FurnishedRoom(), start, start, {0.3, -0.2, 0.04});
+  PlanarWorld later = FurnishedRoom();
+  AddRectangle(later, 4.4, 1.3, 4.7, 1.6);
+  const auto changed = TwoVisits(later, start, start, {0.3, -0.2, 0.04});
+  std::copy(changed.begin() + 30, changed.end(), frames.begin() + 30);
+  LoopSearchOptions options;
+  options.min_agreement = 0.8;
+  const auto finds = [&](double min_explained) {
+    options.min_explained = min_explained;
+    return PlaceMatcher(options, {}).LoopBetween(frames, 15, 45, 1.0, RadFromDeg(10)).has_value();
+  };
+  EXPECT_TRUE(finds(0.8));
+  EXPECT_FALSE(finds(0.95));
+}
+
+// On the spot, by 10 degrees a frame.
+TEST(Place, EndsWhereTheCameraTurnedAway) {
+  std::vector<MappedFrame> frames;
+  for (int i = 0; i < 40; ++i) {
+    const Pose2 pose{3.0, 1.5, RadFromDeg(10.0 * i)};
+    frames.push_back(MappedFrameAt(FurnishedRoom(), kSearchLaser, pose, pose, i));
+  }
+  PlaceOptions options;
+  options.turn_deg = 55.0;
+  options.max_scans = 100;
+  const std::vector<int> members = FramesAround(frames, 20, options);
+  EXPECT_EQ(members.front(), 15);
+  EXPECT_EQ(members.back(), 25);
+}
+
 TEST(PlaceSearch, ScoresWhatTryingAllPosesScores) {
   const auto frames = TwoVisits(FurnishedRoom(), {0.5, 1, 0.2}, {0.6, 1.1, 0.3}, {0.2, -0.1, 0.03});
   const PlaceOptions options;

@@ -65,6 +65,23 @@ TEST(MotionPersistence, IsNoneWhereLittleWasSeenOrLinksAreFew) {
   EXPECT_TRUE(Told(broken, drive, kAllSeen).isZero(0.0));
 }
 
+// Of 64 pairs 36 agree: as many do by chance. With 40 they agree by a quarter, of which a standard
+// error is an eighth.
+TEST(MotionPersistence, IsWhatIsLeftOfTheAgreementLessItsStandardError) {
+  for (const auto& [agreeing, correlation] :
+       {std::pair(36, 0.0), {40, std::sin(0.5 * kPi * 0.125)}}) {
+    BiasedDrive drive = DriveOf(68, 0.0);
+    double forward_m[68];
+    for (int i = 0; i < 68; ++i) {
+      const bool agrees = i < 4 || i - 4 < agreeing;
+      forward_m[i] = i < 4 ? 0.01 : (agrees ? 1.0 : -1.0) * forward_m[i - 4];
+      const auto link = static_cast<std::size_t>(i);
+      drive.links[link].first_from_second = Pose2{1.0 - forward_m[i], 0.0, 0.0};
+    }
+    EXPECT_NEAR(Told(drive.links, drive, kAllSeen).x(), std::pow(correlation, 0.25), 1e-9);
+  }
+}
+
 // What was not seen goes on as its neighbours do: it says nothing of whether errors last.
 TEST(MotionPersistence, IsOfTheMotionsThatWereSeen) {
   BiasedDrive drive = DriveOf(2000, 0.7);

@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
+#include "mapper/surfel/surfel_map.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {
@@ -240,6 +241,61 @@ TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
     EXPECT_LT(PoseErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, TruthAt(i)),
               0.005);
   }
+}
+
+// They join frames of which none is mapped yet.
+TEST(PriorMap, LoopsOfItsFirstNewFrameAreRejected) {
+  IncrementalMapper mapper({}, std::nullopt);
+  mapper.StartFrom(FinishedRound());
+  Frame frame = PriorFrameAt(3, TruthAt(3));
+  frame.loops = {LoopClosure{3, 1, 3, {}}, LoopClosure{3, 2, 3, {}}};
+  const FrameReport report = mapper.AddFrame(frame);
+  EXPECT_EQ(report.loops_accepted, 0);
+  EXPECT_EQ(report.loops_rejected, 2);
+}
+
+// Groups of a prior map say nothing of how this run's SLAM errs, and two of its own too little.
+TEST(PriorMap, DoesNotTellHowSlamErrs) {
+  for (const bool is_prior : {true, false}) {
+    SurfelMap map((SurfelOptions()));
+    std::vector<MappedFrame> frames;
+    for (int i = 0; i < 150; ++i) {
+      MappedFrame frame;
+      frame.frame = is_prior && i < 140 ? i - kPriorRound : i;
+      frame.map_from_base = TruthAt(i);
+      if (i > 0) frame.slam_motion = Between(TruthAt(i - 1), TruthAt(i));
+      frame.scan = frame.obstacles = ScanArchive().Keep(PriorScanAt(i, 1));
+      map.Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
+                 Eigen::Matrix3d::Zero());
+      frames.push_back(frame);
+    }
+    const Adjustment adjusted = map.Adjust(frames, {}, AdjustEffort::kRefine, {});
+    EXPECT_EQ(adjusted.motion_spread.has_value(), !is_prior);
+  }
+}
+
+// Of the prior map's frames SLAM knows nothing: its own, of before a loss, say where it comes back.
+TEST(PriorMap, SlamsCorrectionsAfterALossMoveWhatWasSeenSince) {
+  constexpr int kBack = 40, kFrames = 110, kAhead = 170;
+  PriorMap prior = FinishedRound();
+  prior.frames.resize(120);
+  prior.map_from_slam = {};
+  const auto truth_at = [](int i) { return TruthAt(i < kBack ? i : i + kAhead - kBack); };
+  IncrementalMapper mapper({}, std::nullopt);
+  mapper.StartFrom(std::move(prior));
+  Pose2 last;
+  for (int i = 0; i < kFrames; ++i) {
+    Pose2 off;
+    if (i >= kBack) off = {1.0, -0.6, 0.5};
+    if (i >= kBack + 15) off = {0.02, 0.01, 0.005};
+    Frame frame = PriorFrameAt(i, off * truth_at(i));
+    frame.stamp_s += i < kBack ? 0.0 : 5.0;
+    frame.slam_epoch = (i >= kBack) + (i >= kBack + 15);
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(FurnishedRoom(), truth_at(i), kPriorLaser, 2, static_cast<std::uint32_t>(i)));
+    last = BaseOf(*mapper.AddFrame(frame).map_from_camera);
+  }
+  EXPECT_LT(PoseErrorM(last, truth_at(kFrames - 1)), 0.1);
 }
 
 TEST(PriorMap, IsMadeOfAMapperThatStillRuns) {

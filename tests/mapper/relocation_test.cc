@@ -19,6 +19,7 @@ struct LostRun {
   double final_error_m = 0.0;  // mean since the loss
   int relocated = 0;
   bool guessed = false;  // to the end
+  bool ever_guessed = false;
 };
 
 using Path = Pose2 (*)(int frame);
@@ -59,6 +60,7 @@ LostRun Lose(const PlanarWorld& before, const PlanarWorld& after, Path path, Pat
     const FrameReport report = mapper.AddFrame(frame);
     run.relocated += report.relocated ? 1 : 0;
     run.guessed = report.guessed;
+    run.ever_guessed = run.ever_guessed || report.guessed;
   }
   const MapperResult result = mapper.Finish();
   for (int i = 0; i < kBefore + kAfter; ++i) {
@@ -126,6 +128,11 @@ TEST(Relocation, FramesThatSeeNothingDoNotJudge) {
   const LostRun found = Lose(room, room, RoundTheRoom, elsewhere, true, MapperMethod::kSurfel, 40);
   EXPECT_EQ(found.relocated, 1);
   EXPECT_LT(found.final_error_m, 0.02);
+  // Nor of a guess that is right.
+  const Path goes_on = [](int frame) { return RoundTheRoom(240 + frame); };
+  const LostRun right =
+      Lose(room, room, RoundTheRoom, goes_on, true, MapperMethod::kSurfel, 40, 5.0, {});
+  EXPECT_FALSE(right.ever_guessed);
 }
 
 // SLAM comes back a metre off, sees what it has not seen before, and corrects itself twice.

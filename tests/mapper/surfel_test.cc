@@ -331,6 +331,32 @@ TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
   EXPECT_LT(std::abs(adjusted.map_from_base[26].y_m), 0.01);
 }
 
+// Twenty frames of the room were drawn at poses all over the place, then one saw another room. Put
+// right, the room has far fewer surfels, and those of the last frame are new to it still.
+TEST(SurfelMap, WhatAFrameSawFirstIsNewToItAfterTheMapMoved) {
+  const Pose2 elsewhere{20.0, 0.0, 0.0};
+  PlanarWorld other = RectangleWorld(18.5, -1.5, 22.0, 1.8);
+  SurfelMap map((SurfelOptions()));
+  std::vector<MappedFrame> frames;
+  std::shared_ptr<const Scan> scan;
+  for (int i = 0; i <= 20; ++i) {
+    const bool is_last = i == 20;
+    MappedFrame frame;
+    frame.frame = i;
+    frame.map_from_base = is_last ? elsewhere : Pose2{0.02 * i, 0.0, 0.0};
+    scan =
+        std::make_shared<const Scan>(ScanOf(is_last ? other : Room(), frame.map_from_base,
+                                            NoisyLaser(0.003), 3, static_cast<std::uint32_t>(i)));
+    const Pose2 wrong = is_last ? Pose2{} : Pose2{0.3 * (i % 5), 0.3 * (i % 3), 0.0};
+    map.Insert(scan, wrong * frame.map_from_base, Eigen::Matrix3d::Zero());
+    frames.push_back(frame);
+  }
+  const int drawn = map.surfels().size();
+  map.Rebuild(frames);
+  ASSERT_LT(map.surfels().size(), drawn / 2);
+  EXPECT_EQ(map.ShareSeenBefore(scan, elsewhere, 20), 0.0);
+}
+
 // Once round the room with an odometry that turns a little too much.
 TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
   MapperOptions options;
@@ -363,6 +389,8 @@ TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
     error_m += (estimate.translation() - truth[i].translation()).norm() / kFrames;
   }
   EXPECT_GT(prior_error_m, 0.1);
+  // The map's frame is that of the first pose.
+  EXPECT_LT(Separation(BaseOf(*result.map_from_camera[0]), truth[0]), 1e-9);
   // Between corners only one plain wall is in view, and the way along it is the prior's.
   EXPECT_LT(error_m, 0.25 * prior_error_m);
 }
