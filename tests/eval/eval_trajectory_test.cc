@@ -134,6 +134,24 @@ TEST_F(EvalTrajectory, ConventionsDifferInTheStampsTheyMatch) {
   EXPECT_THAT(evo.err, HasSubstr("shares no stamp"));
   EXPECT_THAT(Program("eval trajectory truth.txt late.txt --convention tum").out,
               HasSubstr("13 of 13 reference and 13 estimated poses matched"));
+  // Of those that have no partner both count as well.
+  Write("more.txt", late + "13.015 13 0 0 0 0 0 1\n");
+  Write("fewer.txt", "3 3 0 0 0 0 0 1\n4 4 0 0 0 0 0 1\n5 5 0 0 0 0 0 1\n");
+  EXPECT_THAT(Program("eval trajectory truth.txt more.txt --convention tum").out,
+              HasSubstr("13 of 13 reference and 14 estimated poses matched"));
+  EXPECT_THAT(Program("eval trajectory truth.txt fewer.txt --convention tum").out,
+              HasSubstr("3 of 13 reference and 3 estimated poses matched"));
+}
+
+// What is said to bring both together is all that is to be given, with what was given already.
+TEST_F(EvalTrajectory, TheOffsetThatIsAdvisedIsAllOfIt) {
+  std::string late;
+  for (int i = 0; i <= 12; ++i) late += fmt::format("{} {} 0 0 0 0 0 1\n", i + 1000, i);
+  Write("late.txt", late);
+  const Outcome outcome = Program("eval trajectory truth.txt late.txt --time-offset -400");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--time-offset -1000.000 lays the first of both together"));
+  Succeed("eval trajectory truth.txt late.txt --time-offset -1000");
 }
 
 // Row by row, as a run's own trajectory_est_kitti.txt is of its trajectory_est.txt.

@@ -131,6 +131,10 @@ TEST(SeesAlong, WhatAMatchTellsIsTurnedIntoTheMap) {
   EXPECT_TRUE(SeesAlong(run, y_axis));
   EXPECT_FALSE(SeesAlong(run, x_axis));
   EXPECT_FALSE(SeesAlong(run, diagonal));
+  // Turned by a twelfth, what lies across the view is at 120 degrees of the map.
+  match.map_from_base.yaw_rad = kPi / 6.0;
+  EXPECT_TRUE(SeesAlong(run, {kPi / 6.0, 1.0}));
+  EXPECT_FALSE(SeesAlong(run, {-kPi / 6.0, 1.0}));
   match.information(1, 1) = 1e6;
   EXPECT_TRUE(SeesAlong(run, x_axis));
   match.score = 0.1;  // a match at a wrong place

@@ -314,6 +314,8 @@ TEST(CarmenLog, ALineWithMoreReadingsThanItStatesIsCounted) {
                          "ROBOTLASER1 0 -0.5 1.0 0.5 6.000 0.01 0 3 2.5 6.0 2 0 0 "
                          "1.5 -2 0.25 1.4 -2 0.25 0 0 0 0 0 11.5 host 11.6\n"),
               HasSubstr(":2: ROBOTLASER1 with other columns than"));
+  // The host is a number.
+  EXPECT_THAT(WarningsOf(good + "FLASER 2 1 1 1 5 6 0 5 6 0 2 7 2\n"), HasSubstr(kReason));
   // A host may be a number, with the logger's time after it or without.
   const TextFile hosts("FLASER 2 1 1 0 0 0 0 0 0 1 7 1\nFLASER 2 1 1 0 0 0 0 0 0 2 7\n");
   EXPECT_EQ(OpenCarmenLog(hosts.path())->FrameCount(), 2);

@@ -154,6 +154,23 @@ TEST_F(PartOfASequence, LoopsThatLeaveItAreCountedInANote) {
   EXPECT_THAT(part.source->Warnings(), IsEmpty());
 }
 
+// Whoever gives the poses need not leave them out.
+TEST_F(PartOfASequence, LoopsThatLeaveItAreNotGiven) {
+  SlamOutput slam = SlamOutputOf(poses_);
+  for (const auto& [first, second] : {std::pair(0, 5), std::pair(4, 6), std::pair(5, 9)}) {
+    LoopClosure loop;
+    loop.first_frame = first;
+    loop.second_frame = loop.reported_at_frame = second;
+    slam.loops.push_back(loop);
+  }
+  std::vector<LoopClosure> given;
+  for (const Frame& frame : ReadAll(*OpenSequence(Path("seq"), options_, slam).source)) {
+    given.insert(given.end(), frame.loops.begin(), frame.loops.end());
+  }
+  ASSERT_EQ(given.size(), 1U);
+  EXPECT_EQ(given[0].first_frame, 4);
+}
+
 // A matrix a frame of the recording, or of the part if SLAM was given no more.
 TEST_F(PartOfASequence, MatricesPairWithEither) {
   const FrameNames names = SequenceFrames(Path("seq"), options_);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "mapper/io/png.h"
+#include "mapper/io/sequence.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 
@@ -111,6 +112,40 @@ TEST_F(IclFolderTest, PngAndFreiburgPosesFallOnTheWalls) {
   EXPECT_EQ(source->FrameCount(), 3);
   EXPECT_LT(WorstResidual(*source), 0.001);
   EXPECT_THAT(source->Warnings(), testing::ElementsAre(HasSubstr("1 of 3 frames has no pose")));
+}
+
+// As the commands read it: its world has y up, the map's z.
+TEST_F(IclFolderTest, AsASequenceItIsLevelWithTheFloorBelow) {
+  WriteCamera(-kF);
+  WritePng(1, kFirst, kFirstPitch);
+  WritePng(2, kSecond, kSecondPitch);
+  Write("livingRoom0.gt.freiburg",
+        Freiburg(1, kFirst, kFirstPitch) + Freiburg(2, kSecond, kSecondPitch));
+  for (const bool own_camera : {true, false}) {
+    SequenceOptions options;
+    if (!own_camera) {
+      std::filesystem::rename(Path("camera.yaml"), Path("other.yaml"));
+      options.camera = Path("other.yaml");
+    }
+    const Sequence sequence = OpenSequence(folder_, options);
+    EXPECT_EQ(sequence.kind, "ICL-NUIM folder");
+    EXPECT_EQ(sequence.source->FrameCount(), 2);
+    double worst_m = 0.0;
+    int points = 0;
+    while (const auto frame = sequence.source->Next()) {
+      for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u, ++points) {
+          const Eigen::Vector3d point =
+              *frame->slam_from_camera *
+              Unproject(*sequence.source->Camera(), u, v, frame->depth->At(u, v));
+          worst_m = std::max(worst_m,
+                             std::min(std::abs(point.y() - kWallZ), std::abs(point.z() - kFloorY)));
+        }
+      }
+    }
+    EXPECT_EQ(points, 2 * kWidth * kHeight);
+    EXPECT_LT(worst_m, 0.001);
+  }
 }
 
 // The counter-example: the same folder read with the other sign of fy does not fall together.

@@ -43,6 +43,15 @@ TEST(LoopEvents, OrbSlamsEventsByHand) {
   EXPECT_TRUE(loop.first_from_second.translation.isApprox(Eigen::Vector3d(0.0, 0.0, 0.5)));
 }
 
+// The camera that is named first may be the older one: the loop is known once both are.
+TEST(LoopEvents, ALoopComesWithTheLaterOfItsFrames) {
+  const SlamEvents events = Parse("LOOP 5 10.1 88 10.3 Tcm 1 0 0 0 0 1 0 0 0 0 1 -0.5\n");
+  ASSERT_EQ(events.events.size(), 1U);
+  EXPECT_EQ(events.events[0].frame, 3);
+  EXPECT_EQ(events.events[0].loop->reported_at_frame, 3);
+  EXPECT_EQ(events.events[0].loop->second_frame, 1);
+}
+
 // Spreadsheets put one before what they save.
 TEST(LoopEvents, AByteOrderMarkIsNoPartOfTheFirstWord) {
   const std::string header = "kind,frame,epoch,x,sigma_rotation_rad\n";
@@ -83,6 +92,7 @@ TEST(LoopEvents, OneClearLineForEachFault) {
   EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 1 0.1\n"), HasSubstr("10 columns, must have 9"));
   EXPECT_THAT(EventsRefusal("10.0 10.1 0 0 0 0 0 0 3\n"), HasSubstr("norm 3, must be 1"));
   EXPECT_THAT(EventsRefusal("10.0 nan 0 0 0 0 0 0 1\n"), HasSubstr("finite"));
+  EXPECT_THAT(EventsRefusal("10.0 10.1 0 2e7 0 0 0 0 1\n"), HasSubstr("must lie within 10,000 km"));
   EXPECT_THAT(EventsRefusal("leap,1\n"),
               HasSubstr("e.txt:1: begins with 'leap', must be SLAM's events"));
   EXPECT_THAT(EventsRefusal("loop,1\n"), HasSubstr("e.txt:1: has 2 columns, must have 14 or 17"));

@@ -10,6 +10,7 @@
 #include "mapper/core/rng.h"
 #include "mapper/io/file.h"
 #include "mapper/io/pgm.h"
+#include "mapper/io/png.h"
 #include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
@@ -283,6 +284,23 @@ TEST_F(MapFileTest, RealMapsReadOrFailWithOneLine) {
   WriteFile(Path("p.yaml"), std::string(yaml).replace(name, 11, "testmap.pgm"));
   fs::copy_file(test + "testmap.pgm", Path("testmap.pgm"));
   EXPECT_EQ(StatesOf(ReadMap(test + "testmap.yaml").map), StatesOf(ReadMap(Path("p.yaml")).map));
+}
+
+// As Nav2's map server: in trinary mode opacity is averaged with the colours, once any pixel has
+// less than all of it, in scale mode what is not opaque is unknown.
+TEST_F(MapFileTest, TransparentPixelsOfAPng) {
+  const std::vector<std::uint8_t> rgba = {254, 254, 254, 255, 254, 254, 254, 0,
+                                          0,   0,   0,   255, 0,   0,   0,   0};
+  WriteFile(Path("m.png"), EncodeRgbaPng({4, 1, rgba}));
+  const std::string yaml = "image: m.png\nresolution: 0.05\norigin: [0, 0, 0]\n";
+  const auto states_in = [&](const std::string& mode) {
+    WriteFile(Path("m.yaml"), yaml + "mode: " + mode + "\n");
+    return StatesOf(ReadMap(Path("m.yaml")).map).states;
+  };
+  const auto free = CellState::kFree, occupied = CellState::kOccupied;
+  const auto unknown = CellState::kUnknown;
+  EXPECT_EQ(states_in("trinary"), (std::vector{free, unknown, occupied, occupied}));
+  EXPECT_EQ(states_in("scale"), (std::vector{free, unknown, occupied, unknown}));
 }
 
 TEST_F(MapFileTest, TheImageIsNeverWrittenOver) {

@@ -295,6 +295,27 @@ TEST_F(SlamFiles, FramesTakeWhatLiesBetweenThePoses) {
   EXPECT_TRUE(read.warnings.empty());
 }
 
+// The pose at the stamp of the frame that begins an epoch is the epoch's own.
+TEST_F(SlamFiles, AnEpochBeginsWithThePoseOfItsFrame) {
+  WriteFile(folder_ + "/dense.txt",
+            "0.00 0 0 0 0 0 0 1\n0.01 1 0 0 0 0 0 1\n0.02 2 0 0 0 0 0 1\n0.03 3 0 0 0 0 0 1\n");
+  WriteFile(folder_ + "/loops.csv", "loop,2,1,0,2,0,0,0,0,0,0,1,0.1,0.1\n");
+  const SlamInput read = ReadSlamFiles({folder_ + "/dense.txt", "", folder_ + "/loops.csv"},
+                                       {{0.0, 0.01, 0.02, 0.025}}, {0.004, true});
+  ASSERT_TRUE(read.slam.live[3].slam_from_camera);
+  EXPECT_NEAR(read.slam.live[3].slam_from_camera->translation.x(), 2.5, 1e-9);
+}
+
+TEST_F(SlamFiles, OfPosesOfOneFrameTheNearestIsTaken) {
+  WriteFile(folder_ + "/dense.txt",
+            "0.0 0 0 0 0 0 0 1\n0.096 1 0 0 0 0 0 1\n0.101 2 0 0 0 0 0 1\n"
+            "0.108 3 0 0 0 0 0 1\n");
+  const SlamInput read =
+      ReadSlamFiles({folder_ + "/dense.txt", "", ""}, {{0.0, 0.1}}, {0.02, false});
+  EXPECT_EQ(read.slam.live[1].slam_from_camera->translation.x(), 2.0);
+  EXPECT_THAT(read.warnings, testing::Contains(HasSubstr("2 poses beside a nearer one")));
+}
+
 // Rows of loops.csv without their stamps, as before there were any.
 std::string WithoutStamps(const std::string& csv) {
   std::string text;

@@ -125,6 +125,37 @@ TEST_F(TumFolderTest, LoopsAndEpochsFollowTheirFrames) {
   EXPECT_EQ(frames[3].loops[0].second_frame, 3);
 }
 
+// SLAM reports the loop with a frame of its own of which there is no image.
+TEST_F(TumFolderTest, ALoopOfAFrameWithoutAnImageComesWithTheNext) {
+  SlamOutput slam = SlamOutputOf(WriteSequence());
+  slam.live.insert(slam.live.begin() + 2, {0.1875, PoseAt(0, 1.5).world_from_camera, 0});
+  LoopClosure loop;
+  loop.first_frame = 0;
+  loop.second_frame = 1;
+  loop.reported_at_frame = 2;
+  slam.loops = {loop};
+  loop.second_frame = 2;  // has no image itself
+  slam.loops.push_back(loop);
+  const auto source = OpenTumFolder(folder_, slam);
+  EXPECT_THAT(source->Warnings(),
+              ElementsAre(HasSubstr("1 loop closures join frames that have no image")));
+  const auto frames = All(*source);
+  EXPECT_TRUE(frames[1].loops.empty());
+  ASSERT_EQ(frames[2].loops.size(), 1U);
+  EXPECT_EQ(frames[2].loops[0].second_frame, 1);
+}
+
+TEST_F(TumFolderTest, ADepthImageWithoutAColourImageKeepsItsStamp) {
+  const Trajectory truth = WriteSequence();
+  Write("rgb.txt", "0.005 a.png\n0.13 b.png\n0.38 d.png\n");
+  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  EXPECT_THAT(source->Warnings(),
+              ElementsAre(HasSubstr("1 depth image without a colour image within 0.02 s")));
+  const auto frames = All(*source);
+  EXPECT_EQ(frames[1].stamp_s, 0.13);
+  EXPECT_EQ(frames[2].stamp_s, 0.25);
+}
+
 TEST_F(TumFolderTest, FramesComeWithoutTheCamerasDistortion) {
   const Trajectory truth = WriteSequence();
   CameraFile camera = SmallCamera();

@@ -211,6 +211,28 @@ TEST(Navigability, WallsThatAreNotThereBlockAndMissingOnesCollide) {
   EXPECT_FALSE(Navigate(StateMap(all.geometry), with_door, all, {}));
 }
 
+// The map has the door one cell off, so that plans go through it a cell nearer to the true wall
+// than the margin: that is what the margin is for.
+TEST(Navigability, AWayThatOnlyTheMarginLeavesIsNoCollision) {
+  const auto rooms = [](std::size_t door_row) {
+    std::vector<std::string> rows(60, std::string(60, '.'));
+    for (std::size_t x = 0; x < 60; ++x) rows.front()[x] = rows.back()[x] = '#';
+    for (std::size_t y = 0; y < 60; ++y) {
+      rows[y].front() = rows[y].back() = '#';
+      if (y < door_row || y >= door_row + 12) rows[y][30] = '#';
+    }
+    return DrawnMap(rows);
+  };
+  NavigabilityOptions robot;
+  robot.robot_radius_m = 0.1;
+  robot.margin_m = 0.05;
+  const StateMap truth = rooms(20);
+  const auto score = Navigate(truth, rooms(21), Everywhere(truth.geometry), robot);
+  ASSERT_TRUE(score);
+  ASSERT_GT(score->planned, 20);
+  EXPECT_EQ(*score->collision_rate, 0.0);
+}
+
 TEST(Navigability, ADoorDrawnTooNarrowBlocksAWideRobot) {
   const StateMap narrow = TwoRooms(8);
   const StateMap wide = TwoRooms(14);

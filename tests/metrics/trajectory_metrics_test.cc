@@ -221,5 +221,17 @@ TEST(Rpe, DoesNotSeeAGlobalTransform) {
   }
 }
 
+// Three times what is usual between two poses is no gap, however long that is.
+TEST(TimeCoverage, AGapIsShortBesideWhatIsUsual) {
+  Trajectory reference, estimate;
+  for (int i = 0; i <= 400; ++i) {
+    reference.push_back({static_cast<double>(i), {}});
+    const bool left_out = i == 40 || (i > 200 && i < 280);
+    if (i % 20 == 0 && !left_out) estimate.push_back(reference.back());
+  }
+  // All but what lies between 200 and 280 s.
+  EXPECT_EQ(TimeCoverage(reference, Associate(reference, estimate, 0.01)), 322.0 / 401.0);
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -110,6 +110,25 @@ TEST(LaserWorld, TooNearIsZeroAndTooFarTheMaximum) {
   EXPECT_EQ(reported[3], options.max_range_m);
 }
 
+TEST(LaserWorld, OutliersReportAnythingFromTheLeastRangeToTheMost) {
+  LaserOptions options;
+  options.outlier_share = 0.2;
+  const std::vector<double> exact(20000, 3.0);
+  int outliers = 0;
+  double sum_m = 0.0;
+  for (const double reported_m : DisturbScan(exact, options, 4, 0)) {
+    if (std::abs(reported_m - 3.0) < 0.5) continue;  // noise, or an outlier like any
+    EXPECT_GE(reported_m, options.min_range_m);
+    EXPECT_LE(reported_m, options.max_range_m);
+    sum_m += reported_m;
+    ++outliers;
+  }
+  const double span_m = options.max_range_m - options.min_range_m;
+  EXPECT_NEAR(outliers / 20000.0, 0.2 * (span_m - 1.0) / span_m, 0.01);
+  const double middle_m = 0.5 * (options.min_range_m + options.max_range_m);
+  EXPECT_NEAR(sum_m / outliers, (span_m * middle_m - 3.0) / (span_m - 1.0), 0.1);
+}
+
 using LaserWorldFile = TemporaryFolderTest;
 
 TEST_F(LaserWorldFile, ReadsSegmentsAndRefusesOthers) {
@@ -172,6 +191,7 @@ TEST(OdometryNoise, JitterIsWhiteInThePose) {
     position += (pose.translation() - truth[0].translation()).squaredNorm();
     yaw += (pose.yaw_rad - 0.3) * (pose.yaw_rad - 0.3);
   }
+  EXPECT_EQ(odometry.front(), truth.front());  // both begin at the same place
   EXPECT_NEAR(std::sqrt(position / 5000.0 / 2.0), 0.003, 0.0001);
   EXPECT_NEAR(std::sqrt(yaw / 5000.0), RadFromDeg(0.1), RadFromDeg(0.004));
 }

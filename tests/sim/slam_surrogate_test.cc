@@ -186,6 +186,19 @@ TEST(SlamSurrogate, JumpsAndLossesComeAtTheirRates) {
   EXPECT_NEAR(std::sqrt(landing_square / bursts), 0.1, 0.006);
 }
 
+// What calibrates drift leaves jumps as large as they are.
+TEST(SlamSurrogate, TheScaleOfDriftIsNotThatOfJumps) {
+  SlamOptions options;
+  options.jump_rate_hz = 0.5;
+  options.jump_translation_m = 0.1;
+  const Trajectory truth = Standing(900);
+  const SlamOutput plain = DisturbTrajectory(truth, options, 5);
+  options.drift_scale = 3.0;
+  const SlamOutput scaled = DisturbTrajectory(truth, options, 5);
+  ASSERT_NE(*plain.live.back().slam_from_camera, truth.back().world_from_camera);
+  EXPECT_EQ(*scaled.live.back().slam_from_camera, *plain.live.back().slam_from_camera);
+}
+
 TEST(SlamSurrogate, LostFramesHaveNoPoseAndRelocalisationStartsAnEpoch) {
   SlamOptions options;
   options.lost_rate_hz = 0.3;
