@@ -148,5 +148,21 @@ TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
                  "or a whole part of it\n"});
 }
 
+// A map of states alone is certain of each, which nobody meant by it.
+TEST_F(EvalMap, OnlyProbabilitiesAreCalibrated) {
+  EXPECT_EQ(Scores("coarse.yaml coarse.yaml")["calibration"], nullptr);
+  EXPECT_THAT(Program("eval map coarse.yaml coarse.yaml").out, Not(HasSubstr("Brier")));
+  Write("unsure.pgm", "P2 3 2 255\n51 204 205\n204 254 205\n");
+  Write("unsure.yaml",
+        "image: unsure.pgm\nresolution: 0.1\norigin: [0.2, -0.2, 0]\nnegate: 0\nmode: scale\n"
+        "occupied_thresh: 1\nfree_thresh: 0\n");
+  // 0.8 of a wall and twice 0.2 of a free cell; the last one's 1 / 255 is hardly anything.
+  const nlohmann::json calibration = Scores("coarse.yaml unsure.yaml")["calibration"];
+  EXPECT_EQ(calibration["cells"], 4);
+  EXPECT_NEAR(calibration["brier"].get<double>(), 3 * 0.04 / 4, 1e-4);
+  EXPECT_THAT(Program("eval map coarse.yaml unsure.yaml").out,
+              testing::ContainsRegex("Brier score +0\\.0300"));
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -93,6 +93,22 @@ TEST_F(ProgramLogs, OdometryOfAnotherScaleIsSaid) {
   EXPECT_EQ(Program("map right.log -o out2").err, "");
 }
 
+// 3 m along the room, of which the odometry says nothing.
+TEST_F(ProgramLogs, OdometryThatStandsIsSaid) {
+  std::string log;
+  for (int i = 0; i <= 60; ++i) {
+    log += "FLASER 181";
+    for (int k = 0; k <= 180; ++k) {
+      log += fmt::format(" {:.3f}", RangeM(1.0 + 0.05 * i, 1.0, (k - 90) * kPi / 180.0));
+    }
+    log += fmt::format(" 1 1 0 1 1 0 {} host 0\n", i);
+  }
+  Write("robot.log", log);
+  EXPECT_THAT(Program("map robot.log -o out --set mapper.fusion.mode=kalman").err,
+              testing::ContainsRegex(
+                  "robot.log: the given poses do not move, the map's go [23]\\.[0-9] m"));
+}
+
 TEST_F(ProgramLogs, ALaserMountedUpsideDownIsSaidAndSettled) {
   Write("robot.log", HalfRound(true));
   EXPECT_THAT(Program("map robot.log -o out").err,

@@ -128,5 +128,22 @@ TEST_F(SceneFacts, ForceWithoutAPictureIsSaid) {
   EXPECT_EQ(Program("scenes ./hall.yaml --force --plan hall.png").err, "");
 }
 
+TEST_F(SceneFacts, HowMoversGoIsSaid) {
+  const std::string shapes = "shapes: [{shape: box, size: [0.2, 0.2, 1]}]";
+  const std::string way = ", waypoints: [{at: [1, 3]}, {at: [3, 3]}, {at: [3, 1]}]";
+  Write("busy.yaml", ReadFile(Path("hall.yaml")) + "movers:\n" +            //
+                         "  one: {" + shapes + way + "}\n" +                //
+                         "  two: {" + shapes + way + ", closed: true}\n" +  //
+                         "  three: {" + shapes + way + ", closed: true, laps: 2.5}\n" +
+                         "  four: {" + shapes + way + ", there_and_back: true, laps: 3}\n" +
+                         "  five: {" + shapes + ", ahead_m: 1.5}\n");
+  const std::string out = Program("scenes ./busy.yaml").out;
+  EXPECT_THAT(out, testing::ContainsRegex("one +once +0 +4"));
+  EXPECT_THAT(out, testing::ContainsRegex("two +round +0 "));
+  EXPECT_THAT(out, testing::ContainsRegex("three +round, laps: 2\\.5 +0 "));
+  EXPECT_THAT(out, testing::ContainsRegex("four +there and back, laps: 3 +0 "));
+  EXPECT_THAT(out, testing::ContainsRegex("five +1\\.5 m ahead of the camera +0 +- +-"));
+}
+
 }  // namespace
 }  // namespace depthgrid

@@ -102,6 +102,17 @@ TEST(MovingObjects, WhatStoodIsKnownAgain) {
   }
 }
 
+// Longer, and it may be another thing.
+TEST(MovingObjects, WhatWasHiddenForLongIsJudgedAnew) {
+  MovingObjects moving(kAfterM);
+  Seen seen;
+  for (int i = 0; i < 38; ++i) {
+    seen = Follow(moving, At(i), At(i), {2.5, i >= 30 && i < 37 ? 9.0 : 0.1});
+  }
+  ASSERT_GT(seen.beams, 50);
+  EXPECT_EQ(seen.left, 0);
+}
+
 TEST(MovingObjects, NothingIsComparedFromOneEpochToAnother) {
   for (const Pose2& elsewhere : {Pose2{40.0, -7.0, 2.0}, Pose2{0.05, 0.03, 0.0}}) {
     MovingObjects moving(kAfterM);

@@ -61,6 +61,13 @@ TEST_F(SlipSearchTest, NorWhereTheLastScanWasNotExplainedEither) {
   EXPECT_FALSE(IsSuspected(FrameAt(1.1), 0.1));
 }
 
+// Of depth images half is explained, and goes up and down.
+TEST_F(SlipSearchTest, NorWhereLittleIsUsuallyExplained) {
+  relocation_ = Relocation({}, {}, {});
+  for (int i = 0; i < 30; ++i) relocation_.Explained(0.7);
+  EXPECT_FALSE(IsSuspected(FrameAt(1.1), 0.3));
+}
+
 // A pillar alone in view: what comes after it is new, not moved.
 TEST_F(SlipSearchTest, NorWhereLittleWasSeen) {
   slips_.Placed(FrameAt(1.05), std::make_shared<const Scan>(), Explaining(0.9, 14));

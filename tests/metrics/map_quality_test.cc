@@ -116,6 +116,8 @@ TEST(Truthless, CountsCornersAndAreas) {
   EXPECT_EQ(wall.corners, 2);  // its ends
   EXPECT_EQ(wall.enclosed_areas, 0);
   EXPECT_NEAR(*wall.occupied_share, 30.0 / 1200.0, 1e-12);
+  for (auto& row : rows) row[11] = '#';  // as thick as two cells, both of which end alike
+  EXPECT_EQ(ScoreWithoutTruth(DrawnMap(rows)).corners, 2);
   std::vector<std::string> box(30, std::string(40, '?'));
   for (std::size_t x = 8; x <= 30; ++x) box[5][x] = box[22][x] = '#';
   for (std::size_t y = 5; y <= 22; ++y) box[y][8] = box[y][30] = '#';

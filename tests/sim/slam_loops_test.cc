@@ -161,6 +161,32 @@ TEST(FindRevisits, SeesALapOnceAndAStandingCameraNever) {
   EXPECT_EQ(find(Circling(2.0)).size(), 3U);  // offered again every 10 s
 }
 
+// Along x, and twice across what was walked there. At the second place the camera goes out of reach
+// of it for less than a second, which is no third.
+TEST(FindRevisits, AreAsManyAsTheTimesThatItCameBack) {
+  const std::vector<Eigen::Vector2d> corners = {{0, 0},  {6, 0},   {6, 4}, {3, 4},  {3, -4},
+                                                {1, -4}, {1, 0.7}, {1, 0}, {1, 0.3}};
+  Trajectory truth;
+  for (std::size_t k = 1; k < corners.size(); ++k) {
+    const Eigen::Vector2d way_m = corners[k] - corners[k - 1];
+    const int steps = static_cast<int>(way_m.norm() / 0.5 * 30.0);
+    for (int i = 0; i < steps; ++i) {
+      const Eigen::Vector2d at_m = corners[k - 1] + way_m * i / steps;
+      truth.push_back(
+          {static_cast<double>(truth.size()) / 30.0, CameraOf({at_m.x(), at_m.y(), 0.0}, 1.2)});
+    }
+  }
+  SlamLoopOptions options;
+  options.repeat_s = 1e3;
+  const auto revisits = FindRevisits(truth, std::vector<bool>(truth.size(), true), options);
+  ASSERT_EQ(revisits.size(), 2U);
+  for (const auto& [revisit, x_m] : {std::pair(revisits[0], 3.0), {revisits[1], 1.0}}) {
+    const auto second = static_cast<std::size_t>(revisit.second);
+    EXPECT_NEAR(truth[second].world_from_camera.translation.x(), x_m, 1e-9);
+    EXPECT_NEAR(std::abs(truth[second].world_from_camera.translation.y()), 0.6, 0.02);
+  }
+}
+
 TEST(SimulateLoops, KeepPrecisionRecallAndSigma) {
   const Trajectory truth = Circling(6.0, 12.0);
   const std::vector<bool> tracked(truth.size(), true);

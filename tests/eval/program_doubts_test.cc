@@ -1,0 +1,45 @@
+// What `map` advises where poses and images do not fit together.
+#include <gmock/gmock.h>
+
+#include "mapper/io/trajectory_file.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+using ProgramDoubts = ProgramTest;
+
+// Not twice: poses that are read the wrong way go other ways than the map as well.
+TEST_F(ProgramDoubts, AnotherScaleOrMountIsNamedAsItIs) {
+  Succeed("render ./small.yaml --no-colour --set frames=150 -o long");
+  const Trajectory truth = ReadTrajectory(Path("long/groundtruth.txt"));
+  const auto said_of = [&](const auto& change) {
+    Trajectory poses = truth;
+    for (StampedPose& pose : poses) change(pose.world_from_camera);
+    WriteTrajectory(Path("poses.txt"), poses);
+    const Outcome outcome = Program("map long --poses poses.txt -o out --force");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(said_of([](Pose3& pose) { pose.translation *= 2.0; }),
+              AllOf(ContainsRegex("with images (1\\.9[0-9]*|2|2\\.0[0-9]*) times as deep"),
+                    Not(HasSubstr("over the same stretches"))));
+  // The camera looks down from what the poses say.
+  const Eigen::Quaterniond up(Eigen::AngleAxisd(RadFromDeg(20.0), Eigen::Vector3d::UnitX()));
+  EXPECT_THAT(said_of([&](Pose3& pose) { pose.rotation = pose.rotation * up; }),
+              HasSubstr("with a camera that looks about 20 degrees below the poses' z axis"));
+  EXPECT_THAT(said_of([&](Pose3& pose) { pose.rotation = pose.rotation * up.conjugate(); }),
+              HasSubstr("with a camera that looks about 20 degrees above the poses' z axis"));
+  // What only an experiment knows.
+  const Outcome refused = Program("map long -o b --set mapper.fusion.slam_noise.source=profile");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("source is profile, must be another one: of a recording no"));
+}
+
+}  // namespace
+}  // namespace depthgrid
