@@ -1,7 +1,5 @@
 #include "eval/run/metrics_json.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 namespace depthgrid {
@@ -71,7 +69,7 @@ Json ToJson(const std::vector<Drift>& drifts, const char* over) {
                     {"translation_rms_m", drift.translation_rms_m},
                     {"rotation_rms_rad", drift.rotation_rms_rad},
                     {"translation_mean_m", drift.translation_mean_m},
-                    {fmt::format("mean_{}", over), drift.mean_over}});
+                    {std::string("mean_") + over, drift.mean_over}});
   }
   return rows;
 }

@@ -209,7 +209,7 @@ TEST(Compare, FailedRunsAndUndefinedScoresMakeNoPair) {
   // A score that is defined in no pair is named, not only missing.
   a.metrics[0].values.assign(a.rows(), NAN);
   EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
-  // Nor is one that a side knows nothing of, whichever that is.
+  // So is one that a side knows nothing of, whichever that is.
   a.metrics.erase(a.metrics.begin());
   EXPECT_THAT(Compare(a, b, {}).undefined, ElementsAre(kError));
   EXPECT_THAT(Compare(b, a, {}).undefined, ElementsAre(kError));
