@@ -187,24 +187,4 @@ CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string
   return camera;
 }
 
-std::unique_ptr<FrameSource> OpenFrameImages(Recording recording, const SlamOutput& slam,
-                                             const CameraFile& camera,
-                                             const RecordingOptions& options) {
-  recording.camera = camera;
-  return OpenRecording(std::move(recording), slam, options,
-                       PngDepthReader(DepthFormatOf(camera, options)));
-}
-
-std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
-                                             const std::optional<SlamOutput>& slam,
-                                             const RecordingOptions& options,
-                                             const std::string& camera_path) {
-  FrameFolder listed = ListFrameFolder(folder, options);
-  const CameraDescription camera =
-      FrameFolderCamera(listed, camera_path, listed.recording.warnings);
-  SlamOutput poses = slam ? *slam : OwnPoses(listed);
-  if (camera.y_up) poses = FlipY(std::move(poses));
-  return OpenFrameImages(std::move(listed.recording), poses, camera.file, options);
-}
-
 }  // namespace depthgrid

@@ -2,7 +2,6 @@
 // them (docs/formats.md, "Frame folder").
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,17 +35,5 @@ SlamOutput OwnPoses(const FrameFolder& folder);
 // (image size, depth scale) filled in. Throws InputError when there is none.
 CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path,
                                     std::vector<std::string>& warnings);
-
-// The frames with poses of a camera whose y axis points down.
-std::unique_ptr<FrameSource> OpenFrameImages(Recording recording, const SlamOutput& slam,
-                                             const CameraFile& camera,
-                                             const RecordingOptions& options);
-
-// The frames with the folder's own poses, or with `slam`. `camera_path`, when not empty, replaces
-// the folder's camera file.
-std::unique_ptr<FrameSource> OpenFrameFolder(const std::string& folder,
-                                             const std::optional<SlamOutput>& slam = {},
-                                             const RecordingOptions& options = {},
-                                             const std::string& camera_path = {});
 
 }  // namespace depthgrid

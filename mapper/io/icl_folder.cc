@@ -182,19 +182,4 @@ DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& o
   };
 }
 
-std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
-                                           const std::optional<SlamOutput>& slam,
-                                           const RecordingOptions& options,
-                                           const std::string& camera_path) {
-  Recording recording = ListIclFolder(folder);
-  SlamOutput poses = slam ? *slam : ReadIclPoses(folder, recording);
-  const CameraDescription camera = camera_path.empty()
-                                       ? IclCamera(folder, recording.warnings)
-                                       : ReadCameraDescription(camera_path, recording.warnings);
-  if (camera.y_up) poses = FlipY(std::move(poses));
-  recording.camera = camera.file;
-  DepthReader reader = IclDepthReader(recording, options);
-  return OpenRecording(std::move(recording), poses, options, std::move(reader));
-}
-
 }  // namespace depthgrid

@@ -3,7 +3,6 @@
 // "ICL-NUIM folder").
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,12 +36,5 @@ double RayUnitM(const DepthImage& lengths);
 // Reads either kind of depth image of the recording, whose camera is known. The part's first image
 // that shows something tells the unit of all ray lengths.
 DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& options);
-
-// The frames with the folder's own poses or with `slam`, which are turned by FlipY when the camera
-// has a negative fy, so that the world's up is -y.
-std::unique_ptr<FrameSource> OpenIclFolder(const std::string& folder,
-                                           const std::optional<SlamOutput>& slam = {},
-                                           const RecordingOptions& options = {},
-                                           const std::string& camera_path = {});
 
 }  // namespace depthgrid

@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/depth_sequence.h"
 #include "mapper/io/find_up.h"
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/icl_folder.h"
-#include "mapper/io/pose_track.h"
 #include "mapper/io/slam_jumps.h"
-#include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
 
 namespace depthgrid {
@@ -29,85 +29,6 @@ const double kSureOfAxis = std::cos(RadFromDeg(45.0));
 const double kSureOfOpposite = std::cos(RadFromDeg(5.0));
 // A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
 constexpr double kFloorIsZeroM = 0.02;
-
-// One folder before its world is level. The camera's y axis points down.
-struct DepthSequence {
-  Recording recording;
-  DepthReader reader;
-  SlamOutput slam;
-  WorldUp usual_up = WorldUp::kZ;
-  bool y_up = false;  // the poses were turned by FlipY
-};
-
-// The camera of --camera for a TUM folder. A file that cannot state a scale (a matrix) is warned of
-// as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
-CameraDescription GivenCamera(const std::string& path, std::vector<std::string>& warnings) {
-  CameraDescription camera = ReadCameraDescription(path, warnings);
-  if (!camera.has_depth_scale || camera.takes_usual_scale) {
-    warnings.push_back(NoDepthScale(path, camera.file.depth_scale_per_m));
-  }
-  return camera;
-}
-
-DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
-                          const std::optional<SlamOutput>& slam, std::vector<std::string>& notes) {
-  DepthSequence sequence;
-  sequence.recording = ListTumFolder(path, options.recording);
-  sequence.recording.part = FindPart(options.part, sequence.recording);
-  if (slam) {
-    sequence.slam = *slam;
-  } else {
-    const std::string truth = (fs::path(path) / "groundtruth.txt").string();
-    if (!fs::exists(truth)) {
-      throw InputError(path,
-                       "a TUM folder needs poses: a TUM trajectory (--poses FILE), or "
-                       "groundtruth.txt in it");
-    }
-    sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
-    notes.emplace_back("poses: groundtruth.txt of the folder");
-  }
-  if (options.camera.empty()) {
-    sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
-  } else {
-    CameraDescription camera = GivenCamera(options.camera, sequence.recording.warnings);
-    CompleteSize(sequence.recording, camera);
-    sequence.recording.camera = camera.file;
-    sequence.y_up = camera.y_up;
-  }
-  sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
-  return sequence;
-}
-
-DepthSequence IclSequence(const std::string& path, const SequenceOptions& options,
-                          const std::optional<SlamOutput>& slam) {
-  DepthSequence sequence;
-  sequence.recording = ListIclFolder(path);
-  sequence.recording.part = FindPart(options.part, sequence.recording);
-  sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
-  const CameraDescription camera =
-      options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
-                             : ReadCameraDescription(options.camera, sequence.recording.warnings);
-  sequence.y_up = camera.y_up;
-  sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
-  sequence.recording.camera = camera.file;
-  sequence.reader = IclDepthReader(sequence.recording, options.recording);
-  return sequence;
-}
-
-DepthSequence FrameSequence(const std::string& path, const SequenceOptions& options,
-                            const std::optional<SlamOutput>& slam) {
-  FrameFolder listed = ListFrameFolder(path, options.recording);
-  listed.recording.part = FindPart(options.part, listed.recording);
-  const CameraDescription camera =
-      FrameFolderCamera(listed, options.camera, listed.recording.warnings);
-  DepthSequence sequence;
-  sequence.slam = slam ? *slam : OwnPoses(listed);
-  sequence.recording = std::move(listed.recording);
-  sequence.recording.camera = camera.file;
-  sequence.y_up = camera.y_up;
-  sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
-  return sequence;
-}
 
 // How many of the poses that jump are the part's.
 std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequence,
@@ -215,29 +136,6 @@ void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
 
 }  // namespace
 
-void SequenceOptions::Visit(OptionsVisitor& v) {
-  v.Choice("format", format,
-           {{SequenceFormat::kAuto, "auto"},
-            {SequenceFormat::kTum, "tum"},
-            {SequenceFormat::kIcl, "icl"},
-            {SequenceFormat::kFrames, "frames"},
-            {SequenceFormat::kCarmen, "carmen"}},
-           "kind of the recorded sequence");
-  v.Choice("world_up", world_up,
-           {{WorldUp::kAuto, "auto"},
-            {WorldUp::kX, "x"},
-            {WorldUp::kMinusX, "-x"},
-            {WorldUp::kY, "y"},
-            {WorldUp::kMinusY, "-y"},
-            {WorldUp::kZ, "z"},
-            {WorldUp::kMinusZ, "-z"}},
-           "axis of the poses' world that points up; auto finds it from the floor");
-  v.Text("camera", camera, "a camera file in place of the folder's own");
-  part.Visit(v);
-  v.Group("recording", recording, "depth images and how poses are found for them");
-  v.Group("laser", laser, "laser logs");
-}
-
 SequenceFormat DetectFormat(const std::string& path) {
   std::error_code ignored;  // such as of a name that is too long
   if (!fs::exists(path, ignored)) throw InputError(path, "no such file or folder");
@@ -261,31 +159,10 @@ SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options)
   return options.format;
 }
 
-std::string NameOf(SequenceFormat format) {
-  switch (format) {
-    case SequenceFormat::kTum:
-      return "TUM RGB-D folder";
-    case SequenceFormat::kIcl:
-      return "ICL-NUIM folder";
-    case SequenceFormat::kFrames:
-      return "folder of frames";
-    case SequenceFormat::kCarmen:
-      return "CARMEN laser log";
-    case SequenceFormat::kAuto:
-      break;
-  }
-  return "unknown";
-}
-
 FrameNames SequenceFrames(const std::string& path, const SequenceOptions& options) {
   const SequenceFormat format = FormatOf(path, options);
   if (format == SequenceFormat::kCarmen) return CarmenFrames(path, options.laser, options.part);
-  Recording recording = format == SequenceFormat::kTum ? ListTumFolder(path, options.recording)
-                        : format == SequenceFormat::kIcl
-                            ? ListIclFolder(path)
-                            : ListFrameFolder(path, options.recording).recording;
-  recording.part = FindPart(options.part, recording);
-  return NamesOf(recording, options.recording);
+  return NamesOf(ListDepthImages(path, format, options), options.recording);
 }
 
 Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
@@ -301,11 +178,8 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
     SayPart(log.names, result.notes);
     return result;
   }
-  DepthSequence sequence = format == SequenceFormat::kTum
-                               ? TumSequence(path, options, slam, result.notes)
-                           : format == SequenceFormat::kIcl ? IclSequence(path, options, slam)
-                                                            : FrameSequence(path, options, slam);
-  if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  DepthSequence sequence = ReadDepthSequence(path, format, options, slam);
+  result.notes = std::move(sequence.notes);
   SayPart(NamesOf(sequence.recording), result.notes);
   if (!slam) FindCorrections(path, options.recording, sequence, result.notes);
   result.pose_doubt = CheckPoses(sequence, options.recording);

@@ -8,32 +8,11 @@
 #include <vector>
 
 #include "mapper/core/frame.h"
-#include "mapper/io/carmen_log.h"
 #include "mapper/io/frame_names.h"
-#include "mapper/io/frame_part.h"
 #include "mapper/io/pose_check.h"
-#include "mapper/io/recording_options.h"
-#include "mapper/io/world_up.h"
+#include "mapper/io/sequence_options.h"
 
 namespace depthgrid {
-
-enum class SequenceFormat { kAuto, kTum, kIcl, kFrames, kCarmen };
-
-struct SequenceOptions {
-  SequenceFormat format = SequenceFormat::kAuto;
-  // The axis of the poses' world that points up. `auto` finds it from the floor seen in the images
-  // and, where none is seen, takes z (-y for ICL-NUIM).
-  WorldUp world_up = WorldUp::kAuto;
-  std::string camera;  // a camera file in place of the folder's own
-  // Which of its frames are given, numbered as in the whole recording. All that is not of single
-  // frames (poses' order, up) is found from the whole, so that parts of one recording share a world
-  // and fit its other files.
-  PartOptions part;
-  RecordingOptions recording;
-  CarmenLogOptions laser;
-
-  void Visit(OptionsVisitor& v);
-};
 
 // What the floor seen in the images says of up, where another axis was given.
 struct UpDoubt {
@@ -60,7 +39,6 @@ struct Sequence {
 SequenceFormat DetectFormat(const std::string& path);
 // The one that is forced, or the one it looks like.
 SequenceFormat FormatOf(const std::string& path, const SequenceOptions& options);
-std::string NameOf(SequenceFormat format);
 
 // How poses and events name the frames of the whole recording, for a laser log its scans, and which
 // of them are the part.

@@ -194,16 +194,6 @@ Recording ListTumFolder(const std::string& folder, const RecordingOptions& optio
   return recording;
 }
 
-std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const SlamOutput& slam,
-                                           const RecordingOptions& options,
-                                           const std::optional<CameraFile>& camera) {
-  Recording recording = ListTumFolder(folder, options);
-  recording.camera = camera ? *camera : TumFolderCamera(folder, recording.warnings);
-  const DepthPngFormat format = DepthFormatOf(recording.camera, options);
-  return OpenRecording(std::move(recording), slam, options,
-                       [format](const std::string& path) { return ReadDepthPng(path, format); });
-}
-
 std::set<std::string> TumFolderWriter::FilesIn(const std::string& folder) {
   std::set<std::string> files;
   for (const std::string kind : {"depth", "rgb"}) {

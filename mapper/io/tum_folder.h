@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -40,11 +39,6 @@ Recording ListTumFolder(const std::string& folder, const RecordingOptions& optio
 // camera.yaml; without it, a folder named as TUM names its sequences (freiburg1, 2, 3) gets that
 // camera, with a warning. Throws InputError when neither says it.
 CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings);
-
-// The frames of the folder with these poses. `camera`, when given, replaces the folder's own.
-std::unique_ptr<FrameSource> OpenTumFolder(const std::string& folder, const SlamOutput& slam,
-                                           const RecordingOptions& options = {},
-                                           const std::optional<CameraFile>& camera = {});
 
 // Writes such a folder. Frames may be written in any order and from several threads at once; Finish
 // writes the lists.

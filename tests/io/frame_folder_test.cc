@@ -9,6 +9,7 @@
 
 #include "mapper/io/pose_track.h"
 #include "mapper/io/sequence.h"
+#include "tests/io/open_as_written.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 
@@ -24,6 +25,9 @@ std::string MatrixAt(double x_m) {
 
 class FrameFolderTest : public TemporaryFolderTest {
  protected:
+  std::unique_ptr<FrameSource> Open(const std::optional<SlamOutput>& slam = {}) const {
+    return OpenAsWritten(folder_, SequenceFormat::kFrames, slam);
+  }
   void WriteDepth(const std::string& name, int millimetres) const {
     std::filesystem::create_directories(std::filesystem::path(Path(name)).parent_path());
     DepthImage image(4, 3);
@@ -46,7 +50,7 @@ class FrameFolderTest : public TemporaryFolderTest {
     return frames;
   }
   std::string OpenError() const {
-    return Short(RefusalOf([&] { OpenFrameFolder(folder_); }));
+    return Short(RefusalOf([&] { Open(); }));
   }
   std::vector<std::string> WarningsOf(const FrameSource& source) const {
     std::vector<std::string> warnings;
@@ -60,7 +64,7 @@ TEST_F(FrameFolderTest, PoseFilesBesideTheImages) {
     SetUp();
     WriteSevenScenes(inside);
     EXPECT_TRUE(IsFrameFolder(folder_));
-    const auto source = OpenFrameFolder(folder_);
+    const auto source = Open();
     EXPECT_EQ(source->Camera(), (PinholeCamera{4, 3, 500, 500, 1.5, 1, {}}));
     const auto frames = All(*source);
     ASSERT_EQ(frames.size(), 3U);
@@ -79,7 +83,7 @@ TEST_F(FrameFolderTest, ScanNetsFolders) {
   }
   Write("intrinsic/intrinsic_depth.txt", "577 0 1.5 0\n0 578 1 0\n0 0 1 0\n0 0 0 1\n");
   EXPECT_TRUE(IsFrameFolder(folder_));
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   const auto frames = All(*source);
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_FALSE(frames[1].slam_from_camera);                      // lost
@@ -95,7 +99,7 @@ TEST_F(FrameFolderTest, ImagesThatComeAgainWhileTheCameraMovesAreLeftOut) {
           fmt::format("1 0 0 0\n0 1 0 0\n0 0 1 {}\n0 0 0 1\n", 0.1 * number));
   }
   Write("intrinsic/intrinsic_depth.txt", "577 0 1.5 0\n0 578 1 0\n0 0 1 0\n0 0 0 1\n");
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   std::vector<int> without;
   for (const Frame& frame : All(*source)) {
     EXPECT_TRUE(frame.slam_from_camera) << frame.index;
@@ -113,7 +117,7 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
   }
   Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1\n");
   Write("intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   const auto frames = All(*source);
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1.0);
@@ -130,7 +134,7 @@ TEST_F(FrameFolderTest, PosesOfOneFilePairByNumberWhenImagesAreMissing) {
   }
   Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n1 0 0 2 0 1 0 0 0 0 1 0\n");
   Write("intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   EXPECT_EQ(All(*source)[1].slam_from_camera->translation.x(), 2.0);
   EXPECT_THAT(WarningsOf(*source),
               ElementsAre("~/poses.txt: 3 poses for 2 frames, paired by the frames' numbers"));
@@ -140,7 +144,7 @@ TEST_F(FrameFolderTest, AnUpwardYAxisTurnsThePoses) {
   WriteSevenScenes("");
   Write("frame-000001.pose.txt", "1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
   Write("camera-intrinsics.txt", "500 0 1.5\n0 -500 1\n0 0 1\n");
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   EXPECT_EQ(source->Camera()->fy_px, 500.0);
   EXPECT_EQ(All(*source)[1].slam_from_camera->translation, Eigen::Vector3d(1, -2, 3));
 }
@@ -149,7 +153,7 @@ TEST_F(FrameFolderTest, DamageIsCountedAndSurvived) {
   WriteSevenScenes("");
   Write("frame-000001.pose.txt", "1 2 3\n");
   Write("frame-000004.depth.png", "no image");
-  const auto source = OpenFrameFolder(folder_);
+  const auto source = Open();
   const auto frames = All(*source);
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_FALSE(frames[1].slam_from_camera);
@@ -167,8 +171,7 @@ TEST_F(FrameFolderTest, ImagesAloneTakeThePosesThatAreGiven) {
     std::filesystem::remove(Path(fmt::format("frame-{:06}.pose.txt", number)));
   }
   EXPECT_EQ(DetectFormat(folder_), SequenceFormat::kFrames);
-  const auto source =
-      OpenFrameFolder(folder_, SlamOutputOf({{0.0, Pose3{}}, {1.0 / 30.0, Pose3{}}}));
+  const auto source = Open(SlamOutputOf({{0.0, Pose3{}}, {1.0 / 30.0, Pose3{}}}));
   EXPECT_TRUE(source->Next()->slam_from_camera);
 }
 
@@ -180,8 +183,7 @@ TEST_F(FrameFolderTest, NamesOfMicroAndNanosecondsAreStamps) {
       WriteDepth(fmt::format("depth/14036365797{:02}{}.png", 10 + milliseconds, zeros), 1000);
     }
     Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
-    const auto source = OpenFrameFolder(
-        folder_, SlamOutputOf({{1403636579.71, Pose3{}}, {1403636579.76, Pose3{}}}));
+    const auto source = Open(SlamOutputOf({{1403636579.71, Pose3{}}, {1403636579.76, Pose3{}}}));
     const auto frames = All(*source);
     ASSERT_EQ(frames.size(), 2U);
     EXPECT_NEAR(frames[0].stamp_s, 1403636579.71, 1e-6);
@@ -252,7 +254,8 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
 TEST_F(FrameFolderTest, ReadsTheSharedKinectFrames) {
   const char* data = std::getenv("DEPTHGRID_TEST_DATA");
   if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
-  const auto source = OpenFrameFolder(std::string(data) + "/depth_frames/nvblox_3dmatch");
+  const auto source =
+      OpenAsWritten(std::string(data) + "/depth_frames/nvblox_3dmatch", SequenceFormat::kFrames);
   EXPECT_NEAR(source->Camera()->fx_px, 570.342205, 1e-6);
   const auto frames = All(*source);
   ASSERT_EQ(frames.size(), 5U);

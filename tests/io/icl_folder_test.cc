@@ -8,6 +8,7 @@
 
 #include "mapper/io/png.h"
 #include "mapper/io/sequence.h"
+#include "tests/io/open_as_written.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 
@@ -22,6 +23,7 @@ constexpr double kFloorY = -1.0;  // and a floor below, in ICL's world: y up
 // A small camera in ICL's convention: fy negative, so that rows grow against the world's y.
 class IclFolderTest : public TemporaryFolderTest {
  protected:
+  std::unique_ptr<FrameSource> Open() const { return OpenAsWritten(folder_, SequenceFormat::kIcl); }
   static constexpr int kWidth = 32, kHeight = 24;
   static constexpr double kF = 24.0, kCx = 15.5, kCy = 11.5;
 
@@ -108,7 +110,7 @@ TEST_F(IclFolderTest, PngAndFreiburgPosesFallOnTheWalls) {
   Write("livingRoom0.gt.freiburg",
         Freiburg(1, kFirst, kFirstPitch) + Freiburg(2, kSecond, kSecondPitch));
   ASSERT_TRUE(IsIclFolder(folder_));
-  const auto source = OpenIclFolder(folder_);
+  const auto source = Open();
   EXPECT_EQ(source->FrameCount(), 3);
   EXPECT_LT(WorstResidual(*source), 0.001);
   EXPECT_THAT(source->Warnings(), testing::ElementsAre(HasSubstr("1 of 3 frames has no pose")));
@@ -155,7 +157,7 @@ TEST_F(IclFolderTest, TheWrongSignOfFyIsVisiblyWrong) {
   WritePng(2, kSecond, kSecondPitch);
   Write("livingRoom0.gt.freiburg",
         Freiburg(1, kFirst, kFirstPitch) + Freiburg(2, kSecond, kSecondPitch));
-  EXPECT_GT(WorstResidual(*OpenIclFolder(folder_)), 0.3);
+  EXPECT_GT(WorstResidual(*Open()), 0.3);
 }
 
 TEST_F(IclFolderTest, RayLengthsInMetresAndCentimetresWithSimPoses) {
@@ -165,7 +167,7 @@ TEST_F(IclFolderTest, RayLengthsInMetresAndCentimetresWithSimPoses) {
     WriteRays(0, kFirst, kFirstPitch, scale);
     WriteRays(1, kSecond, kSecondPitch, scale);
     ASSERT_TRUE(IsIclFolder(folder_));
-    EXPECT_LT(WorstResidual(*OpenIclFolder(folder_)), 0.001) << scale;
+    EXPECT_LT(WorstResidual(*Open()), 0.001) << scale;
   }
   // Taken for z, the ray lengths bend the wall.
   const auto lengths = Depths(kFirst, 0.0, true);
@@ -186,7 +188,7 @@ TEST_F(IclFolderTest, TheFirstImageTellsTheUnitOfAllRays) {
   Write("scene_00_0000.depth", constant("nan"));
   WriteRays(1, kFirst, 0.0, 100.0);
   Write("scene_00_0002.depth", constant("40"));
-  const auto source = OpenIclFolder(folder_);
+  const auto source = Open();
   source->Next();
   source->Next();
   const std::optional<Frame> near = source->Next();
@@ -202,7 +204,7 @@ TEST_F(IclFolderTest, SimPosesMayLackTheFirstFrame) {
   WriteRays(1, kFirst, kFirstPitch, 1.0);
   WriteRays(2, kSecond, kSecondPitch, 1.0);
   Write("a.gt.sim", Sim(kFirst, kFirstPitch) + Sim(kSecond, kSecondPitch));
-  EXPECT_LT(WorstResidual(*OpenIclFolder(folder_)), 0.001);
+  EXPECT_LT(WorstResidual(*Open()), 0.001);
 }
 
 TEST_F(IclFolderTest, WithoutACameraFileItIsIclNuims) {
@@ -213,7 +215,7 @@ TEST_F(IclFolderTest, WithoutACameraFileItIsIclNuims) {
 }
 
 TEST_F(IclFolderTest, OneClearLineForEachFault) {
-  const auto error = [&] { return Short(RefusalOf([&] { OpenIclFolder(folder_); })); };
+  const auto error = [&] { return Short(RefusalOf([&] { Open(); })); };
   EXPECT_FALSE(IsIclFolder(folder_));
   EXPECT_EQ(error(), "~: holds neither depth/<n>.png nor *_<n>.depth");
   WriteCamera(-kF);

@@ -7,6 +7,7 @@
 
 #include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
+#include "tests/io/open_as_written.h"
 #include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
 
@@ -19,6 +20,10 @@ using ::testing::IsEmpty;
 
 class TumFolderTest : public TemporaryFolderTest {
  protected:
+  std::unique_ptr<FrameSource> Open(const SlamOutput& slam,
+                                    const RecordingOptions& options = {}) const {
+    return OpenAsWritten(folder_, SequenceFormat::kTum, slam, options);
+  }
   static CameraFile SmallCamera() { return {{4, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0}; }
   static DepthImage Image(int k) {
     DepthImage image(4, 3);
@@ -54,14 +59,14 @@ class TumFolderTest : public TemporaryFolderTest {
     return Short(RefusalOf(action));
   }
   std::string OpenError(const Trajectory& poses) const {
-    return ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(poses)); });
+    return ErrorOf([&] { Open(SlamOutputOf(poses)); });
   }
 };
 
 TEST_F(TumFolderTest, ReadsBackWhatWasWritten) {
   const Trajectory truth = WriteSequence();
   EXPECT_EQ(ReadTrajectory(Path("groundtruth.txt")), truth);
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  const auto source = Open(SlamOutputOf(truth));
   EXPECT_EQ(source->FrameCount(), 4);
   EXPECT_EQ(source->Camera(), SmallCamera().camera);
   const std::vector<Frame> frames = All(*source);
@@ -83,12 +88,12 @@ TEST_F(TumFolderTest, PoseBelongsToTheColourStamp) {
   RecordingOptions options;
   options.max_stamp_difference_s = 0.016;
   const Trajectory poses = {PoseAt(0.127, 1), PoseAt(0.155, 2)};
-  auto frames = All(*OpenTumFolder(folder_, SlamOutputOf(poses), options));
+  auto frames = All(*Open(SlamOutputOf(poses), options));
   EXPECT_DOUBLE_EQ(frames[1].stamp_s, 0.140);
   EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1);
   options.pose_stamp = PoseStamp::kDepth;
   options.time_offset_s = 0.03;
-  frames = All(*OpenTumFolder(folder_, SlamOutputOf(poses), options));
+  frames = All(*Open(SlamOutputOf(poses), options));
   EXPECT_DOUBLE_EQ(frames[1].stamp_s, 0.125);
   EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 2);
 }
@@ -98,7 +103,7 @@ TEST_F(TumFolderTest, InterpolatesPosesWhenAsked) {
   RecordingOptions options;
   options.interpolate_poses = true;
   const Trajectory poses = {PoseAt(0.1, 0), PoseAt(0.15, 10), PoseAt(0.40, 20)};
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(poses), options);
+  const auto source = Open(SlamOutputOf(poses), options);
   const auto frames = All(*source);
   EXPECT_FALSE(frames[0].slam_from_camera);
   EXPECT_NEAR(frames[1].slam_from_camera->translation.x(), 5.0, 1e-9);
@@ -116,7 +121,7 @@ TEST_F(TumFolderTest, LoopsAndEpochsFollowTheirFrames) {
   loop.second_frame = 2;
   loop.reported_at_frame = 2;
   slam.loops.push_back(loop);
-  const auto frames = All(*OpenTumFolder(folder_, slam));
+  const auto frames = All(*Open(slam));
   EXPECT_FALSE(frames[0].slam_from_camera);
   EXPECT_FALSE(frames[2].slam_from_camera);
   EXPECT_EQ(frames[3].slam_epoch, 1);
@@ -136,7 +141,7 @@ TEST_F(TumFolderTest, ALoopOfAFrameWithoutAnImageComesWithTheNext) {
   slam.loops = {loop};
   loop.second_frame = 2;  // has no image itself
   slam.loops.push_back(loop);
-  const auto source = OpenTumFolder(folder_, slam);
+  const auto source = Open(slam);
   EXPECT_THAT(source->Warnings(),
               ElementsAre(HasSubstr("1 loop closures join frames that have no image")));
   const auto frames = All(*source);
@@ -148,7 +153,7 @@ TEST_F(TumFolderTest, ALoopOfAFrameWithoutAnImageComesWithTheNext) {
 TEST_F(TumFolderTest, ADepthImageWithoutAColourImageKeepsItsStamp) {
   const Trajectory truth = WriteSequence();
   Write("rgb.txt", "0.005 a.png\n0.13 b.png\n0.38 d.png\n");
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  const auto source = Open(SlamOutputOf(truth));
   EXPECT_THAT(source->Warnings(),
               ElementsAre(HasSubstr("1 depth image without a colour image within 0.02 s")));
   const auto frames = All(*source);
@@ -160,7 +165,8 @@ TEST_F(TumFolderTest, FramesComeWithoutTheCamerasDistortion) {
   const Trajectory truth = WriteSequence();
   CameraFile camera = SmallCamera();
   camera.camera.distortion[0] = 2.0;  // moves the corners by more than a pixel
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth), {}, camera);
+  WriteCameraFile(Path("camera.yaml"), camera);
+  const auto source = Open(SlamOutputOf(truth));
   EXPECT_EQ(source->Camera(), SmallCamera().camera);
   const auto frames = All(*source);
   EXPECT_NE(frames[0].depth->z_m, QuantiseDepth(Image(0)).z_m);
@@ -171,7 +177,7 @@ TEST_F(TumFolderTest, DamagedFramesAreCountedAndSurvived) {
   std::filesystem::remove(Path("depth/0.125000.png"));
   Write("depth/0.250000.png", "no image");
   WriteDepthPng(Path("depth/0.375000.png"), DepthImage(5, 3));
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth));
+  const auto source = Open(SlamOutputOf(truth));
   const auto frames = All(*source);
   ASSERT_EQ(frames.size(), 4U);
   EXPECT_TRUE(frames[0].depth);
@@ -261,7 +267,7 @@ TEST_F(TumFolderTest, AScaleThatIsTakenForGrantedIsSaid) {
 TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
   WriteSequence();
   const auto warnings_with = [&](const Trajectory& poses) {
-    return OpenTumFolder(folder_, SlamOutputOf(poses))->Warnings();
+    return Open(SlamOutputOf(poses))->Warnings();
   };
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(125e6, 1.0), PoseAt(375e6, 2.0)}),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
@@ -274,7 +280,7 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
   RecordingOptions interpolate;
   interpolate.interpolate_poses = true;
   const Trajectory sparse = {PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)};
-  EXPECT_THAT(OpenTumFolder(folder_, SlamOutputOf(sparse), interpolate)->Warnings(),
+  EXPECT_THAT(Open(SlamOutputOf(sparse), interpolate)->Warnings(),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
                                     "poses from 0.000 to 0.300 s; between poses more than 0.2 s "
                                     "apart none is taken, --set "
@@ -288,11 +294,11 @@ TEST_F(TumFolderTest, UnitsOfDepthAreChecked) {
   const Trajectory truth = WriteSequence();
   RecordingOptions options;
   options.invalid_units = {65535, 1.5};
-  EXPECT_EQ(ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(truth), options); }),
+  EXPECT_EQ(ErrorOf([&] { Open(SlamOutputOf(truth), options); }),
             "sequence.recording.invalid_units: holds 1.5, must be whole numbers");
   options.invalid_units = {};
   options.depth_scale_per_m = 0.001;
-  EXPECT_THAT(ErrorOf([&] { OpenTumFolder(folder_, SlamOutputOf(truth), options); }),
+  EXPECT_THAT(ErrorOf([&] { Open(SlamOutputOf(truth), options); }),
               testing::StartsWith("sequence.recording.depth_scale: is 0.001, must be 0 "));
 }
 
@@ -305,7 +311,7 @@ TEST_F(TumFolderTest, AnImageEarlierThanTheOneBeforeIsLeftOutAndCounted) {
   Write("rgb.txt", "0.000 rgb/0.000000.png\n0.140 rgb/0.125000.png\n0.375 rgb/0.375000.png\n");
   RecordingOptions options;
   options.max_stamp_difference_s = 0.016;
-  const auto source = OpenTumFolder(folder_, SlamOutputOf(truth), options);
+  const auto source = Open(SlamOutputOf(truth), options);
   std::vector<double> stamps_s;
   for (const Frame& frame : All(*source)) stamps_s.push_back(frame.stamp_s);
   EXPECT_THAT(stamps_s, ElementsAre(0.0, 0.14, 0.375));
@@ -316,7 +322,7 @@ TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
   RecordingOptions options;
   options.time_offset_s = 2.5;
   EXPECT_EQ(ErrorOf([&] {
-              OpenTumFolder(folder_, SlamOutputOf({PoseAt(0.0, 0.0), PoseAt(0.375, 1.0)}), options);
+              Open(SlamOutputOf({PoseAt(0.0, 0.0), PoseAt(0.375, 1.0)}), options);
             }),
             "~: no pose within 0.02 s of any image: images from 2.500 to 2.875 s (2.5 s added), "
             "poses from 0.000 to 0.375 s; --set sequence.recording.time_offset_s=0.000 lays the "

@@ -1,0 +1,115 @@
+#include "mapper/io/depth_sequence.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "mapper/core/error.h"
+#include "mapper/io/frame_folder.h"
+#include "mapper/io/icl_folder.h"
+#include "mapper/io/pose_track.h"
+#include "mapper/io/trajectory_file.h"
+#include "mapper/io/tum_folder.h"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The camera of --camera for a TUM folder. A file that cannot state a scale (a matrix) is warned of
+// as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
+CameraDescription GivenCamera(const std::string& path, std::vector<std::string>& warnings) {
+  CameraDescription camera = ReadCameraDescription(path, warnings);
+  if (!camera.has_depth_scale || camera.takes_usual_scale) {
+    warnings.push_back(NoDepthScale(path, camera.file.depth_scale_per_m));
+  }
+  return camera;
+}
+
+DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
+                          const std::optional<SlamOutput>& slam) {
+  DepthSequence sequence;
+  sequence.recording = ListTumFolder(path, options.recording);
+  sequence.recording.part = FindPart(options.part, sequence.recording);
+  if (slam) {
+    sequence.slam = *slam;
+  } else {
+    const std::string truth = (fs::path(path) / "groundtruth.txt").string();
+    if (!fs::exists(truth)) {
+      throw InputError(path,
+                       "a TUM folder needs poses: a TUM trajectory (--poses FILE), or "
+                       "groundtruth.txt in it");
+    }
+    sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
+    sequence.notes.emplace_back("poses: groundtruth.txt of the folder");
+  }
+  if (options.camera.empty()) {
+    sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
+  } else {
+    CameraDescription camera = GivenCamera(options.camera, sequence.recording.warnings);
+    CompleteSize(sequence.recording, camera);
+    sequence.recording.camera = camera.file;
+    sequence.y_up = camera.y_up;
+  }
+  sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
+  return sequence;
+}
+
+DepthSequence IclSequence(const std::string& path, const SequenceOptions& options,
+                          const std::optional<SlamOutput>& slam) {
+  DepthSequence sequence;
+  sequence.recording = ListIclFolder(path);
+  sequence.recording.part = FindPart(options.part, sequence.recording);
+  sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
+  const CameraDescription camera =
+      options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
+                             : ReadCameraDescription(options.camera, sequence.recording.warnings);
+  sequence.y_up = camera.y_up;
+  sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
+  sequence.recording.camera = camera.file;
+  sequence.reader = IclDepthReader(sequence.recording, options.recording);
+  return sequence;
+}
+
+DepthSequence FrameSequence(const std::string& path, const SequenceOptions& options,
+                            const std::optional<SlamOutput>& slam) {
+  FrameFolder listed = ListFrameFolder(path, options.recording);
+  listed.recording.part = FindPart(options.part, listed.recording);
+  const CameraDescription camera =
+      FrameFolderCamera(listed, options.camera, listed.recording.warnings);
+  DepthSequence sequence;
+  sequence.slam = slam ? *slam : OwnPoses(listed);
+  sequence.recording = std::move(listed.recording);
+  sequence.recording.camera = camera.file;
+  sequence.y_up = camera.y_up;
+  sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
+  return sequence;
+}
+
+DepthSequence ReadAsWritten(const std::string& path, SequenceFormat format,
+                            const SequenceOptions& options, const std::optional<SlamOutput>& slam) {
+  if (format == SequenceFormat::kTum) return TumSequence(path, options, slam);
+  if (format == SequenceFormat::kIcl) return IclSequence(path, options, slam);
+  return FrameSequence(path, options, slam);
+}
+
+}  // namespace
+
+Recording ListDepthImages(const std::string& path, SequenceFormat format,
+                          const SequenceOptions& options) {
+  Recording recording = format == SequenceFormat::kTum ? ListTumFolder(path, options.recording)
+                        : format == SequenceFormat::kIcl
+                            ? ListIclFolder(path)
+                            : ListFrameFolder(path, options.recording).recording;
+  recording.part = FindPart(options.part, recording);
+  return recording;
+}
+
+DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
+                                const SequenceOptions& options,
+                                const std::optional<SlamOutput>& slam) {
+  DepthSequence sequence = ReadAsWritten(path, format, options, slam);
+  if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  return sequence;
+}
+
+}  // namespace depthgrid
