@@ -183,6 +183,13 @@ void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& lase
                      const MappingRun& run, std::vector<std::string>& warnings) {
   if (run.camera) return;
   const auto fault = WayDoubt(run);
+  if (const auto scale = fault ? std::nullopt : TurnScaleDoubt(run)) {
+    warnings.push_back(fmt::format(
+        "{}: where the odometry turns by 1 degree the map turns by {:.2f}: the scale of the "
+        "odometry's headings is wrong or that of the scans' angles (for FLASER "
+        "sequence.laser.fov_deg)",
+        arguments.input, *scale));
+  }
   if (!fault) return;
   std::string what =
       "the odometry goes other ways than the scans: are x and y swapped, or headings "
@@ -218,7 +225,11 @@ void CheckMatches(const MapArguments& arguments, const MapSettings& settings, co
   const auto& reports = run.reports;
   const bool any = std::any_of(reports.begin(), reports.end(),
                                [](const FrameReport& report) { return report.match.found; });
-  if (any || reports.size() < 2 || fusion.TrustsSlamAlone()) return;
+  if (reports.size() < 2 || fusion.TrustsSlamAlone()) return;
+  if (const auto doubt = run.camera ? std::nullopt : DoubtOfScans(run)) {
+    warnings.push_back(arguments.input + ": " + *doubt);
+  }
+  if (any) return;
   warnings.push_back(arguments.input + ": no scan could be matched, the poses are those given");
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "eval/doubts/clock_check.h"
+#include "eval/doubts/lever_check.h"
 #include "eval/doubts/rotation_check.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
@@ -108,6 +109,18 @@ Doubt DoubtOfRotations(const std::vector<PosePair>& pairs, const TrajectoryNames
   return text + ": errors of rotation, of motion and with first poses aligned say little";
 }
 
+std::string LeverText(const LeverArm& lever, const TrajectoryNames& names) {
+  // 0 where nothing but rounding speaks.
+  const auto shown = [](double arm_m) { return std::abs(arm_m) < 5e-4 ? 0.0 : arm_m; };
+  return fmt::format(
+      "{}: its poses seem to be of another point of the robot than {}'s, as a laser's or a "
+      "camera's "
+      "are beside its base's: moved by ({:.3f} {:.3f} {:.3f}) m along their own axes they fit to "
+      "{:.3f} m, not to {:.3f} m (aligned)",
+      names.estimate, names.reference, shown(lever.arm_m.x()), shown(lever.arm_m.y()),
+      shown(lever.arm_m.z()), lever.better_misfit_m, lever.misfit_m);
+}
+
 }  // namespace
 
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
@@ -127,6 +140,10 @@ std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
                                        const TrajectoryNames& names, double added_s) {
   const auto clock = FindClockOffset(reference, estimate);
+  const auto lever = FindLeverArm(Associate(reference, estimate));
+  if (lever && (!clock || lever->better_misfit_m < clock->better_misfit_m)) {
+    return {LeverText(*lever, names)};
+  }
   if (!clock) return {};
   return {fmt::format(
       "{}: its stamps seem {:.3f} s {}: with {:+.3f} s added (--time-offset of eval trajectory) it "

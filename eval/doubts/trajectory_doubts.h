@@ -19,7 +19,8 @@ struct TrajectoryNames {
 // another order of quaternions than the reference's.
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
                                        const TrajectoryNames& names);
-// Stamps of another clock; `added_s` were added to the estimate's before.
+// Stamps of another clock, or poses of another point of the robot, whichever fits better; `added_s`
+// were added to the estimate's stamps before.
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
                                        const TrajectoryNames& names, double added_s = 0.0);
 

@@ -44,7 +44,7 @@ MatchedFrames CountMatched(const MappingRun& run) {
   bool any_mapped = false;
   for (const FrameReport& report : run.reports) {
     // A frame without an image has no stand; its recording's reader says what is missing.
-    if (!report.slam_from_camera || !report.stand) continue;
+    if (!report.slam_from_camera || (run.camera && !report.stand)) continue;
     if (any_mapped || report.match.found) {
       count.matched += report.match.found ? 1 : 0;
       ++count.frames;
@@ -105,6 +105,15 @@ bool SawNothing(const MappingRun& run) {
     if (HasHit(*frame.obstacles)) return false;
   }
   return any_kept || NoneToMatch(run);
+}
+
+std::optional<std::string> DoubtOfScans(const MappingRun& run) {
+  const MatchedFrames count = CountMatched(run);
+  if (count.matched == 0 || !count.AreFew()) return {};
+  return fmt::format(
+      "{} of {} scans could be matched, the poses of the others are those given: those have {:.0f} "
+      "beams with a hit in the mean",
+      count.matched, count.frames, count.beams);
 }
 
 std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options) {

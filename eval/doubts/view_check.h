@@ -21,4 +21,8 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
 // The same of an experiment, whose path may be at fault where it is a file's.
 std::optional<std::string> DoubtOfView(const MappingRun& run, const ExperimentOptions& options);
 
+// Of laser logs: what to say when so few scans could be matched that the poses are mostly those
+// given.
+std::optional<std::string> DoubtOfScans(const MappingRun& run);
+
 }  // namespace depthgrid

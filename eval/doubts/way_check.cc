@@ -21,6 +21,7 @@ constexpr double kLeastWayM = 2.0;
 // A robot may turn on the spot.
 constexpr double kStretchRad = 0.5;
 constexpr double kLeastTurnRad = 0.5 * kPi;
+constexpr double kMostTurnRatio = 1.15;
 // Cosines between the motions of SLAM and the map: of turns and ways 0.99 and more where all is
 // right; -1.00 and 0.93 of mirrored scans, -1.00 and 0.35 where headings had the other sign, 1.00
 // and 0.10 where x and y were swapped (a laser in a living room).
@@ -116,6 +117,20 @@ std::optional<Ways> ScaleDoubt(const MappingRun& run) {
   const auto [least_m, most_m] = std::minmax(ways.slam_m, ways.map_m);
   if (most_m < kLeastWayM || most_m < kMostRatio * least_m) return {};
   return ways;
+}
+
+std::optional<double> TurnScaleDoubt(const MappingRun& run) {
+  const auto done = [](const Stretch& stretch) { return stretch.larger_turn_rad() >= kStretchRad; };
+  Likeness turns;
+  double turn_rad = 0.0;
+  for (const Stretch& stretch : StretchesOf(run, done)) {
+    turn_rad += stretch.larger_turn_rad();
+    turns.Add(stretch.slam_turn_rad, stretch.map_turn_rad);
+  }
+  if (turn_rad < kPi || turns.first == 0.0) return {};
+  const double scale = turns.product / turns.first;
+  const bool differs = scale < 1.0 / kMostTurnRatio || scale > kMostTurnRatio;
+  return differs ? std::optional(scale) : std::nullopt;
 }
 
 std::optional<WayFault> WayDoubt(const MappingRun& run) {

@@ -21,6 +21,11 @@ Ways WaysOf(const MappingRun& run);
 // other units than they have, a monocular SLAM, wheels of another size. Nothing for short ways.
 std::optional<Ways> ScaleDoubt(const MappingRun& run);
 
+// The map's turns over SLAM's on the same stretches, where they differ so much that headings or the
+// scans' angles have another scale: a laser that is wider or narrower than was read. Nothing for
+// less than half a turn.
+std::optional<double> TurnScaleDoubt(const MappingRun& run);
+
 // What makes the two go different ways.
 enum class WayFault {
   kMirroredScans,  // readings from the other side: both go the same way, but for left and right

@@ -19,6 +19,9 @@ constexpr std::int64_t kFewestSuspicious = 20;
 
 // A laser writes about the same for each that has no return; what it measures differs by more.
 constexpr double kAlikeRatio = 1.05;
+// So many different ones, of so many of the readings each, are hits that were taken for none.
+constexpr int kFewestKinds = 5;
+constexpr double kShareOfHits = 0.005;
 
 // No robot turns by half a turn between two scans, or by a whole one a second; in degrees, taken
 // for radians, a slow one does. Small steps are left aside: stamps may be nearly the same.
@@ -67,6 +70,13 @@ void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int li
       shortest_line_ = line_number;
     }
     if (range_m > longest_m_) longest_m_ = range_m;
+    if (range_m >= no_return_m && std::isfinite(range_m) && range_m > 0.0) {
+      if (beyond_.empty()) {
+        beyond_line_ = line_number;
+        beyond_m_ = no_return_m;
+      }
+      ++beyond_[static_cast<int>(std::floor(std::log(range_m) / std::log(kAlikeRatio)))];
+    }
     // Negated for NaN.
     if (!(range_m >= min_range_m_ && range_m < no_return_m) ||
         !(range_m > largest_m_ - kSameRangeM))
@@ -78,6 +88,14 @@ void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int li
     largest_m_ = std::max(largest_m_, range_m);
     ++largest_count_;
   }
+}
+
+// Codes for what has no return are few and the same.
+bool CarmenCheck::DifferAsHitsDo() const {
+  const auto common = std::count_if(beyond_.begin(), beyond_.end(), [this](const auto& alike) {
+    return static_cast<double>(alike.second) >= kShareOfHits * static_cast<double>(readings_);
+  });
+  return common >= kFewestKinds;
 }
 
 void CarmenCheck::AddHeading(const CarmenScan& scan, int line_number) {
@@ -128,6 +146,14 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
         "{}:{}: the shortest of {} readings is {:g}, and from {:g} m on a reading is no return "
         "(sequence.laser.max_range_m): are they in metres?",
         path, shortest_line_, readings_, shortest_m_, no_return_m_));
+  } else if (DifferAsHitsDo()) {
+    std::int64_t count = 0;
+    for (const auto& [power, readings] : beyond_) count += readings;
+    warnings.push_back(fmt::format(
+        "{}:{}: {} of {} readings are {:g} m or more, which is taken for no return "
+        "(sequence.laser.max_range_m, the line's own maximum or 80 m), and differ as hits do: are "
+        "they in metres, and is that as far as the laser reaches?",
+        path, beyond_line_, count, readings_, beyond_m_));
   }
   if (beyond_a_turn_ && impossible_steps_ >= kFewestImpossibleSteps &&
       impossible_steps_ >= kImpossibleShare * steps_) {

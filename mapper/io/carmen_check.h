@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ class CarmenCheck {
   std::vector<std::string> Warnings(const std::string& path) const;
 
  private:
+  bool DifferAsHitsDo() const;
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
   void AddCount(const CarmenScan& scan, int line_number);
@@ -41,6 +43,11 @@ class CarmenCheck {
   int shortest_line_ = 0;
   double longest_m_ = 0.0;
   double no_return_m_ = 0.0;
+
+  // Readings that are no return, by the power of kAlikeRatio they are.
+  std::map<int, std::int64_t> beyond_;
+  int beyond_line_ = 0;
+  double beyond_m_ = 0.0;  // where the first began
 
   struct Heading {
     double yaw_rad = 0.0;

@@ -137,6 +137,17 @@ TEST_F(ProgramLogs, ThatNothingWasMatchedIsSaid) {
   EXPECT_THAT(Program(trusting).err, Not(HasSubstr(said)));
 }
 
+TEST_F(ProgramLogs, ThatFewWereMatchedIsSaid) {
+  std::string log = ThereAndBack(1.0);
+  for (int i = 0; i < 10; ++i) {
+    log += fmt::format("FLASER 5 81 81 81 81 81 0 0 0 0 0 0 {0} host {0}\n", 1000 + i);
+  }
+  Write("half.log", log);
+  EXPECT_THAT(Program("map half.log -o out").err,
+              HasSubstr("half.log: 40 of 50 scans could be matched, the poses of the others are "
+                        "those given: those have 0 beams with a hit in the mean\n"));
+}
+
 // Its odometry is right; then told loops.
 TEST_F(ProgramLogs, ALaserLogWithLoops) {
   Write("robot.log", ThereAndBack(1.0));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "eval/doubts/clock_check.h"
+#include "eval/doubts/lever_check.h"
 #include "eval/doubts/rotation_check.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "mapper/core/angle.h"
@@ -184,6 +185,40 @@ TEST(ClockCheck, DriftIsNoOffset) {
       pose.world_from_camera.translation += drift_m;
     }
     EXPECT_FALSE(FindClockOffset(Eight(), drifting)) << seed;
+  }
+}
+
+TEST(LeverCheck, FindsThePointOfTheRobot) {
+  const Eigen::Vector3d laser_m(0.1, -0.05, 0.4);
+  Trajectory moved = Eight(0.003);
+  for (StampedPose& pose : moved) {
+    Pose3& own = pose.world_from_camera;
+    own.translation += own.rotation * laser_m;
+  }
+  const auto found = FindLeverArm(Associate(Eight(), moved));
+  ASSERT_TRUE(found);
+  // The camera turns about its y axis alone, along which nothing tells how far.
+  EXPECT_NEAR(found->arm_m.x(), -0.1, 0.002);
+  EXPECT_NEAR(found->arm_m.y(), 0.0, 0.002);
+  EXPECT_NEAR(found->arm_m.z(), -0.4, 0.002);
+  EXPECT_LT(found->better_misfit_m, 0.01);
+  EXPECT_THAT(DoubtsOfClock(Eight(), moved, kNames),
+              ElementsAre(HasSubstr("estimate: its poses seem to be of another point of the robot "
+                                    "than truth's, as a laser's or a camera's are beside its "
+                                    "base's: moved by (-0.1")));
+}
+
+// Nor is drift an arm, whichever way it goes.
+TEST(LeverCheck, DriftIsNoArm) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed, RandomStage::kTest);
+    Trajectory drifting = Eight();
+    Eigen::Vector3d drift_m = Eigen::Vector3d::Zero();
+    for (StampedPose& pose : drifting) {
+      for (int axis = 0; axis < 3; ++axis) drift_m[axis] += 0.01 * random.Normal();
+      pose.world_from_camera.translation += drift_m;
+    }
+    EXPECT_FALSE(FindLeverArm(Associate(Eight(), drifting))) << seed;
   }
 }
 

@@ -62,22 +62,37 @@ TEST(WayCheck, TellsWhatMakesTwoWaysDiffer) {
   EXPECT_EQ(WayDoubt(Circle(kRoundRad, from_y)), WayFault::kDirections);
 }
 
+// On the spot, SLAM by 0.1 rad a frame.
+MappingRun OnTheSpot(int frames, double scale) {
+  MappingRun run;
+  for (int i = 0; i < frames; ++i) {
+    FrameReport report;
+    report.slam_from_camera = CameraOf({0.0, 0.0, 0.1 * i}, 0.0);
+    run.reports.push_back(report);
+    run.result.map_from_camera.emplace_back(CameraOf({0.0, 0.0, 0.1 * scale * i}, 0.0));
+  }
+  return run;
+}
+
+TEST(WayCheck, TellsTheScaleOfTurns) {
+  for (const double scale : {0.9, 1.0, 1.1}) EXPECT_FALSE(TurnScaleDoubt(OnTheSpot(100, scale)));
+  for (const double scale : {0.5, 0.8, 1.25, 2.0}) {
+    const auto told = TurnScaleDoubt(OnTheSpot(100, scale));
+    ASSERT_TRUE(told) << scale;
+    EXPECT_NEAR(*told, scale, 1e-9);
+    EXPECT_FALSE(TurnScaleDoubt(OnTheSpot(15, scale))) << scale;  // less than half a turn
+  }
+  EXPECT_FALSE(TurnScaleDoubt(MappingRun{}));
+}
+
 TEST(WayCheck, TellsNothingOfAShortWay) {
   const auto mirrored = [](const Pose2& p) { return Pose2{p.x_m, -p.y_m, -p.yaw_rad}; };
   EXPECT_FALSE(WayDoubt(Circle(0.2 * kPi, mirrored)));
   EXPECT_FALSE(WayDoubt(MappingRun{}));
 }
 
-// On the spot.
 TEST(WayCheck, TurnsAloneTellOfMirroredScans) {
-  MappingRun run;
-  for (int i = 0; i < 100; ++i) {
-    FrameReport report;
-    report.slam_from_camera = CameraOf({0.0, 0.0, 0.1 * i}, 0.0);
-    run.reports.push_back(report);
-    run.result.map_from_camera.emplace_back(CameraOf({0.0, 0.0, -0.1 * i}, 0.0));
-  }
-  EXPECT_EQ(WayDoubt(run), WayFault::kMirroredScans);
+  EXPECT_EQ(WayDoubt(OnTheSpot(100, -1.0)), WayFault::kMirroredScans);
 }
 
 TEST(WayCheck, AddsUpStretches) {

@@ -1,5 +1,6 @@
 #include "mapper/io/carmen_check.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -105,6 +106,31 @@ TEST(CarmenCheck, RangesThatAreNoMetresAreSaid) {
   EXPECT_THAT(WarningsOf("FLASER 3 81.83 81.91 0 0 0 0 0 0 0 1 h 1\n"),
               testing::Not(HasSubstr(said)));
   EXPECT_THAT(WarningsOf("FLASER 3 2340 79 0 0 0 0 0 0 0 1 h 1\n"), testing::Not(HasSubstr(said)));
+}
+
+// A near one among them is no reason to believe the others.
+TEST(CarmenCheck, HitsBeyondTheMaximumAreSaid) {
+  constexpr const char* kDoubt = "and differ as hits do: are they in metres, and is that as far";
+  const auto log = [](double unit, double least, const char* maximum) {
+    std::string text;
+    for (int i = 0; i < 40; ++i) {
+      text += fmt::format("ROBOTLASER1 0 -1.57 3.14 0.785 {} 0.01 0 5", maximum);
+      for (int k = 0; k < 5; ++k) text += fmt::format(" {}", unit * (least + 0.1 * k + 0.05 * i));
+      text += fmt::format(" 0 0 0 0 0 0 0 0 0 0 0 0 {0} h {0}\n", i);
+    }
+    return text;
+  };
+  EXPECT_THAT(WarningsOf(log(100.0, 0.5, "600")),
+              HasSubstr(":1: 188 of 200 readings are 80 m or more, which is taken for no return"));
+  EXPECT_THAT(WarningsOf(log(100.0, 0.5, "600")), HasSubstr(kDoubt));
+  EXPECT_THAT(WarningsOf(log(1.0, 2.0, "3")), HasSubstr(kDoubt));
+  EXPECT_THAT(WarningsOf(log(1.0, 2.0, "6")), testing::Not(HasSubstr(kDoubt)));
+  // What has no return, in the codes that a laser has for it.
+  std::string codes;
+  for (int i = 0; i < 40; ++i) {
+    codes += fmt::format("FLASER 5 2.5 81.83 81.91 65.53 {0} 0 0 0 0 0 0 {0} h {0}\n", i);
+  }
+  EXPECT_THAT(WarningsOf(codes), testing::Not(HasSubstr(kDoubt)));
 }
 
 TEST(CarmenCheck, HeadingsInDegreesAreSaid) {

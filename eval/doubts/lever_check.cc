@@ -1,0 +1,93 @@
+#include "eval/doubts/lever_check.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <utility>
+
+#include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_metrics.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr std::size_t kLeastPairs = 10;
+// Gauss-Newton steps: only the turn of all is not linear, and it is small.
+constexpr int kIterations = 10;
+
+// Along own axes, a shift and a turn of all.
+using Equations = Eigen::Matrix<double, Eigen::Dynamic, 9>;
+
+std::vector<PosePair> Moved(std::vector<PosePair> pairs, const Eigen::Vector3d& arm_m) {
+  for (PosePair& pair : pairs) {
+    Pose3& pose = pair.estimate.world_from_camera;
+    pose.translation += pose.rotation * arm_m;
+  }
+  return pairs;
+}
+
+// How far aligned positions are off, root mean square.
+std::optional<double> Misfit(const std::vector<PosePair>& pairs) {
+  const auto fit = Align(pairs, Alignment::kSe3);
+  if (fit) return Summarise(TranslationErrorsXyz(Aligned(pairs, *fit))).rmse;
+  const auto level = Align(pairs, Alignment::kSe2);
+  if (!level) return std::nullopt;
+  return Summarise(TranslationErrorsXy(Aligned(pairs, *level))).rmse;
+}
+
+// Moves aligned estimates all together, and along their own axes by what is returned, so that least
+// is left. Where all poses turn about one axis the arm along it is not told, and is 0.
+Eigen::Vector3d FitOnce(std::vector<PosePair>& pairs) {
+  const auto rows = 3 * static_cast<Eigen::Index>(pairs.size());
+  Equations equations(rows, 9);
+  Eigen::VectorXd errors(rows);
+  const Eigen::Vector3d about = pairs.front().estimate.world_from_camera.translation;
+  Eigen::Index row = 0;
+  for (const PosePair& pair : pairs) {
+    const Pose3& estimate = pair.estimate.world_from_camera;
+    const Eigen::Vector3d from = estimate.translation - about;
+    equations.block<3, 3>(row, 0) = estimate.rotation.toRotationMatrix();
+    equations.block<3, 3>(row, 3).setIdentity();
+    for (int axis = 0; axis < 3; ++axis) {
+      equations.block<3, 1>(row, 6 + axis) = Eigen::Vector3d::Unit(axis).cross(from);
+    }
+    errors.segment<3>(row) = pair.reference.world_from_camera.translation - estimate.translation;
+    row += 3;
+  }
+  constexpr double kNotTold = 1e-6;
+  Eigen::CompleteOrthogonalDecomposition<Equations> solver;
+  solver.setThreshold(kNotTold);
+  solver.compute(equations);
+  const Eigen::VectorXd step = solver.solve(errors);
+  const Eigen::Vector3d turn = step.segment<3>(6);
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()));
+  for (PosePair& pair : pairs) {
+    Pose3& pose = pair.estimate.world_from_camera;
+    pose.translation = rotation * (pose.translation - about) + about + step.segment<3>(3);
+    pose.rotation = rotation * pose.rotation;
+  }
+  pairs = Moved(std::move(pairs), step.head<3>());
+  return step.head<3>();
+}
+
+}  // namespace
+
+std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs) {
+  constexpr double kBetter = 0.2;        // of the misfit; drift alone comes down to 0.3
+  constexpr double kLeastGainM = 0.005;  // less is what poses jitter by
+  if (pairs.size() < kLeastPairs) return std::nullopt;
+  auto fit = Align(pairs, Alignment::kSe3);
+  if (!fit) fit = Align(pairs, Alignment::kSe2);
+  if (!fit) return std::nullopt;
+  LeverArm found;
+  std::vector<PosePair> fitted = Aligned(pairs, *fit);
+  for (int i = 0; i < kIterations; ++i) found.arm_m += FitOnce(fitted);
+  const auto misfit_m = Misfit(pairs);
+  const auto better_m = Misfit(Moved(pairs, found.arm_m));
+  if (!misfit_m || !better_m) return std::nullopt;
+  found.misfit_m = *misfit_m;
+  found.better_misfit_m = *better_m;
+  const bool is_better = *better_m < kBetter * *misfit_m;
+  return is_better && *misfit_m - *better_m > kLeastGainM ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace depthgrid
