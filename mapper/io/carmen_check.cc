@@ -7,6 +7,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
+#include "mapper/core/median.h"
 
 namespace depthgrid {
 namespace {
@@ -43,6 +44,10 @@ bool IsImpossible(double first_rad, double second_rad, double time_s) {
   return wrapped_rad > kSmallestStepRad && wrapped_rad > kFastestTurnRadPerS * time_s;
 }
 
+// No robot drives by so few scans; milliseconds look like that.
+constexpr double kLongStepS = 5.0;
+constexpr std::size_t kFewestSteps = 10;
+
 // Logs state as field of view what lies between the first and the last reading, or a step more;
 // angles are written with three decimals or more, 0.009 for half a degree being 3 % off.
 constexpr double kFovToleranceSteps = 1.5;
@@ -57,6 +62,7 @@ bool IsHalfCircle(std::size_t readings) {
 void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, int line_number) {
   AddReadings(scan, no_return_m, line_number);
   AddHeading(scan, line_number);
+  (scan.states_angles ? any_states_angles_ : any_takes_fov_) = true;
   if (scan.states_angles) AddAngles(scan, line_number);
   if (!scan.states_angles && !knows_fov_) AddCount(scan, line_number);
 }
@@ -103,6 +109,8 @@ void CarmenCheck::AddHeading(const CarmenScan& scan, int line_number) {
   if (!beyond_a_turn_ && std::abs(heading.yaw_rad) > 2.0 * kPi) beyond_a_turn_ = heading;
   if (last_heading_) {
     ++steps_;
+    if (second_line_ == 0) second_line_ = line_number;
+    steps_s_.push_back(heading.stamp_s - last_heading_->stamp_s);
     const bool impossible = IsImpossible(last_heading_->yaw_rad, heading.yaw_rad,
                                          heading.stamp_s - last_heading_->stamp_s);
     impossible_steps_ += impossible ? 1 : 0;
@@ -161,6 +169,16 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
         "{}:{}: the heading is {:g}, and {} of {} headings turn faster than a robot does: they "
         "must be in radians, are they in degrees?",
         path, beyond_a_turn_->line_number, beyond_a_turn_->yaw_rad, impossible_steps_, steps_));
+  }
+  const double step_s = steps_s_.size() >= kFewestSteps ? UpperMedian(steps_s_) : 0.0;
+  if (step_s >= kLongStepS) {
+    warnings.push_back(
+        fmt::format("{}:{}: scans come {:g} s after each other: are the stamps in seconds?", path,
+                    second_line_, step_s));
+  }
+  if (knows_fov_ && any_states_angles_ && !any_takes_fov_) {
+    warnings.push_back(
+        "sequence.laser.fov_deg: has no effect because all lines of the log state their angles");
   }
   if (uncommon_counts_ > 0) {
     warnings.push_back(fmt::format(

@@ -55,10 +55,14 @@ class CarmenCheck {
     int line_number = 0;
   };
   std::optional<Heading> last_heading_;
+  int second_line_ = 0;
+  std::vector<double> steps_s_;
   std::optional<Heading> beyond_a_turn_;  // the first
   int steps_ = 0;
   int impossible_steps_ = 0;
 
+  bool any_states_angles_ = false;
+  bool any_takes_fov_ = false;
   int uncommon_counts_ = 0;  // lines without angles that are no scanner's half circle
   std::size_t first_count_ = 0;
   int first_count_line_ = 0;

@@ -133,6 +133,32 @@ TEST(CarmenCheck, HitsBeyondTheMaximumAreSaid) {
   EXPECT_THAT(WarningsOf(codes), testing::Not(HasSubstr(kDoubt)));
 }
 
+TEST(CarmenCheck, StampsThatAreNoSecondsAreSaid) {
+  const auto log = [](double step_s) {
+    std::string text;
+    for (int i = 0; i < 20; ++i) {
+      text += fmt::format("FLASER 2 1 1.5 0 0 0 0 0 0 {0} h {0}\n", step_s * i);
+    }
+    return text;
+  };
+  EXPECT_THAT(WarningsOf(log(33.0)),
+              HasSubstr(":2: scans come 33 s after each other: are the stamps in seconds?"));
+  EXPECT_THAT(WarningsOf(log(1.0)), testing::Not(HasSubstr("are the stamps in seconds?")));
+}
+
+TEST(CarmenCheck, AWidthWithoutEffectIsSaid) {
+  CarmenLogOptions options;
+  options.fov_deg = 270.0;
+  const std::string stating =
+      "ROBOTLASER1 0 -1.57 3.14 1.57 8 0.01 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 h 1\n";
+  const std::string plain = "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n";
+  constexpr const char* kIdle =
+      "sequence.laser.fov_deg: has no effect because all lines of the log state their angles";
+  EXPECT_THAT(WarningsOf(stating, options), HasSubstr(kIdle));
+  EXPECT_THAT(WarningsOf(plain, options), testing::Not(HasSubstr(kIdle)));
+  EXPECT_THAT(WarningsOf(stating), testing::Not(HasSubstr(kIdle)));
+}
+
 TEST(CarmenCheck, HeadingsInDegreesAreSaid) {
   constexpr const char* kDoubt = "are they in degrees?";
   for (const double rate_deg : {1.0, 3.0, 6.0, 10.0}) {

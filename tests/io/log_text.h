@@ -58,10 +58,11 @@ inline std::vector<Frame> ReadAll(FrameSource& source) {
 }
 
 // Of the log with this text, one a line.
-inline std::string WarningsOf(const std::string& text) {
+inline std::string WarningsOf(const std::string& text, const CarmenLogOptions& options = {}) {
   const TextFile file(text);
   std::string all;
-  for (const std::string& warning : OpenCarmenLog(file.path())->Warnings()) all += warning + "\n";
+  for (const std::string& warning : OpenCarmenLog(file.path(), options)->Warnings())
+    all += warning + "\n";
   return all;
 }
 
