@@ -167,6 +167,14 @@ Paired PairByRows(const TrajectoryFiles& files) {
   return paired;
 }
 
+// Milliseconds take a thousand times as long.
+bool AreOfOtherUnits(const TrajectoryFiles& files) {
+  constexpr double kMostSpanRatio = 100.0;
+  const auto span_s = [](const Trajectory& t) { return t.back().stamp_s - t.front().stamp_s; };
+  const auto [least_s, most_s] = std::minmax({span_s(files.reference), span_s(files.estimate)});
+  return least_s > 0.0 && most_s > kMostSpanRatio * least_s;
+}
+
 // When each was, and what brings them together: clocks that are known to differ, or the first
 // poses.
 std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
@@ -174,15 +182,17 @@ std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
   const auto span = [](const Trajectory& t) {
     return fmt::format("from {:.3f} to {:.3f} s", t.front().stamp_s, t.back().stamp_s);
   };
+  const std::string apart =
+      fmt::format("shares no stamp with {} (within {} s): it is {}, that one {}", of.reference,
+                  limit_s, span(files.estimate), span(files.reference));
+  if (AreOfOtherUnits(files)) return apart + "; are both in seconds?";
   const auto clock = FindClockOffset(files.reference, files.estimate);
   const double offset_s =
       of.time_offset_s +
       (clock ? clock->offset_s : files.reference.front().stamp_s - files.estimate.front().stamp_s);
-  return fmt::format(
-      "shares no stamp with {} (within {} s): it is {}, that one {}; --max-difference S takes "
-      "stamps further apart, --time-offset {:.3f} {}",
-      of.reference, limit_s, span(files.estimate), span(files.reference), offset_s,
-      clock ? "is where they fit best" : "lays the first of both together");
+  return fmt::format("{}; --max-difference S takes stamps further apart, --time-offset {:.3f} {}",
+                     apart, offset_s,
+                     clock ? "is where they fit best" : "lays the first of both together");
 }
 
 double LimitOf(const EvalTrajectoryArguments& arguments) {

@@ -154,6 +154,18 @@ TEST_F(EvalTrajectory, TheOffsetThatIsAdvisedIsAllOfIt) {
   Succeed("eval trajectory truth.txt late.txt --time-offset -1000");
 }
 
+TEST_F(EvalTrajectory, StampsOfOtherUnitsAreNoOffset) {
+  std::string milliseconds;
+  for (int i = 0; i <= 12; ++i) {
+    milliseconds += fmt::format("{} {} 0 0 0 0 0 1\n", 1000 * i + 500000, i);
+  }
+  Write("ms.txt", milliseconds);
+  const Outcome outcome = Program("eval trajectory truth.txt ms.txt");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("; are both in seconds?\n"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("--time-offset")));
+}
+
 // Row by row, as a run's own trajectory_est_kitti.txt is of its trajectory_est.txt.
 TEST_F(EvalTrajectory, MatricesPairRowByRow) {
   std::string truth;
