@@ -190,7 +190,17 @@ void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& lase
         "sequence.laser.fov_deg)",
         arguments.input, *scale));
   }
-  if (!fault) return;
+  const auto mount_rad = fault && *fault != WayFault::kDirections ? std::nullopt : MountDoubt(run);
+  if (mount_rad) {
+    warnings.push_back(fmt::format(
+        "{}: the laser looks {:.0f} degrees to the {} of the given poses, throughout: poses must "
+        "be "
+        "the laser's own; is it mounted turned on the robot, or far off the point whose poses "
+        "these "
+        "are, or are headings counted from another axis than x?",
+        arguments.input, std::abs(DegFromRad(*mount_rad)), *mount_rad > 0.0 ? "left" : "right"));
+  }
+  if (!fault || mount_rad) return;
   std::string what =
       "the odometry goes other ways than the scans: are x and y swapped, or headings "
       "counted from another axis than x?";

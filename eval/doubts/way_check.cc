@@ -22,6 +22,10 @@ constexpr double kLeastWayM = 2.0;
 constexpr double kStretchRad = 0.5;
 constexpr double kLeastTurnRad = 0.5 * kPi;
 constexpr double kMostTurnRatio = 1.15;
+// A laser ahead of or beside the point whose poses are given goes sideways too, left in one turn
+// and right in the next.
+const double kLeastMountRad = RadFromDeg(10.0);
+constexpr double kThroughout = 0.9;
 // Cosines between the motions of SLAM and the map: of turns and ways 0.99 and more where all is
 // right; -1.00 and 0.93 of mirrored scans, -1.00 and 0.35 where headings had the other sign, 1.00
 // and 0.10 where x and y were swapped (a laser in a living room).
@@ -131,6 +135,24 @@ std::optional<double> TurnScaleDoubt(const MappingRun& run) {
   const double scale = turns.product / turns.first;
   const bool differs = scale < 1.0 / kMostTurnRatio || scale > kMostTurnRatio;
   return differs ? std::optional(scale) : std::nullopt;
+}
+
+std::optional<double> MountDoubt(const MappingRun& run) {
+  const auto done = [](const Stretch& stretch) {
+    return stretch.longer_m() >= kStretchM || stretch.larger_turn_rad() >= kStretchRad;
+  };
+  double along = 0.0, across = 0.0, all = 0.0, way_m = 0.0;
+  for (const Stretch& stretch : StretchesOf(run, done)) {
+    const Eigen::Vector2d slam = stretch.slam.translation();
+    const Eigen::Vector2d map = stretch.map.translation();
+    along += slam.dot(map);
+    across += slam.x() * map.y() - slam.y() * map.x();
+    all += slam.norm() * map.norm();
+    way_m += stretch.longer_m();
+  }
+  if (way_m < kLeastWayM || std::hypot(along, across) < kThroughout * all) return {};
+  const double turned_rad = std::atan2(-across, along);
+  return std::abs(turned_rad) >= kLeastMountRad ? std::optional(turned_rad) : std::nullopt;
 }
 
 std::optional<WayFault> WayDoubt(const MappingRun& run) {
