@@ -130,6 +130,26 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
   return up;
 }
 
+// Recordings that would be taken for damaged text.
+void RefuseOtherSystems(const std::string& path) {
+  struct Other {
+    const char* ending;
+    const char* name;
+  };
+  static constexpr Other kOthers[] = {{".bag", "a ROS bag"},
+                                      {".db3", "a ROS 2 bag"},
+                                      {".mcap", "an MCAP recording"},
+                                      {".rawlog", "an MRPT rawlog"},
+                                      {".pbstream", "a Cartographer map"}};
+  for (const Other& other : kOthers) {
+    if (!path.ends_with(other.ending)) continue;
+    throw InputError(path,
+                     fmt::format("is {} by its name, which is not read: must be a folder of depth "
+                                 "images or a CARMEN laser log (docs/formats.md)",
+                                 other.name));
+  }
+}
+
 void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
   if (!names.IsWhole()) notes.push_back("the part of it: " + PartShown(names));
 }
@@ -139,7 +159,10 @@ void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
 SequenceFormat DetectFormat(const std::string& path) {
   std::error_code ignored;  // such as of a name that is too long
   if (!fs::exists(path, ignored)) throw InputError(path, "no such file or folder");
-  if (!fs::is_directory(path)) return SequenceFormat::kCarmen;
+  if (!fs::is_directory(path)) {
+    RefuseOtherSystems(path);
+    return SequenceFormat::kCarmen;
+  }
   if (fs::exists(fs::path(path) / "depth.txt")) return SequenceFormat::kTum;
   if (IsIclFolder(path)) return SequenceFormat::kIcl;
   if (IsFrameFolder(path)) return SequenceFormat::kFrames;

@@ -251,6 +251,17 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError(), "~: holds 2 sequences, name one of them such as seq-01");
 }
 
+TEST_F(FrameFolderTest, RecordingsOfOtherSystemsAreNamed) {
+  for (const auto& [name, what] :
+       {std::pair("drive.bag", "a ROS bag"), std::pair("drive.rawlog", "an MRPT rawlog")}) {
+    Write(name, "#ROSBAG V2.0");
+    EXPECT_EQ(Short(RefusalOf([&] { DetectFormat(Path(name)); })),
+              fmt::format("~/{}: is {} by its name, which is not read: must be a folder of depth "
+                          "images or a CARMEN laser log (docs/formats.md)",
+                          name, what));
+  }
+}
+
 TEST_F(FrameFolderTest, ReadsTheSharedKinectFrames) {
   const char* data = std::getenv("DEPTHGRID_TEST_DATA");
   if (data == nullptr) GTEST_SKIP() << "DEPTHGRID_TEST_DATA is not set";
