@@ -281,7 +281,10 @@ class CarmenLogSource : public FrameSource {
     if (is_same || scan.stamp_s < last_stamp_s_) {
       const bool counts = place_ != Place::kBehindPart;
       earlier_ += counts && !is_same ? 1 : 0;
-      Note("a scan that is not later than the one before it");
+      const bool is_whole = is_same && scan.stamp_s == std::floor(scan.stamp_s);
+      Note(
+          "a scan that is not later than the one before it",
+          is_whole ? fmt::format("both at {:.0f} s, are stamps whole seconds?", scan.stamp_s) : "");
       return false;
     }
     MoveTo(scan.stamp_s);

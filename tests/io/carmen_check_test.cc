@@ -146,6 +146,16 @@ TEST(CarmenCheck, StampsThatAreNoSecondsAreSaid) {
   EXPECT_THAT(WarningsOf(log(1.0)), testing::Not(HasSubstr("are the stamps in seconds?")));
 }
 
+TEST(CarmenCheck, StampsWithoutFractionsAreAskedFor) {
+  const auto log = [](const char* second) {
+    return "FLASER 2 1 1.5 0 0 0 0 0 0 7 h 7\n" +
+           fmt::format("FLASER 2 1 1.5 0 0 0 0 0 0 {0} h {0}\n", second);
+  };
+  constexpr const char* kAsk = "the one before it: both at 7 s, are stamps whole seconds?";
+  EXPECT_THAT(WarningsOf(log("7")), HasSubstr(kAsk));
+  EXPECT_THAT(WarningsOf(log("6.9")), testing::Not(HasSubstr("whole seconds?")));
+}
+
 TEST(CarmenCheck, AWidthWithoutEffectIsSaid) {
   CarmenLogOptions options;
   options.fov_deg = 270.0;
