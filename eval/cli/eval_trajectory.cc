@@ -16,6 +16,7 @@
 #include "eval/run/metrics_json.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "mapper/io/frame_names.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -167,14 +168,6 @@ Paired PairByRows(const TrajectoryFiles& files) {
   return paired;
 }
 
-// Milliseconds take a thousand times as long.
-bool AreOfOtherUnits(const TrajectoryFiles& files) {
-  constexpr double kMostSpanRatio = 100.0;
-  const auto span_s = [](const Trajectory& t) { return t.back().stamp_s - t.front().stamp_s; };
-  const auto [least_s, most_s] = std::minmax({span_s(files.reference), span_s(files.estimate)});
-  return least_s > 0.0 && most_s > kMostSpanRatio * least_s;
-}
-
 // When each was, and what brings them together: clocks that are known to differ, or the first
 // poses.
 std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
@@ -185,7 +178,10 @@ std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
   const std::string apart =
       fmt::format("shares no stamp with {} (within {} s): it is {}, that one {}", of.reference,
                   limit_s, span(files.estimate), span(files.reference));
-  if (AreOfOtherUnits(files)) return apart + "; are both in seconds?";
+  const auto span_s = [](const Trajectory& t) { return t.back().stamp_s - t.front().stamp_s; };
+  if (AreOfOtherUnits(span_s(files.reference), span_s(files.estimate))) {
+    return apart + "; are both in seconds?";
+  }
   const auto clock = FindClockOffset(files.reference, files.estimate);
   const double offset_s =
       of.time_offset_s +

@@ -194,10 +194,8 @@ void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& lase
   if (mount_rad) {
     warnings.push_back(fmt::format(
         "{}: the laser looks {:.0f} degrees to the {} of the given poses, throughout: poses must "
-        "be "
-        "the laser's own; is it mounted turned on the robot, or far off the point whose poses "
-        "these "
-        "are, or are headings counted from another axis than x?",
+        "be the laser's own; is it mounted turned on the robot, or far off the point whose poses "
+        "these are, or are headings counted from another axis than x?",
         arguments.input, std::abs(DegFromRad(*mount_rad)), *mount_rad > 0.0 ? "left" : "right"));
   }
   if (!fault || mount_rad) return;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "eval/metrics/alignment.h"
-#include "eval/metrics/trajectory_metrics.h"
+#include "eval/doubts/aligned_misfit.h"
+#include "eval/metrics/association.h"
 
 namespace depthgrid {
 namespace {
@@ -58,11 +58,7 @@ class Clocks {
   double Misfit(double offset_s, double other_offset_s) const {
     const std::vector<PosePair> pairs = PairsAt(offset_s, other_offset_s);
     if (pairs.size() < least_) return kNoFit;
-    if (const auto fit = Align(pairs, Alignment::kSe3)) {
-      return Summarise(TranslationErrorsXyz(Aligned(pairs, *fit))).rmse;
-    }
-    const auto level = Align(pairs, Alignment::kSe2);
-    return level ? Summarise(TranslationErrorsXy(Aligned(pairs, *level))).rmse : kNoFit;
+    return AlignedMisfit(pairs).value_or(kNoFit);
   }
 
   // The roundest that fits about as well as the best: no more digits than are known.
@@ -126,8 +122,7 @@ class Clocks {
 
 std::optional<ClockOffset> FindClockOffset(const Trajectory& reference,
                                            const Trajectory& estimate) {
-  constexpr double kBetter = 0.7;        // of the misfit
-  constexpr double kLeastGainM = 0.005;  // less is what poses jitter by
+  constexpr double kBetter = 0.7;  // of the misfit
   if (reference.size() < kLeastPoses || estimate.size() < kLeastPoses) return std::nullopt;
   const Clocks clocks(reference, estimate);
   ClockOffset found;

@@ -114,9 +114,8 @@ std::string LeverText(const LeverArm& lever, const TrajectoryNames& names) {
   const auto shown = [](double arm_m) { return std::abs(arm_m) < 5e-4 ? 0.0 : arm_m; };
   return fmt::format(
       "{}: its poses seem to be of another point of the robot than {}'s, as a laser's or a "
-      "camera's "
-      "are beside its base's: moved by ({:.3f} {:.3f} {:.3f}) m along their own axes they fit to "
-      "{:.3f} m, not to {:.3f} m (aligned)",
+      "camera's are beside its base's: moved by ({:.3f} {:.3f} {:.3f}) m along their own axes they "
+      "fit to {:.3f} m, not to {:.3f} m (aligned)",
       names.estimate, names.reference, shown(lever.arm_m.x()), shown(lever.arm_m.y()),
       shown(lever.arm_m.z()), lever.better_misfit_m, lever.misfit_m);
 }

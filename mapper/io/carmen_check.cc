@@ -20,7 +20,8 @@ constexpr std::int64_t kFewestSuspicious = 20;
 
 // A laser writes about the same for each that has no return; what it measures differs by more.
 constexpr double kAlikeRatio = 1.05;
-// So many different ones, of so many of the readings each, are hits that were taken for none.
+// So many different ones, of so many of the readings each, are hits that were taken for none: a
+// laser's codes for what has no return are two or three.
 constexpr int kFewestKinds = 5;
 constexpr double kShareOfHits = 0.005;
 

@@ -77,8 +77,7 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
   const double last_pose_s = pose_stamps_s.back();
   const double first_s = names.stamps_s.front();
   const double last_s = names.stamps_s.back();
-  const auto [least_s, most_s] = std::minmax({last_s - first_s, last_pose_s - first_pose_s});
-  if (least_s > 0.0 && most_s > kMostSpanRatio * least_s) return "are both in seconds?";
+  if (AreOfOtherUnits(last_s - first_s, last_pose_s - first_pose_s)) return "are both in seconds?";
   const auto overlap = [&](double begin_s, double end_s) {
     return first_pose_s <= end_s && begin_s <= last_pose_s;
   };
@@ -99,6 +98,11 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
 }
 
 }  // namespace
+
+bool AreOfOtherUnits(double span_s, double other_span_s) {
+  const auto [least_s, most_s] = std::minmax({span_s, other_span_s});
+  return least_s > 0.0 && most_s > kMostSpanRatio * least_s;
+}
 
 std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
   const std::string added =

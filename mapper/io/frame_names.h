@@ -30,6 +30,10 @@ struct FrameNames {
   }
 };
 
+// Whether of two spans of time, in seconds, one is so much longer that it must be of other units:
+// milliseconds take a thousand times as long.
+bool AreOfOtherUnits(double span_s, double other_span_s);
+
 // "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', the
 // part's own and what may be done about it. `names` has frames, and there are poses, in order.
 std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s);

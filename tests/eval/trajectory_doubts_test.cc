@@ -174,17 +174,22 @@ TEST(ClockCheck, FindsTheOffsetEitherWay) {
                                     "(--time-offset of eval trajectory) it fits truth to ")));
 }
 
+// A walk of 1 cm a pose along each axis.
+Trajectory Drifting(std::uint64_t seed) {
+  RandomStream random(seed, RandomStage::kTest);
+  Trajectory drifting = Eight();
+  Eigen::Vector3d drift_m = Eigen::Vector3d::Zero();
+  for (StampedPose& pose : drifting) {
+    for (int axis = 0; axis < 3; ++axis) drift_m[axis] += 0.01 * random.Normal();
+    pose.world_from_camera.translation += drift_m;
+  }
+  return drifting;
+}
+
 // Drift that grows towards the ends is no clock's.
 TEST(ClockCheck, DriftIsNoOffset) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    RandomStream random(seed, RandomStage::kTest);
-    Trajectory drifting = Eight();
-    Eigen::Vector3d drift_m = Eigen::Vector3d::Zero();
-    for (StampedPose& pose : drifting) {
-      for (int axis = 0; axis < 3; ++axis) drift_m[axis] += 0.01 * random.Normal();
-      pose.world_from_camera.translation += drift_m;
-    }
-    EXPECT_FALSE(FindClockOffset(Eight(), drifting)) << seed;
+    EXPECT_FALSE(FindClockOffset(Eight(), Drifting(seed))) << seed;
   }
 }
 
@@ -211,14 +216,7 @@ TEST(LeverCheck, FindsThePointOfTheRobot) {
 // Nor is drift an arm, whichever way it goes.
 TEST(LeverCheck, DriftIsNoArm) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    RandomStream random(seed, RandomStage::kTest);
-    Trajectory drifting = Eight();
-    Eigen::Vector3d drift_m = Eigen::Vector3d::Zero();
-    for (StampedPose& pose : drifting) {
-      for (int axis = 0; axis < 3; ++axis) drift_m[axis] += 0.01 * random.Normal();
-      pose.world_from_camera.translation += drift_m;
-    }
-    EXPECT_FALSE(FindLeverArm(Associate(Eight(), drifting))) << seed;
+    EXPECT_FALSE(FindLeverArm(Associate(Eight(), Drifting(seed)))) << seed;
   }
 }
 
