@@ -14,6 +14,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/interrupts.h"
 #include "eval/cli/usage.h"
+#include "eval/output/build_id.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -366,7 +367,7 @@ int Main(int argc, char** argv) {
   OpenStandardStreams();
   Program program;
   program.app.require_subcommand(1);
-  program.app.set_version_flag("--version", DEPTHGRID_VERSION);
+  program.app.set_version_flag("--version", VersionText());
   program.app.footer(kFirstSteps);
   AddCommands(program);
   RequireNames(program.app);

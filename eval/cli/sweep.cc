@@ -158,7 +158,9 @@ void Merge(const SweepArguments& arguments) {
   const SweepFolder folder(output, arguments.common.force);
   if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
   MergeSweeps(arguments.merge, output);
-  Summarise(ReadSweep(output));
+  const SweepResults results = ReadSweep(output);
+  if (const auto doubt = DoubtOfBuilds(output, results.environment)) Warn({*doubt});
+  Summarise(results);
 }
 
 // What is known so far is worth a table. Read anew, for a thread of its own may do it.
@@ -181,6 +183,8 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop` more seeds, or fewer, were done because of them.
   const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
+  NoteBuild(database);
+  if (const auto doubt = DoubtOfBuilds(output, database.Environment())) Warn({*doubt});
   Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), failed, context);
   ProgressBar bar("runs");
   ProgressFile file(output);

@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "eval/output/build_id.h"
 #include "eval/output/run_graph.h"
 #include "eval/output/run_tables.h"
 #include "eval/pictures/map_picture.h"
@@ -92,7 +93,7 @@ RunRecord RecordOf(const ExperimentOptions& options, const World& world, const S
 
 std::string Provenance(const World* world) {
   std::string yaml = "provenance:\n";
-  yaml += fmt::format("  version: {}\n", DEPTHGRID_VERSION);
+  yaml += fmt::format("  version: {}\n  build: {}\n", DEPTHGRID_VERSION, BuildId());
   if (world != nullptr) {
     yaml += fmt::format("  scene_hash: {}\n  trajectory_hash: {}\n", world->hashes.scene,
                         world->hashes.trajectory);

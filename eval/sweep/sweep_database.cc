@@ -156,7 +156,7 @@ struct SweepDatabase::Impl {
   }
 
   void Note(const std::string& key, const std::string& value) {
-    SQLite::Statement insert(*database, "INSERT INTO environment VALUES (?, ?)");
+    SQLite::Statement insert(*database, "INSERT OR REPLACE INTO environment VALUES (?, ?)");
     insert.bind(1, key);
     insert.bind(2, value);
     insert.exec();
@@ -287,6 +287,10 @@ std::map<std::string, std::string> SweepDatabase::Environment() const {
     }
     return environment;
   });
+}
+
+void SweepDatabase::Note(const std::string& key, const std::string& value) {
+  Writing(DatabasePath(impl_->folder), [&] { impl_->Note(key, value); });
 }
 
 std::vector<int> SweepDatabase::FinishedRuns() const {

@@ -50,6 +50,8 @@ class SweepDatabase {
   ~SweepDatabase();
 
   std::map<std::string, std::string> Environment() const;
+  // Replaces what the environment says of `key`.
+  void Note(const std::string& key, const std::string& value);
   // Numbers of the runs that are done or failed, ascending.
   std::vector<int> FinishedRuns() const;
   // Numbers of the others, ascending.

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "eval/output/build_id.h"
 #include "eval/output/result_files.h"
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
@@ -40,15 +41,11 @@ std::string AbsoluteFolder(const std::string& folder) {
 std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
 
 Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
-  Environment environment = {{"title", plan.title},
-                             {"sweep", plan.sweep_text},
-                             {"again", plan.again_text},
-                             {"experiment", plan.experiment_yaml},
-                             {"given", plan.given_text},
-                             {"version", DEPTHGRID_VERSION},
-                             {"instruction_set", DEPTHGRID_ARCH},
-                             {"shard", ShardText(shard)},
-                             {"rooms", RoomsText(plan)}};
+  Environment environment = {{"title", plan.title},       {"sweep", plan.sweep_text},
+                             {"again", plan.again_text},  {"experiment", plan.experiment_yaml},
+                             {"given", plan.given_text},  {"version", DEPTHGRID_VERSION},
+                             {"build", BuildId()},        {"instruction_set", DEPTHGRID_ARCH},
+                             {"shard", ShardText(shard)}, {"rooms", RoomsText(plan)}};
   if (HasFilesOnAxes(plan)) environment["files_from"] = AbsoluteFolder(plan.base_folder);
   return environment;
 }
@@ -158,7 +155,38 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
   }
 }
 
+// "A, B"; an earlier version did not say.
+std::string BuildsIn(const Environment& environment) {
+  const auto found = environment.find("build");
+  return found != environment.end() ? found->second : "unknown";
+}
+
+// The builds of both lists, each once, in their order.
+std::string Joined(std::string builds, const std::string& more) {
+  std::istringstream list(more);
+  for (std::string build; std::getline(list >> std::ws, build, ',');) {
+    if ((" " + builds + ",").find(" " + build + ",") == std::string::npos) builds += ", " + build;
+  }
+  return builds;
+}
+
 }  // namespace
+
+void NoteBuild(SweepDatabase& database) {
+  if (database.UnfinishedRuns().empty()) return;
+  const bool is_begun = !database.FinishedRuns().empty();
+  database.Note("build",
+                is_begun ? Joined(BuildsIn(database.Environment()), BuildId()) : BuildId());
+}
+
+std::optional<std::string> DoubtOfBuilds(const std::string& folder,
+                                         const std::map<std::string, std::string>& environment) {
+  const std::string builds = BuildsIn(environment);
+  if (builds.find(',') == std::string::npos) return std::nullopt;
+  return fmt::format(
+      "{}: its runs are of several builds of the program ({}), which may give other numbers",
+      folder, builds);
+}
 
 void RequireSweepNamesFree(const std::string& folder) {
   RequireNoOtherResult(folder, ResultKind::kSweep);
@@ -231,6 +259,10 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
   }
   Environment environment = parts[0].environment;
   environment.erase("schema");
+  environment["build"] = BuildsIn(parts[0].environment);
+  for (const SweepResults& part : parts) {
+    environment["build"] = Joined(environment["build"], BuildsIn(part.environment));
+  }
   environment["shard"] = ShardText({});
   std::vector<std::string> keys;
   for (const SweepParameter& parameter : parts[0].parameters) keys.push_back(parameter.key);

@@ -1,6 +1,8 @@
 // The folder of a sweep: started, gone on with, finished, joined from parts.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,14 @@ void RequireSweepNamesFree(const std::string& folder);
 // when it holds something else (unless `force`).
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
                                 const Shard& shard, bool force);
+
+// Before runs are done, and after those that failed are planned again: adds this program's build to
+// those that have worked in it (`build` of the environment, "A, B").
+void NoteBuild(SweepDatabase& database);
+
+// Runs of several builds in one table: a line.
+std::optional<std::string> DoubtOfBuilds(const std::string& folder,
+                                         const std::map<std::string, std::string>& environment);
 
 // results.csv beside the database, of what is known so far.
 void WriteResultsCsv(const SweepDatabase& database, const std::string& folder);

@@ -1,0 +1,86 @@
+// Which builds of the program a sweep's runs are of.
+#include <gmock/gmock.h>
+
+#include "eval/output/build_id.h"
+#include "eval/sweep/sweep_database.h"
+#include "eval/sweep/sweep_folder.h"
+#include "tests/eval/program.h"
+
+namespace depthgrid {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SweepBuild : public ProgramTest {
+ protected:
+  // One of its runs fails, and is tried again with every start.
+  void SetUp() override {
+    ProgramTest::SetUp();
+    Write("sweep.yaml", R"(
+experiment: ./small.yaml
+axes:
+  mapper.scan.band_low_m: [0.1, 1.8]
+)");
+  }
+  std::string BuildOf(const std::string& folder) const {
+    return ReadSweep(Path(folder)).environment.at("build");
+  }
+};
+
+TEST_F(SweepBuild, RunsOfAnotherBuildAreKeptAndSaid) {
+  const Outcome first = Program("sweep ./sweep.yaml -o out");
+  EXPECT_EQ(first.exit_code, 0);
+  EXPECT_THAT(first.err, Not(HasSubstr("builds")));
+  EXPECT_EQ(BuildOf("out"), BuildId());
+  SweepDatabase::Open(Path("out")).Note("build", "0123456789ab");
+  const std::string both = "0123456789ab, " + BuildId();
+  for (int again = 0; again < 2; ++again) {
+    const Outcome outcome = Program("sweep ./sweep.yaml -o out");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("out: its runs are of several builds of the program (" +
+                                       both + "), which may give other numbers\n"));
+    EXPECT_EQ(BuildOf("out"), both);
+  }
+  EXPECT_EQ(ReadSweep(Path("out")).rows(), 2U);
+  EXPECT_THAT(ReadFile(Path("out/report.html")), HasSubstr(both));
+}
+
+TEST_F(SweepBuild, NothingOfABuildThatDidNoRunIsSaid) {
+  std::filesystem::create_directory(Path("out"));
+  SweepDatabase database = SweepDatabase::Create(Path("out"), {{"build", "0123456789ab"}}, {"seed"},
+                                                 {{0, 0, {"1"}}, {1, 0, {"2"}}});
+  NoteBuild(database);
+  EXPECT_EQ(database.Environment().at("build"), BuildId());
+  database.Record({0, "", {{"a", 1.0}}, {}});
+  database.Record({1, "", {{"a", 2.0}}, {}});
+  database.Note("build", "0123456789ab");
+  NoteBuild(database);  // all done: this build has nothing to do
+  EXPECT_EQ(database.Environment().at("build"), "0123456789ab");
+}
+
+TEST_F(SweepBuild, JoinedPartsNameAllBuilds) {
+  Write("seeds.yaml", "experiment: ./small.yaml\naxes: {seed: {seeds: 3}}\n");
+  for (const char* part : {"1", "2", "3"}) {
+    Succeed(std::string("sweep ./seeds.yaml --shard ") + part + "/3 -o part" + part);
+  }
+  const Outcome same = Program("sweep --merge part1 part2 part3 -o same");
+  EXPECT_THAT(same.err, Not(HasSubstr("builds")));
+  EXPECT_EQ(BuildOf("same"), BuildId());
+  SweepDatabase::Open(Path("part2")).Note("build", "ba0123456789, " + BuildId());
+  SweepDatabase::Open(Path("part3")).Note("build", "a0123456789b");
+  const Outcome joined = Program("sweep --merge part1 part2 part3 -o joined");
+  EXPECT_EQ(joined.exit_code, 0);
+  EXPECT_EQ(BuildOf("joined"), BuildId() + ", ba0123456789, a0123456789b");
+  EXPECT_THAT(joined.err, HasSubstr("joined: its runs are of several builds"));
+}
+
+TEST_F(SweepBuild, IsInARunsProvenance) {
+  Succeed("run ./small.yaml -o run");
+  EXPECT_THAT(ReadFile(Path("run/run.yaml")), HasSubstr("\n  build: " + BuildId() + "\n"));
+  EXPECT_EQ(Program("--version").out, VersionText() + "\n");
+  EXPECT_THAT(VersionText(), HasSubstr(" (" + BuildId() + ")"));
+}
+
+}  // namespace
+}  // namespace depthgrid
