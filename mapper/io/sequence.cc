@@ -135,18 +135,22 @@ void RefuseOtherSystems(const std::string& path) {
   struct Other {
     const char* ending;
     const char* name;
+    const char* way = "";
   };
-  static constexpr Other kOthers[] = {{".bag", "a ROS bag"},
-                                      {".db3", "a ROS 2 bag"},
-                                      {".mcap", "an MCAP recording"},
+  static constexpr const char* kRos1 = "; docs/examples/from_bag.py makes either of it";
+  static constexpr const char* kRos2 =
+      "; rosbags-convert makes a ROS 1 bag of it, and docs/examples/from_bag.py either of that";
+  static constexpr Other kOthers[] = {{".bag", "a ROS bag", kRos1},
+                                      {".db3", "a ROS 2 bag", kRos2},
+                                      {".mcap", "an MCAP recording", kRos2},
                                       {".rawlog", "an MRPT rawlog"},
                                       {".pbstream", "a Cartographer map"}};
   for (const Other& other : kOthers) {
     if (!path.ends_with(other.ending)) continue;
     throw InputError(path,
                      fmt::format("is {} by its name, which is not read: must be a folder of depth "
-                                 "images or a CARMEN laser log (docs/formats.md)",
-                                 other.name));
+                                 "images or a CARMEN laser log (docs/formats.md){}",
+                                 other.name, other.way));
   }
 }
 

@@ -36,12 +36,12 @@ calls build
 expect yes '^apt-get install .* libceres-dev '
 expect no '^apt-get install .*(chromium|clang|slurm)'
 calls test
-expect yes '^apt-get install .* libceres-dev .* chromium$'
+expect yes '^apt-get install .* libceres-dev .* chromium .* python3-numpy$'
 expect yes '^cmake --preset release .*-DDEPTHGRID_WERROR=ON$'
 calls test --with-slurm
 expect yes '^apt-get install .* libceres-dev .* chromium .* slurm-wlm$'
 calls sanitize
-expect yes '^apt-get install .* libceres-dev .* chromium clang '
+expect yes '^apt-get install .* libceres-dev .* chromium .* clang '
 expect no '-DDEPTHGRID_WERROR=ON'
 calls install "$scratch/prefix"
 expect no '^apt-get install .*chromium'
