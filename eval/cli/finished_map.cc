@@ -132,14 +132,18 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   // only says over how many frames motions are told, and how many scans are at hand.
   if (options.method == MapperMethod::kPaper) options.submap.scans = kAllScansInOneSubmap;
   const double within_m = request.settings.start_within_m;
-  auto start = request.start ? FindStartNear(prior, *request.start, source, options, within_m)
+  // Those who say where the robot is mean what its poses are of.
+  const Pose2 base_from_laser = request.settings.sequence.laser.mount.base_from_laser();
+  auto start = request.start ? FindStartNear(prior, *request.start * base_from_laser, source,
+                                             options, within_m)
                              : FindStart(prior, source, options);
   if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
   prior.map_from_slam = start->place.map_from_slam;
   SayStart(arguments.map, prior, *start, source.Camera().has_value());
   if (const auto doubt = DoubtOfStart(arguments.map, *start)) warnings.push_back(*doubt);
   if (request.start) {
-    const auto moved = DoubtOfMove(*request.start, start->map_from_base);
+    const Pose2 taken = start->map_from_base * Inverse(base_from_laser);
+    const auto moved = DoubtOfMove(*request.start, taken);
     if (moved) warnings.push_back(*moved);
   }
   return *std::move(start);

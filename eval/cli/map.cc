@@ -14,6 +14,7 @@
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
 #include "eval/doubts/floor_check.h"
+#include "eval/doubts/mount_check.h"
 #include "eval/doubts/view_check.h"
 #include "eval/doubts/way_check.h"
 #include "eval/output/run_folder.h"
@@ -178,27 +179,41 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
       arguments.input, ways->slam_m, ways->map_m, fault));
 }
 
+// `found`: from where the laser is said to be to where it is.
+std::string MountText(const LaserMount& stated, const Pose2& found) {
+  const Pose2 mount = stated.base_from_laser() * found;
+  const auto side = [](double value, const char* left, const char* right) {
+    return value < 0.0 ? right : left;
+  };
+  return fmt::format(
+      "the laser sits {:.2f} m {}, {:.2f} m to the {} and looks {:.0f} degrees to the {} of {}, "
+      "throughout: if they are the robot's, --set sequence.laser.mount.x_m={} --set "
+      "sequence.laser.mount.y_m={} --set sequence.laser.mount.yaw_deg={} says where on it the "
+      "laser is; or are the poses' headings or the scans' bearings counted from another axis?",
+      std::abs(found.x_m), side(found.x_m, "ahead", "behind"), std::abs(found.y_m),
+      side(found.y_m, "left", "right"), std::abs(DegFromRad(found.yaw_rad)),
+      side(found.yaw_rad, "left", "right"),
+      stated.base_from_laser() == Pose2{} ? "the given poses" : "where sequence.laser.mount has it",
+      Number(mount.x_m, 2), Number(mount.y_m, 2), Number(DegFromRad(mount.yaw_rad), 0));
+}
+
 // Of laser logs: what the matches say of the odometry's directions, or these of the scans.
 void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& laser,
                      const MappingRun& run, std::vector<std::string>& warnings) {
   if (run.camera) return;
   const auto fault = WayDoubt(run);
-  if (const auto scale = fault ? std::nullopt : TurnScaleDoubt(run)) {
+  const auto scale = fault ? std::nullopt : TurnScaleDoubt(run);
+  if (scale) {
     warnings.push_back(fmt::format(
         "{}: where the odometry turns by 1 degree the map turns by {:.2f}: the scale of the "
         "odometry's headings is wrong or that of the scans' angles (for FLASER "
         "sequence.laser.fov_deg)",
         arguments.input, *scale));
   }
-  const auto mount_rad = fault && *fault != WayFault::kDirections ? std::nullopt : MountDoubt(run);
-  if (mount_rad) {
-    warnings.push_back(fmt::format(
-        "{}: the laser looks {:.0f} degrees to the {} of the given poses, throughout: poses must "
-        "be the laser's own; is it mounted turned on the robot, or far off the point whose poses "
-        "these are, or are headings counted from another axis than x?",
-        arguments.input, std::abs(DegFromRad(*mount_rad)), *mount_rad > 0.0 ? "left" : "right"));
-  }
-  if (!fault || mount_rad) return;
+  const bool may_be_mount = !scale && (!fault || *fault == WayFault::kDirections);
+  const auto mount = may_be_mount ? MountDoubt(run) : std::nullopt;
+  if (mount) warnings.push_back(arguments.input + ": " + MountText(laser.mount, *mount));
+  if (!fault || mount) return;
   std::string what =
       "the odometry goes other ways than the scans: are x and y swapped, or headings "
       "counted from another axis than x?";
@@ -330,8 +345,9 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   std::optional<MapStart> begin;
   if (prior) begin = BeginAnew(*prior, request, warnings);
   ProgressBar bar("mapping");
-  const MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
-                                   bar.AsProgress(kFinishingMap), {}, {}, prior);
+  MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
+                             bar.AsProgress(kFinishingMap), {}, {}, prior);
+  run.base_from_laser = settings.sequence.laser.mount.base_from_laser();
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());

@@ -26,11 +26,6 @@ std::optional<Ways> ScaleDoubt(const MappingRun& run);
 // less than half a turn.
 std::optional<double> TurnScaleDoubt(const MappingRun& run);
 
-// By how much the map's poses look to the left of SLAM's throughout, radians, as both go the same
-// way: those of a laser that is mounted turned, and its robot's. Nothing below 10 degrees, for
-// short ways, and where it is not the same all along. Mirrored scans (WayDoubt) may look like that.
-std::optional<double> MountDoubt(const MappingRun& run);
-
 // What makes the two go different ways.
 enum class WayFault {
   kMirroredScans,  // readings from the other side: both go the same way, but for left and right

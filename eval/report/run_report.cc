@@ -20,6 +20,7 @@
 #include "mapper/core/level.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
+#include "mapper/io/laser_mount.h"
 #include "mapper/io/pose_track.h"
 
 namespace depthgrid {
@@ -112,9 +113,17 @@ Json FramesJson(const CsvTable& frames, const std::vector<double>& final_errors_
   return json;
 }
 
+// Of what the run's trajectories are, its scans being the laser's.
+Pose2 BaseFromLaserOf(Config settings) {
+  LaserMount mount;
+  settings.Take("sequence").Take("laser").Take("mount").Read(mount);
+  return mount.base_from_laser();
+}
+
 // Hits of some of the run's own scans in base axes, whole centimetres: an even spread, and the
 // worst frames'.
-Json ScansJson(const RunFiles& run, const std::vector<std::size_t>& worst) {
+Json ScansJson(const RunFiles& run, const Pose2& base_from_laser,
+               const std::vector<std::size_t>& worst) {
   constexpr std::size_t kSpreadScans = 150;
   constexpr std::size_t kMaxHits = 160;
   const std::vector<double>& frame_of_row = run.frames.Column("frame");
@@ -130,7 +139,7 @@ Json ScansJson(const RunFiles& run, const std::vector<std::size_t>& worst) {
     std::vector<Eigen::Vector2d> hits;
     const Scan scan = *stored.scan;
     for (const Beam& beam : scan.beams) {
-      if (beam.hit) hits.push_back(EndPoint(beam));
+      if (beam.hit) hits.push_back(base_from_laser * EndPoint(beam));
     }
     Json cm = Json::array();
     const std::size_t hit_step = std::max<std::size_t>(1, hits.size() / kMaxHits);
@@ -232,7 +241,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   json["worst"] = WorstFramesJson(run, worst, BasesOf(truth), grid, submap);
   json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
                                : "By the match score, the lowest first.";
-  json["scans"] = ScansJson(run, worst);
+  json["scans"] = ScansJson(run, BaseFromLaserOf(settings), worst);
   json["samples"] = SamplesJson(run.folder);
   return json;
 }

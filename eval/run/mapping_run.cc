@@ -27,13 +27,21 @@ bool IsSample(int position, int count) {
   return false;
 }
 
+// As the source stated it.
+Pose3 PlanarBase(const Pose3& map_from_camera, const Pose2& base_from_laser) {
+  const Pose2 map_from_laser = BaseOf(map_from_camera);
+  if (base_from_laser == Pose2{}) return Lift(map_from_laser);
+  return Lift(map_from_laser * Inverse(base_from_laser));
+}
+
 template <typename PoseOf>
 Trajectory Collect(const MappingRun& run, PoseOf pose_of) {
   Trajectory trajectory;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     const std::optional<Pose3> pose = pose_of(i);
     if (!pose) continue;
-    trajectory.push_back({run.reports[i].stamp_s, run.camera ? *pose : Lift(BaseOf(*pose))});
+    trajectory.push_back(
+        {run.reports[i].stamp_s, run.camera ? *pose : PlanarBase(*pose, run.base_from_laser)});
   }
   return trajectory;
 }

@@ -30,6 +30,8 @@ struct MappingRun {
   MapperResult result;
   std::vector<LoopClosure> loops;  // SLAM's events as they came in
   std::optional<PinholeCamera> camera;
+  // Of sources without a camera, whose frames are a laser's: trajectories are the base's.
+  Pose2 base_from_laser;
   std::vector<SampleFrame> samples;
   std::vector<std::string> warnings;
   double wall_s = 0.0;
@@ -79,7 +81,7 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
 
 // Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
 // source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own
-// odometry is.
+// odometry is, and of what that is of: of the base.
 Trajectory SlamTrajectory(const MappingRun& run);    // the input, live
 Trajectory OnlineTrajectory(const MappingRun& run);  // estimates as known at the time
 Trajectory FinalTrajectory(const MappingRun& run);   // estimates after all corrections

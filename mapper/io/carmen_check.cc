@@ -54,6 +54,10 @@ constexpr std::size_t kFewestSteps = 10;
 constexpr double kFovToleranceSteps = 1.5;
 constexpr double kFovToleranceShare = 0.035;
 
+// Poses are written with two decimals or more.
+constexpr double kSamePoseM = 0.01;
+constexpr double kSamePoseRad = 0.01;
+
 bool IsHalfCircle(std::size_t readings) {
   return readings == 180 || readings == 181 || readings == 360 || readings == 361;
 }
@@ -62,6 +66,7 @@ bool IsHalfCircle(std::size_t readings) {
 
 void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, int line_number) {
   AddReadings(scan, no_return_m, line_number);
+  if (knows_mount_) AddPoses(scan, line_number);
   AddHeading(scan, line_number);
   (scan.states_angles ? any_states_angles_ : any_takes_fov_) = true;
   if (scan.states_angles) AddAngles(scan, line_number);
@@ -103,6 +108,14 @@ bool CarmenCheck::DifferAsHitsDo() const {
     return static_cast<double>(alike.second) >= kShareOfHits * static_cast<double>(readings_);
   });
   return common >= kFewestKinds;
+}
+
+void CarmenCheck::AddPoses(const CarmenScan& scan, int line_number) {
+  const Pose2 robot_from_laser = Between(scan.odom_from_robot, scan.odom_from_laser);
+  if (!AreApart({}, robot_from_laser, kSamePoseM, kSamePoseRad)) return;
+  if (stated_mounts_++ > 0) return;
+  stated_mount_ = robot_from_laser;
+  stated_mount_line_ = line_number;
 }
 
 void CarmenCheck::AddHeading(const CarmenScan& scan, int line_number) {
@@ -180,6 +193,15 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
   if (knows_fov_ && any_states_angles_ && !any_takes_fov_) {
     warnings.push_back(
         "sequence.laser.fov_deg: has no effect because all lines of the log state their angles");
+  }
+  if (stated_mounts_ > 0) {
+    warnings.push_back(fmt::format(
+        "{}:{}: the line states two poses, the laser's and the robot's, {:.2f} m and {:.0f} "
+        "degrees "
+        "apart ({}): sequence.laser.mount is where the laser is from the first of them, and a log "
+        "that states the laser's poses needs none",
+        path, stated_mount_line_, stated_mount_.translation().norm(),
+        std::abs(DegFromRad(stated_mount_.yaw_rad)), Counted(stated_mounts_, "such line")));
   }
   if (uncommon_counts_ > 0) {
     warnings.push_back(fmt::format(

@@ -1,6 +1,6 @@
 // What may be wrong with a laser log although each of its lines can be read: no-returns that look
 // like walls, ranges that are not in metres, headings in degrees, a scanner that is no half circle,
-// a header that contradicts itself.
+// a header that contradicts itself, a mount of a laser that states its own poses.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,32 @@
 #include <vector>
 
 #include "mapper/io/carmen_line.h"
+#include "mapper/io/carmen_log.h"
 
 namespace depthgrid {
 
 // Of each doubt at most one warning a log. The scans are given in order of time.
 class CarmenCheck {
  public:
-  // Readings nearer than `min_range_m` are no data. `knows_fov`: a setting says how wide lines
-  // without angles are.
-  CarmenCheck(double min_range_m, bool knows_fov)
-      : min_range_m_(min_range_m), knows_fov_(knows_fov) {}
-  // Readings from `no_return_m` on are known to be no hit.
+  explicit CarmenCheck(const CarmenLogOptions& options)
+      : min_range_m_(options.min_range_m),
+        knows_fov_(options.fov_deg > 0.0),
+        knows_mount_(options.mount.base_from_laser() != Pose2{}) {}
+  // As the line states it. Readings from `no_return_m` on are known to be no hit.
   void Add(const CarmenScan& scan, double no_return_m, int line_number);
   std::vector<std::string> Warnings(const std::string& path) const;
 
  private:
   bool DifferAsHitsDo() const;
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
+  void AddPoses(const CarmenScan& scan, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
   void AddCount(const CarmenScan& scan, int line_number);
   void AddAngles(const CarmenScan& scan, int line_number);
 
   double min_range_m_;
   bool knows_fov_;
+  bool knows_mount_;
 
   std::int64_t readings_ = 0;
   std::int64_t largest_count_ = 0;  // readings as large as the largest hit
@@ -60,6 +63,10 @@ class CarmenCheck {
   std::optional<Heading> beyond_a_turn_;  // the first
   int steps_ = 0;
   int impossible_steps_ = 0;
+
+  int stated_mounts_ = 0;  // lines whose two poses differ, and the first of them
+  int stated_mount_line_ = 0;
+  Pose2 stated_mount_;
 
   bool any_states_angles_ = false;
   bool any_takes_fov_ = false;

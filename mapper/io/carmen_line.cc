@@ -176,6 +176,7 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage("FLASER", kDamagedPose);
   scan.odom_from_laser = laser->pose;
+  scan.odom_from_robot = robot->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
   if (auto damage = ReadEnd(tokens, "FLASER", 0, scan)) return *damage;
   return scan;
@@ -244,6 +245,7 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage(kName, kDamagedPose);
   scan.odom_from_laser = laser->pose;
+  scan.odom_from_robot = robot->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
   if (auto damage = ReadEnd(tokens, kName, 5, scan)) return *damage;
   return scan;

@@ -19,6 +19,7 @@ struct CarmenScan {
   double max_range_m = 0.0;     // 0 when the line does not state it (FLASER)
   std::vector<double> range_m;  // as written: 0, the maximum, NaN included
   Pose2 odom_from_laser;
+  Pose2 odom_from_robot;        // the line's second pose; most logs repeat the first
   double stated_yaw_rad = 0.0;  // of odom_from_laser, as written: not wrapped
 };
 

@@ -44,10 +44,10 @@ double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
          (b.stamp_s - a.stamp_s);
 }
 
-// The second one's camera in the first one's, from the same of the lasers.
-LoopClosure CameraLoop(LoopClosure loop) {
-  const Pose3 laser_from_camera = CameraOf(Pose2{}, 0.0);
-  loop.first_from_second = Inverse(laser_from_camera) * loop.first_from_second * laser_from_camera;
+// The second one's camera in the first one's, from the same of the bases.
+LoopClosure CameraLoop(LoopClosure loop, const Pose2& base_from_laser) {
+  const Pose3 base_from_camera = CameraOf(base_from_laser, 0.0);
+  loop.first_from_second = Inverse(base_from_camera) * loop.first_from_second * base_from_camera;
   return loop;
 }
 
@@ -56,7 +56,9 @@ class CarmenLogSource : public FrameSource {
   CarmenLogSource(std::string path, const CarmenLogOptions& options,
                   const std::vector<LoopClosure>& loops, const PartOptions& part)
       : path_(std::move(path)), options_(options), part_(part), line_(kMaxLineBytes) {
-    for (const LoopClosure& loop : loops) loops_.push_back(CameraLoop(loop));
+    for (const LoopClosure& loop : loops) {
+      loops_.push_back(CameraLoop(loop, options_.mount.base_from_laser()));
+    }
     RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
     RequireFieldOfView(options_.fov_deg);
@@ -73,7 +75,7 @@ class CarmenLogSource : public FrameSource {
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
     frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
-    if (!IsHeld(frame.index)) frame.slam_from_camera = CameraOf(line->odom_from_laser, 0.0);
+    if (!IsHeld(frame.index)) frame.slam_from_camera = CameraOf(LaserPoseOf(*line), 0.0);
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
@@ -86,6 +88,13 @@ class CarmenLogSource : public FrameSource {
   const FrameNames& Names() const { return names_; }
 
  private:
+  Pose2 LaserPoseOf(const CarmenScan& line) const {
+    const Pose2 base_from_laser = options_.mount.base_from_laser();
+    // The identity would turn -0 into 0.
+    if (base_from_laser == Pose2{}) return line.odom_from_laser;
+    return line.odom_from_laser * base_from_laser;
+  }
+
   struct Problem {
     int count = 0;
     int first_line = 0;
@@ -101,7 +110,7 @@ class CarmenLogSource : public FrameSource {
   // Reads all of the log, from its beginning, and names its scans.
   Doubts ReadThrough() {
     Rewind();
-    Doubts doubts{{options_.min_range_m, options_.fov_deg > 0.0}, {}};
+    Doubts doubts{CarmenCheck(options_), {}};
     std::optional<CarmenScan> last;
     while (auto scan = NextScan()) {
       names_.stamps_s.push_back(scan->stamp_s);
@@ -354,27 +363,6 @@ class CarmenLogSource : public FrameSource {
 };
 
 }  // namespace
-
-Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  RequireInRange(options, "sequence.laser");
-  RequireFieldOfView(options.fov_deg);
-  RequireSound(line);
-  return ScanOfLine(line, options);
-}
-
-void CarmenLogOptions::Visit(OptionsVisitor& v) {
-  v.Number("max_range_m", max_range_m, {0.0, 1000.0},
-           "readings from here on are no return; 0 takes the log's own maximum, or 80");
-  v.Number("fov_deg", fov_deg, {0.0, 360.0},
-           "degrees from the first to the last reading of a FLASER line; 0: a half circle");
-  v.Flag("upside_down", upside_down, "whether the readings are written from left to right");
-  v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
-  v.Less("min_range_m", min_range_m, "max_range_m", MostRangeM(*this));
-  v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
-           "how far a reading without return is free space");
-  v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},
-           "readings without return in a gap narrower than this clear up to the nearer hit beside");
-}
 
 FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options,
                         const PartOptions& part) {

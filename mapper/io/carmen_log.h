@@ -1,6 +1,7 @@
 // Laser logs in CARMEN's text format: FLASER and ROBOTLASER1 lines become ready scans, and the
 // laser's odometry pose in the line is the prior (docs/formats.md, "Laser logs"). Other messages of
-// a log (ODOM, RAWLASER1, ...) are passed over.
+// a log (ODOM, RAWLASER1, ...) are passed over. Frames have the laser's poses, also where a setting
+// says that the log's are those of the base (CarmenLogOptions::mount).
 #pragma once
 
 #include <memory>
@@ -12,6 +13,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/frame_names.h"
 #include "mapper/io/frame_part.h"
+#include "mapper/io/laser_mount.h"
 
 namespace depthgrid {
 
@@ -25,6 +27,9 @@ struct CarmenLogOptions {
   double fov_deg = 0.0;
   // A laser mounted upside down writes from left to right what others write from right to left.
   bool upside_down = false;
+  // Of logs that write the robot's pose where the laser's belongs. Who makes frames of ScanOf()
+  // gives them the pose odom_from_base * mount.base_from_laser().
+  LaserMount mount;
   // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
   double min_range_m = 0.1;
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;
@@ -54,8 +59,8 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 // counted in Warnings(). Where the clock was set back, stamps go on as if it had not been. Throws
 // InputError for a file that cannot be read or holds no scan at all.
 //
-// `loops`, ordered by the frame that reports them, join scans: the second laser's pose in the first
-// one's axes (x forward, y left, z up).
+// `loops`, ordered by the frame that reports them, join scans: the second pose in the first one's
+// axes (x forward, y left, z up), both of what the log's poses are of.
 //
 // Of a part its scans alone are given, numbered as in the whole log, and warned of; loops with an
 // end outside it are left out.

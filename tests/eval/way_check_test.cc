@@ -85,21 +85,6 @@ TEST(WayCheck, TellsTheScaleOfTurns) {
   EXPECT_FALSE(TurnScaleDoubt(MappingRun{}));
 }
 
-TEST(WayCheck, TellsALaserThatIsMountedTurned) {
-  const auto turned_by = [](double deg) {
-    return [deg](const Pose2& p) { return p * Pose2{0.0, 0.0, -RadFromDeg(deg)}; };
-  };
-  for (const double deg : {-170.0, -45.0, 20.0, 90.0}) {
-    const auto told = MountDoubt(Circle(kRoundRad, turned_by(deg)));
-    ASSERT_TRUE(told) << deg;
-    EXPECT_NEAR(DegFromRad(*told), deg, 1e-6);
-    EXPECT_FALSE(MountDoubt(Circle(0.2 * kPi, turned_by(deg)))) << deg;
-  }
-  EXPECT_FALSE(MountDoubt(Circle(kRoundRad, turned_by(5.0))));
-  const auto swapped = [](const Pose2& p) { return Pose2{p.y_m, p.x_m, p.yaw_rad}; };
-  EXPECT_FALSE(MountDoubt(Circle(kRoundRad, swapped)));
-}
-
 TEST(WayCheck, TellsNothingOfAShortWay) {
   const auto mirrored = [](const Pose2& p) { return Pose2{p.x_m, -p.y_m, -p.yaw_rad}; };
   EXPECT_FALSE(WayDoubt(Circle(0.2 * kPi, mirrored)));

@@ -1,0 +1,22 @@
+#include "mapper/io/laser_mount.h"
+
+#include "mapper/core/angle.h"
+
+namespace depthgrid {
+namespace {
+
+// No robot of a map like these is longer; millimetres are beyond it.
+constexpr double kFarthestMountM = 10.0;
+
+}  // namespace
+
+Pose2 LaserMount::base_from_laser() const { return {x_m, y_m, WrapAngle(RadFromDeg(yaw_deg))}; }
+
+void LaserMount::Visit(OptionsVisitor& v) {
+  v.Number("x_m", x_m, {-kFarthestMountM, kFarthestMountM},
+           "how far the laser is ahead of the point whose poses the log states, metres");
+  v.Number("y_m", y_m, {-kFarthestMountM, kFarthestMountM}, "how far it is to the left of it");
+  v.Number("yaw_deg", yaw_deg, {-360.0, 360.0}, "how far to the left of those poses it looks");
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,20 @@
+// Where a laser sits on its robot.
+#pragma once
+
+#include "mapper/core/options.h"
+#include "mapper/core/pose2.h"
+
+namespace depthgrid {
+
+// The laser's pose in base axes, base being the point of the robot whose poses a log states. All
+// zero: they are the laser's own.
+struct LaserMount {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_deg = 0.0;
+
+  Pose2 base_from_laser() const;
+  void Visit(OptionsVisitor& v);
+};
+
+}  // namespace depthgrid
