@@ -18,6 +18,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/file.h"
+#include "mapper/io/frozen_scans.h"
 #include "mapper/io/held_poses.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/scan_clock.h"
@@ -74,8 +75,11 @@ class CarmenLogSource : public FrameSource {
     Frame frame;
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
-    frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
-    if (!IsHeld(frame.index)) frame.slam_from_camera = CameraOf(LaserPoseOf(*line), 0.0);
+    if (!IsOneOf(frozen_.frozen(), frame.index)) {
+      frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
+    }
+    if (!IsOneOf(held_.held(), frame.index))
+      frame.slam_from_camera = CameraOf(LaserPoseOf(*line), 0.0);
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
@@ -119,6 +123,8 @@ class CarmenLogSource : public FrameSource {
       const double no_return_m = ReachOf(*scan, options_).no_return_m;
       doubts.check.Add(*scan, no_return_m, line_number_);
       held_.Add(scan->odom_from_laser, scan->range_m, options_.min_range_m, no_return_m);
+      frozen_.Add(scan->stamp_s, LaserPoseOf(*scan), scan->range_m,
+                  [&] { return ScanOfLine(*scan, options_); });
       if (last) doubts.speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
     }
@@ -132,6 +138,7 @@ class CarmenLogSource : public FrameSource {
     if (clock_.Mend()) {
       names_ = {};
       held_ = {};
+      frozen_ = {};
       problems_.clear();
       earlier_ = 0;
       doubts = ReadThrough();
@@ -141,7 +148,10 @@ class CarmenLogSource : public FrameSource {
     WarnOfProblems();
     WarnOfClock();
     WarnOfOrder();
-    WarnOfHeldPoses();
+    WarnOf(held_.held(), "the odometry gives one pose again and again while the scans move",
+           "taken for lost");
+    WarnOf(frozen_.frozen(), "the laser gives one scan again and again while the robot moves",
+           "placed by the odometry alone");
     for (std::string& doubt : doubts.check.Warnings(path_)) warnings_.push_back(std::move(doubt));
     if (const auto speed_mps = ImpossibleSpeedMps(std::move(doubts.speeds_mps))) {
       warnings_.push_back(fmt::format(
@@ -160,19 +170,18 @@ class CarmenLogSource : public FrameSource {
   }
 
   // Of a frame of the part; those before it were not looked at.
-  bool IsHeld(int index) const {
+  bool IsOneOf(const std::vector<bool>& of_part, int index) const {
     const auto in_part = static_cast<std::size_t>(index) - names_.part.begin;
-    return in_part < held_.held().size() && held_.held()[in_part];
+    return in_part < of_part.size() && of_part[in_part];
   }
-  void WarnOfHeldPoses() {
-    if (held_.count() == 0) return;
-    const auto& held = held_.held();
-    const auto first = std::find(held.begin(), held.end(), true) - held.begin();
-    warnings_.push_back(fmt::format(
-        "{}: the odometry gives one pose again and again while the scans move, first in frame {}: "
-        "{} taken for lost",
-        path_, names_.part.begin + static_cast<std::size_t>(first),
-        held_.count() == 1 ? "1 frame is" : fmt::format("{} frames are", held_.count())));
+  void WarnOf(const std::vector<bool>& of_part, const char* fault, const char* what) {
+    const auto count = std::count(of_part.begin(), of_part.end(), true);
+    if (count == 0) return;
+    const auto first = std::find(of_part.begin(), of_part.end(), true) - of_part.begin();
+    warnings_.push_back(fmt::format("{}: {}, first in frame {}: {} {}", path_, fault,
+                                    names_.part.begin + static_cast<std::size_t>(first),
+                                    count == 1 ? "1 frame is" : fmt::format("{} frames are", count),
+                                    what));
   }
 
   // After Survey().
@@ -353,7 +362,8 @@ class CarmenLogSource : public FrameSource {
   enum class Place { kBeforePart, kInPart, kBehindPart };
   Place place_ = Place::kBeforePart;  // of the scan read last
   std::optional<Pose2> odom_from_last_;
-  HeldPoses held_;  // of the part
+  HeldPoses held_;  // of the part, as the next
+  FrozenScans frozen_;
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, those of the same stamp aside

@@ -29,7 +29,7 @@ struct CarmenLogOptions {
   bool upside_down = false;
   // Of logs that write the robot's pose where the laser's belongs. Who makes frames of ScanOf()
   // gives them the pose odom_from_base * mount.base_from_laser().
-  LaserMount mount;
+  LaserMount mount = {};
   // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
   double min_range_m = 0.1;
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;

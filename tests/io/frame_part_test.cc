@@ -200,12 +200,13 @@ TEST_F(PartOfASequence, HardlyAnyPosesAreSaidOfThePart) {
 }
 
 // A second apart, the first of them ten seconds after 1970.
-std::string Scan(int number, double x_m) {
+std::string ScanText(int number, double x_m) {
   return fmt::format("FLASER 2 1 1.5 {0} 0 0 {0} 0 0 {1} h 1\n", x_m, 10 + number);
 }
 
 TEST(PartOfALog, ScansKeepTheirNumbersAndEpochs) {
-  const TextFile file(Scan(0, 0) + Scan(1, 90) + Scan(2, 90.1) + Scan(3, 90.2) + Scan(4, 90.3));
+  const TextFile file(ScanText(0, 0) + ScanText(1, 90) + ScanText(2, 90.1) + ScanText(3, 90.2) +
+                      ScanText(4, 90.3));
   const std::vector<Frame> all = ReadAll(*OpenCarmenLog(file.path()));
   const CarmenLog log =
       OpenCarmenLog(file.path(), {}, {{3, 2, 3, {}}, {3, 0, 3, {}}, {4, 2, 3, {}}}, {2.0, 4.0});
@@ -226,9 +227,9 @@ TEST(PartOfALog, ScansKeepTheirNumbersAndEpochs) {
 
 TEST(PartOfALog, WarningsAreOfThePart) {
   const std::string damaged = "FLASER 2 1 x\n";
-  const TextFile file(damaged + Scan(0, 0) + damaged + Scan(1, 900) + Scan(2, 900) + damaged +
-                      Scan(3, 900) + Scan(1, 900) + Scan(0, 900) + Scan(4, 1800) + damaged +
-                      damaged);
+  const TextFile file(damaged + ScanText(0, 0) + damaged + ScanText(1, 900) + ScanText(2, 900) +
+                      damaged + ScanText(3, 900) + ScanText(1, 900) + ScanText(0, 900) +
+                      ScanText(4, 1800) + damaged + damaged);
   const auto warnings = [&](const PartOptions& part) {
     return OpenCarmenLog(file.path(), {}, {}, part).source->Warnings();
   };

@@ -1,0 +1,115 @@
+#include "mapper/io/frozen_scans.h"
+
+#include <cmath>
+#include <utility>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/median.h"
+
+namespace depthgrid {
+namespace {
+
+// As of images (FrozenImages). Chosen, of no measurement.
+constexpr double kFrozenTurnRad = RadFromDeg(2.0);
+constexpr double kFrozenNearerM = 0.05;
+// A scan with fewer hits, or fewer pieces of wall that must have come nearer, shows nothing.
+constexpr int kFewHits = 20;
+constexpr int kFewPieces = 5;
+// A piece of wall: long enough that noise and whole centimetres do not turn it, straight, and not
+// across the gap between two things.
+constexpr double kPieceM = 0.3;
+constexpr double kMostPieceM = 0.6;
+constexpr double kStraightM = 0.03;
+constexpr double kMostBendM = 0.003;
+
+bool IsSame(const std::vector<double>& a_m, const std::vector<double>& b_m) {
+  return std::equal(a_m.begin(), a_m.end(), b_m.begin(), b_m.end(),
+                    [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+}
+
+// How many pieces of wall are by more than `least_m` nearer or farther along their beam after this
+// motion of the laser.
+int PiecesThatMove(const Scan& scan, const Eigen::Vector2d& motion, double least_m) {
+  int pieces = 0;
+  std::vector<Eigen::Vector2d> wall;  // hits without one missing in between
+  for (const Beam& beam : scan.beams) {
+    if (!beam.hit) {
+      wall.clear();
+      continue;
+    }
+    wall.push_back(EndPoint(beam));
+    const Eigen::Vector2d along = wall.back() - wall.front();
+    const double length_m = along.norm();
+    if (length_m < kPieceM) continue;
+    const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()) / length_m;
+    const bool is_straight =
+        length_m < kMostPieceM &&
+        std::all_of(wall.begin(), wall.end(), [&](const Eigen::Vector2d& point) {
+          return std::abs(normal.dot(point - wall.front())) < kStraightM;
+        });
+    const Eigen::Vector2d middle = wall[wall.size() / 2];
+    const double towards = std::abs(normal.dot(middle.normalized()));
+    if (is_straight && std::abs(normal.dot(motion)) > least_m * towards) ++pieces;
+    wall.assign(1, wall.back());
+  }
+  return pieces;
+}
+
+// The step of the readings as they are written, such as a centimetre; 0 where they have more than
+// six decimals.
+double WrittenStepM(const Scan& scan) {
+  double step_m = 1.0;
+  for (int decimals = 0; decimals <= 6; ++decimals, step_m *= 0.1) {
+    const bool is_whole = std::all_of(scan.beams.begin(), scan.beams.end(), [&](const Beam& beam) {
+      const double steps = beam.range_m / step_m;
+      // Of a float's seven digits the last one may be off.
+      return !beam.hit || std::abs(steps - std::round(steps)) < 1e-6 * steps + 1e-9;
+    });
+    if (is_whole) return step_m;
+  }
+  return 0.0;
+}
+
+// Whether neighbouring readings differ as only noise does, which never comes twice: by their second
+// differences, which of walls are below 3 mm in the middle of a scan (1 degree apart, a corridor 2
+// m wide) and with rounding at most a step more.
+bool IsNoisy(const Scan& scan) {
+  std::vector<double> bends_m;
+  for (std::size_t i = 1; i + 1 < scan.beams.size(); ++i) {
+    const Beam &a = scan.beams[i - 1], &b = scan.beams[i], &c = scan.beams[i + 1];
+    if (!a.hit || !b.hit || !c.hit) continue;
+    bends_m.push_back(std::abs(static_cast<double>(a.range_m) - 2.0 * b.range_m + c.range_m));
+  }
+  if (bends_m.size() < static_cast<std::size_t>(kFewHits)) return false;
+  return UpperMedian(std::move(bends_m)) > kMostBendM + WrittenStepM(scan) * (1.0 + 1e-3);
+}
+
+bool MustDiffer(const Scan& scan, const Pose2& motion, double seconds) {
+  const auto hits = std::count_if(scan.beams.begin(), scan.beams.end(),
+                                  [](const Beam& beam) { return beam.hit; });
+  if (hits < kFewHits) return false;
+  const double least_m = kFrozenNearerM * (1.0 + seconds);
+  if (std::abs(motion.yaw_rad) > kFrozenTurnRad * (1.0 + seconds)) return true;
+  if (motion.translation().norm() < least_m) return false;
+  return IsNoisy(scan) || PiecesThatMove(scan, motion.translation(), least_m) >= kFewPieces;
+}
+
+}  // namespace
+
+void FrozenScans::Add(double stamp_s, const Pose2& odom_from_laser,
+                      const std::vector<double>& range_m, const std::function<Scan()>& scan) {
+  frozen_.push_back(false);
+  const std::size_t here = frozen_.size() - 1;
+  if (here == 0 || !IsSame(range_m, range_m_)) {
+    stamp_s_ = stamp_s;
+    odom_from_laser_ = odom_from_laser;
+    range_m_ = range_m;
+    first_ = here;
+    return;
+  }
+  const Pose2 motion = Between(odom_from_laser_, odom_from_laser);
+  if (!MustDiffer(scan(), motion, stamp_s - stamp_s_)) return;
+  for (std::size_t i = first_ + 1; i <= here; ++i) frozen_[i] = true;
+}
+
+}  // namespace depthgrid
