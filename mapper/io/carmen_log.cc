@@ -18,8 +18,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/file.h"
-#include "mapper/io/frozen_scans.h"
-#include "mapper/io/held_poses.h"
+#include "mapper/io/laser_faults_impl.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/scan_clock.h"
 #include "mapper/io/slam_jumps.h"
@@ -56,7 +55,11 @@ class CarmenLogSource : public FrameSource {
  public:
   CarmenLogSource(std::string path, const CarmenLogOptions& options,
                   const std::vector<LoopClosure>& loops, const PartOptions& part)
-      : path_(std::move(path)), options_(options), part_(part), line_(kMaxLineBytes) {
+      : path_(std::move(path)),
+        options_(options),
+        part_(part),
+        line_(kMaxLineBytes),
+        faults_(options) {
     for (const LoopClosure& loop : loops) {
       loops_.push_back(CameraLoop(loop, options_.mount.base_from_laser()));
     }
@@ -75,11 +78,13 @@ class CarmenLogSource : public FrameSource {
     Frame frame;
     frame.index = next_index_++;
     frame.stamp_s = line->stamp_s;
-    if (!IsOneOf(frozen_.frozen(), frame.index)) {
+    if (faults_.HasPose(InPart(frame.index))) {
+      frame.slam_from_camera = CameraOf(LaserPoseOf(*line, options_), 0.0);
+    }
+    if (faults_.HasScan(InPart(frame.index))) {
+      faults_.DropBody(*line);
       frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
     }
-    if (!IsOneOf(held_.held(), frame.index))
-      frame.slam_from_camera = CameraOf(LaserPoseOf(*line), 0.0);
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
@@ -92,13 +97,6 @@ class CarmenLogSource : public FrameSource {
   const FrameNames& Names() const { return names_; }
 
  private:
-  Pose2 LaserPoseOf(const CarmenScan& line) const {
-    const Pose2 base_from_laser = options_.mount.base_from_laser();
-    // The identity would turn -0 into 0.
-    if (base_from_laser == Pose2{}) return line.odom_from_laser;
-    return line.odom_from_laser * base_from_laser;
-  }
-
   struct Problem {
     int count = 0;
     int first_line = 0;
@@ -122,9 +120,7 @@ class CarmenLogSource : public FrameSource {
       if (place_ != Place::kInPart) continue;
       const double no_return_m = ReachOf(*scan, options_).no_return_m;
       doubts.check.Add(*scan, no_return_m, line_number_);
-      held_.Add(scan->odom_from_laser, scan->range_m, options_.min_range_m, no_return_m);
-      frozen_.Add(scan->stamp_s, LaserPoseOf(*scan), scan->range_m,
-                  [&] { return ScanOfLine(*scan, options_); });
+      faults_.Add(*scan);
       if (last) doubts.speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
     }
@@ -137,21 +133,20 @@ class CarmenLogSource : public FrameSource {
     Doubts doubts = ReadThrough();
     if (clock_.Mend()) {
       names_ = {};
-      held_ = {};
-      frozen_ = {};
+      faults_ = LaserFaults(options_);
       problems_.clear();
       earlier_ = 0;
       doubts = ReadThrough();
     }
+    faults_.Find();
     names_.part = FindPart(part_, names_.stamps_s, path_);
     std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
     WarnOfProblems();
     WarnOfClock();
     WarnOfOrder();
-    WarnOf(held_.held(), "the odometry gives one pose again and again while the scans move",
-           "taken for lost");
-    WarnOf(frozen_.frozen(), "the laser gives one scan again and again while the robot moves",
-           "placed by the odometry alone");
+    for (std::string& fault : faults_.Warnings(path_, names_.part.begin)) {
+      warnings_.push_back(std::move(fault));
+    }
     for (std::string& doubt : doubts.check.Warnings(path_)) warnings_.push_back(std::move(doubt));
     if (const auto speed_mps = ImpossibleSpeedMps(std::move(doubts.speeds_mps))) {
       warnings_.push_back(fmt::format(
@@ -169,19 +164,9 @@ class CarmenLogSource : public FrameSource {
     }
   }
 
-  // Of a frame of the part; those before it were not looked at.
-  bool IsOneOf(const std::vector<bool>& of_part, int index) const {
-    const auto in_part = static_cast<std::size_t>(index) - names_.part.begin;
-    return in_part < of_part.size() && of_part[in_part];
-  }
-  void WarnOf(const std::vector<bool>& of_part, const char* fault, const char* what) {
-    const auto count = std::count(of_part.begin(), of_part.end(), true);
-    if (count == 0) return;
-    const auto first = std::find(of_part.begin(), of_part.end(), true) - of_part.begin();
-    warnings_.push_back(fmt::format("{}: {}, first in frame {}: {} {}", path_, fault,
-                                    names_.part.begin + static_cast<std::size_t>(first),
-                                    count == 1 ? "1 frame is" : fmt::format("{} frames are", count),
-                                    what));
+  // Among the scans of the part.
+  std::size_t InPart(int index) const {
+    return static_cast<std::size_t>(index) - names_.part.begin;
   }
 
   // After Survey().
@@ -362,8 +347,7 @@ class CarmenLogSource : public FrameSource {
   enum class Place { kBeforePart, kInPart, kBehindPart };
   Place place_ = Place::kBeforePart;  // of the scan read last
   std::optional<Pose2> odom_from_last_;
-  HeldPoses held_;  // of the part, as the next
-  FrozenScans frozen_;
+  LaserFaults faults_;  // of the part
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, those of the same stamp aside

@@ -32,6 +32,8 @@ struct CarmenLogOptions {
   LaserMount mount = {};
   // Nearer readings are "no data": 0 is how scanners report "too near" or a fault.
   double min_range_m = 0.1;
+  // Readings that stay the same while the robot turns are its own body and left out (OwnBody).
+  bool drop_body = true;
   // A reading at the maximum says "nothing there", which also glass, mirrors and black cloth say;
   // so it clears this far only, as Cartographer's missing_data_ray_length (5 m) does.
   double no_return_clear_m = 5.0;

@@ -27,19 +27,6 @@ Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
   return beam;
 }
 
-struct Bearings {
-  double first_rad = 0.0;
-  double step_rad = 0.0;
-};
-
-Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options) {
-  if (line.states_angles || options.fov_deg == 0.0) {
-    return {line.first_bearing_rad, line.bearing_step_rad};
-  }
-  const double fov_rad = RadFromDeg(options.fov_deg);
-  return {-0.5 * fov_rad, fov_rad / static_cast<double>(line.range_m.size() - 1)};
-}
-
 // Gaps that are too narrow for an opening clear no farther than the hits beside them.
 void NarrowGaps(Scan& scan, double narrowest_m) {
   std::vector<Beam>& beams = scan.beams;
@@ -75,6 +62,22 @@ LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options) {
   return {stated_m, stated_m - std::max(kMaxToleranceM, kMaxToleranceShare * stated_m)};
 }
 
+Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  const double sign = options.upside_down ? -1.0 : 1.0;
+  if (line.states_angles || options.fov_deg == 0.0) {
+    return {sign * line.first_bearing_rad, sign * line.bearing_step_rad};
+  }
+  const double fov_rad = RadFromDeg(options.fov_deg);
+  return {sign * -0.5 * fov_rad, sign * fov_rad / static_cast<double>(line.range_m.size() - 1)};
+}
+
+Pose2 LaserPoseOf(const CarmenScan& line, const CarmenLogOptions& options) {
+  const Pose2 base_from_laser = options.mount.base_from_laser();
+  // The identity would turn -0 into 0.
+  if (base_from_laser == Pose2{}) return line.odom_from_laser;
+  return line.odom_from_laser * base_from_laser;
+}
+
 Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options) {
   const LaserReach reach = ReachOf(line, options);
   const Bearings bearings = BearingsOf(line, options);
@@ -82,9 +85,7 @@ Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options) {
   scan.max_range_m = reach.max_m;
   scan.beams.reserve(line.range_m.size());
   for (std::size_t i = 0; i < line.range_m.size(); ++i) {
-    const double bearing_rad = bearings.first_rad + static_cast<double>(i) * bearings.step_rad;
-    const double sign = options.upside_down ? -1.0 : 1.0;
-    scan.beams.push_back(BeamOf(sign * bearing_rad, line.range_m[i], reach, options));
+    scan.beams.push_back(BeamOf(bearings.At(i), line.range_m[i], reach, options));
   }
   if (options.upside_down) std::reverse(scan.beams.begin(), scan.beams.end());
   NarrowGaps(scan, options.no_return_gap_m);
@@ -107,6 +108,8 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Flag("upside_down", upside_down, "whether the readings are written from left to right");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Less("min_range_m", min_range_m, "max_range_m", MostRangeM(*this));
+  v.Flag("drop_body", drop_body,
+         "leave out what stays nearer than 1 m while the robot turns: its own body");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
            "how far a reading without return is free space");
   v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},

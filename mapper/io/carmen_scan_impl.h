@@ -15,6 +15,19 @@ struct LaserReach {
 // The setting, or where it says nothing what the SICK LMS reaches.
 double MostRangeM(const CarmenLogOptions& options);
 LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options);
+// Of a line's readings, in the laser's axes.
+struct Bearings {
+  double first_rad = 0.0;
+  double step_rad = 0.0;  // below 0 of a laser mounted upside down
+
+  double At(std::size_t reading) const {
+    return first_rad + static_cast<double>(reading) * step_rad;
+  }
+};
+Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options);
+
+// In the odometry's frame.
+Pose2 LaserPoseOf(const CarmenScan& line, const CarmenLogOptions& options);
 // Of a line and options that are sound.
 Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options);
 
