@@ -35,14 +35,44 @@ void RequireOneGrid(const std::string& map_path, const StateMap& map, const std:
   OneGridAround(other->geometry, other_path, map.geometry, map_path);
 }
 
+bool IsMapYaml(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error) || path.extension() != ".yaml") return false;
+  try {
+    const Config yaml = Config::FromFile(path.string());
+    return yaml.Has("image") && yaml.Has("resolution");
+  } catch (const InputError&) {
+    return false;  // something else
+  }
+}
+
+// A map as map_server reads it: this file, or one in this folder. Empty where there is none.
+std::string MapPictureAt(const fs::path& path) {
+  std::error_code error;
+  if (IsMapYaml(path) || path.extension() == ".pgm") return path.string();
+  std::vector<std::string> maps;
+  for (const auto& entry : fs::directory_iterator(path, error)) {
+    if (IsMapYaml(entry.path())) maps.push_back(entry.path().string());
+  }
+  return maps.empty() ? "" : *std::min_element(maps.begin(), maps.end());
+}
+
 }  // namespace
 
 void RequireRunFolder(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) throw InputError(folder, "no such folder");
-  if (!fs::exists(fs::path(folder) / "run.yaml", error)) {
-    throw InputError(folder, "is no run's folder: it has no run.yaml");
-  }
+  if (fs::exists(fs::path(folder) / "run.yaml", error)) return;
+  const std::string picture = MapPictureAt(folder);
+  if (picture.empty()) throw InputError(folder, "is no run's folder: it has no run.yaml");
+  const fs::path around = fs::path(picture).parent_path();
+  throw InputError(
+      picture,
+      fs::exists(around / "run.yaml", error)
+          ? fmt::format("is a run's picture, must be the folder that it is in, {}",
+                        around.empty() ? "." : around.string())
+          : "is a finished picture, as map_server's maps are, without the scans that it was drawn "
+            "from; must be the folder of a run of depthgrid (with a run.yaml)");
 }
 
 RunFiles ReadRunFolder(const std::string& folder) {

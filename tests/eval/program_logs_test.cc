@@ -220,6 +220,30 @@ TEST_F(ProgramLogs, AFinishedMapOfImpossibleSettingsIsRefused) {
   Succeed("map robot.log --map first -o out");
 }
 
+// A map_server's map, as other programs save it.
+TEST_F(ProgramLogs, APictureIsNoMapToGoOnIn) {
+  Write("robot.log", ThereAndBack(1.0));
+  std::filesystem::create_directories(Path("maps"));
+  Write("maps/floor.yaml", "image: floor.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  Write("maps/floor.pgm", "P5 1 1 255 x");
+  Write("maps/a.yaml", "[");  // something else
+  const char* said =
+      ": is a finished picture, as map_server's maps are, without the scans that it was drawn "
+      "from; must be the folder of a run of depthgrid (with a run.yaml)\n";
+  for (const std::string given : {"maps", "maps/floor.yaml"}) {
+    ExpectRefusal("map robot.log --map " + given + " -o out",
+                  {std::string("depthgrid: maps/floor.yaml") + said});
+  }
+  ExpectRefusal("map robot.log --map maps/floor.pgm --localise -o out", {"maps/floor.pgm", said});
+  ExpectRefusal("regrid maps --resolution 0.1", {"maps/floor.yaml", said});
+  std::filesystem::remove(Path("maps/floor.yaml"));
+  ExpectRefusal("map robot.log --map maps -o out",
+                {"maps: is no run's folder: it has no run.yaml"});
+  Succeed("map robot.log -o first");
+  ExpectRefusal("map robot.log --map first/map.yaml -o out",
+                {"first/map.yaml: is a run's picture, must be the folder that it is in, first\n"});
+}
+
 TEST_F(ProgramLogs, WhereARunBeginsIsFoundWithPosesThatDrift) {
   Write("first.log", ThereAndBack(1.0));
   Succeed("map first.log -o first");
