@@ -75,6 +75,7 @@ void CarmenCheck::Add(const CarmenScan& scan, double no_return_m, int line_numbe
 
 void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int line_number) {
   no_return_m_ = std::max(no_return_m_, no_return_m);
+  crowd_.Add(scan.odom_from_laser, scan.range_m, min_range_m_, no_return_m);
   readings_ += static_cast<std::int64_t>(scan.range_m.size());
   for (const double range_m : scan.range_m) {
     if (range_m > 0.0 && range_m < shortest_m_) {
@@ -151,31 +152,59 @@ void CarmenCheck::AddAngles(const CarmenScan& scan, int line_number) {
   contradiction_count_ = scan.range_m.size();
 }
 
-std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
-  std::vector<std::string> warnings;
+std::optional<std::string> CarmenCheck::DoubtOfUnits(const std::string& path) const {
+  if (shortest_m_ >= no_return_m_ && longest_m_ > kAlikeRatio * shortest_m_) {
+    return fmt::format(
+        "{}:{}: the shortest of {} readings is {:g}, and from {:g} m on a reading is no return "
+        "(sequence.laser.max_range_m): are they in metres?",
+        path, shortest_line_, readings_, shortest_m_, no_return_m_);
+  }
+  if (!DifferAsHitsDo()) return {};
+  std::int64_t count = 0;
+  for (const auto& [power, readings] : beyond_) count += readings;
+  return fmt::format(
+      "{}:{}: {} of {} readings are {:g} m or more, which is taken for no return "
+      "(sequence.laser.max_range_m, the line's own maximum or 80 m), and differ as hits do: are "
+      "they in metres, and is that as far as the laser reaches?",
+      path, beyond_line_, count, readings_, beyond_m_);
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfLargest(const std::string& path) const {
   // Rounded down, so that the setting takes all of them.
   const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
   if (setting_m > min_range_m_ && largest_count_ >= kFewestSuspicious &&
       static_cast<double>(largest_count_) >= kSuspiciousShare * static_cast<double>(readings_)) {
-    warnings.push_back(fmt::format(
+    return fmt::format(
         "{}:{}: {} of {} readings are {:g} m, the largest: if that is how the laser writes \"no "
         "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.3f} takes them for "
         "none",
-        path, largest_line_, largest_count_, readings_, largest_m_, setting_m));
+        path, largest_line_, largest_count_, readings_, largest_m_, setting_m);
   }
-  if (shortest_m_ >= no_return_m_ && longest_m_ > kAlikeRatio * shortest_m_) {
-    warnings.push_back(fmt::format(
-        "{}:{}: the shortest of {} readings is {:g}, and from {:g} m on a reading is no return "
-        "(sequence.laser.max_range_m): are they in metres?",
-        path, shortest_line_, readings_, shortest_m_, no_return_m_));
-  } else if (DifferAsHitsDo()) {
-    std::int64_t count = 0;
-    for (const auto& [power, readings] : beyond_) count += readings;
-    warnings.push_back(fmt::format(
-        "{}:{}: {} of {} readings are {:g} m or more, which is taken for no return "
-        "(sequence.laser.max_range_m, the line's own maximum or 80 m), and differ as hits do: are "
-        "they in metres, and is that as far as the laser reaches?",
-        path, beyond_line_, count, readings_, beyond_m_));
+  return {};
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfLongest(const std::string& path) const {
+  const auto crowd = crowd_.Found();
+  if (!crowd) return {};
+  constexpr double kPercent = 100.0;
+  return fmt::format(
+      "{}: {:.1f} % of the readings are from {:.2f} to {:.2f} m, the log's longest, {:.0f} times "
+      "as "
+      "many as in as wide a band below, wherever the laser is: if that is how it writes \"no "
+      "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.2f} takes them for "
+      "none",
+      path, kPercent * static_cast<double>(crowd->count) / static_cast<double>(crowd->readings),
+      crowd->shortest_m, crowd->longest_m, crowd->times_as_many,
+      std::floor(kPercent * crowd->shortest_m) / kPercent);
+}
+
+std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
+  std::vector<std::string> warnings;
+  const auto largest = DoubtOfLargest(path);
+  const auto units = DoubtOfUnits(path);
+  const auto longest = largest || units ? std::nullopt : DoubtOfLongest(path);
+  for (const auto& doubt : {largest, units, longest}) {
+    if (doubt) warnings.push_back(*doubt);
   }
   if (beyond_a_turn_ && impossible_steps_ >= kFewestImpossibleSteps &&
       impossible_steps_ >= kImpossibleShare * steps_) {

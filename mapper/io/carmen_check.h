@@ -12,6 +12,7 @@
 
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_log.h"
+#include "mapper/io/range_crowd.h"
 
 namespace depthgrid {
 
@@ -28,6 +29,9 @@ class CarmenCheck {
 
  private:
   bool DifferAsHitsDo() const;
+  std::optional<std::string> DoubtOfUnits(const std::string& path) const;
+  std::optional<std::string> DoubtOfLargest(const std::string& path) const;
+  std::optional<std::string> DoubtOfLongest(const std::string& path) const;
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
   void AddPoses(const CarmenScan& scan, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
@@ -46,6 +50,8 @@ class CarmenCheck {
   int shortest_line_ = 0;
   double longest_m_ = 0.0;
   double no_return_m_ = 0.0;
+
+  RangeCrowdCheck crowd_;
 
   // Readings that are no return, by the power of kAlikeRatio they are.
   std::map<int, std::int64_t> beyond_;
