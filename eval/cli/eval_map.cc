@@ -253,6 +253,27 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
+// A map whose black and white are read the wrong way is free where the other has walls.
+std::optional<std::string> DoubtOfShades(const EvalMapArguments& arguments,
+                                         const CellScores& scores, const MapFile& reference,
+                                         const MapFile& estimate) {
+  // Most of two maps of anywhere is free in both.
+  constexpr double kSwapped = 0.8;
+  constexpr int kFewCells = 20;
+  const auto cells = [&](CellState truth, CellState estimated) {
+    return scores.confusion[static_cast<std::size_t>(truth)][static_cast<std::size_t>(estimated)];
+  };
+  const auto walls_free = cells(CellState::kOccupied, CellState::kFree);
+  const auto swapped = cells(CellState::kFree, CellState::kOccupied) + walls_free;
+  const double known = KnownToBoth(scores);
+  if (known < kFewCells || walls_free == 0 || swapped < kSwapped * known) return std::nullopt;
+  return fmt::format(
+      "{}: of the cells known to both maps {:.0f} % are free in one and occupied in the other: is "
+      "negate, {} here and {} in {}, right in both?",
+      arguments.estimate, 100.0 * swapped / known, estimate.negate ? 1 : 0,
+      reference.negate ? 1 : 0, arguments.reference);
+}
+
 // A motion is found to the best of what is near, however bad that is.
 std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments,
                                                const MapQuality& quality, const ScoredMaps& maps,
@@ -304,6 +325,8 @@ void EvalMap(const EvalMapArguments& arguments) {
   const MapFile reference = ReadMap(arguments.reference);
   const Pose2& world_from_truth = reference.world_from_grid;
   const MapFile given = ReadMap(arguments.estimate, world_from_truth);
+  Warn(reference.doubts);
+  Warn(given.doubts);
   const auto [truth, estimate, note] =
       InOneSize(StatesOf(reference.map), AlignedMap(given), arguments);
   const bool redrawn = given.world_from_grid != Pose2{};
@@ -334,6 +357,9 @@ void EvalMap(const EvalMapArguments& arguments) {
   const ScoredMaps maps = OnOneGeometry(truth, StatesOf(estimate), observable);
   if (const auto doubt =
           DoubtOfRegistration(arguments, *score.quality, maps, walls, !doubts.empty())) {
+    doubts.push_back(*doubt);
+  }
+  if (const auto doubt = DoubtOfShades(arguments, score.all, reference, given)) {
     doubts.push_back(*doubt);
   }
   Warn(doubts);

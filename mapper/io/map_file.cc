@@ -78,6 +78,24 @@ MapYaml ReadYaml(const std::string& path) {
   return yaml;
 }
 
+std::vector<std::string> DoubtsOf(const MapYaml& yaml, const std::string& path) {
+  // Cells of maps to drive by are of centimetres, outdoors of decimetres.
+  constexpr double kLargestCellM = 1.0;
+  std::vector<std::string> doubts;
+  if (yaml.resolution_m > kLargestCellM) {
+    doubts.push_back(fmt::format(
+        "{}: resolution is {:g}, cells of so many metres: is it in millimetres ({:g}) or "
+        "centimetres ({:g})?",
+        path, yaml.resolution_m, 1e-3 * yaml.resolution_m, 1e-2 * yaml.resolution_m));
+  }
+  if (const double yaw = yaml.origin[2]; std::abs(yaw) > 2.0 * kPi) {
+    doubts.push_back(fmt::format(
+        "{}: origin has a yaw of {:g} rad, more than a turn: is it in degrees ({:.4g} rad)?", path,
+        yaw, RadFromDeg(yaw)));
+  }
+  return doubts;
+}
+
 // The lattice cell of the image's lower-left pixel, and how the lattice lies in the world.
 void Place(const MapYaml& yaml, MapFile& file) {
   const Pose2 world_from_corner{yaml.origin[0], yaml.origin[1], WrapAngle(yaml.origin[2])};
@@ -171,6 +189,8 @@ MapFile ReadMap(const std::string& yaml_path, const Pose2& world_from_frame) {
   }
   const ShadeImage image = internal::ReadShades(image_path.string(), yaml.rule.mode);
   MapFile file;
+  file.negate = yaml.rule.negate;
+  file.doubts = DoubtsOf(yaml, yaml_path);
   Place(yaml, file);
   file.map.geometry.width_cells = image.width_px;
   file.map.geometry.height_cells = image.height_px;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mapper/core/cell_set.h"
 #include "mapper/core/occupancy_map.h"
@@ -24,6 +25,9 @@ struct MapFile {
   // From the frame of the map's cells to the world the file speaks of, or to the frame that was
   // asked for: the identity unless the origin has a yaw there or is no multiple of the resolution.
   Pose2 world_from_grid;
+  bool negate = false;
+  // What of the YAML is allowed but likely of another unit, a line each.
+  std::vector<std::string> doubts;
 };
 
 // Throws InputError for a missing, unreadable or contradictory YAML or image (PGM or PNG).

@@ -142,6 +142,47 @@ TEST_F(EvalMap, AMapThatIsTurnedIsSaid) {
               HasSubstr("turned.yaml: turned by -90 degrees, it lies over truth.yaml"));
 }
 
+// A room of 10 x 10 cells with walls around.
+TEST_F(EvalMap, LikelyMistakesInAMapsYamlAreAskedAbout) {
+  std::string pgm = "P2 14 14 255\n";
+  for (int i = 0; i < 14 * 14; ++i) {
+    const auto lies_in = [&](int margin) {
+      const int u = i % 14, v = i / 14;
+      return std::min(u, v) >= margin && std::max(u, v) < 14 - margin;
+    };
+    pgm += lies_in(2) ? "254 " : lies_in(1) ? "0 " : "205 ";
+  }
+  Write("room.pgm", pgm);
+  const auto map = [&](const std::string& name, const char* resolution, const char* yaw,
+                       const char* negate) {
+    Write(name + ".yaml", std::string("image: room.pgm\nresolution: ") + resolution +
+                              "\norigin: [1, 2, " + yaw + "]\nnegate: " + negate +
+                              "\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  };
+  map("right", "0.05", "0", "0");
+  map("turned", "0.05", "1.57", "0");
+  map("cm", "5", "0", "0");
+  map("mm", "50", "0", "0");
+  map("deg", "0.05", "90", "0");
+  map("negated", "0.05", "0", "1");
+  EXPECT_EQ(Program("eval map right.yaml right.yaml").err, "");
+  EXPECT_EQ(Program("eval map turned.yaml turned.yaml").err, "");
+  EXPECT_EQ(Program("eval map negated.yaml negated.yaml").err, "");
+  EXPECT_THAT(Program("eval map cm.yaml cm.yaml").err,
+              HasSubstr("warning: cm.yaml: resolution is 5, cells of so many metres: is it in "
+                        "millimetres (0.005) or centimetres (0.05)?\n"));
+  EXPECT_THAT(Program("eval map mm.yaml right.yaml").err, HasSubstr("millimetres (0.05)"));
+  EXPECT_THAT(Program("eval map right.yaml deg.yaml").err,
+              HasSubstr("warning: deg.yaml: origin has a yaw of 90 rad, more than a turn: is it in "
+                        "degrees (1.571 rad)?\n"));
+  EXPECT_THAT(Program("eval map right.yaml negated.yaml").err,
+              HasSubstr("warning: negated.yaml: of the cells known to both maps 100 % are free in "
+                        "one and occupied in the other: is negate, 1 here and 0 in right.yaml, "
+                        "right in both?\n"));
+  EXPECT_THAT(Program("eval map negated.yaml right.yaml").err,
+              HasSubstr("negate, 0 here and 1 in negated.yaml"));
+}
+
 TEST_F(EvalMap, CellsThatDoNotFitTogetherAreRefused) {
   ExpectRefusal("eval map fine.yaml other.yaml",
                 {"other.yaml: resolution is 0.03, must be the 0.05 of fine.yaml, a whole multiple "
