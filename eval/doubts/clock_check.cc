@@ -61,16 +61,30 @@ class Clocks {
     return AlignedMisfit(pairs).value_or(kNoFit);
   }
 
-  // The roundest that fits about as well as the best: no more digits than are known.
-  double BestOffset() const {
-    constexpr double kAlike = 1.05;
+  struct Best {
+    double offset_s = 0.0;
+    double unsure_s = 0.0;
+  };
+  // The roundest that fits as well as the best: no more digits than are known. And how far from it
+  // offsets fit so, in steps of the second.
+  Best BestOffset() const {
+    // `map` has the same (mapper/io/pose_check.cc).
+    constexpr double kAlike = 1.005;
     const double best_s = FinestOffset();
     const double most_m = kAlike * Misfit(best_s, best_s);
-    for (const double unit_s : {1.0, 0.1, 0.01}) {
+    const auto fits = [&](double offset_s) { return Misfit(offset_s, offset_s) <= most_m; };
+    double offset_s = best_s;
+    for (const double unit_s : {0.01, 0.1, 1.0}) {
       const double round_s = unit_s * std::round(best_s / unit_s);
-      if (round_s != 0.0 && Misfit(round_s, round_s) <= most_m) return round_s;
+      if (round_s != 0.0 && fits(round_s)) offset_s = round_s;
     }
-    return best_s;
+    double unsure_s = 0.0;
+    for (const double step_s : {-kStepsS[1], kStepsS[1]}) {
+      for (int k = 1; k * kStepsS[1] <= kStepsS[0] && fits(offset_s + k * step_s); ++k) {
+        unsure_s = std::max(unsure_s, k * kStepsS[1]);
+      }
+    }
+    return {offset_s, unsure_s};
   }
 
  private:
@@ -126,7 +140,9 @@ std::optional<ClockOffset> FindClockOffset(const Trajectory& reference,
   if (reference.size() < kLeastPoses || estimate.size() < kLeastPoses) return std::nullopt;
   const Clocks clocks(reference, estimate);
   ClockOffset found;
-  found.offset_s = clocks.BestOffset();
+  const auto [offset_s, unsure_s] = clocks.BestOffset();
+  found.offset_s = offset_s;
+  found.unsure_s = unsure_s;
   found.better_misfit_m = clocks.Misfit(found.offset_s, 0.0);
   found.misfit_m = clocks.Misfit(0.0, found.offset_s);
   if (!std::isfinite(found.better_misfit_m) || !std::isfinite(found.misfit_m)) return std::nullopt;

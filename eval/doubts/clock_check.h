@@ -12,6 +12,7 @@ constexpr double kMostClockOffsetS = 5.0;
 
 struct ClockOffset {
   double offset_s = 0.0;         // to be added to the estimate's stamps
+  double unsure_s = 0.0;         // so much more or less fits alike
   double misfit_m = 0.0;         // root mean square, aligned, with the stamps as they are
   double better_misfit_m = 0.0;  // and with the offset; the same poses both times
 };

@@ -145,9 +145,10 @@ std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajec
   }
   if (!clock) return {};
   return {fmt::format(
-      "{}: its stamps seem {:.3f} s {}: with {:+.3f} s added (--time-offset of eval trajectory) it "
-      "fits {} to {:.3f} m, not to {:.3f} m (aligned)",
+      "{}: its stamps seem {:.3f} s {}{}: with {:+.3f} s added (--time-offset of eval trajectory) "
+      "it fits {} to {:.3f} m, not to {:.3f} m (aligned)",
       names.estimate, std::abs(clock->offset_s), clock->offset_s < 0.0 ? "late" : "early",
+      clock->unsure_s > 0.0 ? fmt::format(", to {:.2f} s or so", clock->unsure_s) : "",
       added_s + clock->offset_s, names.reference, clock->better_misfit_m, clock->misfit_m)};
 }
 

@@ -174,6 +174,18 @@ TEST(ClockCheck, FindsTheOffsetEitherWay) {
                                     "(--time-offset of eval trajectory) it fits truth to ")));
 }
 
+// Between two steps of the search, of an estimate that errs: no other one that is rounder.
+TEST(ClockCheck, AnOffsetIsAsExactAsPosesTell) {
+  for (const double noise_m : {0.005, 0.02, 0.05}) {
+    for (const double late_s : {0.25, 0.35, -0.65, 0.435}) {
+      const auto found = FindClockOffset(Eight(), Later(Eight(noise_m), late_s));
+      ASSERT_TRUE(found) << noise_m << " " << late_s;
+      EXPECT_NEAR(found->offset_s, -late_s, 0.02) << noise_m;
+      EXPECT_LE(std::abs(found->offset_s + late_s), found->unsure_s + 0.011) << noise_m;
+    }
+  }
+}
+
 // A walk of 1 cm a pose along each axis.
 Trajectory Drifting(std::uint64_t seed) {
   RandomStream random(seed, RandomStage::kTest);
