@@ -42,6 +42,9 @@ constexpr double kInPlaceM = 0.015;
 // Less, a match finds by itself.
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
+// Of a log without slips, up to six were found with fixed gains of 0, 0.02, 0.05 and 0.1 along one
+// axis or all, none with 0.2 and 0.5 (two rooms of simulated logs).
+constexpr double kLeastFixedGain = 0.2;
 // Headings tried, and how far a match may go from one.
 constexpr double kHeadingStepDeg = 1.0;
 const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
@@ -85,6 +88,11 @@ std::shared_ptr<const Scan> SeenByBoth(const Scan& scan, const Scan& other,
 }
 
 }  // namespace
+
+bool CanTellSlips(const FusionOptions& fusion) {
+  return fusion.mode != FusionMode::kFixed ||
+         *std::min_element(fusion.gain.begin(), fusion.gain.end()) >= kLeastFixedGain;
+}
 
 bool SlipSearch::IsSuspected(const FrameRecord& frame, double share,
                              const Relocation& usually) const {

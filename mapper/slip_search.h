@@ -7,9 +7,14 @@
 #include <optional>
 
 #include "mapper/frame_history.h"
+#include "mapper/fuse/fusion_options.h"
 #include "mapper/graph/relocation.h"
 
 namespace depthgrid {
+
+// False for a fixed gain that takes little of what a match says, along any axis: the map then errs
+// by more and more, and what it explains comes and goes without a slip.
+bool CanTellSlips(const FusionOptions& fusion);
 
 class SlipSearch {
  public:

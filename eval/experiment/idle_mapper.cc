@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "eval/experiment/idle_settings.h"
+#include "mapper/slip_search.h"
 
 namespace depthgrid {
 namespace {
@@ -103,6 +104,10 @@ void AddLoops(const MapperOptions& mapper, IdleSettingList& idle) {
       idle.push_back({std::string("mapper.loops.search.") + key, why});
     }
     if (!loops.use) idle.push_back({"mapper.loops.bend_frames", use + " and " + why});
+  }
+  const char* slip_deg = "mapper.loops.relocation.slip_deg";
+  if (!CanTellSlips(mapper.fusion)) {
+    idle.push_back({slip_deg, Stands(mapper.fusion, "mapper.fusion", "gain")});
   }
   if (loops.relocation.use) return;
   for (const char* key : kOfRelocation) {

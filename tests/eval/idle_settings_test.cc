@@ -69,6 +69,8 @@ TEST(IdleSettings, AreThoseThatNothingReads) {
        "mapper: {fusion: {mode: kalman}}"},
       {"mapper.rounds.again", "mapper: {fusion: {mode: fixed}}",
        "mapper: {fusion: {mode: learned}}"},
+      {"mapper.loops.relocation.slip_deg", "mapper: {fusion: {mode: fixed, gain: [1, 0, 0]}}",
+       "mapper: {fusion: {mode: fixed, gain: 0.2}}"},
       {"mapper.rounds.growth", "mapper: {rounds: {first_frames: 0}}", "{}"},
       {"mapper.keep.place_m", "mapper: {keep: {first_frames: 0}}", "{}"},
       {"mapper.grid.surface_radius_m", "mapper: {grid: {min_surface_share: 0}}", "{}"},

@@ -211,12 +211,14 @@ TEST(Relocation, ACorridorIsAmbiguous) {
 }
 
 // Wheels slip on a step: within a frame odometry is some degrees off, twice.
-double MeanErrorWithSlips(double slip_deg, bool searched) {
+struct SlippedRun {
+  double mean_error_m = 0.0;
+  int slips = 0;  // that were found
+};
+SlippedRun DriveWithSlips(double slip_deg, const MapperOptions& options) {
   constexpr int kFirstSlip = 120, kSecondSlip = 200, kFrames = 280;
-  MapperOptions options;
-  if (!searched) options.loops.relocation.slip_deg = 0.0;
   IncrementalMapper mapper(options, std::nullopt);
-  double sum_m = 0.0;
+  SlippedRun run;
   for (int i = 0; i < kFrames; ++i) {
     Pose2 off;
     for (const int at : {kFirstSlip, kSecondSlip}) {
@@ -231,15 +233,30 @@ double MeanErrorWithSlips(double slip_deg, bool searched) {
     frame.scan = std::make_shared<const Scan>(
         ScanOf(FurnishedRoom(), RoundTheRoom(i), laser, 8, static_cast<std::uint32_t>(i)));
     const FrameReport report = mapper.AddFrame(frame);
-    sum_m += Between(RoundTheRoom(i), BaseOf(*report.map_from_camera)).translation().norm();
+    const Pose2 error = Between(RoundTheRoom(i), BaseOf(*report.map_from_camera));
+    run.mean_error_m += error.translation().norm() / kFrames;
+    run.slips += report.slipped ? 1 : 0;
   }
-  return sum_m / kFrames;
+  return run;
+}
+
+// What a fixed gain leaves of errors grows, and is no slip; what it does not take is not taken
+// back.
+TEST(Slip, AFixedGainThatTakesLittleTellsNone) {
+  MapperOptions options;
+  options.fusion.mode = FusionMode::kFixed;
+  options.fusion.gain = {0.5, 0.5, 0.5};
+  EXPECT_EQ(DriveWithSlips(7.0, options).slips, 2);
+  options.fusion.gain = {0.5, 0.5, 0.19};
+  EXPECT_EQ(DriveWithSlips(7.0, options).slips, 0);
 }
 
 TEST(Slip, OfAFewDegreesIsTakenBackAtOnce) {
+  MapperOptions unsearched;
+  unsearched.loops.relocation.slip_deg = 0.0;
   for (const double slip_deg : {-4.0, 7.0}) {
-    EXPECT_LT(MeanErrorWithSlips(slip_deg, true), 0.01) << slip_deg;
-    EXPECT_GT(MeanErrorWithSlips(slip_deg, false), 0.015) << slip_deg;
+    EXPECT_LT(DriveWithSlips(slip_deg, {}).mean_error_m, 0.01) << slip_deg;
+    EXPECT_GT(DriveWithSlips(slip_deg, unsearched).mean_error_m, 0.015) << slip_deg;
   }
 }
 
