@@ -17,10 +17,11 @@ namespace depthgrid::cli {
 namespace {
 
 void PrintShares(const ErrorShares& score) {
-  fmt::print("\n{}{}: {} as it is\n", score.is_complement ? "1 - " : "", score.metric,
-             Short(score.error));
-  std::vector<std::vector<std::string>> rows = {
-      {"truth for", "error", "owned", "95 % interval", "share", "p", "p Holm"}};
+  const std::string unit = score.metric.ends_with("_m") ? " m" : "";
+  fmt::print("\n{}{}: {}{} as it is\n", score.is_complement ? "1 - " : "", score.metric,
+             Short(score.error), unit);
+  std::vector<std::vector<std::string>> rows = {{"truth for", "error" + unit, "owned" + unit,
+                                                 "95 % interval" + unit, "share", "p", "p Holm"}};
   for (const StageShare& stage : score.stages) {
     const auto& interval = stage.gain.mean_interval;
     rows.push_back(

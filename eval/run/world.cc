@@ -276,6 +276,18 @@ void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, co
   if (near) throw InputError(path.place, *near);
 }
 
+// Movers that were asked for by name; of `all`, when none of them is seen.
+void AddDoubtOfMovers(const ExperimentOptions& options, const World& world,
+                      std::vector<std::string>& doubts) {
+  std::vector<std::string> unseen =
+      UnseenMovers(world.trajectory, world.scene, world.rays, world.movers, world.camera,
+                   world.depth_range.max_m);
+  if (unseen.empty()) return;
+  if (options.movers == kAllMovers && unseen.size() < world.movers.size()) return;
+  doubts.push_back(fmt::format("movers: {}: no frame of this path shows {}",
+                               fmt::join(unseen, ", "), unseen.size() == 1 ? "it" : "them"));
+}
+
 World LoadWorld(const ExperimentOptions& options, int build_threads) {
   Scene scene = SceneOf(options);
   RayScene rays(scene.mesh, options.sensor.isa, build_threads);
@@ -293,8 +305,11 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
     trajectory = FromScene(scene, rays, movers, options);
   }
   WorldHashes hashes = HashesOf(scene, options);
-  return {std::move(scene), std::move(hashes),           std::move(rays),       std::move(movers),
-          camera,           SensorRange(options.sensor), std::move(trajectory), std::move(doubts)};
+  World world = {
+      std::move(scene), std::move(hashes),           std::move(rays),       std::move(movers),
+      camera,           SensorRange(options.sensor), std::move(trajectory), std::move(doubts)};
+  AddDoubtOfMovers(options, world, world.path_doubts);
+  return world;
 }
 
 }  // namespace depthgrid

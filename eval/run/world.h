@@ -28,8 +28,8 @@ struct World {
   PinholeCamera camera;
   DepthRange depth_range;
   Trajectory trajectory;
-  // What is amiss with a path that was read from a file, which each names; those of scenes are
-  // refused.
+  // What is amiss with a path that was read from a file, which each names (those of scenes are
+  // refused), and movers that it never sees.
   std::vector<std::string> path_doubts;
 };
 

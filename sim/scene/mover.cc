@@ -126,7 +126,11 @@ void KeepMovers(const std::string& chosen, std::vector<Mover>& movers) {
   if (chosen == kNoMovers) return movers.clear();
   if (chosen == kAllMovers && !movers.empty()) return;
   const std::vector<std::string> names = NamesIn(chosen);
-  for (const std::string& name : names) RequireMover(name, chosen, movers);
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    RequireMover(*name, chosen, movers);
+    if (std::find(names.begin(), name, *name) == name) continue;
+    throw SettingError("movers", fmt::format("is '{}', must name '{}' once", chosen, *name));
+  }
   std::erase_if(movers, [&](const Mover& mover) {
     return std::find(names.begin(), names.end(), mover.name) == names.end();
   });

@@ -48,8 +48,8 @@ struct Mover {
 MoverOptions ReadMoverOptions(Config spec);
 
 // Removes the movers that an experiment does not name with its `movers`: `all`, `none`, or names
-// joined by a plus sign. Throws SettingError for a name that none has, and for `all` where there is
-// none.
+// joined by a plus sign. Throws SettingError for a name that none has or that comes twice, and for
+// `all` where there is none.
 void KeepMovers(const std::string& chosen, std::vector<Mover>& movers);
 
 }  // namespace depthgrid

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
@@ -121,6 +122,80 @@ std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Sce
     if (auto passing = PassingText(trajectory, i, movers, what)) return passing;
   }
   return {};
+}
+
+namespace {
+
+// What one frame shows of a mover.
+struct MoverView {
+  const RayScene& room;
+  const RayScene& mover;
+  const PinholeCamera& camera;
+  double most_m = 0.0;
+  Pose3 world_from_camera;
+  Pose3 world_from_mover;
+
+  bool ShowsPoint(const Eigen::Vector3d& point_in_mover) const {
+    const Eigen::Vector3d in_world = world_from_mover * point_in_mover;
+    const Eigen::Vector3d in_camera = Inverse(world_from_camera) * in_world;
+    if (!(in_camera.z() > 0.0 && in_camera.z() <= most_m)) return false;
+    const Eigen::Array2d pixel = Project(camera, in_camera);
+    const Eigen::Array2d most(camera.width_px - 1, camera.height_px - 1);
+    if ((pixel < 0.0).any() || (pixel > most).any()) return false;
+    return !room.Occluded(world_from_camera.translation.cast<float>(), in_world.cast<float>());
+  }
+  bool ShowsAt(double u_px, double v_px) const {
+    const Eigen::Vector3d to = Unproject(camera, u_px, v_px, 1.0);
+    const Pose3 mover_from_camera = Inverse(world_from_mover) * world_from_camera;
+    // Along rays as long as z is: depths.
+    const auto depth_m = [&](const RayScene& rays, const Pose3& from_camera) {
+      Ray ray;
+      ray.origin = from_camera.translation.cast<float>();
+      ray.direction = (from_camera.rotation * to).cast<float>();
+      const auto hit = rays.NearestHit(ray);
+      return hit ? static_cast<double>(hit->distance) : std::numeric_limits<double>::infinity();
+    };
+    const double mover_m = depth_m(mover, mover_from_camera);
+    return std::isfinite(mover_m) && mover_m <= most_m &&
+           mover_m < depth_m(room, world_from_camera);
+  }
+  // Any of its corners, or where the image shows nothing else.
+  bool Shows(const TriangleMesh& mesh) const {
+    for (const Eigen::Vector3f& vertex : mesh.vertices) {
+      if (ShowsPoint(vertex.cast<double>())) return true;
+    }
+    constexpr int kRows = 12, kColumns = 16;
+    for (int i = 0; i < kRows * kColumns; ++i) {
+      const double u_px = (i % kColumns + 0.5) * camera.width_px / kColumns;
+      const double v_px = (i / kColumns + 0.5) * camera.height_px / kRows;
+      if (ShowsAt(u_px, v_px)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> UnseenMovers(const Trajectory& trajectory, const Scene& scene,
+                                      const RayScene& room, const MoverScene& movers,
+                                      const PinholeCamera& camera, double most_m) {
+  std::vector<std::string> unseen;
+  for (std::size_t i = 0; i < movers.size(); ++i) {
+    bool seen = false;
+    for (std::size_t frame = 0; frame < trajectory.size() && !seen; ++frame) {
+      const auto place = PlaceOf(i, movers.At(trajectory, frame));
+      if (!place) continue;
+      const MoverView view = {room,
+                              movers.RaysOf(i),
+                              camera,
+                              most_m,
+                              trajectory[frame].world_from_camera,
+                              place->world_from_mover};
+      seen = view.Shows(scene.movers[i].mesh);
+    }
+    if (!seen) unseen.push_back(scene.movers[i].name);
+  }
+  return unseen;
 }
 
 MoverCamera::MoverCamera(const MoverScene& movers, const PinholeCamera& camera) {

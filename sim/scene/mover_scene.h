@@ -51,6 +51,12 @@ class MoverScene {
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m);
 
+// The names of the movers that no frame shows, up to `most_m` away: whatever stands hides them, or
+// the camera looks elsewhere.
+std::vector<std::string> UnseenMovers(const Trajectory& trajectory, const Scene& scene,
+                                      const RayScene& room, const MoverScene& movers,
+                                      const PinholeCamera& camera, double most_m);
+
 // Depth images of movers, laid over those of the room: each pixel keeps the nearer of both.
 class MoverCamera {
  public:

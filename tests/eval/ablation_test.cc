@@ -123,6 +123,11 @@ TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("2 seeds"));
   EXPECT_THAT(first.out, HasSubstr("matched poses are true"));
+  // Lengths have their unit, shares none.
+  EXPECT_THAT(first.out, testing::ContainsRegex("mean_euclidean_m: [0-9.e-]+ m as it is\ntruth "
+                                                "for +error m +owned m +95 % interval m  "));
+  EXPECT_THAT(first.out, testing::ContainsRegex("occupied.f1: [0-9.e-]+ as it is\ntruth for +error "
+                                                " +owned +95 % interval  "));
   const Outcome second = Program("ablate ./small.yaml --seeds 2 --threads 2 --json -o two");
   ASSERT_EQ(second.exit_code, 0) << second.err;
   EXPECT_TRUE(SameFile("one/ablation.csv", "two/ablation.csv"));

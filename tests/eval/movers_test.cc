@@ -55,6 +55,26 @@ movers:
   void AddMovers() const { Write("room.yaml", std::string(kRoom) + kMovers); }
 };
 
+// In the next room, whose wall hides it, or behind the camera's back.
+TEST_F(Movers, ThatAreNeverSeenAreSaid) {
+  Write("room.yaml", std::string(kRoom) + kMovers + R"(
+  neighbour:
+    shapes: [{shape: cylinder, radius_m: 0.2, height_m: 1.7}]
+    there_and_back: true
+    waypoints: [{at: [0.4, 9.4]}, {at: [2.6, 9.4]}]
+)");
+  const char* said = "movers: neighbour: no frame of this path shows it\n";
+  EXPECT_THAT(Program("run ./small.yaml -o out --no-cache --set movers=visitor+neighbour").err,
+              HasSubstr(said));
+  EXPECT_THAT(ReadFile(Path("out/warnings.txt")), HasSubstr(said));
+  for (const char* seen : {"visitor", "guide", "all", "guide+visitor"}) {
+    EXPECT_THAT(
+        Program(std::string("run ./small.yaml -o out --force --no-cache --set movers=") + seen).err,
+        Not(HasSubstr("no frame")))
+        << seen;
+  }
+}
+
 TEST_F(Movers, AreThereOnlyWhereTheExperimentNamesThem) {
   Succeed("run ./small.yaml -o before --no-cache");
   AddMovers();
@@ -124,6 +144,9 @@ TEST_F(Movers, OthersThanTheScenesAreRefused) {
       "run ./small.yaml -o out --set movers=visitr",
       {"--set movers=visitr: movers is 'visitr', must be one of visitor, guide, all, none, "
        "or names joined by +, did you mean 'visitor'?"});
+  ExpectRefusal(
+      "run ./small.yaml -o out --set movers=visitor+visitor",
+      {"movers=visitor+visitor: movers is 'visitor+visitor', must name 'visitor' once\n"});
   ExpectRefusal("run ./small.yaml -o out --set movers=guide+", {"movers is 'guide+'"});
   ExpectRefusal("run ./small.yaml -o out --set movers=guide+all", {"movers is 'guide+all'"});
   Write("moved.yaml", std::string(kExperiment) + "movers: nobody\n");
