@@ -17,14 +17,6 @@ constexpr int kIterations = 10;
 // Along own axes, a shift and a turn of all.
 using Equations = Eigen::Matrix<double, Eigen::Dynamic, 9>;
 
-std::vector<PosePair> Moved(std::vector<PosePair> pairs, const Eigen::Vector3d& arm_m) {
-  for (PosePair& pair : pairs) {
-    Pose3& pose = pair.estimate.world_from_camera;
-    pose.translation += pose.rotation * arm_m;
-  }
-  return pairs;
-}
-
 // Moves aligned estimates all together, and along their own axes by what is returned, so that least
 // is left. Where all poses turn about one axis the arm along it is not told, and is 0.
 Eigen::Vector3d FitOnce(std::vector<PosePair>& pairs) {
@@ -56,11 +48,19 @@ Eigen::Vector3d FitOnce(std::vector<PosePair>& pairs) {
     pose.translation = rotation * (pose.translation - about) + about + step.segment<3>(3);
     pose.rotation = rotation * pose.rotation;
   }
-  pairs = Moved(std::move(pairs), step.head<3>());
+  pairs = MovedBy(std::move(pairs), step.head<3>());
   return step.head<3>();
 }
 
 }  // namespace
+
+std::vector<PosePair> MovedBy(std::vector<PosePair> pairs, const Eigen::Vector3d& arm_m) {
+  for (PosePair& pair : pairs) {
+    Pose3& pose = pair.estimate.world_from_camera;
+    pose.translation += pose.rotation * arm_m;
+  }
+  return pairs;
+}
 
 std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs) {
   // Of the misfit. Drift alone came down to 0.3: SLAM's, online and final poses of 12 runs of 500
@@ -74,7 +74,7 @@ std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs) {
   std::vector<PosePair> fitted = Aligned(pairs, *fit);
   for (int i = 0; i < kIterations; ++i) found.arm_m += FitOnce(fitted);
   const auto misfit_m = AlignedMisfit(pairs);
-  const auto better_m = AlignedMisfit(Moved(pairs, found.arm_m));
+  const auto better_m = AlignedMisfit(MovedBy(pairs, found.arm_m));
   if (!misfit_m || !better_m) return std::nullopt;
   found.misfit_m = *misfit_m;
   found.better_misfit_m = *better_m;

@@ -16,6 +16,9 @@ struct LeverArm {
   double better_misfit_m = 0.0;  // and moved by the arm
 };
 
+// With the estimate's poses moved along their own axes.
+std::vector<PosePair> MovedBy(std::vector<PosePair> pairs, const Eigen::Vector3d& arm_m);
+
 // The arm with which positions fit at less than 0.2 times the misfit. Empty where there is none.
 std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs);
 

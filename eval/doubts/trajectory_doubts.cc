@@ -94,7 +94,9 @@ std::string ConstantText(const Eigen::Quaterniond& estimate_from_reference,
 }
 
 Doubt DoubtOfRotations(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
-  const auto doubt = CheckRotations(pairs);
+  // Positions of another point of the robot lie turned where they are laid over each other.
+  const auto lever = FindLeverArm(pairs);
+  const auto doubt = CheckRotations(lever ? MovedBy(pairs, lever->arm_m) : pairs);
   if (!doubt) return {};
   std::string text =
       fmt::format("{}: its positions fit {} but its rotations are off by {:.0f} degrees",

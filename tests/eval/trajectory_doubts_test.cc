@@ -205,6 +205,21 @@ TEST(ClockCheck, DriftIsNoOffset) {
   }
 }
 
+// A laser ahead of its robot's base that looks to the left: laid over each other by their
+// positions, the paths lie turned.
+TEST(LeverCheck, TheArmIsNoPartOfTheRotation) {
+  Trajectory truth, base;
+  for (int i = 0; i < 200; ++i) {
+    const double at_rad = RadFromDeg(300.0) * i / 200;
+    const Pose2 robot = {std::cos(at_rad) + 0.1 * at_rad, std::sin(at_rad), at_rad + 1.57};
+    base.push_back({0.1 * i, Lift(robot)});
+    truth.push_back({0.1 * i, Lift(robot * Pose2{0.5, 0.0, RadFromDeg(40.0)})});
+  }
+  EXPECT_THAT(
+      DoubtsOf(truth, base),
+      ElementsAre(HasSubstr("its rotations are off by 40 degrees throughout, turned by 40 ")));
+}
+
 TEST(LeverCheck, FindsThePointOfTheRobot) {
   const Eigen::Vector3d laser_m(0.1, -0.05, 0.4);
   Trajectory moved = Eight(0.003);
