@@ -1,6 +1,7 @@
 // One scan line of a CARMEN log (FLASER or ROBOTLASER1), from text.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,6 +22,16 @@ struct CarmenScan {
   Pose2 odom_from_laser;
   Pose2 odom_from_robot;        // the line's second pose; most logs repeat the first
   double stated_yaw_rad = 0.0;  // of odom_from_laser, as written: not wrapped
+};
+
+// Of a line's readings, in the laser's axes.
+struct Bearings {
+  double first_rad = 0.0;
+  double step_rad = 0.0;  // below 0 of a laser mounted upside down
+
+  double At(std::size_t reading) const {
+    return first_rad + static_cast<double>(reading) * step_rad;
+  }
 };
 
 // Of a laser's driver: throws InputError for bearings that are not finite or all the same, and for

@@ -18,7 +18,7 @@
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/file.h"
-#include "mapper/io/laser_faults_impl.h"
+#include "mapper/io/laser_faults.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/scan_clock.h"
 #include "mapper/io/slam_jumps.h"

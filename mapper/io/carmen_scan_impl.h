@@ -16,14 +16,6 @@ struct LaserReach {
 double MostRangeM(const CarmenLogOptions& options);
 LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options);
 // Of a line's readings, in the laser's axes.
-struct Bearings {
-  double first_rad = 0.0;
-  double step_rad = 0.0;  // below 0 of a laser mounted upside down
-
-  double At(std::size_t reading) const {
-    return first_rad + static_cast<double>(reading) * step_rad;
-  }
-};
 Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // In the odometry's frame.

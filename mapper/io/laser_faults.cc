@@ -1,10 +1,11 @@
+#include "mapper/io/laser_faults.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "mapper/core/angle.h"
 #include "mapper/io/carmen_scan_impl.h"
-#include "mapper/io/laser_faults_impl.h"
 
 namespace depthgrid {
 namespace {

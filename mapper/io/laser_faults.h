@@ -7,7 +7,6 @@
 
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_log.h"
-#include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/frozen_scans.h"
 #include "mapper/io/held_poses.h"
 #include "mapper/io/own_body.h"
