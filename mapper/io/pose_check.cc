@@ -20,6 +20,8 @@ constexpr std::size_t kLeastPairs = 6;
 constexpr double kLeastPairShare = 0.75;
 // One pair across a correction of SLAM must not outweigh all others.
 constexpr double kMostMisfit = 0.3;
+// A sum beyond this times its limit is beyond it whatever rounding does.
+constexpr double kRounding = 1.0 + 1e-9;
 // Another reading must fit this much better. Three shipped rooms with all profiles of SLAM and
 // three recorded SLAM runs: no other reading fitted right poses any better, and the right reading
 // of wrong ones (of quaternions, inverse, half a second off) had 0.06 to 0.32 of their misfit.
@@ -83,11 +85,15 @@ class Fits {
        const RecordingOptions& options)
       : pairs_(pairs), track_(live, Interpolating(options)) {}
 
-  // Nothing when too few pairs have poses.
-  std::optional<double> Misfit(const Attempt& attempt, std::size_t least) const {
+  // Nothing when too few pairs have poses, or when it is certainly more than `most`: most readings
+  // of poses are so wrong that the first pairs show it.
+  std::optional<double> Misfit(const Attempt& attempt, std::size_t least,
+                               double most = kMostMisfit) const {
+    const double most_sum = kRounding * most * static_cast<double>(pairs_.size());
     double sum = 0.0;
     std::size_t count = 0;
     for (const ImagePair& pair : pairs_) {
+      if (sum > most_sum) return {};
       const auto second_from_first = RelativeIn(pair, attempt);
       if (!second_from_first) continue;
       sum += std::min(kMostMisfit,
@@ -207,8 +213,9 @@ class BestReading {
  private:
   // `doubt` is what the attempt means if it is the best, at less than `share` of the best before.
   void Try(PoseDoubt doubt, const Attempt& attempt, double share = 1.0) {
-    const auto misfit = fits_.Misfit(attempt, least_);
-    if (!misfit || *misfit >= share * best_.better_misfit) return;
+    const double less_than = share * best_.better_misfit;
+    const auto misfit = fits_.Misfit(attempt, least_, less_than);
+    if (!misfit || *misfit >= less_than) return;
     doubt.better_misfit = *misfit;
     best_ = doubt;
   }
@@ -258,8 +265,10 @@ class BestReading {
       const int most = static_cast<int>(std::lround(kMostUnsureS / kFineShiftS));
       int k = 0;
       while (k < most) {
-        const auto misfit = fits_.Misfit({AsGiven, camera_, best_s + (k + 1) * step_s}, least_);
-        if (!misfit || *misfit > kFitsAlike * best_.better_misfit) break;
+        const double alike = kFitsAlike * best_.better_misfit;
+        const auto misfit =
+            fits_.Misfit({AsGiven, camera_, best_s + (k + 1) * step_s}, least_, alike);
+        if (!misfit || *misfit > alike) break;
         ++k;
       }
       return k * step_s;
