@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/frozen_images.h"
+#include "mapper/io/images_ahead.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/undistort.h"
@@ -63,6 +64,9 @@ class RecordingSource final : public FrameSource {
     Probe();
     next_ = recording_.part.begin;
     if (recording_.camera.camera.HasDistortion()) undistorter_.emplace(recording_.camera.camera);
+    images_.emplace(next_, recording_.part.EndAmong(recording_.images.size()),
+                    internal::UsualImagesAhead(),
+                    [this](std::size_t i) { return Read(recording_.images[i]); });
   }
 
   std::optional<Frame> Next() override {
@@ -76,7 +80,7 @@ class RecordingSource final : public FrameSource {
     for (const LoopClosure& loop : loops_) {
       if (loop.reported_at_frame == frame.index) frame.loops.push_back(loop);
     }
-    frame.depth = Read(image);
+    frame.depth = NextDepth();
     if (frame.depth && frame.slam_from_camera &&
         frozen_.IsFrozen(frame.depth, *frame.slam_from_camera, frame.stamp_s, frame.slam_epoch)) {
       repeated_.Add(image.depth_path);
@@ -176,18 +180,26 @@ class RecordingSource final : public FrameSource {
                                 depth.height_px, camera.width_px, camera.height_px));
   }
 
-  std::shared_ptr<const DepthImage> Read(const RecordedImage& image) {
+  // On several threads at once.
+  internal::ReadImage Read(const RecordedImage& image) const {
+    internal::ReadImage read;
     try {
       auto depth = std::make_shared<DepthImage>(reader_(image.depth_path));
       RequireCameraSize(*depth, image);
       if (undistorter_) *depth = undistorter_->Apply(*depth);
-      return depth;
+      read.depth = std::move(depth);
     } catch (const SizeError& error) {
-      wrong_size_.Add(error.what());
+      read.wrong_size = error.what();
     } catch (const InputError& error) {
-      unreadable_.Add(error.what());
+      read.unreadable = error.what();
     }
-    return nullptr;
+    return read;
+  }
+  std::shared_ptr<const DepthImage> NextDepth() {
+    internal::ReadImage read = images_->Next();
+    if (!read.wrong_size.empty()) wrong_size_.Add(read.wrong_size);
+    if (!read.unreadable.empty()) unreadable_.Add(read.unreadable);
+    return std::move(read.depth);
   }
 
   Recording recording_;
@@ -200,6 +212,7 @@ class RecordingSource final : public FrameSource {
   Tally wrong_size_;
   FrozenImages frozen_;
   Tally repeated_;
+  std::optional<internal::ImagesAhead> images_;  // last: its threads read what stands above
 };
 
 }  // namespace

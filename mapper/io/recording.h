@@ -42,7 +42,7 @@ Recording WithImages(Recording recording, std::vector<RecordedImage> images);
 // With the stamps as recorded, but for the options' offset.
 FrameNames NamesOf(const Recording& recording, const RecordingOptions& options = {});
 
-// Reads one depth image; throws InputError.
+// Reads one depth image; throws InputError. Called on several threads at once.
 using DepthReader = std::function<DepthImage(const std::string& path)>;
 
 // 16-bit PNG images.
@@ -59,7 +59,8 @@ void CompleteSize(const Recording& recording, CameraDescription& camera);
 // only and are counted, and so do those that came again while the camera moved (FrozenImages);
 // loops with an end outside the part are left out. Throws InputError when there is no image, when
 // none of the first images can be read, when their size is not the camera's, or when no image finds
-// a pose.
+// a pose. Where there is a second core, the next few images are read on other threads while the
+// caller is at work with a frame; what comes out is the same.
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader);
 
