@@ -125,10 +125,11 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteFile(folder.File("pose_graph.g2o"), G2oText(GraphOf(*record.mapping)));
   WriteDepthPictures(folder.work().string(), *record.mapping, record.scan);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
-  WriteFile(folder.File("timing.json"),
-            TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
   WriteRunReport(folder.work().string(),
                  {folder.work().string()});  // of what the folder holds by now
+  // Last, as it says how much memory all of it took.
+  WriteFile(folder.File("timing.json"),
+            TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
 }
 
 std::optional<std::string> AddColour(const std::string& folder, const RunRecord& record) {

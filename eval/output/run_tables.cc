@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "eval/metrics/statistics.h"
 #include "eval/run/consistency.h"
@@ -86,28 +89,36 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
 }
 
 std::string TimingCsv(const MappingRun& run) {
-  std::string csv = "frame,scan_us,match_us,fuse_us,insert_us,loops_us,total_us\n";
+  std::string csv = "frame,scan_us,match_us,fuse_us,insert_us,loops_us,rest_us,total_us\n";
   for (const FrameReport& r : run.reports) {
-    csv += fmt::format("{},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f}\n", r.index, r.times.scan_us,
-                       r.times.match_us, r.times.fuse_us, r.times.insert_us, r.times.loops_us,
-                       r.times.total_us);
+    const StageTimes& t = r.times;
+    const double rest_us =
+        t.total_us - (t.scan_us + t.match_us + t.fuse_us + t.insert_us + t.loops_us);
+    csv += fmt::format("{},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f},{:.1f}\n", r.index, t.scan_us,
+                       t.match_us, t.fuse_us, t.insert_us, t.loops_us, std::max(0.0, rest_us),
+                       t.total_us);
   }
   return csv;
 }
 
 std::string TimingJson(const MappingRun& run, double wall_s_total, double cpu_s_total) {
-  const std::vector<double> totals_us = TimesOfMappedFrames(run);
+  std::vector<double> totals_us = TimesOfMappedFrames(run);
+  if (totals_us.empty()) totals_us = {0.0};
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+  const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
   constexpr double kP95 = 0.95;
   nlohmann::ordered_json json;
   json["frames"] = run.reports.size();
-  json["cpu_us_per_frame_median"] = totals_us.empty() ? 0.0 : Percentile(totals_us, 0.5);
-  json["cpu_us_per_frame_p95"] = totals_us.empty() ? 0.0 : Percentile(totals_us, kP95);
-  json["mapper_cpu_s"] = run.cpu_s;
-  json["cpu_s_total"] = cpu_s_total;
-  json["wall_s_total"] = wall_s_total;
-  json["peak_rss_mib"] = static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
+  const double sum_us = std::accumulate(totals_us.begin(), totals_us.end(), 0.0);
+  json["cpu_us_per_frame_mean"] = rounded(sum_us / static_cast<double>(totals_us.size()));
+  json["cpu_us_per_frame_median"] = rounded(Percentile(totals_us, 0.5));
+  json["cpu_us_per_frame_p95"] = rounded(Percentile(totals_us, kP95));
+  json["cpu_us_per_frame_max"] = rounded(*std::max_element(totals_us.begin(), totals_us.end()));
+  json["mapper_cpu_s"] = rounded(run.cpu_s);
+  json["cpu_s_total"] = rounded(cpu_s_total);
+  json["wall_s_total"] = rounded(wall_s_total);
+  json["peak_rss_mib"] = rounded(static_cast<double>(usage.ru_maxrss) / 1024.0);  // KiB on Linux
   return json.dump(2) + "\n";
 }
 

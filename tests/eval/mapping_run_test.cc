@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "eval/output/run_tables.h"
+
 namespace depthgrid {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(MappingRun, SaysWherePosesWereMended) {
@@ -58,6 +61,40 @@ TEST(MappingRun, TimesAreThoseOfFramesWithAPose) {
   run.reports[2].slam_from_camera = Pose3{};
   run.reports[2].times.total_us = 600.0;
   EXPECT_THAT(TimesOfMappedFrames(run), ElementsAre(500.0, 600.0));
+}
+
+TEST(MappingRun, TimesOfARunAreToldToAThousandth) {
+  MappingRun run;
+  run.reports.resize(4);
+  for (const double total_us : {81.78199999999742, 100.0, 1000.1234567}) {
+    FrameReport& report = run.reports[total_us < 90.0 ? 0 : total_us < 200.0 ? 1 : 2];
+    report.slam_from_camera = Pose3{};
+    report.times.total_us = total_us;
+  }
+  run.cpu_s = 0.1234567;
+  const std::string text = TimingJson(run, 2.00049, 1.0);
+  EXPECT_THAT(text, HasSubstr("{\n"
+                              "  \"frames\": 4,\n"
+                              "  \"cpu_us_per_frame_mean\": 393.968,\n"
+                              "  \"cpu_us_per_frame_median\": 100.0,\n"
+                              "  \"cpu_us_per_frame_p95\": "));
+  EXPECT_THAT(text, HasSubstr("  \"cpu_us_per_frame_max\": 1000.123,\n"
+                              "  \"mapper_cpu_s\": 0.123,\n"
+                              "  \"cpu_s_total\": 1.0,\n"
+                              "  \"wall_s_total\": 2.0,\n"));
+  EXPECT_THAT(TimingJson({}, 0.0, 0.0), HasSubstr("\"cpu_us_per_frame_max\": 0.0"));
+}
+
+TEST(MappingRun, StagesOfAFrameAndTheRestAreTheWholeFrame) {
+  MappingRun run;
+  run.reports.resize(2);
+  run.reports[0].times = {1.0, 2.0, 3.0, 4.0, 5.0, 25.5};
+  run.reports[1].index = 7;
+  run.reports[1].times = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0 - 1e-9};  // of rounding
+  EXPECT_EQ(TimingCsv(run),
+            "frame,scan_us,match_us,fuse_us,insert_us,loops_us,rest_us,total_us\n"
+            "0,1.0,2.0,3.0,4.0,5.0,10.5,25.5\n"
+            "7,1.0,0.0,0.0,0.0,0.0,0.0,1.0\n");
 }
 
 }  // namespace
