@@ -186,6 +186,9 @@ function drawIntervals(u, series) {
   });
 }
 
+// Of a logarithmic axis that begins at `least`, whatever lies below it.
+const rangeFrom = (least) => (u, low, high) => uPlot.rangeLog(least, Math.max(high ?? 0, 10 * least), 10, true);
+
 // The y range must hold the whiskers too, not only the points.
 function rangeWithIntervals(series, log) {
   return (u, low, high) => {
@@ -256,9 +259,9 @@ const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
 // points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}.
 // Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption`: what a file says besides the
-// title. `xNames` replaces the numbers of the x axis, one a value of x.
+// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
-function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY }) {
+function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
   const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, caption ? `${title} (${caption})` : title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
@@ -278,7 +281,7 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
     return {
       ...size,
       cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
-      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : {}) } },
+      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : leastY ? { range: rangeFrom(leastY) } : {}) } },
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
           ...(xNames ? { splits: () => x, values: (u) => xNames.map((name) => shortened(name, Math.floor(u.bbox.width / devicePixelRatio / xNames.length / TEXT_WIDTH))) } : {}),

@@ -50,7 +50,9 @@ function headline() {
     } else {
       add(String(frameCount), "frames");
       if (posed < frameCount) add(`${frameCount - posed} of ${frameCount}`, `frames without a pose: ${RUN.input_poses} was lost`);
-      add(String(RUN.own_scans), RUN.prior_scans ? `frames added to the finished map's ${RUN.prior_scans}` : "frames mapped");
+      // Of a place that is well seen already no more scans are kept, though every frame is mapped.
+      const kept = RUN.own_scans === posed ? "frames mapped" : "scans kept, which the map is drawn from";
+      add(String(RUN.own_scans), RUN.prior_scans ? `scans added to the finished map's ${RUN.prior_scans}` : kept);
     }
     add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
     add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved${RUN.prior_scans ? " from there on" : ""}`);

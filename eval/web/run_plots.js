@@ -6,9 +6,9 @@ const scaled = (values, factor) => values.map((v) => (v === null ? null : v * fa
 const hasColumn = (column) => Boolean(frames[column]) && frames[column].some((v) => v !== null);
 const times = frames.stamp_s.map((t) => t - frames.stamp_s[0]);
 
-function addPlot(container, title, yLabel, series) {
+function addPlot(container, title, yLabel, series, more = {}) {
   if (!series.length || frameCount < 2) return;
-  drawPlot(container, { title, x: times, xLabel: "time (s)", yLabel, series, sync: "frames", onCursor: selectFrame });
+  drawPlot(container, { title, x: times, xLabel: "time (s)", yLabel, series, sync: "frames", onCursor: selectFrame, ...more });
 }
 
 function initPlots() {
@@ -44,7 +44,17 @@ function initPlots() {
 }
 
 // ---- stage times: timing.js, beside this page, so that the page is the same bytes every time ----
-const STAGES = [["scan", "depth to scan", "slam"], ["match", "match", "est"], ["fuse", "fuse", "truth"], ["insert", "insert", "invented"], ["loops", "loops", "missed"]];
+const STAGES = [["scan", "depth to scan", "slam"], ["match", "match", "est"], ["fuse", "fuse", "truth"], ["insert", "insert", "invented"], ["loops", "loops", "missed"], ["rest", "rest", "online"]];
+const LEAST_US = 1;  // shown: a stage that had nothing to do takes a fraction of it
+// Of at least 25 frames each, at most 200 of them.
+const BLOCK_FRAMES = Math.max(25, Math.ceil(frameCount / 200));
+
+// What a frame usually takes where one of a thousand takes a thousand times as long: of each block its median.
+function mediansOfBlocks(values) {
+  const blocks = Math.ceil(values.length / BLOCK_FRAMES);
+  const medians = Array.from({ length: blocks }, (_, k) => median(values.slice(k * BLOCK_FRAMES, (k + 1) * BLOCK_FRAMES)));
+  return values.map((v, i) => medians[Math.floor(i / BLOCK_FRAMES)]);
+}
 
 function initTimes() {
   const measured = window.RUN_TIMES;
@@ -58,14 +68,19 @@ function initTimes() {
   const row = (label, values) => {
     const sorted = ordered(whereMapped(values).filter(isNumber));
     const sum = values.reduce((a, b) => a + b, 0);
-    return [label, fixed(at(sorted, 0.5), 0), fixed(at(sorted, 0.95), 0), fixed(at(sorted, 1), 0), fixed(sum / 1e6, 2)];
+    const mean = sorted.reduce((a, b) => a + b, 0) / Math.max(1, sorted.length);
+    return [label, fixed(mean, 0), fixed(at(sorted, 0.5), 0), fixed(at(sorted, 0.95), 0), fixed(at(sorted, 1), 0), fixed(sum / 1e6, 2)];
   };
-  const shown = STAGES.filter(([name]) => measured[`${name}_us`].some((v) => v > 0));
+  const shown = STAGES.filter(([name]) => measured[`${name}_us`]?.some((v) => v > 0));  // pages of older runs lack some
   const lost = times.filter((t, i) => !hasPose(i)).length;
   if (lost) byId("times").append(make("p", { class: "muted" }, `Without the ${lost} ${lost === 1 ? "frame" : "frames"} that have no pose and are not mapped; the sums are of all.`));
   byId("times").append(make("div", { class: "scroll" }, tableOf(
-    ["CPU time a frame", "median µs", "95 % µs", "longest µs", "sum s"],
+    ["CPU time a frame", "mean µs", "median µs", "95 % µs", "longest µs", "sum s"],
     [...shown.map(([name, label]) => row(label, measured[`${name}_us`])), row("whole frame", measured.total_us)])));
-  addPlot(byId("times"), "CPU time of each stage", "ms", shown.map(([name, label, tone]) =>
-    ({ label, values: scaled(whereMapped(measured[`${name}_us`]), 1e-3), colour: tone, digits: 3, unit: "ms" })));
+  // The last stages are those that often have nothing to do and then lie at the bottom: the others over them.
+  const lines = [...shown].reverse().map(([name, label, tone]) => ({ label, values: whereMapped(measured[`${name}_us`]), colour: tone, digits: 1, unit: "µs" }));
+  if (frameCount >= 4 * BLOCK_FRAMES) {
+    lines.push({ label: `whole frame, median of ${BLOCK_FRAMES}`, values: mediansOfBlocks(whereMapped(measured.total_us)), colour: "ink", digits: 1, unit: "µs", width: 2.4 });
+  }
+  addPlot(byId("times"), "CPU time of each stage", "µs", lines, { logY: true, leastY: LEAST_US, height: 260 });
 }

@@ -139,6 +139,22 @@ TEST_F(ReportPage, OfASequenceWithoutTruth) {
   EXPECT_THAT(browser_->Evaluate("document.getElementById('times').textContent"),
               ::testing::HasSubstr("Without the 3 frames that have no pose"));
   EXPECT_EQ(browser_->Evaluate("whereMapped(RUN_TIMES.total_us).filter(isNumber).length"), 9);
+  // One long frame hides none of the others.
+  EXPECT_THAT(
+      browser_->Evaluate("document.getElementById('times').textContent"),
+      ::testing::AllOf(::testing::HasSubstr("mean µsmedian µs"), ::testing::HasSubstr("rest")));
+  const char* axis =
+      "(() => { const draw = drawPlot; let given; window.drawPlot = (box, what) => { given = what; "
+      "}; initTimes(); window.drawPlot = draw; return `${given.logY} ${given.yLabel} "
+      "${rangeFrom(given.leastY)(null, .2, 33411)}`; })()";
+  EXPECT_EQ(browser_->Evaluate(axis), "true µs 1,100000");
+  // Of a long run not every frame's scan is kept.
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('headline').textContent"),
+              ::testing::HasSubstr("9frames mapped"));
+  EXPECT_THAT(
+      browser_->Evaluate(
+          "(RUN.own_scans = 5, headline(), document.getElementById('headline').textContent)"),
+      ::testing::HasSubstr("5scans kept, which the map is drawn from"));
   EXPECT_GT(ColoursOf("#map"), 3);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#layers input').length"), 1);
   EXPECT_EQ(browser_->Evaluate("document.getElementById('numbers-section')"), nullptr);
