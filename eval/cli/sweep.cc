@@ -183,7 +183,7 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop` more seeds, or fewer, were done because of them.
   const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
-  NoteBuild(database);
+  NoteWork(database, context.threads);
   if (const auto doubt = DoubtOfBuilds(output, database.Environment())) Warn({*doubt});
   Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), failed, context);
   ProgressBar bar("runs");

@@ -155,33 +155,37 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
   }
 }
 
-// "A, B"; an earlier version did not say.
-std::string BuildsIn(const Environment& environment) {
-  const auto found = environment.find("build");
+// "A, B" of all that worked in it; an earlier version did not say.
+std::string ListIn(const Environment& environment, const std::string& key) {
+  const auto found = environment.find(key);
   return found != environment.end() ? found->second : "unknown";
 }
 
-// The builds of both lists, each once, in their order.
-std::string Joined(std::string builds, const std::string& more) {
+// The entries of both lists, each once, in their order.
+std::string Joined(std::string entries, const std::string& more) {
   std::istringstream list(more);
-  for (std::string build; std::getline(list >> std::ws, build, ',');) {
-    if ((" " + builds + ",").find(" " + build + ",") == std::string::npos) builds += ", " + build;
+  for (std::string entry; std::getline(list >> std::ws, entry, ',');) {
+    if ((" " + entries + ",").find(" " + entry + ",") == std::string::npos) entries += ", " + entry;
   }
-  return builds;
+  return entries;
 }
 
 }  // namespace
 
-void NoteBuild(SweepDatabase& database) {
+void NoteWork(SweepDatabase& database, int jobs) {
   if (database.UnfinishedRuns().empty()) return;
   const bool is_begun = !database.FinishedRuns().empty();
-  database.Note("build",
-                is_begun ? Joined(BuildsIn(database.Environment()), BuildId()) : BuildId());
+  const Environment before = database.Environment();
+  const auto note = [&](const std::string& key, const std::string& here) {
+    database.Note(key, is_begun ? Joined(ListIn(before, key), here) : here);
+  };
+  note("build", BuildId());
+  note("jobs", std::to_string(jobs));
 }
 
 std::optional<std::string> DoubtOfBuilds(const std::string& folder,
                                          const std::map<std::string, std::string>& environment) {
-  const std::string builds = BuildsIn(environment);
+  const std::string builds = ListIn(environment, "build");
   if (builds.find(',') == std::string::npos) return std::nullopt;
   return fmt::format(
       "{}: its runs are of several builds of the program ({}), which may give other numbers",
@@ -259,9 +263,11 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
   }
   Environment environment = parts[0].environment;
   environment.erase("schema");
-  environment["build"] = BuildsIn(parts[0].environment);
-  for (const SweepResults& part : parts) {
-    environment["build"] = Joined(environment["build"], BuildsIn(part.environment));
+  for (const std::string key : {"build", "jobs"}) {
+    environment[key] = ListIn(parts[0].environment, key);
+    for (const SweepResults& part : parts) {
+      environment[key] = Joined(environment[key], ListIn(part.environment, key));
+    }
   }
   environment["shard"] = ShardText({});
   std::vector<std::string> keys;

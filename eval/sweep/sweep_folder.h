@@ -33,9 +33,10 @@ void RequireSweepNamesFree(const std::string& folder);
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
                                 const Shard& shard, bool force);
 
-// Before runs are done, and after those that failed are planned again: adds this program's build to
-// those that have worked in it (`build` of the environment, "A, B").
-void NoteBuild(SweepDatabase& database);
+// Before runs are done, and after those that failed are planned again: adds this program's build,
+// and how many runs it does at a time, to those that have worked in it (`build` and `jobs` of the
+// environment, "A, B").
+void NoteWork(SweepDatabase& database, int jobs);
 
 // Runs of several builds in one table: a line.
 std::optional<std::string> DoubtOfBuilds(const std::string& folder,

@@ -50,12 +50,12 @@ TEST_F(SweepBuild, NothingOfABuildThatDidNoRunIsSaid) {
   std::filesystem::create_directory(Path("out"));
   SweepDatabase database = SweepDatabase::Create(Path("out"), {{"build", "0123456789ab"}}, {"seed"},
                                                  {{0, 0, {"1"}}, {1, 0, {"2"}}});
-  NoteBuild(database);
+  NoteWork(database, 2);
   EXPECT_EQ(database.Environment().at("build"), BuildId());
   database.Record({0, "", {{"a", 1.0}}, {}});
   database.Record({1, "", {{"a", 2.0}}, {}});
   database.Note("build", "0123456789ab");
-  NoteBuild(database);  // all done: this build has nothing to do
+  NoteWork(database, 2);  // all done: this build has nothing to do
   EXPECT_EQ(database.Environment().at("build"), "0123456789ab");
 }
 
@@ -73,6 +73,33 @@ TEST_F(SweepBuild, JoinedPartsNameAllBuilds) {
   EXPECT_EQ(joined.exit_code, 0);
   EXPECT_EQ(BuildOf("joined"), BuildId() + ", ba0123456789, a0123456789b");
   EXPECT_THAT(joined.err, HasSubstr("joined: its runs are of several builds"));
+}
+
+// Wall times mean little without.
+TEST_F(SweepBuild, HowManyRunsWereDoneAtATimeIsKept) {
+  const auto jobs_of = [&](const char* folder) {
+    return SweepDatabase::Open(Path(folder)).Environment().at("jobs");
+  };
+  Write("seeds.yaml", "experiment: ./small.yaml\naxes: {seed: {seeds: 3}}\n");
+  Succeed("sweep ./seeds.yaml --shard 1/3 -j 1 -o part1");
+  Succeed("sweep ./seeds.yaml --shard 2/3 -j 2 -o part2");
+  Succeed("sweep ./seeds.yaml --shard 3/3 -j 1 -o part3");
+  EXPECT_EQ(jobs_of("part2"), "2");
+  Succeed("sweep ./seeds.yaml --shard 2/3 -j 4 -o part2");  // nothing to do
+  EXPECT_EQ(jobs_of("part2"), "2");
+  Succeed("sweep --merge part1 part2 part3 -o joined");
+  EXPECT_EQ(jobs_of("joined"), "1, 2");
+  EXPECT_THAT(ReadFile(Path("joined/report.html")), HasSubstr("\"jobs\":\"1, 2\""));
+
+  std::filesystem::create_directory(Path("out"));
+  SweepDatabase database =
+      SweepDatabase::Create(Path("out"), {}, {"seed"}, {{0, 0, {"1"}}, {1, 0, {"2"}}});
+  NoteWork(database, 4);
+  NoteWork(database, 2);
+  EXPECT_EQ(database.Environment().at("jobs"), "2");  // no run was done by the first
+  database.Record({0, "", {{"a", 1.0}}, {}});
+  NoteWork(database, 1);
+  EXPECT_EQ(database.Environment().at("jobs"), "2, 1");
 }
 
 TEST_F(SweepBuild, IsInARunsProvenance) {
