@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+
+#include "mapper/core/error.h"
 
 namespace depthgrid::bench {
 namespace {
@@ -17,9 +17,18 @@ std::vector<Case>& Cases() {
   return cases;
 }
 
-std::map<std::string, Loop>& Floors() {
-  static std::map<std::string, Loop> floors;
+struct Floor {
+  Loop loop;
+  int iterations = 0;
+};
+std::map<std::string, Floor>& Floors() {
+  static std::map<std::string, Floor> floors;
   return floors;
+}
+
+void Register(const std::string& name, const Loop& loop, int iterations) {
+  auto* benchmark = benchmark::RegisterBenchmark(name.c_str(), loop);
+  if (iterations > 0) benchmark->Iterations(iterations);
 }
 
 std::string NameOf(const Case& row) { return row.stage + "/" + row.size; }
@@ -65,7 +74,9 @@ std::string ChangeText(double ratio, const std::optional<double>& before, double
 
 }  // namespace
 
-void AddFloor(const std::string& name, const Loop& loop) { Floors().emplace(name, loop); }
+void AddFloor(const std::string& name, const Loop& loop, int iterations) {
+  Floors().insert({name, {loop, iterations}});
+}
 
 // Beside the other cases of its stage.
 void AddCase(const Case& row) {
@@ -76,13 +87,21 @@ void AddCase(const Case& row) {
 
 void RegisterCases(const std::string& filter, bool with_slow) {
   std::set<std::string> floors;
+  bool is_any_slow = false;
   for (const Case& row : Cases()) {
-    if (NameOf(row).find(filter) == std::string::npos || (row.slow && !with_slow)) continue;
-    benchmark::RegisterBenchmark(NameOf(row).c_str(), row.loop);
+    if (NameOf(row).find(filter) == std::string::npos) continue;
+    is_any_slow |= row.slow;
+    if (row.slow && !with_slow) continue;
+    Register(NameOf(row), row.loop, row.iterations);
     floors.insert(row.floor);
   }
+  if (floors.empty()) {
+    throw InputError("--filter",
+                     fmt::format("no case's \"stage/size\" contains '{}'{}", filter,
+                                 is_any_slow ? " but those that run with --long only" : ""));
+  }
   for (const std::string& floor : floors) {
-    benchmark::RegisterBenchmark(NameOfFloor(floor).c_str(), Floors().at(floor));
+    Register(NameOfFloor(floor), Floors().at(floor).loop, Floors().at(floor).iterations);
   }
 }
 
@@ -94,21 +113,15 @@ Ratios RatiosOf(const Times& times) {
   return ratios;
 }
 
-Ratios ReadRatios(const std::string& path) {
-  std::ifstream file(path);
-  return file ? nlohmann::json::parse(file).get<Ratios>() : Ratios();
-}
-
 // Cases that were not run keep theirs; those that are no more go.
-void WriteRatios(const std::string& path, const Ratios& ratios) {
-  const Ratios before = ReadRatios(path);
+Ratios Renewed(const Ratios& before, const Ratios& ratios) {
   Ratios all;
   for (const Case& row : Cases()) {
     const auto now = Find(ratios, row);
     const auto kept = now ? now : Find(before, row);
     if (kept) all[row.stage][row.size] = Rounded(*kept);
   }
-  std::ofstream(path) << nlohmann::json(all).dump(2) << "\n";
+  return all;
 }
 
 std::string TablesOf(const Times& times, const Ratios& baseline, double band) {
@@ -133,8 +146,9 @@ std::string TablesOf(const Times& times, const Ratios& baseline, double band) {
     const std::string line =
         fmt::format("  {}, {}: {:.3g} -> {:.3g} times\n", row.stage, row.size, *before, *ratio);
     if (*ratio > (1.0 + band) * *before) slower += line;
-    if (*ratio < *before / (1.0 + band)) faster += line;
+    if (*ratio < (1.0 - band) * *before) faster += line;
   }
+  if (baseline.empty()) return text;
   text += fmt::format("\nSlower than the baseline by more than {:.0f} %:{}", 100.0 * band,
                       slower.empty() ? " nothing\n" : "\n" + slower);
   text += fmt::format("Faster than the baseline by more than {:.0f} %:{}", 100.0 * band,
