@@ -11,6 +11,7 @@
 
 #include "bench/accuracy/laser_run.h"
 #include "bench/accuracy/people.h"
+#include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
 #include "eval/metrics/alignment.h"
@@ -210,25 +211,27 @@ void PrintConsistency(const char* name, const std::vector<Run>& runs,
 void AddOptions(CLI::App& app, Experiment& experiment) {
   LaserOptions& laser = experiment.laser;
   PriorOptions& prior = experiment.prior;
-  app.add_option("--seeds", experiment.seeds);
-  app.add_option("--first-seed", experiment.first_seed);
-  app.add_option("--threads", experiment.threads);
-  app.add_option("--beams", laser.beams);
-  app.add_option("--fov", laser.field_of_view_deg);
-  app.add_option("--noise", laser.noise_relative);
-  app.add_option("--noise2", laser.noise_quadratic_per_m);
-  app.add_option("--noise-corr", laser.noise_correlation);
-  app.add_option("--outliers", laser.outlier_share);
-  app.add_option("--max-range", laser.max_range_m);
-  app.add_option("--drift", prior.odometry.mean_error_m);
-  app.add_option("--bias-time", prior.odometry.bias_time_frames);
-  app.add_option("--jitter", prior.odometry.jitter_m);
-  app.add_option("--jitter-deg", prior.odometry.jitter_deg);
-  app.add_option("--perfect-frames", prior.perfect_frames,
-                 "the prior errs from this frame on only");
-  app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread");
-  app.add_option("--slip-deg", prior.slip_deg, "by so much");
-  app.add_option("--slip-m", prior.slip_m, "and forward or back by so much");
+  app.add_option("--seeds", experiment.seeds)->check(FromTo(1, 1e6));
+  app.add_option("--first-seed", experiment.first_seed)->check(FromTo(0, 1e9));
+  app.add_option("--threads", experiment.threads)->check(FromTo(1, 1024));
+  app.add_option("--beams", laser.beams)->check(FromTo(2, 20000));
+  app.add_option("--fov", laser.field_of_view_deg)->check(FromTo(1, 360));
+  app.add_option("--noise", laser.noise_relative)->check(FromTo(0, 0.5));
+  app.add_option("--noise2", laser.noise_quadratic_per_m)->check(FromTo(0, 0.5));
+  app.add_option("--noise-corr", laser.noise_correlation)->check(FromTo(0, 0.999));
+  app.add_option("--outliers", laser.outlier_share)->check(FromTo(0, 1));
+  app.add_option("--max-range", laser.max_range_m)->check(FromTo(0.5, 1000));
+  app.add_option("--drift", prior.odometry.mean_error_m)->check(FromTo(0, 100));
+  app.add_option("--bias-time", prior.odometry.bias_time_frames)->check(FromTo(1, 1e6));
+  app.add_option("--jitter", prior.odometry.jitter_m)->check(FromTo(0, 1));
+  app.add_option("--jitter-deg", prior.odometry.jitter_deg)->check(FromTo(0, 45));
+  app.add_option("--perfect-frames", prior.perfect_frames, "the prior errs from this frame on only")
+      ->check(FromTo(0, 1e9));
+  app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread")
+      ->check(FromTo(0, 1e6));
+  app.add_option("--slip-deg", prior.slip_deg, "by so much")->check(FromTo(-180, 180));
+  app.add_option("--slip-m", prior.slip_m, "and forward or back by so much")
+      ->check(FromTo(-100, 100));
   const std::map<std::string, People> people = {{"none", People::kNone},
                                                 {"crossing", People::kCrossing},
                                                 {"ahead", People::kAhead},
@@ -245,7 +248,7 @@ int Measure(int argc, char** argv) {
   app.add_option("--worlds", worlds, "names without .world.txt and .truth.txt")->required();
   AddOptions(app, experiment);
   app.add_option("--set", sets);
-  CLI11_PARSE(app, argc, argv);
+  if (!ReadCommandLine(app, argc, argv)) return 0;
   experiment.mapper = MapperWith(sets);
   for (const std::string& name : worlds) {
     const std::vector<Run> runs =

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/accuracy/laser_run.h"
+#include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
 #include "mapper/core/cpu_clock.h"
@@ -106,6 +107,12 @@ Outcome Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Driv
   return outcome;
 }
 
+void RequireWithin(const char* option, int frame, const std::vector<Pose2>& truth) {
+  if (frame < static_cast<int>(truth.size())) return;
+  throw InputError(option, "is " + std::to_string(frame) + ", of a truth of " +
+                               std::to_string(truth.size()) + " poses, from 0");
+}
+
 int Measure(int argc, char** argv) {
   CLI::App app("A run whose SLAM is lost for a while and comes back elsewhere");
   std::string world_name;
@@ -113,18 +120,25 @@ int Measure(int argc, char** argv) {
   Drive drive;
   int seeds = 3;
   app.add_option("--world", world_name, "name without .world.txt and .truth.txt")->required();
-  app.add_option("--lost-at", drive.lost_at, "frame of the truth")->required();
-  app.add_option("--lost-s", drive.lost_s, "seconds without a pose");
-  app.add_option("--back-at", drive.back_at, "frame of the truth where it comes back")->required();
+  app.add_option("--lost-at", drive.lost_at, "frame of the truth")
+      ->required()
+      ->check(FromTo(1, 1e9));
+  app.add_option("--lost-s", drive.lost_s, "seconds without a pose")->check(FromTo(0, 1e6));
+  app.add_option("--back-at", drive.back_at, "frame of the truth where it comes back")
+      ->required()
+      ->check(FromTo(0, 1e9));
   app.add_flag("--backwards", drive.backwards, "the truth is driven backwards then");
-  app.add_option("--frames-after", drive.frames_after, "at most");
-  app.add_option("--off-m", drive.off_m, "SLAM's new pose is so far from where it was lost");
-  app.add_option("--off-deg", drive.off_deg, "and turned so far");
-  app.add_option("--seeds", seeds, "of noise and offset");
+  app.add_option("--frames-after", drive.frames_after, "at most")->check(FromTo(1, 1e9));
+  app.add_option("--off-m", drive.off_m, "SLAM's new pose is so far from where it was lost")
+      ->check(FromTo(0, 1000));
+  app.add_option("--off-deg", drive.off_deg, "and turned so far")->check(FromTo(0, 180));
+  app.add_option("--seeds", seeds, "of noise and offset")->check(FromTo(1, 1e6));
   app.add_option("--set", sets, "mapper keys");
-  CLI11_PARSE(app, argc, argv);
+  if (!ReadCommandLine(app, argc, argv)) return 0;
   const LaserWorld world = ReadLaserWorld(world_name + ".world.txt");
   const std::vector<Pose2> truth = ReadPlanarTruth(world_name);
+  RequireWithin("--lost-at", drive.lost_at, truth);
+  RequireWithin("--back-at", drive.back_at, truth);
   for (const bool use : {false, true}) {
     MapperOptions options = MapperWith(sets);
     options.loops.relocation.use = use;

@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "eval/experiment/shipped.h"
 #include "eval/experiment/study.h"
@@ -183,14 +184,15 @@ int Measure(int argc, char** argv) {
   app.add_option("--study", choice.study);
   app.add_option("--variant", variant_texts)->required();
   app.add_option("--case", choice.only, "only cases whose name contains one of these");
-  app.add_option("--seeds", choice.seeds);
-  app.add_option("--first-seed", choice.first_seed);
+  app.add_option("--seeds", choice.seeds)->check(FromTo(1, 1e6));
+  app.add_option("--first-seed", choice.first_seed)->check(FromTo(0, 1e9));
   app.add_option("--depth-seed", choice.depth_seed,
-                 "of the depth noise, the same for all seeds of SLAM");
+                 "of the depth noise, the same for all seeds of SLAM")
+      ->check(FromTo(0, 1e9));
   app.add_option("--set", choice.sets)->allow_extra_args(false);
-  app.add_option("--threads", context.threads);
+  app.add_option("--threads", context.threads)->check(FromTo(1, 1024));
   app.add_option("--cache", context.cache_folder);
-  CLI11_PARSE(app, argc, argv);
+  if (!ReadCommandLine(app, argc, argv)) return 0;
   for (const std::string& text : variant_texts) choice.variants.push_back(ParseVariant(text));
   context.progress = [](int done, int total) {
     if (done % 100 == 0) fmt::print(stderr, "{} of {} frames\n", done, total);

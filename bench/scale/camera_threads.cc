@@ -6,6 +6,8 @@
 #include <ctime>
 #include <vector>
 
+#include "bench/command_line.h"
+#include "bench/guarded_main.h"
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
 #include "sim/depth/depth_camera.h"
@@ -63,13 +65,18 @@ void Compare(int triangles, int frames, int rounds) {
 }  // namespace
 }  // namespace depthgrid
 
-int main(int argc, char** argv) {
+namespace {
+int Measure(int argc, char** argv) {
+  using depthgrid::FromTo;
   int triangles = 100'000, frames = 9, rounds = 40;
   CLI::App app("Depth frames on one and on two threads");
-  app.add_option("--triangles", triangles, "of the room");
-  app.add_option("--frames", frames, "between two looks at the clock")->check(CLI::PositiveNumber);
-  app.add_option("--rounds", rounds, "of one and two threads each")->check(CLI::PositiveNumber);
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--triangles", triangles, "of the room")->check(FromTo(12, 1e7));
+  app.add_option("--frames", frames, "between two looks at the clock")->check(FromTo(1, 1e6));
+  app.add_option("--rounds", rounds, "of one and two threads each")->check(FromTo(1, 1e6));
+  if (!depthgrid::ReadCommandLine(app, argc, argv)) return 0;
   depthgrid::Compare(triangles, frames, rounds);
   return 0;
 }
+}  // namespace
+
+int main(int argc, char** argv) { return depthgrid::GuardedMain(Measure, argc, argv); }

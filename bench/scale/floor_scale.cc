@@ -3,10 +3,13 @@
 // And does the mapper take one of these rooms, which look alike, for another?
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <thread>
 
+#include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
 #include "mapper/core/cpu_clock.h"
@@ -122,6 +125,7 @@ struct Settings {
   int rows = 0;        // of rooms; 0: as many as columns
   std::uint32_t seed = 1;
   double drift = 1.0;
+  double rate_hz = 0.0;  // at which frames come; 0: as fast as they are mapped
   PlanarLaser laser{
       .beams = 640, .field_of_view_rad = 0.0, .max_range_m = 6.0, .sigma_of_range = 0.01};
   double field_of_view_deg = 58.0;
@@ -162,6 +166,21 @@ double PeakMib() {
   return 0.0;
 }
 
+// Sleeps until a sensor of this rate would have the k-th frame ready.
+class Pace {
+ public:
+  explicit Pace(double rate_hz) : rate_hz_(rate_hz) {}
+  void WaitFor(int k) const {
+    if (rate_hz_ > 0.0) {
+      std::this_thread::sleep_until(start_ + std::chrono::duration<double>(k / rate_hz_));
+    }
+  }
+
+ private:
+  double rate_hz_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 struct Walked {
   std::vector<Pose2> truths;
   std::vector<double> times_us;  // of each frame
@@ -175,6 +194,7 @@ Walked Walk(const Floor& floor, int frames, const Settings& settings, Incrementa
   laser.field_of_view_rad = RadFromDeg(settings.field_of_view_deg);
   Walked walked;
   Pose2 odometry, last;
+  const Pace pace(settings.rate_hz);
   for (int k = 0; k < frames; ++k) {
     const Pose2 truth = walker.Next();
     // Odometry with a slowly varying bias: 1 % of the way, 0.1 degree a metre.
@@ -191,6 +211,7 @@ Walked Walk(const Floor& floor, int frames, const Settings& settings, Incrementa
         std::make_shared<const Scan>(ScanOf(WallsAround(truth.translation(), floor), truth, laser,
                                             floor.seed + 1, static_cast<std::uint32_t>(k)));
     frame.slam_from_camera = CameraOf(odometry, 0.0);
+    pace.WaitFor(k);
     const FrameReport report = mapper.AddFrame(frame);
     walked.times_us.push_back(report.times.total_us);
     walked.mean_us += report.times.total_us;
@@ -265,6 +286,17 @@ void MeasureFloor(double floor_m, int frames, const Settings& settings) {
 }  // namespace depthgrid
 
 namespace {
+using depthgrid::FromTo;
+
+// One of them alone takes the first of the other's defaults.
+void RequireAsMany(const CLI::App& app, std::size_t floors, std::size_t frames) {
+  const bool too_few = app.count("--floors") > 0 && frames < floors;
+  const bool too_many = app.count("--frames") > 0 && frames > floors;
+  if (!too_few && !too_many) return;
+  throw depthgrid::InputError(
+      "--frames", "are " + std::to_string(frames) + ", for " + std::to_string(floors) + " floors");
+}
+
 int Measure(int argc, char** argv) {
   depthgrid::Settings settings;
   bool no_finish = false;
@@ -272,20 +304,26 @@ int Measure(int argc, char** argv) {
   std::vector<double> floors = {5, 20, 50, 100, 200};
   std::vector<int> frames = {1000, 5000, 20000, 50000, 100000};
   CLI::App app("Time a frame and memory over floors of growing size");
-  app.add_option("--floors", floors, "side lengths, metres");
-  app.add_option("--frames", frames, "of each");
+  app.add_option("--floors", floors, "side lengths, metres")->check(FromTo(5, 5000));
+  app.add_option("--frames", frames, "of each")->check(FromTo(1, 1e7));
   app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
   app.add_flag("--loops", settings.loops, "list the loops that were taken");
-  app.add_option("--rows", settings.rows, "of rooms; a square floor without");
-  app.add_option("--seed", settings.seed, "of cupboards, noise and odometry, from 1");
-  app.add_option("--drift", settings.drift, "of the odometry: 1 is 1 % and 0.1 degree a metre");
-  app.add_option("--noise", settings.laser.sigma_of_range, "of ranges, as a share");
-  app.add_option("--beams", settings.laser.beams, "of a scan");
-  app.add_option("--fov", settings.field_of_view_deg, "degrees that they spread over");
-  app.add_option("--max-range", settings.laser.max_range_m, "metres, at most 10")
-      ->check(CLI::Range(0.5, 10.0));
+  app.add_option("--rows", settings.rows, "of rooms; 0: a square floor")->check(FromTo(0, 1000));
+  app.add_option("--seed", settings.seed, "of cupboards, noise and odometry")
+      ->check(FromTo(1, 1e9));
+  app.add_option("--drift", settings.drift, "of the odometry: 1 is 1 % and 0.1 degree a metre")
+      ->check(FromTo(0, 100));
+  app.add_option("--rate", settings.rate_hz, "frames a second; 0: as fast as they are mapped")
+      ->check(FromTo(0, 1e4));
+  app.add_option("--noise", settings.laser.sigma_of_range, "of ranges, as a share")
+      ->check(FromTo(0, 1));
+  app.add_option("--beams", settings.laser.beams, "of a scan")->check(FromTo(2, 100000));
+  app.add_option("--fov", settings.field_of_view_deg, "degrees that they spread over")
+      ->check(FromTo(1, 360));
+  app.add_option("--max-range", settings.laser.max_range_m, "metres")->check(FromTo(0.5, 10));
   app.add_option("--set", sets, "KEY=VALUE of the mapper's settings, such as method=paper");
-  CLI11_PARSE(app, argc, argv);
+  if (!depthgrid::ReadCommandLine(app, argc, argv)) return 0;
+  RequireAsMany(app, floors.size(), frames.size());
   settings.mapper = depthgrid::MapperWith(sets);
   settings.finish = !no_finish;
   std::printf(
