@@ -89,6 +89,7 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
 // apart: a frame lies by those that it was matched to, not by those that were nearest.
 std::optional<int> ScanKeeping::DrawnBy(std::span<const MapPart> matched) const {
   std::vector<Weighed> parts;
+  parts.reserve(matched.size());  // for every frame: once, not as it grows
   for (const MapPart& part : matched) {
     parts.push_back({part.mapped, part.information.topLeftCorner<2, 2>().trace()});
   }

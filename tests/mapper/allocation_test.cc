@@ -146,6 +146,15 @@ TEST(Allocation, AScanHasHardlyAnyInSteadyState) {
   EXPECT_LT(AllocationsAFrame(averaged, LaserRound()), 1.0);
 }
 
+// Those whose scans are not kept (KeepOptions) ask which kept frame they lie by.
+TEST(Allocation, AScanThatIsNotKeptHasTwo) {
+  MapperOptions options = SurfelOptions();
+  options.keep.first_frames = 200;
+  options.keep.scans_per_place = 5;
+  options.keep.more_each_doubling = 0.0;
+  EXPECT_LT(AllocationsAFrame(options, LaserRound()), 2.5);
+}
+
 TEST(Allocation, ADepthImageHasHardlyAnyInSteadyState) {
   EXPECT_LT(AllocationsAFrame(PaperOptions(), DepthRound()), 0.9);  // two scans of each are kept
   EXPECT_LT(AllocationsAFrame(SurfelOptions(), DepthRound()), 0.9);
