@@ -19,8 +19,11 @@ struct DepthWalk {
   std::vector<DepthFrame> clean;
   std::vector<DepthImage> noisy;  // Handa's model
 };
-// ICL-NUIM's field of view at this many pixels.
+// ICL-NUIM's field of view at this many pixels; views from all around, none near another.
 const DepthWalk& DepthWalkOf(int width_px, int height_px);
+// Views that follow each other as a recording's do: 2.5 cm and 1.5 degrees apart, to and fro. Only
+// the noisy images are kept.
+const DepthWalk& DepthStrollOf(int width_px, int height_px);
 // Adds the floor of a depth image of this width copied, the fastest anything can read and write it,
 // and returns its name.
 std::string AddCopyFloor(int width_px);

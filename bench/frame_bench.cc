@@ -1,6 +1,8 @@
 // The whole frame: what `depthgrid map` does with each, from a ready scan and from a depth image,
 // and the adjustment at the end. References: the paper's chain with exhaustive search and Ceres;
 // the image copied; the frames' own mapping.
+#include <algorithm>
+
 #include "bench/bench_data.h"
 #include "bench/bench_table.h"
 #include "mapper/core/level.h"
@@ -9,7 +11,16 @@
 namespace depthgrid::bench {
 namespace {
 
-constexpr int kWarmFrames = 300;
+// A stretch of a run, the same however long a repetition lasts: adjustments, after 60, 180, 540 and
+// 1,620 frames, take a hundred frames' time.
+struct Stretch {
+  int before = 0;
+  int frames = 0;
+};
+constexpr Stretch kScans{600, 600};       // one round, without an adjustment
+constexpr Stretch kWholeRun{0, 2400};     // with four
+constexpr Stretch kPlainScans{100, 200};  // milliseconds each
+constexpr Stretch kImages{240, 240};      // twice to and fro, without an adjustment
 
 MapperOptions OptionsOf(MapperMethod method) {
   MapperOptions options;
@@ -48,18 +59,18 @@ class EndlessScans {
   int next_ = 0;
 };
 
-Loop ScanFrameLoop(const MapperOptions& options, int beams) {
+Loop ScanFrameLoop(const MapperOptions& options, int beams, int before) {
   return [=](benchmark::State& state) {
     EndlessScans source(beams);
     IncrementalMapper mapper(options, std::nullopt);
-    for (int k = 0; k < kWarmFrames; ++k) mapper.AddFrame(source.Next());
+    for (int k = 0; k < before; ++k) mapper.AddFrame(source.Next());
     for (auto _ : state) benchmark::DoNotOptimize(mapper.AddFrame(source.Next()));
   };
 }
 
 Loop DepthFrameLoop(const MapperOptions& options, int width_px) {
   return [=](benchmark::State& state) {
-    const DepthWalk& walk = DepthWalkOf(width_px, width_px * 3 / 4);
+    const DepthWalk& walk = DepthStrollOf(width_px, width_px * 3 / 4);
     std::vector<std::shared_ptr<const DepthImage>> images;
     for (const DepthImage& image : walk.noisy) {
       images.push_back(std::make_shared<const DepthImage>(image));
@@ -67,7 +78,8 @@ Loop DepthFrameLoop(const MapperOptions& options, int width_px) {
     IncrementalMapper mapper(options, walk.camera);
     int index = 0;
     const auto next = [&] {
-      const std::size_t i = static_cast<std::size_t>(index) % images.size();
+      const auto k = static_cast<std::size_t>(index) % (2 * images.size());
+      const std::size_t i = std::min(k, 2 * images.size() - 1 - k);  // to and fro
       Frame frame;
       frame.index = index;
       frame.stamp_s = index++ / 30.0;
@@ -75,7 +87,7 @@ Loop DepthFrameLoop(const MapperOptions& options, int width_px) {
       frame.slam_from_camera = walk.poses[i];
       return frame;
     };
-    for (int k = 0; k < 3 * static_cast<int>(images.size()); ++k) mapper.AddFrame(next());
+    for (int k = 0; k < kImages.before; ++k) mapper.AddFrame(next());
     for (auto _ : state) benchmark::DoNotOptimize(mapper.AddFrame(next()));
   };
 }
@@ -106,14 +118,18 @@ const char* NameOf(MapperMethod method) {
     const MapperOptions options = OptionsOf(method);
     for (const int beams : {160, 640}) {
       const std::string floor = "paper, exhaustive, Ceres @ " + std::to_string(beams);
-      AddFloor(floor, ScanFrameLoop(PlainPaper(), beams));
-      AddCase({"whole frame", name + ", scan of " + std::to_string(beams) + " beams", floor,
-               ScanFrameLoop(options, beams)});
+      AddFloor(floor, ScanFrameLoop(PlainPaper(), beams, kPlainScans.before), kPlainScans.frames);
+      const std::string row = name + ", scan of " + std::to_string(beams) + " beams";
+      AddCase({"whole frame", row, floor, ScanFrameLoop(options, beams, kScans.before), false,
+               kScans.frames});
+      if (beams != 640 || method != MapperMethod::kSurfel) continue;
+      AddCase({"whole frame", row + ", adjustments too", floor,
+               ScanFrameLoop(options, beams, kWholeRun.before), false, kWholeRun.frames});
     }
     for (const int width_px : {320, 640}) {
       const std::string size = std::to_string(width_px) + "x" + std::to_string(width_px * 3 / 4);
       AddCase({"whole frame", name + ", depth image " + size, size + " image copied",
-               DepthFrameLoop(options, width_px)});
+               DepthFrameLoop(options, width_px), false, kImages.frames});
     }
     for (const int frames : {600, 2400}) {
       const std::string run = "mapping these frames @ " + name + std::to_string(frames);
