@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "mapper/core/angle.h"
 
@@ -14,13 +16,29 @@ constexpr double kShare = 0.01;
 constexpr double kTurnRad = RadFromDeg(10.0);
 constexpr int kFewFrames = 10;
 
+// The largest finite value, 0 where none is greater. Every pixel of every image is looked at: four
+// maxima that do not wait for each other take a quarter of the time of one.
+float LargestOf(const std::vector<float>& z_m) {
+  float a = 0.0F, b = 0.0F, c = 0.0F, d = 0.0F;
+  std::size_t i = 0;
+  for (; i + 4 <= z_m.size(); i += 4) {
+    a = z_m[i] > a ? z_m[i] : a;  // not where it is NaN
+    b = z_m[i + 1] > b ? z_m[i + 1] : b;
+    c = z_m[i + 2] > c ? z_m[i + 2] : c;
+    d = z_m[i + 3] > d ? z_m[i + 3] : d;
+  }
+  for (; i < z_m.size(); ++i) a = z_m[i] > a ? z_m[i] : a;
+  const float largest = std::max(std::max(a, b), std::max(c, d));
+  if (std::isfinite(largest)) return largest;
+  return std::accumulate(z_m.begin(), z_m.end(), 0.0F, [](float most, float z) {
+    return z > most && std::isfinite(z) ? z : most;
+  });
+}
+
 }  // namespace
 
 void SaturationCheck::Add(const DepthImage& depth, const Pose3& world_from_camera) {
-  float largest_m = 0.0F;
-  for (const float z_m : depth.z_m) {
-    if (z_m > largest_m && std::isfinite(z_m)) largest_m = z_m;
-  }
+  const float largest_m = LargestOf(depth.z_m);
   if (largest_m > largest_m_ + kSameM) {
     *this = {};
     largest_m_ = largest_m;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "mapper/core/angle.h"
 
@@ -41,6 +42,26 @@ TEST(SaturationCheck, FindsTheDepthThatEverythingFartherIsCutTo) {
   // Once something lies beyond, it was a wall.
   cut.Add(Slope(4.0F, 0.0F), Turned(0.5));
   EXPECT_FALSE(cut.Found());
+}
+
+// Wherever in the image it stands, and whatever else is no depth.
+TEST(SaturationCheck, TheLargestDepthIsFoundAtEveryPixel) {
+  constexpr float kNone[] = {std::numeric_limits<float>::infinity(),
+                             std::numeric_limits<float>::quiet_NaN(), kInvalidDepth, -1.0F};
+  for (const float none : kNone) {
+    for (std::size_t at = 0; at < 11; ++at) {
+      SaturationCheck check;
+      for (int i = 0; i < 20; ++i) {
+        DepthImage image(11, 1);
+        for (std::size_t k = 0; k < 11; ++k) image.z_m[k] = 1.0F + 0.1F * static_cast<float>(k);
+        image.z_m[(at + 3) % 11] = none;
+        image.z_m[at] = 4.5F;
+        check.Add(image, Turned(0.02 * i));
+      }
+      ASSERT_TRUE(check.Found()) << none << " " << at;
+      EXPECT_EQ(check.Found()->z_m, 4.5F) << none << " " << at;
+    }
+  }
 }
 
 }  // namespace
