@@ -1,8 +1,9 @@
-// The main of a measuring program: a mistake in what it was given is one line and exit code 2, as
-// with depthgrid itself.
+// The main of a measuring program: a mistake in what it was given is one line and exit code 2, a
+// failure of the run one line and exit code 1, as with depthgrid itself.
 #pragma once
 
 #include <cstdio>
+#include <exception>
 
 #include "mapper/core/error.h"
 
@@ -15,6 +16,9 @@ int GuardedMain(Program program, int argc, char** argv) {
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
   }
 }
 

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -153,10 +152,5 @@ int Main(int argc, char** argv) {
 }  // namespace depthgrid::bench
 
 int main(int argc, char** argv) {
-  try {
-    return depthgrid::GuardedMain(depthgrid::bench::Main, argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
-    return 1;
-  }
+  return depthgrid::GuardedMain(depthgrid::bench::Main, argc, argv);
 }

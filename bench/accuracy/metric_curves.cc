@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "bench/guarded_main.h"
 #include "mapper/io/file.h"
 
@@ -94,6 +96,7 @@ int Measure(int argc, char** argv) {
     return 2;
   }
   const std::string folder = argv[1];
+  if (!std::filesystem::is_directory(folder)) throw depthgrid::InputError(folder, "is no folder");
   const std::vector<depthgrid::Curve> curves = depthgrid::SanityCurves(depthgrid::kCurveSteps);
   depthgrid::WriteFile(folder + "/metric_curves.csv", depthgrid::Csv(curves));
   depthgrid::WriteFile(folder + "/metric_curves.svg", depthgrid::Svg(curves));

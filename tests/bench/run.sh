@@ -5,7 +5,7 @@
 set -euo pipefail
 source=$(dirname "$(readlink -f "$0")")/../..
 programs=$(readlink -m "$1")
-for program in depthgrid_bench floor_scale laser_accuracy laser_lost paper_accuracy; do
+for program in depthgrid_bench floor_scale laser_accuracy laser_lost paper_accuracy metric_curves; do
   if [ ! -x "$programs/$program" ] ||
     [ -n "$(find "$source"/{bench,mapper} '(' -name '*.cc' -o -name '*.h' ')' -newer "$programs/$program" -print -quit)" ]
   then
@@ -106,6 +106,7 @@ refused '--lost-at' laser_lost --world w --lost-at 0 --back-at 5
 refused '--lost-at' laser_lost --world w --lost-at 100 --back-at 5
 refused '--back-at' laser_lost --world w --lost-at 5 --back-at 100
 refused '--seeds' laser_lost --world w --lost-at 5 --back-at 5 --seeds 0
+refused 'nowhere: is no folder' metric_curves nowhere
 refused '--seeds' paper_accuracy --variant a --seeds 0
 refused '--threads' paper_accuracy --variant a --threads 0
 exit $failed
