@@ -90,8 +90,7 @@ void SayWhoseItIs(const Arguments& arguments, const Baseline& baseline) {
   }
   fmt::print(
       "The baseline is of ANOTHER MACHINE: {}; this is {}. What \"change\" says is the difference "
-      "of "
-      "the machines, {}\n",
+      "of the machines, {}\n",
       TextOf(baseline.machine), TextOf(ThisMachine()),
       arguments.write_baseline
           ? "whose ratios go, those that are not measured too."

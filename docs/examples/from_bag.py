@@ -41,19 +41,25 @@ def decimal(stamp):
     return f"{stamp.secs}.{stamp.nsecs:09d}"
 
 
-def pose_of(translation, rotation):
-    """4x4 of a geometry_msgs translation and quaternion; None where the quaternion is none."""
-    q = np.array([rotation.x, rotation.y, rotation.z, rotation.w])
-    length = np.linalg.norm(q)
-    if not np.isfinite(length) or abs(length - 1) > 0.01:
-        return None
-    x, y, z, w = q / length
+def matrix(position, quaternion):
+    """The 4x4 of a position and a unit quaternion x y z w."""
+    x, y, z, w = quaternion
     pose = np.eye(4)
     pose[:3, :3] = [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
-    pose[:3, 3] = [translation.x, translation.y, translation.z]
-    return pose if np.isfinite(pose).all() else None
+    pose[:3, 3] = position
+    return pose
+
+
+def pose_of(position, rotation):
+    """Of a geometry_msgs position and quaternion; None where these are none."""
+    position = np.array([position.x, position.y, position.z])
+    quaternion = np.array([rotation.x, rotation.y, rotation.z, rotation.w])
+    length = np.linalg.norm(quaternion)
+    if not np.isfinite(position).all() or not abs(length - 1) < 0.01:
+        return None
+    return matrix(position, quaternion / length)
 
 
 def quaternion_of(rotation):
@@ -80,13 +86,7 @@ def between(a, b, share):
         q = qa + share * (qb - qa)
     else:
         q = math.sin((1 - share) * angle) * qa + math.sin(share * angle) * qb
-
-    class Xyz:
-        pass
-    rotation, translation = Xyz(), Xyz()
-    rotation.x, rotation.y, rotation.z, rotation.w = q / np.linalg.norm(q)
-    translation.x, translation.y, translation.z = a[:3, 3] + share * (b[:3, 3] - a[:3, 3])
-    return pose_of(translation, rotation)
+    return matrix(a[:3, 3] + share * (b[:3, 3] - a[:3, 3]), q / np.linalg.norm(q))
 
 
 class Track:

@@ -240,6 +240,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   json["failed"] = std::count_if(results.failures.begin(), results.failures.end(),
                                  [](const std::string& reason) { return !reason.empty(); });
   json["environment"] = results.environment;
+  json["environment"].erase("jobs");  // the page is the same however many were done at a time
   json["seed_keys"] = Json::array();
   for (const SweepParameter& parameter : results.parameters) {
     if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);

@@ -67,10 +67,10 @@ function someOf(items) {
 }
 
 function initEnvironment() {
-  const meaning = { experiment: "every effective key", given: "the keys among them that a file or --set gives", sweep: "with its axes written out", again: "sweep_again.yaml, beside experiment.yaml the file of this very sweep", jobs: "at a time: the wall times of results.csv are of runs that share the cores" };
+  const meaning = { experiment: "every effective key", given: "the keys among them that a file or --set gives", sweep: "with its axes written out", again: "sweep_again.yaml, beside experiment.yaml the file of this very sweep" };
   for (const [key, text] of Object.entries(SWEEP.environment)) {
     if (key === "sweep" && SWEEP.environment.again) continue;  // the same, less readable
-    byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, meaning[key] ? `${key}: ${meaning[key]}` : key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}${meaning[key] ? ` ${meaning[key]}` : ""}`));
+    byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, meaning[key] ? `${key}: ${meaning[key]}` : key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}`));
   }
 }
 

@@ -189,8 +189,7 @@ std::optional<std::string> CarmenCheck::DoubtOfLongest(const std::string& path) 
   constexpr double kPercent = 100.0;
   return fmt::format(
       "{}: {:.1f} % of the readings are from {:.2f} to {:.2f} m, the log's longest, {:.0f} times "
-      "as "
-      "many as in as wide a band below, wherever the laser is: if that is how it writes \"no "
+      "as many as in as wide a band below, wherever the laser is: if that is how it writes \"no "
       "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.2f} takes them for "
       "none",
       path, kPercent * static_cast<double>(crowd->count) / static_cast<double>(crowd->readings),
@@ -226,8 +225,8 @@ std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
   if (stated_mounts_ > 0) {
     warnings.push_back(fmt::format(
         "{}:{}: the line states two poses, the laser's and the robot's, {:.2f} m and {:.0f} "
-        "degrees "
-        "apart ({}): sequence.laser.mount is where the laser is from the first of them, and a log "
+        "degrees apart ({}): sequence.laser.mount is where the laser is from the first of them, "
+        "and a log "
         "that states the laser's poses needs none",
         path, stated_mount_line_, stated_mount_.translation().norm(),
         std::abs(DegFromRad(stated_mount_.yaw_rad)), Counted(stated_mounts_, "such line")));

@@ -4,14 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "mapper/core/angle.h"
+#include "mapper/io/frozen_motion.h"
 
 namespace depthgrid {
 namespace {
-
-// Chosen, of no measurement.
-constexpr double kTurnRad = RadFromDeg(2.0);
-constexpr double kAheadM = 0.05;
 
 bool SeesSomething(const DepthImage& image) {
   return std::any_of(image.z_m.begin(), image.z_m.end(),
@@ -33,8 +29,8 @@ bool FrozenImages::IsFrozen(std::shared_ptr<const DepthImage> image, const Pose3
   }
   const double seconds = std::max(stamp_s - stamp_s_, 0.0);
   const Pose3 motion = Inverse(slam_from_camera_) * slam_from_camera;
-  return LogRotation(motion.rotation).norm() > kTurnRad * (1.0 + seconds) ||
-         std::abs(motion.translation.z()) > kAheadM * (1.0 + seconds);
+  return IsFrozenTurn(LogRotation(motion.rotation).norm(), seconds) ||
+         std::abs(motion.translation.z()) > FrozenWayM(seconds);
 }
 
 }  // namespace depthgrid

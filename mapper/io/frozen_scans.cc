@@ -3,15 +3,12 @@
 #include <cmath>
 #include <utility>
 
-#include "mapper/core/angle.h"
 #include "mapper/core/median.h"
+#include "mapper/io/frozen_motion.h"
 
 namespace depthgrid {
 namespace {
 
-// As of images (FrozenImages). Chosen, of no measurement.
-constexpr double kFrozenTurnRad = RadFromDeg(2.0);
-constexpr double kFrozenNearerM = 0.05;
 // A scan with fewer hits, or fewer pieces of wall that must have come nearer, shows nothing.
 constexpr int kFewHits = 20;
 constexpr int kFewPieces = 5;
@@ -81,15 +78,16 @@ bool IsNoisy(const Scan& scan) {
     bends_m.push_back(std::abs(static_cast<double>(a.range_m) - 2.0 * b.range_m + c.range_m));
   }
   if (bends_m.size() < static_cast<std::size_t>(kFewHits)) return false;
-  return UpperMedian(std::move(bends_m)) > kMostBendM + WrittenStepM(scan) * (1.0 + 1e-3);
+  constexpr double kFloatRounding = 1.0 + 1e-3;  // of differences of centimetres
+  return UpperMedian(std::move(bends_m)) > kMostBendM + WrittenStepM(scan) * kFloatRounding;
 }
 
 bool MustDiffer(const Scan& scan, const Pose2& motion, double seconds) {
   const auto hits = std::count_if(scan.beams.begin(), scan.beams.end(),
                                   [](const Beam& beam) { return beam.hit; });
   if (hits < kFewHits) return false;
-  const double least_m = kFrozenNearerM * (1.0 + seconds);
-  if (std::abs(motion.yaw_rad) > kFrozenTurnRad * (1.0 + seconds)) return true;
+  if (IsFrozenTurn(motion.yaw_rad, seconds)) return true;
+  const double least_m = FrozenWayM(seconds);
   if (motion.translation().norm() < least_m) return false;
   return IsNoisy(scan) || PiecesThatMove(scan, motion.translation(), least_m) >= kFewPieces;
 }

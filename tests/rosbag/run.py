@@ -120,7 +120,7 @@ def write_laser_bag(path, compression, upside_down=False, with_odometry=True):
 
 
 WIDTH, HEIGHT, FOCAL = 160, 120, 120.0
-CAMERA_Z, FLOOR_REACH_M = 0.6, 8.0
+CAMERA_Z = 0.6
 
 
 def write_depth_bag(path):
