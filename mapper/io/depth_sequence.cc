@@ -6,6 +6,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/icl_folder.h"
+#include "mapper/io/leave_out_body.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
@@ -109,6 +110,7 @@ DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const std::optional<SlamOutput>& slam) {
   DepthSequence sequence = ReadAsWritten(path, format, options, slam);
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
+  if (options.recording.drop_body) internal::LeaveOutBody(options.recording, sequence);
   return sequence;
 }
 

@@ -27,8 +27,9 @@ struct DepthSequence {
 Recording ListDepthImages(const std::string& path, SequenceFormat format,
                           const SequenceOptions& options);
 
-// As OpenSequence takes it, but for which way is up. `options.format` is not looked at, but
-// `format`, one of images. Throws InputError.
+// As OpenSequence takes it, but for which way is up, and without the robot in its images unless
+// `options` keeps it. `options.format` is not looked at, but `format`, one of images. Throws
+// InputError.
 DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const SequenceOptions& options = {},
                                 const std::optional<SlamOutput>& slam = {});

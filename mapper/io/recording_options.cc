@@ -19,6 +19,8 @@ void RecordingOptions::Visit(OptionsVisitor& v) {
            "images a second, for folders whose images are only numbered");
   v.Number("depth_scale", depth_scale_per_m, {0.0, 1e6},
            "depth image units a metre; 0 takes the camera file's");
+  v.Flag("drop_body", drop_body,
+         "leave out what stays nearer than 1 m while the camera turns: the robot's own body");
 }
 
 }  // namespace depthgrid

@@ -30,6 +30,8 @@ struct RecordingOptions {
   double frame_rate_hz = 30.0;
   // Units a metre; 0 takes the camera file's.
   double depth_scale_per_m = 0.0;
+  // Parts of the robot in the images (BodyFinder) are no measurement.
+  bool drop_body = true;
 
   void Visit(OptionsVisitor& v);
 };
