@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "mapper/surfel/motion_sigma.h"
 #include "mapper/surfel/sign_correlation.h"
@@ -17,6 +18,8 @@ constexpr std::size_t kLag = 4;
 constexpr int kMinLinkPairs = 20;
 // Errors that never end would be a slope that nothing bounds.
 constexpr double kMostPersistence = 0.97;
+
+constexpr int kForward = 0;
 
 bool Follows(const GroupLink& link, const GroupLink& before) { return link.first == before.second; }
 
@@ -52,6 +55,15 @@ void AddFollowing(const GroupLink& before, const GroupLink& link,
   }
 }
 
+// Of the signs of so many pairs, those that agree less those that do not.
+double PersistenceOf(double agreement, double pairs) {
+  // Less a standard error: the fourth root makes much of what independent errors feign.
+  const double surely = agreement / pairs - 1.0 / std::sqrt(pairs);
+  if (surely <= 0.0) return 0.0;
+  const double kept = std::pow(CorrelationOfSigns(surely), 1.0 / static_cast<double>(kLag));
+  return std::min(kept, kMostPersistence);
+}
+
 }  // namespace
 
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
@@ -70,18 +82,17 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
       agreement[axis] += product > 0.0 ? 1.0 : (product < 0.0 ? -1.0 : 0.0);
     }
   }
-  Eigen::Vector3d persistence = Eigen::Vector3d::Zero();
-  if (MeanShare(shares_seen).minCoeff() < kLeastShareSeen) return persistence;
+  if (MeanShare(shares_seen)[kForward] < kLeastShareSeen) return Eigen::Vector3d::Zero();
+  std::array<std::optional<double>, 3> told;
+  double least = kMostPersistence;
   for (int axis = 0; axis < 3; ++axis) {
     if (pairs[axis] < kMinLinkPairs) continue;
-    // Less a standard error: the fourth root makes much of what independent errors feign.
-    const double surely = agreement[axis] / pairs[axis] - 1.0 / std::sqrt(pairs[axis]);
-    if (surely <= 0.0) continue;
-    const double correlation = CorrelationOfSigns(surely);
-    persistence[axis] =
-        std::min(std::pow(correlation, 1.0 / static_cast<double>(kLag)), kMostPersistence);
+    const double lasts = PersistenceOf(agreement[axis], pairs[axis]);
+    told[static_cast<std::size_t>(axis)] = lasts;
+    least = std::min(least, lasts);
   }
-  return persistence;
+  if (pairs.maxCoeff() < kMinLinkPairs) return Eigen::Vector3d::Zero();
+  return {told[0].value_or(least), told[1].value_or(least), told[2].value_or(least)};
 }
 
 void AddMotions(const std::vector<GroupLink>& motions, const Eigen::Vector3d& persistence,

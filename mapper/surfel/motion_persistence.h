@@ -15,8 +15,8 @@ namespace depthgrid {
 // are independent) to below 1. A first-order autoregressive process, told by the signs of the
 // errors of `unit` four links apart, both of which were seen along the axis (`shares_seen`, one a
 // link, as of SharesSeen): the others' errors are what was made of their neighbours', and would
-// confirm it. 0 for few pairs, and on all axes where on any of them little was seen in the mean,
-// since the errors are those of the poses then.
+// confirm it. An axis of few such pairs has what is least of those that tell. 0 on all axes where
+// little was seen forward in the mean, since the errors are those of the poses then.
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,
                                   const std::vector<Eigen::Vector3d>& shares_seen);

@@ -51,9 +51,7 @@ TEST(MotionPersistence, IsThatOfTheErrors) {
 
 TEST(MotionPersistence, IsNoneWhereLittleWasSeenOrLinksAreFew) {
   const BiasedDrive drive = DriveOf(400, 0.9);
-  for (const Eigen::Vector3d& seen : {Eigen::Vector3d{0.2, 1.0, 1.0}, {1.0, 1.0, 0.2}}) {
-    EXPECT_TRUE(Told(drive.links, drive, seen).isZero(0.0));
-  }
+  EXPECT_TRUE(Told(drive.links, drive, {0.2, 1.0, 1.0}).isZero(0.0));
   EXPECT_GT(Told(drive.links, drive, kAllSeen).x(), 0.8);
   const std::vector<GroupLink> few(drive.links.begin(), drive.links.begin() + 20);
   EXPECT_TRUE(Told(few, drive, kAllSeen).isZero(0.0));
@@ -63,6 +61,14 @@ TEST(MotionPersistence, IsNoneWhereLittleWasSeenOrLinksAreFew) {
     if (i % 4 != 0) broken.push_back(drive.links[i]);
   }
   EXPECT_TRUE(Told(broken, drive, kAllSeen).isZero(0.0));
+}
+
+// In rooms a narrow view tells how far and which way, but little of how far to the side. With
+// errors there believed to be independent, which forward last, what builds up is laid to the yaw.
+TEST(MotionPersistence, OfAnAxisThatIsNotSeenIsTheLeastOfTheOthers) {
+  const BiasedDrive forward = DriveOf(4000, 0.9);
+  EXPECT_GT(Told(forward.links, forward, {1.0, 0.2, 0.2}).minCoeff(), 0.8);
+  EXPECT_LT(Told(forward.links, forward, {1.0, 1.0, 0.2}).z(), 0.3);
 }
 
 // Of 64 pairs 36 agree: as many do by chance. With 40 they agree by a quarter, of which a standard
