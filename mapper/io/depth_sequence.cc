@@ -16,11 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The camera of --camera for a TUM folder. A file that cannot state a scale (a matrix) is warned of
-// as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
-CameraDescription GivenCamera(const std::string& path, std::vector<std::string>& warnings) {
-  CameraDescription camera = ReadCameraDescription(path, warnings);
+// A TUM folder's own camera, or that of --camera. A file that cannot state a scale (a matrix) is
+// warned of as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
+CameraDescription CameraOfTum(const std::string& folder, const std::string& given,
+                              std::vector<std::string>& warnings) {
+  CameraDescription camera =
+      given.empty() ? TumFolderCamera(folder, warnings) : ReadCameraDescription(given, warnings);
   if (!camera.has_depth_scale || camera.takes_usual_scale) {
+    const std::string path = given.empty() ? (fs::path(folder) / "camera.yaml").string() : given;
     warnings.push_back(NoDepthScale(path, camera.file.depth_scale_per_m));
   }
   return camera;
@@ -43,14 +46,10 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
     sequence.slam = SlamOutputOf(ReadTrajectory(truth, sequence.recording.warnings));
     sequence.notes.emplace_back("poses: groundtruth.txt of the folder");
   }
-  if (options.camera.empty()) {
-    sequence.recording.camera = TumFolderCamera(path, sequence.recording.warnings);
-  } else {
-    CameraDescription camera = GivenCamera(options.camera, sequence.recording.warnings);
-    CompleteSize(sequence.recording, camera);
-    sequence.recording.camera = camera.file;
-    sequence.y_up = camera.y_up;
-  }
+  CameraDescription camera = CameraOfTum(path, options.camera, sequence.recording.warnings);
+  CompleteSize(sequence.recording, camera);
+  sequence.recording.camera = camera.file;
+  sequence.y_up = camera.y_up;
   sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
   return sequence;
 }

@@ -9,8 +9,6 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
-#include "mapper/io/camera_formats.h"
-#include "mapper/io/config.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -160,23 +158,18 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
   return list;
 }
 
-CameraFile TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings) {
+CameraDescription TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings) {
   const std::string path = Joined(folder, "camera.yaml");
-  if (fs::exists(path)) {
-    WarnOfCut(path, ReadFile(path), warnings);
-    CameraFile file = ReadCameraFile(path);
-    if (!Config::FromFile(path).Has("depth_scale")) {
-      warnings.push_back(NoDepthScale(path, file.depth_scale_per_m));
-    }
-    return file;
-  }
+  if (fs::exists(path)) return ReadCameraDescription(path, warnings);
   const auto known = TumCamera(fs::absolute(folder).lexically_normal().string());
   if (!known) {
     throw InputError(
         path, "no such file; it states the camera's intrinsics (--camera FILE names another)");
   }
   warnings.push_back(path + ": no such file, taking the camera TUM gives for this sequence");
-  return *known;
+  CameraDescription camera;
+  camera.file = *known;
+  return camera;
 }
 
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options) {

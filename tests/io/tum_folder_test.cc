@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "mapper/io/pose_track.h"
+#include "mapper/io/sequence.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/io/open_as_written.h"
 #include "tests/io/temporary_folder.h"
@@ -14,6 +15,7 @@
 namespace depthgrid {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -247,10 +249,10 @@ TEST_F(TumFolderTest, ACutCameraFileIsSaid) {
   const std::string camera = "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\ndepth_scale: 50";
   std::vector<std::string> warnings;
   Write("camera.yaml", camera + "00\n");
-  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 5000.0);
+  EXPECT_EQ(TumFolderCamera(folder_, warnings).file.depth_scale_per_m, 5000.0);
   EXPECT_THAT(warnings, IsEmpty());
   Write("camera.yaml", camera);
-  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 50.0);
+  EXPECT_EQ(TumFolderCamera(folder_, warnings).file.depth_scale_per_m, 50.0);
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("camera.yaml: the last line has no line end")));
 }
 
@@ -258,9 +260,21 @@ TEST_F(TumFolderTest, ACutCameraFileIsSaid) {
 TEST_F(TumFolderTest, AScaleThatIsTakenForGrantedIsSaid) {
   WriteSequence();
   Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\n");
+  const Sequence sequence = OpenSequence(folder_);
+  EXPECT_THAT(sequence.source->Warnings(),
+              Contains(HasSubstr("camera.yaml: states no depth_scale; it is 5000 a metre unless")));
+}
+
+// As of --camera.
+TEST_F(TumFolderTest, ItsOwnCameraMayHaveYUp) {
+  WriteSequence();
   std::vector<std::string> warnings;
-  EXPECT_EQ(TumFolderCamera(folder_, warnings).depth_scale_per_m, 5000.0);
-  EXPECT_THAT(warnings, ElementsAre(HasSubstr("states no depth_scale; it is 5000 a metre unless")));
+  EXPECT_FALSE(TumFolderCamera(folder_, warnings).y_up);
+  Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: -4\ncx: 1.5\ncy: 1\ndepth_scale: 1000\n");
+  const CameraDescription camera = TumFolderCamera(folder_, warnings);
+  EXPECT_TRUE(camera.y_up);
+  EXPECT_EQ(camera.file.camera.fy_px, 4.0);
+  EXPECT_THAT(warnings, IsEmpty());
 }
 
 // Of two frames in four that is nothing to wonder at.
