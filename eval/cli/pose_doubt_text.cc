@@ -99,6 +99,11 @@ std::string RemedyOf(const PoseDoubt& doubt) {
           "with fx, fy, cx and cy about {:.2g} times as large: those of the camera are for images "
           "of another size",
           doubt.scale);
+    case PoseReading::kCentre:
+      return fmt::format(
+          "with cx about {:.0f} and cy about {:.0f}: those of the camera are for images that are "
+          "cut otherwise",
+          doubt.centre_px.x(), doubt.centre_px.y());
     case PoseReading::kRayLengths:
       return "with images that hold lengths of rays; they must hold depth along the camera's z "
              "axis, the ray's length / sqrt(((u - cx) / fx)^2 + ((v - cy) / fy)^2 + 1)";

@@ -55,6 +55,11 @@ constexpr double kMostFocal = 2.1;
 // Over a few seconds SLAM's own errors look like a camera that is some percent off: 6 % of a right
 // one in two of four runs of three seconds.
 constexpr double kLeastFocal = 1.1;
+// Of the image's width. A centre a quarter of it off is that of an image of half the width.
+constexpr double kCoarseCentre = 0.04;
+constexpr double kFineCentre = 0.01;
+constexpr double kMostCentre = 0.28;
+constexpr double kLeastCentre = 0.03;
 // How cameras are mounted on robots.
 constexpr double kCoarsePitchRad = RadFromDeg(5.0);
 constexpr double kFinePitchRad = RadFromDeg(0.5);
@@ -63,9 +68,7 @@ constexpr double kMostPitchRad = RadFromDeg(60.0);
 constexpr double kLeastPitchRad = RadFromDeg(2.0);
 
 Pose3 Inverted(const Pose3& pose) { return Inverse(pose); }
-
 Pose3 AsGiven(const Pose3& pose) { return pose; }
-
 Pose3 FlippedY(const Pose3& pose) { return FlipY(pose); }
 
 const Eigen::Matrix3d kFlipY = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
@@ -205,6 +208,13 @@ class BestReading {
       return Attempt{AsGiven, OfImageSize(camera_, scale)};
     });
   }
+  // Along one axis after the other, finely about the best of them then.
+  void TryCentres() {
+    TryCentres(0, kCoarseCentre, kMostCentre);
+    TryCentres(1, kCoarseCentre, kMostCentre);
+    if (best_.reading != PoseReading::kCentre) return;
+    for (const int axis : {0, 1, 0, 1}) TryCentres(axis, kFineCentre, kCoarseCentre);
+  }
   void TryPitches() {
     TryPitches(PoseReading::kPitched, AsGiven);
     TryPitches(PoseReading::kPitchedBodyAxes, FromBodyAxes);
@@ -298,6 +308,19 @@ class BestReading {
     look(1.0, factors.coarse, factors.most);
     if (best_.reading == reading) look(best_.scale, kFineScale, factors.coarse);
   }
+  void TryCentres(int axis, double step, double most) {
+    const Eigen::Vector2d given_px(camera_.cx_px, camera_.cy_px);
+    const Eigen::Vector2d around_px =
+        best_.reading == PoseReading::kCentre ? best_.centre_px : given_px;
+    const int steps = static_cast<int>(std::lround(most / step));
+    for (int k = -steps; k <= steps; ++k) {
+      PoseDoubt doubt = as_given_;
+      doubt.reading = PoseReading::kCentre;
+      doubt.centre_px = around_px + k * step * camera_.width_px * Eigen::Vector2d::Unit(axis);
+      if ((doubt.centre_px - given_px).norm() < kLeastCentre * camera_.width_px) continue;
+      Try(doubt, {AsGiven, WithCentre(camera_, doubt.centre_px)});
+    }
+  }
   void TryPitches(PoseReading reading, Pose3 (*axes)(const Pose3&)) {
     const auto look = [&](double around_rad, double step_rad, double most_rad) {
       const int steps = static_cast<int>(std::lround(most_rad / step_rad));
@@ -364,6 +387,7 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   // best.
   best.TryScales();
   best.TryCameras();
+  best.TryCentres();
   best.TryPitches();
   best.TryOtherAxes();
   best.TryRayLengths();

@@ -28,6 +28,7 @@ enum class PoseReading {
   kPitchedBodyAxes,  // of a robot's axes from which the camera is pitched
   kFocal,            // right, of a camera with other fx and fy
   kImageSize,        // right, of a camera with other fx, fy, cx and cy: for images of another size
+  kCentre,           // right, of a camera with another cx and cy: for images cut otherwise
   kRayLengths,       // right, of images that hold the lengths of rays
   kStanding,         // none fits: all positions are the same
   kUnturned,         // none fits: all rotations are the same
@@ -41,6 +42,8 @@ struct PoseDoubt {
   // The poses' positions (kScaled), the focal lengths (kFocal) or all four of the camera's numbers
   // (kImageSize) times this fit the images.
   double scale = 1.0;
+  // The camera's cx and cy that fit the images (kCentre).
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   // kPositions: the world's axes from those of the positions. kAxes: the camera's axes from the
   // poses' own.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();

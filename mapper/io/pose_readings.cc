@@ -32,6 +32,12 @@ PinholeCamera WithFocal(PinholeCamera camera, double scale) {
   return camera;
 }
 
+PinholeCamera WithCentre(PinholeCamera camera, const Eigen::Vector2d& centre_px) {
+  camera.cx_px = centre_px.x();
+  camera.cy_px = centre_px.y();
+  return camera;
+}
+
 PinholeCamera OfImageSize(PinholeCamera camera, double scale) {
   camera = WithFocal(camera, scale);
   camera.cx_px = scale * (camera.cx_px + 0.5) - 0.5;

@@ -19,6 +19,7 @@ Pose3 FromAxes(const Pose3& pose, const Eigen::Matrix3d& camera_from_own);
 Pose3 LookingDown(const Pose3& pose, double down_rad);
 
 PinholeCamera WithFocal(PinholeCamera camera, double scale);
+PinholeCamera WithCentre(PinholeCamera camera, const Eigen::Vector2d& centre_px);
 // The image's corner, half a pixel before the middle of the first, stays where it is.
 PinholeCamera OfImageSize(PinholeCamera camera, double scale);
 

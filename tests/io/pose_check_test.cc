@@ -222,6 +222,22 @@ TEST(PoseCheck, NamesAnotherCamera) {
 }
 
 // As little as SLAM's own errors look like over a few seconds.
+// Of images that were cut, with the camera's file as it was.
+TEST(PoseCheck, NamesAnotherCentre) {
+  const std::vector<ImagePair> pairs = Pairs(0.0);
+  for (const auto& [right_px, down_px] : {std::pair(0.15, 0.0), {-0.1, 0.08}, {0.0, -0.12}}) {
+    const Eigen::Vector2d off_px = kCamera.width_px * Eigen::Vector2d(right_px, down_px);
+    PinholeCamera camera = kCamera;
+    camera.cx_px += off_px.x();
+    camera.cy_px += off_px.y();
+    const auto doubt = DoubtOfPoses(pairs, camera, Given(AsItIs), {});
+    ASSERT_TRUE(doubt) << off_px;
+    EXPECT_EQ(doubt->reading, PoseReading::kCentre) << off_px;
+    EXPECT_NEAR(doubt->centre_px.x(), kCamera.cx_px, 0.02 * kCamera.width_px);
+    EXPECT_NEAR(doubt->centre_px.y(), kCamera.cy_px, 0.02 * kCamera.width_px);
+  }
+}
+
 TEST(PoseCheck, ACameraThatIsSlightlyOffIsNotNamed) {
   const std::vector<ImagePair> pairs = Pairs(0.002);
   for (const double factor : {0.94, 1.06}) {
