@@ -1,6 +1,9 @@
 #include "eval/metrics/map_quality.h"
 
+#include <vector>
+
 #include "eval/metrics/cell_maps.h"
+#include "eval/metrics/lattice_motion.h"
 #include "eval/metrics/ssim.h"
 
 namespace depthgrid {
@@ -14,20 +17,24 @@ void MetricsOptions::Visit(OptionsVisitor& v) {
 
 namespace {
 
-// The true map knows a wall to its cell alone (one on a boundary is in the cell above it,
-// docs/truth.md), and half of a good map's cells may lie beside it. A motion that leaves the walls
-// no nearer to each other than they are is not told by the map, nor is one that brings true walls
-// nearer of which the map has none.
+// Where the true walls lie along the lattice, cells know them to half a cell, and half of a good
+// map's cells may lie beside the true ones: of such walls the hill's top is where the means meet,
+// up to half a cell from where cells lie on cells. So there the latter counts, unless the former
+// brings the walls nearer. Both move with the map, wherever its file lays it.
 std::optional<MapRegistration> RegistrationOf(const ScoredMaps& maps, const CellSet& true_walls,
                                               const PlacedWalls& placed) {
   auto found = RegisterWalls(maps.truth, placed, maps.scored);
   if (!found) return {};
-  const auto distances = [&](const Pose2& motion) {
-    return DistancesToWallLines(true_walls, placed.walls, maps.scored,
-                                motion * placed.truth_from_cells);
+  const CellSet faces = FacesNear(maps.truth, maps.scored);
+  if (!LieAlongLattice(faces)) return found;
+  const std::vector<Eigen::Vector2d> centres_m = CentresOf(placed.walls);
+  const Pose2 onto_lattice =
+      OntoLattice(faces, centres_m, found->truth_from_estimate * placed.truth_from_cells);
+  const auto distances = [&](const Pose2& truth_from_cells) {
+    return DistancesToWallLines(true_walls, placed.walls, maps.scored, truth_from_cells);
   };
-  const auto as_it_lies = distances({});
-  const auto moved = distances(found->truth_from_estimate);
+  const auto on_lattice = distances(onto_lattice);
+  const auto moved = distances(found->truth_from_estimate * placed.truth_from_cells);
   const auto both_m = [](const LineDistances& d) {
     return d.estimate_to_truth_m + d.truth_to_estimate_m;
   };
@@ -35,11 +42,11 @@ std::optional<MapRegistration> RegistrationOf(const ScoredMaps& maps, const Cell
   // true poses came 0.09 cells nearer by 0.7 degrees.
   constexpr double kLeastGainCells = 0.1;
   const double least_gain_m = kLeastGainCells * maps.truth.geometry.resolution_m;
-  if (!as_it_lies) return found;
+  if (!on_lattice) return found;
   const bool nearer = moved &&
-                      moved->estimate_to_truth_m + least_gain_m < as_it_lies->estimate_to_truth_m &&
-                      both_m(*moved) < both_m(*as_it_lies);
-  return nearer ? found : MapRegistration{};
+                      moved->estimate_to_truth_m + least_gain_m < on_lattice->estimate_to_truth_m &&
+                      both_m(*moved) < both_m(*on_lattice);
+  return nearer ? found : RegistrationBy(onto_lattice * Inverse(placed.truth_from_cells), placed);
 }
 
 }  // namespace

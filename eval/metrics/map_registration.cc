@@ -127,15 +127,15 @@ Eigen::Vector3d BestMotion(const WallPoints& points, const CellSet& true_walls,
   return farther_is_better ? far : near;
 }
 
-CellSet FacesNear(const StateMap& map, const CellSet& scored) {
-  constexpr int kNearCells = 2;
-  return InBoth(WallFaces(map), Grown(scored, kNearCells));
-}
-
 }  // namespace
 
 CellSet WallFaces(const StateMap& map) {
   return InBoth(CellsIn(map, CellState::kOccupied), Grown(CellsIn(map, CellState::kFree), 1));
+}
+
+CellSet FacesNear(const StateMap& map, const CellSet& scored) {
+  constexpr int kNearCells = 2;
+  return InBoth(WallFaces(map), Grown(scored, kNearCells));
 }
 
 std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
@@ -155,13 +155,17 @@ std::optional<MapRegistration> RegisterWalls(const StateMap& truth, const Placed
   // x -> centroid + shift + R (x - centroid), as a pose.
   const Pose2 turn{0.0, 0.0, WrapAngle(motion.z())};
   const Eigen::Vector2d shift_cells = points.centroid + motion.head<2>() - turn * points.centroid;
-  MapRegistration result;
-  result.truth_from_estimate = {shift_cells.x() * resolution_m, shift_cells.y() * resolution_m,
-                                turn.yaw_rad};
-  for (const Eigen::Vector2d& p : points.from_centroid) {
-    const Eigen::Vector2d turned = turn * p;
-    result.mean_shift_m += (turned + motion.head<2>() - p).norm() * resolution_m /
-                           static_cast<double>(points.from_centroid.size());
+  return RegistrationBy(
+      {shift_cells.x() * resolution_m, shift_cells.y() * resolution_m, turn.yaw_rad}, estimate);
+}
+
+MapRegistration RegistrationBy(const Pose2& truth_from_estimate, const PlacedWalls& estimate) {
+  MapRegistration result{truth_from_estimate, 0.0};
+  const std::vector<Eigen::Vector2d> centres_m = CentresOf(estimate.walls);
+  for (const Eigen::Vector2d& centre : centres_m) {
+    const Eigen::Vector2d p = estimate.truth_from_cells * centre;
+    result.mean_shift_m +=
+        (truth_from_estimate * p - p).norm() / static_cast<double>(centres_m.size());
   }
   return result;
 }

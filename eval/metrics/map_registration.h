@@ -35,6 +35,12 @@ std::optional<MapRegistration> RegisterWalls(const StateMap& truth, const Placed
 std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
                                            const CellSet& scored);
 
+// A motion found otherwise, with how far it moves the walls.
+MapRegistration RegistrationBy(const Pose2& truth_from_estimate, const PlacedWalls& estimate);
+
+// The true faces that count.
+CellSet FacesNear(const StateMap& truth, const CellSet& scored);
+
 // Wall cells with a free cell among their eight neighbours.
 CellSet WallFaces(const StateMap& map);
 

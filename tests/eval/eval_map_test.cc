@@ -110,17 +110,17 @@ TEST_F(EvalMap, AShiftIsFoundHoweverTheCellsLie) {
   };
   for (const char* yaw : {"0", "0.4"}) {
     write_at("truth.yaml", std::string("0.0249, -3.2, ") + yaw);
-    for (const auto& [x_m, y_m] : {std::pair(0.0, 0.0), std::pair(0.0002, 0.0),
-                                   std::pair(0.074, -0.1), std::pair(-0.12, 0.13)}) {
+    for (const auto& [x_m, y_m] :
+         {std::pair(0.0, 0.0), std::pair(0.0002, 0.0), std::pair(0.025, 0.0), std::pair(0.05, 0.0),
+          std::pair(0.074, -0.1), std::pair(-0.12, 0.13)}) {
       write_at("est.yaml",
                std::to_string(0.0249 + x_m) + ", " + std::to_string(-3.2 + y_m) + ", " + yaw);
       const nlohmann::json scores = Scores("truth.yaml est.yaml");
-      // Shifts of less than half a cell are none.
-      const bool is_shift = std::abs(x_m) > 0.025;
-      EXPECT_NEAR(scores["registered"]["x_m"], is_shift ? -x_m : 0.0, 0.003) << x_m << yaw;
-      EXPECT_NEAR(scores["registered"]["y_m"], is_shift ? -y_m : 0.0, 0.003) << y_m << yaw;
+      EXPECT_NEAR(scores["registered"]["x_m"], -x_m, 1e-6) << x_m << yaw;
+      EXPECT_NEAR(scores["registered"]["y_m"], -y_m, 1e-6) << y_m << yaw;
+      EXPECT_NEAR(scores["registered"]["chamfer_m"], 0.0, 1e-6) << x_m << yaw;
       EXPECT_NEAR(scores["registered"]["yaw_rad"], 0.0, 0.001);
-      if (!is_shift) {
+      if (std::abs(x_m) < 0.001) {
         EXPECT_EQ(scores["all"]["occupied"]["tolerance_0"]["f1"], 1.0) << x_m << yaw;
       }
     }

@@ -51,6 +51,13 @@ TEST(MetricCurves, Shift) {
   }
 }
 
+// Within a cell as well, to the limit of what two drawings of one room know of it.
+TEST(MetricCurves, ShiftOfPartsOfACell) {
+  const Curve curve = CurveOf("shift m", Steps(0.075, kSteps), ShiftedRoom);
+  const std::vector<double> found = curve.Of("registration shift m");
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], curve.amounts[i], 0.006);
+}
+
 TEST(MetricCurves, Rotation) {
   const Curve curve = CurveOf("rotation deg", Steps(6.0, kSteps),
                               [](double deg) { return TurnedRoom(RadFromDeg(deg)); });
