@@ -1,6 +1,6 @@
 #include "eval/metrics/map_quality.h"
 
-#include <vector>
+#include <cmath>
 
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/lattice_motion.h"
@@ -27,21 +27,25 @@ std::optional<MapRegistration> RegistrationOf(const ScoredMaps& maps, const Cell
   if (!found) return {};
   const CellSet faces = FacesNear(maps.truth, maps.scored);
   if (!LieAlongLattice(faces)) return found;
-  const std::vector<Eigen::Vector2d> centres_m = CentresOf(placed.walls);
-  const Pose2 onto_lattice =
-      OntoLattice(faces, centres_m, found->truth_from_estimate * placed.truth_from_cells);
+  const Pose2 top = found->truth_from_estimate * placed.truth_from_cells;
+  const Pose2 onto_lattice = OntoLattice(faces, CentresOf(placed.walls), top);
+  // Half a cell along both axes; walls that move by more are turned, which cells do tell.
+  const double resolution_m = maps.truth.geometry.resolution_m;
+  const double most_unknown_m = std::sqrt(0.5) * resolution_m;
+  const Pose2 between = onto_lattice * Inverse(top);
+  if (RegistrationBy(between, {placed.walls, top}).mean_shift_m > most_unknown_m) return found;
   const auto distances = [&](const Pose2& truth_from_cells) {
     return DistancesToWallLines(true_walls, placed.walls, maps.scored, truth_from_cells);
   };
   const auto on_lattice = distances(onto_lattice);
-  const auto moved = distances(found->truth_from_estimate * placed.truth_from_cells);
+  const auto moved = distances(top);
   const auto both_m = [](const LineDistances& d) {
     return d.estimate_to_truth_m + d.truth_to_estimate_m;
   };
   // Of walls on the lattice's lines some motion fits which cells lie on which side: a room with
   // true poses came 0.09 cells nearer by 0.7 degrees.
   constexpr double kLeastGainCells = 0.1;
-  const double least_gain_m = kLeastGainCells * maps.truth.geometry.resolution_m;
+  const double least_gain_m = kLeastGainCells * resolution_m;
   if (!on_lattice) return found;
   const bool nearer = moved &&
                       moved->estimate_to_truth_m + least_gain_m < on_lattice->estimate_to_truth_m &&

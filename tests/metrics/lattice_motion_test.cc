@@ -104,5 +104,18 @@ TEST(MapQuality, EveryShiftIsFound) {
   EXPECT_EQ(found_motions, 288);
 }
 
+// Walls along the true lattice leave shifts open within a cell, but not a turn that moves their
+// ends by more.
+TEST(MapQuality, ATurnOfARoomAlongTheLatticeIsFound) {
+  const Pose2 room{0.313, 0.521, 0.0};
+  const Pose2 middle{2.3, 2.0, 0.0};
+  for (const double shift_m : {0.0, 0.02, 0.11}) {
+    const Pose2 wrong =
+        Pose2{shift_m, 0.0, 0.0} * middle * Pose2{0.0, 0.0, 0.035} * Inverse(middle);
+    const MapQuality moved = QualityAt(MovedRoom(room), MovedRoom(wrong * room), {});
+    EXPECT_NEAR(moved.registration->truth_from_estimate.yaw_rad, -0.035, 0.005) << shift_m;
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
