@@ -36,8 +36,9 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
 // Throws InputError for a missing depth.txt. The camera is not filled in.
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options = {});
 
-// camera.yaml, or what else of camera files has that name; without it, a folder named as TUM names its sequences (freiburg1, 2, 3) gets that
-// camera, with a warning. Throws InputError when neither says it.
+// camera.yaml, or what else of camera files has that name; without it, a folder named as TUM names
+// its sequences (freiburg1, 2, 3) gets that camera, with a warning. Throws InputError when neither
+// says it.
 CameraDescription TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings);
 
 // Writes such a folder. Frames may be written in any order and from several threads at once; Finish
