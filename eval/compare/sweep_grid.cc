@@ -92,8 +92,65 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>& metric,
-              Better better, const BootstrapOptions& bootstrap, GridLine& line) {
+// Which point has the oracle's runs of the settings of another.
+class OraclePoints {
+ public:
+  explicit OraclePoints(const SweepGrid& grid) {
+    for (std::size_t a = 0; a < grid.axes.size(); ++a) {
+      if (grid.axes[a].key == "mapper.fusion.mode") mode_ = a;
+      if (grid.axes[a].key == "mapper.fusion.gain") gain_ = a;
+    }
+    if (!mode_) return;
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+      const std::vector<std::size_t>& values = grid.points[i].values;
+      if (grid.axes[*mode_].texts[values[*mode_]] == "oracle") {
+        point_of_.try_emplace(Others(values), i);
+      }
+    }
+  }
+
+  std::optional<std::size_t> Of(const GridPoint& point) const {
+    if (!mode_) return std::nullopt;
+    const auto found = point_of_.find(Others(point.values));
+    return found == point_of_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  // The oracle sets the gain itself, so that its runs of one gain are those of all.
+  std::vector<std::size_t> Others(std::vector<std::size_t> values) const {
+    values[*mode_] = 0;
+    if (gain_) values[*gain_] = 0;
+    return values;
+  }
+
+  std::optional<std::size_t> mode_;  // axes
+  std::optional<std::size_t> gain_;
+  std::map<std::vector<std::size_t>, std::size_t> point_of_;
+};
+
+// By point of a line, the oracle's figures of these seeds; empty where one is missing.
+std::vector<std::vector<double>> OracleFigures(const SweepGrid& grid, const OraclePoints& oracles,
+                                               const std::vector<double>& metric,
+                                               const std::vector<std::size_t>& points,
+                                               const std::vector<std::string>& seeds) {
+  std::vector<std::vector<double>> figures;
+  for (const std::size_t point : points) {
+    const auto oracle = oracles.Of(grid.points[point]);
+    if (!oracle) return {};
+    const SeedRows rows = RowsBySeed(grid, grid.points[*oracle], metric);
+    figures.emplace_back();
+    for (const std::string& seed : seeds) {
+      const auto row = rows.find(seed);
+      if (row == rows.end()) return {};
+      figures.back().push_back(metric[row->second]);
+    }
+  }
+  return figures;
+}
+
+void FindBest(const SweepGrid& grid, const OraclePoints& oracles, std::size_t axis,
+              const std::vector<double>& metric, Better better, const BootstrapOptions& bootstrap,
+              GridLine& line) {
   std::vector<SeedRows> by_point;
   for (const std::size_t point : std::exchange(line.points, {})) {
     SeedRows rows = RowsBySeed(grid, grid.points[point], metric);
@@ -113,9 +170,12 @@ void FindBest(const SweepGrid& grid, std::size_t axis, const std::vector<double>
       settings.back().by_seed.push_back(metric[by_point[i].at(seed)]);
     }
   }
+  const auto oracle_runs = OracleFigures(grid, oracles, metric, line.points, seeds);
+  line.to_oracle_runs = !oracle_runs.empty();
   const std::vector<double> best_of_seed = BestOfEachSeed(settings, better);
-  for (const SettingRuns& setting : settings) {
-    line.mean_regret_of_seed.push_back(Mean(Regret(setting.by_seed, best_of_seed, better)));
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const std::vector<double>& oracle = line.to_oracle_runs ? oracle_runs[i] : best_of_seed;
+    line.mean_regret_of_seed.push_back(Mean(Regret(settings[i].by_seed, oracle, better)));
   }
   const SeedUnits units = UnitsOf(seeds);
   line.seeds = units.count();
@@ -176,6 +236,7 @@ std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
     held[axis] = 0;
     line_of[held].points.push_back(i);
   }
+  const OraclePoints oracles(grid);
   std::vector<GridLine> lines;
   for (auto& [held, line] : line_of) {
     const auto value = [&](std::size_t point) { return grid.points[point].values[axis]; };
@@ -184,7 +245,7 @@ std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
     std::set<std::size_t> distinct;
     for (const std::size_t point : line.points) distinct.insert(value(point));
     if (distinct.size() < 2 || distinct.size() != line.points.size()) continue;
-    FindBest(grid, axis, metric, better, bootstrap, line);
+    FindBest(grid, oracles, axis, metric, better, bootstrap, line);
     lines.push_back(std::move(line));
   }
   return lines;

@@ -46,7 +46,10 @@ struct GridLine {
   // Over the seeds that all `points` have; empty if there are none, or fewer than two points.
   std::optional<BestSetting> best;
   std::size_t seeds = 0;  // on which that rests: of crossed ones as many as one of them has
-  std::vector<double> mean_regret_of_seed;  // by point: what is lost to the best point of each seed
+  std::vector<double> mean_regret_of_seed;  // by point: what is lost to the oracle of each seed
+  // The oracle is the run of the same seed and other settings with `mapper.fusion.mode: oracle`;
+  // else, where a point has none of one of the seeds, the best point of the seed.
+  bool to_oracle_runs = false;
 };
 
 // Lines of at least two points, those left out among them. They differ in nothing but the axis.

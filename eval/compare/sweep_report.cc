@@ -134,6 +134,7 @@ Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metri
     one["seeds"] = line.seeds;
     one["low"] = best.setting_interval.low;
     one["high"] = best.setting_interval.high;
+    if (line.to_oracle_runs) one["to_oracle"] = true;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       one["share_best"].push_back(Rounded(best.share_best[i], 3));
       one["p"].push_back(Short(best.p_as_good[i]));

@@ -135,13 +135,17 @@ function missingText(axis) {
 // Points that were stopped early, or of which a run failed, have other seeds than their neighbours.
 const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs)).size > 1;
 
+// What regret is measured against.
+const oracleOf = (line) => (line.to_oracle ? "the oracle's run (mapper.fusion.mode) of the same seed and other settings" : `the best value of each ${EACH}`);
+const oraclesOf = (lines) => [...new Set(lines.filter((line) => line.best !== undefined).map(oracleOf))].join(", or where a run of the oracle is missing to ");
+
 // What the table says as numbers, a row a value, for who goes on with them.
 function csvOfBest(lines, axis) {
   const unit = metric.unit ? ` (${metric.unit})` : "";
-  const heads = ["held", axis.key, `mean${unit}`, `95 % low${unit}`, `95 % high${unit}`, "p (Holm)", "best in resamples", `regret${unit}`, "is best", "best 95 % low", "best 95 % high", "seeds"];
+  const heads = ["held", axis.key, `mean${unit}`, `95 % low${unit}`, `95 % high${unit}`, "p (Holm)", "best in resamples", `regret${unit}`, "regret to", "is best", "best 95 % low", "best 95 % high", "seeds"];
   const rows = lines.flatMap((line) => line.points.map((i, k) => [heldText(line), axis.labels[POINTS[i].values[along.axis]],
     metric.mean[i], metric.low[i], metric.high[i], k === line.best ? "" : line.p?.[k], line.share_best?.[k],
-    line.regret_of_seed ? line.regret_of_seed[k] * metric.factor : "", k === line.best ? 1 : 0, line.low, line.high, line.seeds]));
+    line.regret_of_seed ? line.regret_of_seed[k] * metric.factor : "", line.to_oracle ? "oracle" : "best value", k === line.best ? 1 : 0, line.low, line.high, line.seeds]));
   return csvText([heads, ...rows]);
 }
 
@@ -156,7 +160,7 @@ function drawBest() {
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
-    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to the best value of each " + EACH + "." +
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to " + oraclesOf(lines) + "." +
     (lines.some(hasUnlikeSeeds) ? " Where points of a line have different seeds (stopped early, or with a failed run) only those that all have are compared, so that the best need not be that of the means above." : "");
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
@@ -185,7 +189,7 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss to the best value of each ${EACH}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss to ${oraclesOf(some)}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
     series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0

@@ -112,10 +112,12 @@ TEST_F(SavedFigures, OfASweep) {
               HasSubstr("mapper.fusion.gain down, slam.drift_scale across\",1,2\n0,3.35,6.35\n"));
   const std::string best = Save("#best-note", "CSV").text;
   EXPECT_THAT(best, StartsWith("held,mapper.fusion.gain,mean (cm),95 % low (cm),95 % high (cm),"
-                               "p (Holm),best in resamples,regret (cm),is best,best 95 % low,"
-                               "best 95 % high,seeds\n"));
+                               "p (Holm),best in resamples,regret (cm),regret to,is best,"
+                               "best 95 % low,best 95 % high,seeds\n"));
   EXPECT_THAT(best, HasSubstr("\ndrift_scale 1,0,3.35,"));
-  EXPECT_THAT(best, HasSubstr(",,1,0,1,0.5,0.5,6\n"));  // of 0.5, which is the best of every seed
+  EXPECT_THAT(
+      best,
+      HasSubstr(",,1,0,best value,1,0.5,0.5,6\n"));  // of 0.5, which is the best of every seed
   EXPECT_EQ(std::count(best.begin(), best.end(), '\n'), 7);
   const Saved table = Save("#table-note", "CSV");
   EXPECT_EQ(table.name, "gains_points.csv");

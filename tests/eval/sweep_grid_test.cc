@@ -200,6 +200,71 @@ TEST(SweepGrid, HasNoLineThroughPointsThatDifferOtherwise) {
   EXPECT_TRUE(LinesAlong(GridOf(table), 0, table.metrics[0].values, Better::kLower, {}).empty());
 }
 
+// Modes `fixed` with gains 0, 0.5, 1 and, at gain 0.5 alone or not at all, `oracle`; two rooms.
+SweepResults TableWithOracle(bool with_oracle) {
+  SweepResults results;
+  SweepParameter mode{"mapper.fusion.mode", {}, {}};
+  SweepParameter gain{"mapper.fusion.gain", {}, {}};
+  SweepParameter room{"scene", {}, {}};
+  SweepParameter seed{"seed", {}, {}};
+  SweepColumn error{"trajectory.est.mean_euclidean_m", {}};
+  int point = 0;
+  const auto add = [&](const char* name, double g, const char* scene, double offset) {
+    for (int s = 1; s <= 2; ++s) {
+      results.runs.push_back(static_cast<int>(results.runs.size()));
+      results.points.push_back(point);
+      mode.texts.emplace_back(name);
+      mode.numbers.push_back(kNone);
+      gain.texts.push_back(std::to_string(g));
+      gain.numbers.push_back(g);
+      room.texts.emplace_back(scene);
+      room.numbers.push_back(kNone);
+      seed.texts.push_back(std::to_string(s));
+      seed.numbers.push_back(s);
+      error.values.push_back(offset + s);
+      results.failures.emplace_back();
+    }
+    ++point;
+  };
+  for (const double g : {0.0, 0.5, 1.0}) {
+    add("fixed", g, "hall", 10.0 + g);
+    add("fixed", g, "attic", 20.0 - g);
+  }
+  if (with_oracle) {
+    add("oracle", 0.5, "hall", 7.0);
+    add("oracle", 0.5, "attic", 16.0);
+  }
+  results.parameters = {mode, gain, room, seed};
+  results.metrics = {error};
+  return results;
+}
+
+TEST(SweepGrid, RegretIsToTheOraclesRunsWhereThereAreAny) {
+  SweepResults table = TableWithOracle(true);
+  const auto lines_of = [](const SweepResults& t) {
+    return LinesAlong(GridOf(t), 1, t.metrics[0].values, Better::kLower, {});
+  };
+  const auto expect = [](const GridLine& line, bool to_oracle, std::vector<double> regret) {
+    EXPECT_EQ(line.to_oracle_runs, to_oracle);
+    ASSERT_EQ(line.mean_regret_of_seed.size(), regret.size());
+    for (std::size_t i = 0; i < regret.size(); ++i) {
+      EXPECT_NEAR(line.mean_regret_of_seed[i], regret[i], 1e-12) << i;
+    }
+  };
+  auto lines = lines_of(table);
+  ASSERT_EQ(lines.size(), 2U);
+  expect(lines[0], true, {3.0, 3.5, 4.0});
+  expect(lines[1], true, {4.0, 3.5, 3.0});
+  // The oracle of the hall lost one seed: there the best of each seed is all there is.
+  table.metrics[0].values[12] = kNone;
+  table.failures[12] = "lost";
+  lines = lines_of(table);
+  expect(lines[0], false, {0.0, 0.5, 1.0});
+  expect(lines[1], true, {4.0, 3.5, 3.0});
+  lines = lines_of(TableWithOracle(false));
+  expect(lines[0], false, {0.0, 0.5, 1.0});
+}
+
 TEST(MetricDirection, IsThatOfTheScore) {
   EXPECT_EQ(BetterOf("map.observable.occupied.f1"), Better::kHigher);
   EXPECT_EQ(BetterOf("map.coverage"), Better::kHigher);
