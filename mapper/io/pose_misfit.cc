@@ -13,6 +13,8 @@ namespace {
 // turned by more than SLAM errs.
 constexpr std::size_t kCheckedPairs = 24;
 constexpr double kPairApartS = 0.5;
+// Where stamps are the images' numbers (ICL-NUIM), as many seconds as there are images in that.
+constexpr double kPairApartImages = 15.0;
 // Images that are farther apart than so many times that have a pause of the recording between them,
 // and may show different things.
 constexpr double kMostApart = 2.0;
@@ -30,16 +32,25 @@ double UsualImageStepS(std::span<const RecordedImage> images) {
   return UsualStepS(steps_s);
 }
 
+double PairApartS(std::span<const RecordedImage> images, double usual_s) {
+  const bool numbered = std::all_of(images.begin(), images.end(), [](const RecordedImage& image) {
+    return image.stamp_s == std::floor(image.stamp_s);
+  });
+  return numbered && usual_s == 1.0 ? kPairApartImages : kPairApartS;
+}
+
 }  // namespace
 
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
   std::vector<RecordedImage> pairs;
-  const double most_apart_s = kMostApart * std::max(kPairApartS, UsualImageStepS(images));
+  const double usual_s = UsualImageStepS(images);
+  const double apart_s = PairApartS(images, usual_s);
+  const double most_apart_s = kMostApart * std::max(apart_s, usual_s);
   const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);
   std::size_t second = 0;
   for (std::size_t first = 0; first < images.size(); first += every) {
     const double first_s = images[first].stamp_s;
-    while (second < images.size() && images[second].stamp_s < first_s + kPairApartS) ++second;
+    while (second < images.size() && images[second].stamp_s < first_s + apart_s) ++second;
     if (second == images.size()) break;
     if (images[second].stamp_s - first_s > most_apart_s) continue;
     pairs.push_back(images[first]);

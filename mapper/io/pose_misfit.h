@@ -21,7 +21,8 @@ struct ImagePair {
 };
 
 // The images to check poses by, two a pair, spread over the recording: each with the first one half
-// a second later. None across a pause.
+// a second later, or the 15th where whole stamps a second apart are but numbers. None across a
+// pause.
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images);
 
 // Whether most of an image holds its largest depth, as a sensor or simulator gives for all that is

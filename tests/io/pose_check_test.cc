@@ -87,6 +87,16 @@ TEST(PoseCheck, NoPairLiesAcrossAPause) {
   EXPECT_EQ(StampsOfPairs(PairsAmong(images)), expected);
 }
 
+// Stamped 1, 2, 3 as ICL-NUIM's poses are: a second is not time enough to tell poses by.
+TEST(PoseCheck, NumberedImagesAreFifteenApart) {
+  std::vector<RecordedImage> images;
+  for (int i = 1; i <= 24; ++i) images.push_back({1.0 * i, "", 0});
+  const auto pairs = StampsOfPairs(PairsAmong(images));
+  ASSERT_EQ(pairs.size(), 9U);
+  EXPECT_EQ(pairs.front(), std::pair(1.0, 16.0));
+  EXPECT_EQ(pairs.back(), std::pair(9.0, 24.0));
+}
+
 TEST(PoseCheck, ImagesThatAreAlwaysFarApartArePairedWithTheNext) {
   std::vector<RecordedImage> images;
   for (const double stamp_s : {0.0, 3.0, 6.0, 9.0, 21.0, 24.0}) {
