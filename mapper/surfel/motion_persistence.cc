@@ -69,6 +69,7 @@ double PersistenceOf(double agreement, double pairs) {
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,
                                   const std::vector<Eigen::Vector3d>& shares_seen) {
+  if (MeanShare(shares_seen)[kForward] < kLeastShareSeen) return Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> errors;
   for (const GroupLink& link : unit) errors.push_back(LinkError(link, map_from_group));
   Eigen::Vector3d pairs = Eigen::Vector3d::Zero();
@@ -82,7 +83,7 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
       agreement[axis] += product > 0.0 ? 1.0 : (product < 0.0 ? -1.0 : 0.0);
     }
   }
-  if (MeanShare(shares_seen)[kForward] < kLeastShareSeen) return Eigen::Vector3d::Zero();
+  if (pairs.maxCoeff() < kMinLinkPairs) return Eigen::Vector3d::Zero();
   std::array<std::optional<double>, 3> told;
   double least = kMostPersistence;
   for (int axis = 0; axis < 3; ++axis) {
@@ -91,7 +92,6 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
     told[static_cast<std::size_t>(axis)] = lasts;
     least = std::min(least, lasts);
   }
-  if (pairs.maxCoeff() < kMinLinkPairs) return Eigen::Vector3d::Zero();
   return {told[0].value_or(least), told[1].value_or(least), told[2].value_or(least)};
 }
 
