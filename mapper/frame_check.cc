@@ -6,6 +6,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/match/find_place.h"
 
 namespace depthgrid {
 namespace {
@@ -76,9 +77,11 @@ void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
 // value all over is a renderer's far plane.
 void RequireMetres(const Frame& frame, const DepthImage& depth) {
   constexpr float kBeyondAnyM = 100.0F;
-  constexpr std::size_t kStride = 251;  // prime: no column is looked at over and over
+  // Not one that goes into the width: one column would be looked at over and over.
+  constexpr std::size_t kPrime = 251;
+  const std::size_t stride = kPrime + (depth.width_px % static_cast<int>(kPrime) == 0 ? 1 : 0);
   float least = INFINITY, most = 0.0F;
-  for (std::size_t i = 0; i < depth.z_m.size(); i += kStride) {
+  for (std::size_t i = 0; i < depth.z_m.size(); i += stride) {
     const float z_m = depth.z_m[i];
     if (!(z_m > 0.0F) || !std::isfinite(z_m)) continue;
     if (z_m < kBeyondAnyM) return;
@@ -177,6 +180,14 @@ void RequireSound(const PriorMap& prior) {
     }
   }
   RequirePlanar(place, prior.map_from_slam, "its map_from_slam");
+}
+
+void RequireSoundStart(const Pose2& map_from_base, double within_m) {
+  const std::string place = "start in the map";
+  RequirePlanar(place, map_from_base, "map_from_base");
+  if (within_m >= 0.0 && within_m <= kMostWithinM) return;
+  throw InputError(place, "within_m is " + std::to_string(within_m) + ", must be from 0 to " +
+                              std::to_string(kMostWithinM));
 }
 
 }  // namespace depthgrid

@@ -15,5 +15,7 @@ void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera
 // Throws InputError, "slam_final: ..." or "prior map: ...", as Finish() and StartFrom() say.
 void RequireSoundFinal(const std::vector<std::optional<Pose3>>& slam_final, std::size_t frames);
 void RequireSound(const PriorMap& prior);
+// "start in the map: ...", as FindStartNear() says.
+void RequireSoundStart(const Pose2& map_from_base, double within_m);
 
 }  // namespace depthgrid

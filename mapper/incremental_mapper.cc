@@ -59,6 +59,7 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
   }
   // How its last frame and the first to come lie to each other is for the match to say.
   if (state_->reference) state_->reference->BeginPart(PartPlace::kKnown);
+  state_->has_prior = true;
   state_->prior_frames = static_cast<int>(prior.frames.size());
   state_->mapped.StartFrom(std::move(prior.frames));
   state_->fixed_map = prior.fixed;
@@ -106,15 +107,15 @@ void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
   report.stamp_s = frame.stamp_s;
   report.slam_from_camera = frame.slam_from_camera;
   report.slam_epoch = frame.slam_epoch;
-  report.map_from_slam = filter.map_from_slam();
+  report.map_from_slam = prior_start.value_or(filter.map_from_slam());
 }
 
 FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& report) {
   const StageTimer timer(clocks, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
   if (reference && scans.matched && frame.slam_from_camera) {
-    const int epoch = history.newest().epoch;
-    scans.matched = moving.ToMatch(scans.matched, BaseOf(*frame.slam_from_camera), epoch);
+    moving.Follow(*scans.matched, BaseOf(*frame.slam_from_camera), history.newest().epoch);
+    moving.TakeOut(scans);
   }
   report.stand = scans.stand;
   const bool follows_floor = options.scan.floor == FloorSource::kImage;
@@ -351,7 +352,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
         prediction.map_from_base *
         Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
     if (added.slam_motion) reference->Corrected(prediction.map_from_base, corrected);
-    reference->Insert(scans.matched, fused.map_from_base, fused.covariance);
+    reference->Insert(scans.kept(), fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);
   }

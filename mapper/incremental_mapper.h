@@ -71,8 +71,8 @@ class IncrementalMapper {
   // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
   // InputError, and nothing was begun, when it comes later or again, when a frame's number, pose,
   // stamp or scans are not as PriorMap wants them, a beam is none that CanBeKept(), or
-  // `map_from_slam` is not finite. Method paper matches against the last two submaps alone:
-  // `submap.scans` must be as many as the scans.
+  // `map_from_slam` is not finite or lies beyond 10,000 km. Method paper matches against the last
+  // two submaps alone: `submap.scans` must be as many as the scans.
   void StartFrom(PriorMap prior);
 
   // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
@@ -80,8 +80,8 @@ class IncrementalMapper {
   // - its number is below 0 or was given before, or its stamp is not finite;
   // - its pose or a loop is not made of finite numbers: of a unit quaternion (to 0.001) within
   //   10,000 km, a sigma positive;
-  // - its image is not the camera's size, there is no camera, or a scan as well; or all depths are
-  //   beyond 100 m, as millimetres are;
+  // - its image is not the camera's size, there is no camera, or a scan as well; or all depths
+  //   are beyond 100 m, as millimetres are, by some hundreds of pixels that are looked at;
   // - it has a scan and no stand, and its camera looks up or down, to 10 degrees, as where a
   //   laser's planar pose came without CameraOf();
   // - a scan's max_range_m is negative or not finite, or there is a matched_scan or a stand alone;
@@ -102,15 +102,16 @@ class IncrementalMapper {
   // The report's pose is of the camera, as the frame's was: of a laser, BaseOf(*map_from_camera).
   FrameReport AddFrame(const Frame& frame);
   // The last correction, then the map drawn from the stored scans at their final poses. It takes
-  // seconds after tens of thousands of frames; frames may come after it, and another end.
+  // seconds after tens of thousands of frames in rooms, and as much longer as scans see more area;
+  // frames may come after it, and another end.
   // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
   // when SLAM is trusted alone (K = 0); frames without one keep their live pose. Throws InputError
   // when it is of another length, or holds a pose that AddFrame() would not take, and when the map
   // would be larger than 2^28 cells, 819 m square at 5 cm; CurrentPoses() tells the way even then.
   MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
-  // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them, so ask
-  // once in a while rather than after each frame. Empty, of no size, while nothing was mapped.
-  // Throws InputError, as Finish() does, when the map would be larger than 2^28 cells.
+  // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them in rooms,
+  // so ask once in a while rather than after each frame. Empty, of no size, while nothing was
+  // mapped. Throws InputError, as Finish() does, when the map would be larger than 2^28 cells.
   OccupancyMap CurrentMap() const;
   // What a result's `map_from_camera` and `mapped` would be without the last correction: the way
   // so far, which loops move, and what is to be saved of a map that is not finished.

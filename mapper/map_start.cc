@@ -278,10 +278,11 @@ bool MapStart::contradicted() const { return trial && trial->against > kMuchAgai
 
 namespace {
 
-// `place_of` finds it, with the map and the first views; so far off it may be put right.
+// `place_of` finds it, with the map and the first views; what is seen then may move it so far.
 template <typename PlaceOf>
 std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
-                                const MapperOptions& options, double within_m, PlaceOf place_of) {
+                                const MapperOptions& options, double most_moved_m,
+                                PlaceOf place_of) {
   RequireSound(prior);
   MapDrawing drawing(options.grid);
   for (const MappedFrame& frame : prior.frames) {
@@ -298,7 +299,7 @@ std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
   start.place = std::move(*place);
   if (!options.fusion.TrustsSlamAlone()) TryAll(frames, prior, map, views, options, start);
   start.map_from_base = start.place.map_from_slam * first_base;
-  if (within_m == 0.0 || Way(Between(placed, start.map_from_base)) > within_m) {
+  if (most_moved_m == 0.0 || Way(Between(placed, start.map_from_base)) > most_moved_m) {
     start.map_from_base = placed;
     start.place.map_from_slam = placed * Inverse(first_base);
   }
@@ -321,6 +322,7 @@ std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,
                                       FrameSource& source, const MapperOptions& options,
                                       double within_m) {
+  RequireSoundStart(map_from_base, within_m);
   const auto place_of = [&](const OccupancyMap& map,
                             const std::vector<PlacedScan>& views) -> std::optional<FoundPlace> {
     if (views.empty()) return {};

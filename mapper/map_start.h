@@ -61,7 +61,8 @@ std::optional<MapStart> FindStart(const PriorMap& prior, const std::vector<Frame
                                   const MapperOptions& options);
 
 // Where it is known: `map_from_base` is the base's place in the map (that of the scans, a laser's
-// own) at the first frame that has a pose and a scan, to `within_m` metres and 12 degrees, as a
+// own) at the first frame that has a pose and a scan, to `within_m` metres, 0 to kMostWithinM, and
+// 12 degrees (InputError for others, or a pose that is not finite or beyond 10,000 km), as a
 // user of Nav2 gives it. It is made exact by what is seen, unless that fits there about as well; 0
 // takes it as it is. Whether what is seen fits, uncertain() and contradicted() say.
 std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_from_base,

@@ -12,9 +12,8 @@ MappedFrames::MappedFrames(const KeepOptions& options, int recent_frames)
       keeping_(options) {}
 
 void MappedFrames::Archive::Keep(const FrameScans& scans, MappedFrame& frame) {
-  frame.scan = matched.Keep(*scans.matched);
-  frame.obstacles =
-      scans.obstacles == scans.matched ? frame.scan : obstacles.Keep(*scans.obstacles);
+  frame.scan = matched.Keep(*scans.kept());
+  frame.obstacles = scans.obstacles == scans.kept() ? frame.scan : obstacles.Keep(*scans.obstacles);
 }
 
 void MappedFrames::StartFrom(std::vector<MappedFrame> prior) {

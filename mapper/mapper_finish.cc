@@ -23,7 +23,7 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::Final(
     const std::vector<std::optional<Pose3>>& slam_final) const {
   // Of SLAM trusted alone in a prior map: its own final poses are not in the map's frame.
-  const bool stays = fixed_map || (prior_frames > 0 && !reference);
+  const bool stays = fixed_map || (has_prior && !reference);
   if (stays) return FinalAsItIs();
   if (!reference) return FinalOfSlam(slam_final);
   // Empty when it ended before the first image that came with a pose.

@@ -47,6 +47,7 @@ struct IncrementalMapper::State {
   AdjustmentRounds rounds;
   MappedFrames mapped;
   Beginning beginning;
+  bool has_prior = false;            // a map or but its frame, which SLAM's poses are moved into
   int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
   bool fixed_map = false;            // of a prior map that is only localised in
   std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins

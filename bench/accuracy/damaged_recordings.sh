@@ -65,7 +65,7 @@ from_first() {
 with_holes() {
   mkdir -p "$1/depth"
   cp "$base"/*.txt "$base"/camera.yaml "$1"
-  awk -v base="$PWD/$base" '!/^#/ { printf("file %s/%s\nduration 0.1\n", base, $2) }' "$base/depth.txt" >"$1.list"
+  awk -v base="$PWD/$base" '!/^#/ { printf("file \047%s/%s\047\nduration 0.1\n", base, $2) }' "$base/depth.txt" >"$1.list"
   ffmpeg -v error -threads 1 -filter_threads 1 -f concat -safe 0 -i "$1.list" -vsync 0 \
     -vf "format=gray16le,geq=lum='if(lt(random(1),0.333),65535,lum(X,Y))'" -start_number 0 "$1/depth/%06d.png"
   awk '/^#/ { print; next } { printf("%s depth/%06d.png\n", $1, n++) }' "$base/depth.txt" >"$1/depth.txt"

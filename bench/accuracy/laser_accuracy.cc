@@ -232,11 +232,11 @@ void AddOptions(CLI::App& app, Experiment& experiment) {
   app.add_option("--slip-deg", prior.slip_deg, "by so much")->check(FromTo(-180, 180));
   app.add_option("--slip-m", prior.slip_m, "and forward or back by so much")
       ->check(FromTo(-100, 100));
-  const std::map<std::string, People> people = {{"none", People::kNone},
-                                                {"crossing", People::kCrossing},
-                                                {"ahead", People::kAhead},
-                                                {"swaying", People::kSwaying}};
-  app.add_option("--people", experiment.people, "none, crossing, ahead or swaying")
+  const std::map<std::string, People> people = {
+      {"none", People::kNone},   {"crossing", People::kCrossing},
+      {"ahead", People::kAhead}, {"swaying", People::kSwaying},
+      {"aside", People::kAside}, {"weaving", People::kWeaving}};
+  app.add_option("--people", experiment.people, "none, crossing, ahead, swaying, aside or weaving")
       ->transform(CLI::CheckedTransformer(people));
   app.add_flag("-v", experiment.verbose);
 }

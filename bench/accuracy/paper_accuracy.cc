@@ -14,6 +14,7 @@
 #include "eval/experiment/study.h"
 #include "eval/metrics/statistics.h"
 #include "eval/run/joint_runs.h"
+#include "mapper/core/error.h"
 #include "mapper/core/level.h"
 #include "mapper/grid/map_drawing.h"
 
@@ -56,12 +57,14 @@ double F1At(const std::vector<Pose2>& poses, const JointRun& run, const TruthRec
 }
 
 Row RowOf(const JointRun& run, const TruthRecord& truth) {
+  if (run.slam.final.size() != run.slam.live.size()) {
+    throw InputError("--study", "SLAM loses track in it, and poses are compared frame by frame");
+  }
   std::vector<Pose2> live, final;
   for (const MappedFrame& mapped : run.mapping.result.mapped) {
     const auto frame = static_cast<std::size_t>(mapped.frame);
     live.push_back(BaseOf(*run.slam.live[frame].slam_from_camera));
-    final.push_back(
-        BaseOf(run.slam.final[frame].world_from_camera));  // no profile here loses track
+    final.push_back(BaseOf(run.slam.final[frame].world_from_camera));
   }
   Row row;
   row.input_m = run.scores.slam->xy_unaligned.mean;

@@ -16,6 +16,8 @@ enum class People {
   kCrossing,  // three, one after the other, walk through the view
   kAhead,     // one walks on before the robot, for three quarters of the time
   kSwaying,   // the same, now nearer, now farther, and from foot to foot
+  kAside,     // the same, 1 m ahead and .5 m aside: the edge of a view of 58 degrees cuts them
+  kWeaving,   // the same, 1.2 m ahead and now more on this side, now on that, into the edges
 };
 
 constexpr double kPersonRadiusM = 0.22;
@@ -47,8 +49,15 @@ inline LaserWorld WithPeople(const LaserWorld& world, People people,
     }
   }
   constexpr std::size_t kRound = 400, kAheadFrames = 300;
+  const double at_s = static_cast<double>(frame) / kFrameRateHz;
+  if ((people == People::kAside || people == People::kWeaving) && frame % kRound < kAheadFrames) {
+    AddPerson(world_from_base[frame] *
+                  (people == People::kAside
+                       ? Eigen::Vector2d(1.0, 0.5)
+                       : Eigen::Vector2d(1.2, 0.6 * std::sin(2.0 * kPi * 0.15 * at_s))),
+              peopled);
+  }
   if ((people == People::kAhead || people == People::kSwaying) && frame % kRound < kAheadFrames) {
-    const double at_s = static_cast<double>(frame) / kFrameRateHz;
     const double sways = people == People::kSwaying ? 1.0 : 0.0;
     const Eigen::Vector2d ahead_m(kPersonAheadM + 0.25 * sways * std::sin(2.0 * kPi * 0.3 * at_s),
                                   0.08 * sways * std::sin(2.0 * kPi * 0.9 * at_s));

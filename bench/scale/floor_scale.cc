@@ -305,7 +305,7 @@ int Measure(int argc, char** argv) {
   std::vector<int> frames = {1000, 5000, 20000, 50000, 100000};
   CLI::App app("Time a frame and memory over floors of growing size");
   app.add_option("--floors", floors, "side lengths, metres")->check(FromTo(5, 5000));
-  app.add_option("--frames", frames, "of each")->check(FromTo(1, 1e7));
+  app.add_option("--frames", frames, "of each")->check(FromTo(10, 1e7));
   app.add_flag("--no-finish", no_finish, "without the final adjustment and map");
   app.add_flag("--loops", settings.loops, "list the loops that were taken");
   app.add_option("--rows", settings.rows, "of rooms; 0: a square floor")->check(FromTo(0, 1000));

@@ -14,6 +14,7 @@ import argparse
 import bisect
 import math
 import os
+import shlex
 import shutil
 import struct
 import sys
@@ -261,9 +262,16 @@ def depth_png(topic, message):
         return bytes(message.data[12:]), 1000  # behind the plugin's own header
     kinds = {"16UC1": (np.uint16, 1000), "mono16": (np.uint16, 1000), "32FC1": (np.float32, DEPTH_SCALE)}
     if message.encoding not in kinds:
-        raise BadInput(f"{topic}: encoding is '{message.encoding}', must be 16UC1 or 32FC1")
+        raise BadInput(f"{topic}: encoding is '{message.encoding}', must be 16UC1, mono16 or 32FC1")
     kind, scale = kinds[message.encoding]
     kind = np.dtype(kind).newbyteorder(">" if message.is_bigendian else "<")
+    stamp = decimal(message.header.stamp)
+    if message.step < message.width * kind.itemsize:
+        raise BadInput(f"{topic}: the image of {stamp} has rows of {message.step} bytes, must have "
+                       f"{message.width * kind.itemsize} or more")
+    if len(message.data) != message.height * message.step:
+        raise BadInput(f"{topic}: the image of {stamp} has {len(message.data)} bytes, must have "
+                       f"{message.height} rows of {message.step}")
     rows = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
     image = rows[:, :message.width * kind.itemsize].copy().view(kind)
     if message.encoding == "32FC1":
@@ -293,12 +301,15 @@ def write_folder(bag, arguments, path):
     if info is None:
         raise BadInput(f"{arguments.bag}: holds no message of {info_topic}: name the camera's with --info")
     os.makedirs(path + "/depth")
-    written, without_pose, scale = 0, 0, None
+    written, without_pose, scale, stamps = 0, 0, None, set()
     with open(path + "/depth.txt", "x", encoding="ascii") as list_of_images, \
          open(path + "/odometry.txt", "x", encoding="ascii") as rows:
         for _, message, _ in bag.read_messages(topics=[arguments.depth]):
             png, scale = depth_png(arguments.depth, message)
             stamp = decimal(message.header.stamp)
+            if stamp in stamps:
+                raise BadInput(f"{arguments.depth}: two images have the stamp {stamp}, must have one each")
+            stamps.add(stamp)
             with open(f"{path}/depth/{stamp}.png", "xb") as file:
                 file.write(png)
             list_of_images.write(f"{stamp} depth/{stamp}.png\n")
@@ -343,24 +354,26 @@ def convert(bag, arguments):
         require_topic(bag, arguments, "--odom", arguments.odom, ["nav_msgs/Odometry"])
     if arguments.scan:
         require_topic(bag, arguments, "--scan", arguments.scan, ["sensor_msgs/LaserScan"])
-        command = f"depthgrid map {arguments.output} -o map"
+        command = ["depthgrid", "map", arguments.output, "-o", "map"]
     else:
         require_topic(bag, arguments, "--depth", arguments.depth,
                       ["sensor_msgs/Image", "sensor_msgs/CompressedImage"])
-        command = f"depthgrid map {arguments.output} --poses {arguments.output}/odometry.txt --up z -o map"
+        command = ["depthgrid", "map", arguments.output, "--poses", arguments.output + "/odometry.txt", "--up", "z",
+                   "-o", "map"]
     # Under its name when all of it is there.
     work = tempfile.mkdtemp(prefix=".from_bag.", dir=os.path.dirname(os.path.abspath(arguments.output)))
     try:
         write = write_log if arguments.scan else write_folder
         written, without_pose = write(bag, arguments, work + "/result")
         if without_pose:
-            print(f"from_bag.py: {without_pose} have no pose at their time", file=sys.stderr)
+            print(f"from_bag.py: {arguments.bag}: {without_pose} of {arguments.scan or arguments.depth} have no pose at "
+                  "their time", file=sys.stderr)
         if written == 0:
             raise BadInput(f"{arguments.bag}: no pose is known at the time of any scan or image")
         os.rename(work + "/result", arguments.output)
     finally:
         shutil.rmtree(work)
-    print(f"{written} written; next: {command}")
+    print(f"{written} written; next: {shlex.join(command)}")
 
 
 def main():

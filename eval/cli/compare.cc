@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -14,14 +15,15 @@
 namespace depthgrid::cli {
 namespace {
 
-std::vector<Condition> ConditionsOf(const std::vector<std::string>& both,
+// `option` is that of `own`.
+std::vector<Condition> ConditionsOf(const std::vector<std::string>& both, const char* option,
                                     const std::vector<std::string>& own) {
   std::vector<Condition> conditions;
-  for (const auto* list : {&both, &own}) {
+  for (const auto& [name, list] : {std::pair("--where", &both), std::pair(option, &own)}) {
     for (const std::string& text : *list) {
       const auto equals = text.find('=');
       if (equals == std::string::npos || equals == 0) {
-        throw InputError("--where", fmt::format("is '{}', must be key.path=value", text));
+        throw InputError(name, fmt::format("is '{}', must be key.path=value", text));
       }
       conditions.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
@@ -167,8 +169,8 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
 void CompareRuns(const CompareArguments& arguments) {
   CompareOptions options;
   options.metrics = arguments.metrics;
-  options.where_a = ConditionsOf(arguments.where, arguments.where_a);
-  options.where_b = ConditionsOf(arguments.where, arguments.where_b);
+  options.where_a = ConditionsOf(arguments.where, "--where-a", arguments.where_a);
+  options.where_b = ConditionsOf(arguments.where, "--where-b", arguments.where_b);
   const SweepResults a = ReadRuns(arguments.a);
   const SweepResults b = ReadRuns(arguments.b);
   const Comparison comparison = Compare(a, b, options);

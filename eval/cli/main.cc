@@ -229,7 +229,8 @@ void AddEvalTrajectory(Program& program, CLI::App& eval) {
                   "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
       ->check(RefusalIfNegative);
   app->add_option("--time-offset", arguments->time_offset_s,
-                  "Added to the estimate's stamps, seconds, where its clock is another");
+                  "Added to the estimate's stamps, seconds, where its clock is another")
+      ->check(RefusalUnlessFinite);
   app->add_option("--convention", arguments->convention,
                   "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
       ->check(CLI::IsMember({"evo", "tum"}))

@@ -18,6 +18,7 @@
 #include "eval/doubts/view_check.h"
 #include "eval/doubts/way_check.h"
 #include "eval/output/run_folder.h"
+#include "eval/report/run_report.h"
 #include "eval/run/mapping_run.h"
 #include "eval/run/prior_run.h"
 #include "mapper/core/angle.h"
@@ -360,7 +361,11 @@ void MapRequested(const MapArguments& given, MapRequest request) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_s_total = ProcessCpuS();
   WriteRunFolder(folder, record);
-  if (arguments.localise) KeepMap(arguments.map, folder);
+  if (arguments.localise) {
+    KeepMap(arguments.map, folder);
+    // The page is of the map that is kept, which somebody may have drawn in since it was made.
+    WriteRunReport(folder.work().string(), {folder.work().string()});
+  }
   folder.Commit();
   NoteResult("the map is in " + arguments.common.output);
   WriteVideo(arguments.output, arguments.common, run, settings.mapper.grid);

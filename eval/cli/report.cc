@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "eval/cli/commands.h"
@@ -44,6 +45,20 @@ void RequireNoneButAPage(const std::string& path) {
   }
 }
 
+// What comes with a page replaces nothing but what came with the one there.
+void RequireNoneButItsFiles(const std::string& folder, const fs::path& written) {
+  const std::string page = folder + "/report.html";
+  const std::string text = fs::exists(page) ? ReadFile(page) : "";
+  for (const auto& entry : fs::directory_iterator(written)) {
+    const std::string name = entry.path().filename().string();
+    const std::string path = folder + "/" + name;
+    if (name == "report.html" || !fs::exists(path)) continue;
+    if (text.find(name) == std::string::npos) {
+      throw InputError(path, "is of no page there, and stays; choose another folder");
+    }
+  }
+}
+
 // A link would be replaced itself, by a file.
 void RequireNoLinks(const std::string& folder) {
   for (const char* name : {"report.html", "timing.js", "experiment.yaml", "sweep_again.yaml"}) {
@@ -64,10 +79,13 @@ void WriteElsewhere(const ReportArguments& arguments) {
   RequireReachable(arguments.output);
   RequireNoOtherResult(arguments.output, ResultKind::kPage);
   RequireNamesFree(arguments.output, ResultKind::kPage);
+  RequireNoLinks(arguments.output);
+  RequireNoneButAPage(arguments.output + "/report.html");
   OutputFolder output(arguments.output, arguments.force);
   const auto plain = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
   const fs::path back = plain(arguments.folder).lexically_relative(plain(arguments.output));
   WriteReport(arguments.folder, {output.work().string(), back.string() + "/"});
+  RequireNoneButItsFiles(arguments.output, output.work());
   output.Commit();
 }
 

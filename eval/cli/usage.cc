@@ -112,6 +112,10 @@ std::string RefusalUnlessPositive(const std::string& text) {
   return value && *value > 0.0 ? "" : "is '" + text + "', must be a number above 0";
 }
 
+std::string RefusalUnlessFinite(const std::string& text) {
+  return FiniteNumber(text) ? "" : "is '" + text + "', must be a number";
+}
+
 std::string RefusalIfNegative(const std::string& text) {
   const auto value = FiniteNumber(text);
   return value && *value >= 0.0 ? "" : "is '" + text + "', must be a number, 0 or more";

@@ -12,6 +12,7 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error);
 
 // For check(): CLI11's own PositiveNumber and NonNegativeNumber print the largest double in full.
 std::string RefusalUnlessPositive(const std::string& text);
+std::string RefusalUnlessFinite(const std::string& text);
 std::string RefusalIfNegative(const std::string& text);
 
 // For check(): a place in a map, "X,Y,YAW_DEG".

@@ -21,7 +21,7 @@ void Collect(const nlohmann::ordered_json& json, const std::string& path, Column
       Collect(value, name, columns);
     } else if (value.is_number()) {
       columns.emplace_back(name, value.get<double>());
-    } else if (value.is_null()) {
+    } else if (value.is_null() && !IsGroupOfScores(name)) {
       columns.emplace_back(name, std::numeric_limits<double>::quiet_NaN());
     }
   }

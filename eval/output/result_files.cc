@@ -197,7 +197,11 @@ FileRule FilesOf(ResultKind kind) {
     case ResultKind::kSlam:
       return IsSlamFile;
     case ResultKind::kPage:
-      return [](const fs::path& relative) { return relative == "report.html"; };
+      return [](const fs::path& relative) {
+        static const Names names = {"report.html", "timing.js", "experiment.yaml",
+                                    "sweep_again.yaml"};
+        return names.contains(relative.string());
+      };
     case ResultKind::kSweep:
       break;
   }

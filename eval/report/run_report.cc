@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <optional>
 
 #include "eval/experiment/changed_settings.h"
 #include "eval/files/json_text_impl.h"
@@ -152,20 +156,31 @@ Json ScansJson(const RunFiles& run, const Pose2& base_from_laser,
   return json;
 }
 
+// The frame that a picture of a run is named after, its digits.
+std::optional<int> SampleFrameOf(const std::string& stem) {
+  int frame = 0;
+  const char* end = stem.data() + stem.size();
+  const auto [stop, error] = std::from_chars(stem.data(), end, frame);
+  const bool is_frame = error == std::errc() && stop == end && frame >= 0;
+  return is_frame ? std::optional(frame) : std::nullopt;
+}
+
 Json SamplesJson(const std::string& folder) {
-  std::vector<std::string> stems;
+  std::map<int, std::string> stems;
   std::error_code missing;
   for (const auto& entry : fs::directory_iterator(folder + "/frames", missing)) {
     const std::string name = entry.path().filename().string();
     constexpr std::string_view kDepthEnd = "_depth.png";
-    if (name.ends_with(kDepthEnd)) stems.push_back(name.substr(0, name.size() - kDepthEnd.size()));
+    if (!name.ends_with(kDepthEnd)) continue;
+    const std::string stem = name.substr(0, name.size() - kDepthEnd.size());
+    // Other pictures may lie there too.
+    if (const std::optional<int> frame = SampleFrameOf(stem)) stems[*frame] = stem;
   }
-  std::sort(stems.begin(), stems.end());
   Json json = Json::array();
-  for (const std::string& stem : stems) {
+  for (const auto& [frame, stem] : stems) {
     const std::string base = folder + "/frames/" + stem;
     Json sample;
-    sample["frame"] = std::stoi("0" + stem);
+    sample["frame"] = frame;
     sample["depth"] = PngUri(ReadFile(base + "_depth.png"));
     if (fs::exists(base + "_colour.png")) {
       sample["colour"] = PngUri(ReadFile(base + "_colour.png"));
@@ -178,7 +193,13 @@ Json SamplesJson(const std::string& folder) {
 std::string TitleOf(const Config& settings) {
   for (const char* key : {"scene", "input"}) {
     const std::string value = SettingOf(settings, key);
-    if (!value.empty()) return fs::path(value).stem().string();
+    if (value.empty()) continue;
+    // Not from any dot on: a folder's name may have some.
+    const fs::path name = fs::path(value).filename();
+    constexpr std::array kEndings = {".yaml", ".yml", ".log", ".clf", ".txt"};
+    const bool is_file =
+        std::find(kEndings.begin(), kEndings.end(), name.extension().string()) != kEndings.end();
+    return (is_file ? name.stem() : name).string();
   }
   return "Run";
 }

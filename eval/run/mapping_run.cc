@@ -67,6 +67,7 @@ FrameRecorder::FrameRecorder(const MapperOptions& options,
                              const GainOracle& oracle, const MatchOracle& match_oracle)
     : start_(std::chrono::steady_clock::now()),
       frame_count_(frame_count),
+      max_range_m_(options.scan.max_range_m),
       mapper_(options, camera, {ThreadCpuUs, SteadyUs}, oracle) {
   mapper_.SetMatchOracle(match_oracle);
   run_.camera = camera;
@@ -80,6 +81,9 @@ void FrameRecorder::Add(const Frame& frame) {
   if (frame.depth && IsSample(position, frame_count_)) {
     run_.samples.push_back({frame.index, frame.depth});
   }
+  if (frame.depth && frame.slam_from_camera) {
+    saturation_.Add(*frame.depth, *frame.slam_from_camera);
+  }
 }
 
 MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
@@ -87,6 +91,7 @@ MappingRun FrameRecorder::Finish(const Trajectory& final_poses) {
   run_.result = mapper_.Finish(FinalPosesOf(run_.reports, final_poses));
   run_.cpu_s += (ThreadCpuUs() - before_us) * 1e-6;
   run_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  run_.warnings = Warnings();
   return std::move(run_);
 }
 
@@ -140,6 +145,24 @@ std::optional<int> GuessedFrom(const MappingRun& run) {
   return joined ? std::nullopt : from;
 }
 
+std::vector<std::string> FrameRecorder::Warnings() const {
+  std::vector<std::string> lines = MendedPoses(run_.reports);
+  if (const auto cut = saturation_.Found(); cut && cut->z_m < max_range_m_) {
+    lines.push_back(fmt::format(
+        "depth images: {} hold {:.3f} m, the largest depth, all over whatever is behind: if all "
+        "that is farther is cut to it, it is drawn as walls; --set "
+        "mapper.scan.max_range_m={:.2f} takes it for free",
+        Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
+  }
+  if (const std::optional<int> frame = GuessedFrom(run_)) {
+    lines.push_back(fmt::format(
+        "poses: SLAM was lost before frame {}; where the map goes on from there is a guess, that "
+        "nothing seen since confirms",
+        *frame));
+  }
+  return lines;
+}
+
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle, const MatchOracle& match_oracle,
@@ -148,30 +171,13 @@ MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
   FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
   if (prior) recorder.StartFrom(*prior);
   int done = 0;
-  SaturationCheck saturation;
   while (const std::optional<Frame> frame = source.Next()) {
     recorder.Add(*frame);
-    if (frame->depth && frame->slam_from_camera) {
-      saturation.Add(*frame->depth, *frame->slam_from_camera);
-    }
     if (progress) progress(++done, count);
   }
   MappingRun run = recorder.Finish(final_poses);
-  run.warnings = source.Warnings();
-  for (std::string& line : MendedPoses(run.reports)) run.warnings.push_back(std::move(line));
-  if (const auto cut = saturation.Found(); cut && cut->z_m < options.scan.max_range_m) {
-    run.warnings.push_back(fmt::format(
-        "depth images: {} hold {:.3f} m, the largest depth, all over whatever is behind: if all "
-        "that is farther is cut to it, it is drawn as walls; --set "
-        "mapper.scan.max_range_m={:.2f} takes it for free",
-        Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
-  }
-  if (const std::optional<int> frame = GuessedFrom(run)) {
-    run.warnings.push_back(fmt::format(
-        "poses: SLAM was lost before frame {}; where the map goes on from there is a guess, that "
-        "nothing seen since confirms",
-        *frame));
-  }
+  const std::vector<std::string> of_source = source.Warnings();
+  run.warnings.insert(run.warnings.begin(), of_source.begin(), of_source.end());
   return run;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/run/saturation_check.h"
 #include "mapper/core/frame.h"
 #include "mapper/core/frame_report.h"
 #include "mapper/core/slam_output.h"
@@ -54,8 +55,12 @@ class FrameRecorder {
   MappingRun Finish(const Trajectory& final_poses);
 
  private:
+  std::vector<std::string> Warnings() const;
+
   std::chrono::steady_clock::time_point start_;
   int frame_count_;
+  double max_range_m_;
+  SaturationCheck saturation_;
   IncrementalMapper mapper_;
   MappingRun run_;
 };

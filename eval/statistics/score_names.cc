@@ -17,6 +17,13 @@ bool IsBreakdown(std::string_view path) {
          key.ends_with("_poses") || (path.starts_with("consistency.") && has(kOfConsistency, key));
 }
 
+bool IsGroupOfScores(std::string_view path) {
+  constexpr std::array<std::string_view, 8> kGroups = {
+      "trajectory.slam",    "trajectory.online",       "trajectory.est",  "map.registered",
+      "map.wall_thickness", "map.true_wall_thickness", "map.calibration", "map.navigability"};
+  return std::find(kGroups.begin(), kGroups.end(), path) != kGroups.end();
+}
+
 std::span<const std::string_view> ScoresOfASweepsPage() {
   static constexpr std::array<std::string_view, 6> kScores = {"trajectory.est.mean_euclidean_m",
                                                               "trajectory.est.ate_rmse_se2_m",

@@ -13,6 +13,10 @@ namespace depthgrid {
 // band of a consistency.
 bool IsBreakdown(std::string_view path);
 
+// Whether what stands there is a group of scores, of which a map or a trajectory that shows nothing
+// has none: null in the place of the group is no score.
+bool IsGroupOfScores(std::string_view path);
+
 // The first of them that a sweep has is what its page opens with.
 std::span<const std::string_view> ScoresOfASweepsPage();
 // What is compared when nothing is asked for: one or two figures of each kind, those first that

@@ -24,6 +24,17 @@ double ValueOf(const AblationRun& run, const std::string& metric) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+// Of all runs: one whose map shows no walls lacks some.
+std::vector<std::string> ScoresOf(const std::vector<AblationRun>& runs) {
+  std::vector<std::string> names;
+  for (const AblationRun& run : runs) {
+    for (const auto& [name, value] : run.metrics) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
 // Errors are metres or shares, of numbers around one: what is smaller is what rounding leaves of
 // them, and would be taken for a difference that all seeds have.
 double WithoutResidue(double value) {
@@ -118,12 +129,13 @@ std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs) {
 
 std::string AblationCsv(const std::vector<AblationRun>& runs) {
   std::string csv = "variant,seed";
-  for (const auto& [name, value] : runs.front().metrics) csv += "," + name;
+  const std::vector<std::string> columns = ScoresOf(runs);
+  for (const std::string& name : columns) csv += "," + name;
   csv += "\n";
   for (const AblationRun& run : runs) {
     csv += fmt::format("{},{}", run.variant, run.seed);
-    for (const auto& column : runs.front().metrics) {
-      const double value = ValueOf(run, column.first);
+    for (const std::string& name : columns) {
+      const double value = ValueOf(run, name);
       csv += std::isnan(value) ? "," : fmt::format(",{}", value);
     }
     csv += "\n";

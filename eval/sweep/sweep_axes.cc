@@ -149,6 +149,12 @@ double AxisRange::At(double share) const {
   return whole ? std::round(value) : value;
 }
 
+double AxisRange::Drawn(double share) const {
+  if (!whole) return At(share);
+  const AxisRange around{from - 0.5, to + 0.5, scale};
+  return std::clamp(std::round(around.At(share)), from, to);
+}
+
 bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }
 
 std::vector<SweepAxis> ReadAxes(const Config& axes) {

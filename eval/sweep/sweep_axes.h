@@ -24,6 +24,9 @@ struct AxisRange {
 
   // At `share` of the way, 0 to 1, to the nearest whole number if need be; the ends are exact.
   double At(double share) const;
+  // The same for random shares: of whole numbers each is drawn as often as its neighbours, the ends
+  // too.
+  double Drawn(double share) const;
 };
 
 struct SweepAxis {

@@ -83,7 +83,7 @@ std::vector<Combination> Samples(const std::vector<const SweepAxis*>& axes, int 
     Combination combination;
     for (const SweepAxis* axis : axes) {
       if (axis->range) {
-        combination.push_back(fmt::format("{}", axis->range->At(random.Uniform())));
+        combination.push_back(fmt::format("{}", axis->range->Drawn(random.Uniform())));
       } else {
         const auto& value = axis->values[random.Below(axis->values.size())];
         combination.insert(combination.end(), value.begin(), value.end());

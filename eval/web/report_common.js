@@ -20,7 +20,12 @@ function svg(tag, attributes, ...children) {
   return element;
 }
 
+// Of a path beside this page, whose folders may have any name.
+const linkOf = (path) => path.split("/").map(encodeURIComponent).join("/");
+
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+// Of any number of items: a call does not take 100,000 arguments in every browser.
+const largest = (items, of) => items.reduce((most, item) => Math.max(most, of(item)), 0);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
 // To so many significant digits; of thousands to whole numbers, lest rounded ones look like exact counts. No count has 16 digits.
 const rounded = (value, digits) => (Math.abs(value) >= 10 ** (digits - 1) && Math.abs(value) < 1e15 ? Math.round(value) : Number(value.toPrecision(digits)));

@@ -58,11 +58,12 @@ function mediansOfBlocks(values) {
 
 function initTimes() {
   const measured = window.RUN_TIMES;
-  if (!measured) {
-    byId("times").append(make("p", { class: "muted" }, "timing.js does not lie beside this page: copy it along to see the stage times."));
+  if (measured?.total_us.length !== frameCount) {
+    byId("times").append(make("p", { class: "muted" }, measured
+      ? "timing.js beside this page is another run's: copy this run's to see the stage times."
+      : "timing.js does not lie beside this page: copy it along to see the stage times."));
     return;
   }
-  if (measured.total_us.length !== frameCount) return;
   const ordered = (values) => [...values].sort((a, b) => a - b);
   const at = (values, share) => values[Math.min(values.length - 1, Math.floor(share * values.length))];
   const row = (label, values) => {

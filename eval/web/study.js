@@ -15,7 +15,7 @@ const seen = (map) => map?.observable ?? map?.all;
 
 // Without alignment, and aligned; the best are a few millimetres.
 const errorCells = (score) => [fixed(score?.mean_euclidean_m, 4), fixed(score?.ate_rmse_se2_m, 4)];
-const linkTo = (c, text) => make("a", { href: `${STUDY.back}${c.name}/report.html` }, text);
+const linkTo = (c, text) => make("a", { href: linkOf(`${STUDY.back}${c.name}/report.html`) }, text);
 
 // Rooms above what the errors are of, above how they are taken.
 function tableHead() {

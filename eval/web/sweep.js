@@ -3,7 +3,7 @@
 
 function subtitle() {
   const axes = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${axis.texts.length} ${axis.key}`);
-  const seeds = Math.max(...POINTS.map((p) => p.runs));
+  const seeds = largest(POINTS, (p) => p.runs);
   // Axes that are not crossed with each other: the number of points says more.
   const crossed = AXES.reduce((product, axis) => product * axis.texts.length, 1) === POINTS.length;
   const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [SWEEP.seed_keys.length > 1 ? `${seeds} of ${SWEEP.seed_keys.join(", ")}` : `${seeds} seeds`] : [])].join(" x ");

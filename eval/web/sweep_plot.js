@@ -83,7 +83,7 @@ function drawAlong() {
     title: `${metric.label} along ${axis.key}${held.length ? `, at ${held.join(", ")}` : ""}`, caption: SWEEP.of, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
-  const seeds = Math.max(...POINTS.map((p) => p.counting));
+  const seeds = largest(POINTS, (p) => p.counting);
   const sum = (of) => POINTS.reduce((total, p) => total + of(p), 0);
   const repeats = sum((p) => p.runs - p.counting);
   byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}. ` +

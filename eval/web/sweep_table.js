@@ -57,7 +57,7 @@ function commandOf(row) {
 }
 
 function linkCell(row, text) {
-  if (text === "open") return make("a", { href: `${SWEEP.back}${SWEEP.runs.folder[row]}/report.html` }, "open");
+  if (text === "open") return make("a", { href: linkOf(`${SWEEP.back}${SWEEP.runs.folder[row]}/report.html`) }, "open");
   if (text === "failed") return make("span", { class: "failed", title: SWEEP.runs.failures[row] }, "failed");
   return make("button", { type: "button", class: "link", title: commandOf(row), "aria-label": `Command that makes run ${SWEEP.runs.run[row]} again`,
     onclick: () => {

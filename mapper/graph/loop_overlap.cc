@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapper/core/occupancy_map.h"
+#include "mapper/graph/place.h"
 #include "mapper/grid/probability_grid.h"
 #include "mapper/grid/scan_rasterizer.h"
 
@@ -60,15 +61,15 @@ void SetFindings(const OccupancyMap& map, int reach_cells, SeenPlace& place) {
   RaiseAroundWalls(reach_cells, place);
 }
 
-struct PlacedScan {
+struct ScanInPlace {
   Scan scan;
   Pose2 middle_from_base;
 };
 
-PlacedScan ScanOf(const std::vector<MappedFrame>& frames, int member, int middle) {
+ScanInPlace ScanOf(const std::vector<MappedFrame>& frames, int member, int middle) {
   const MappedFrame& frame = frames[static_cast<std::size_t>(member)];
   const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
-  return {*frame.scan, middle_from_map * frame.map_from_base};
+  return {WithinSight(*frame.scan), middle_from_map * frame.map_from_base};
 }
 
 std::vector<Eigen::Vector2d> HitsOf(const Scan& scan, const Pose2& middle_from_base) {

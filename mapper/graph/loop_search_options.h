@@ -1,4 +1,5 @@
-// Settings of loops that the mapper finds itself.
+// Settings of loops that the mapper finds itself. Places are cut into surfels and matched with the
+// default SurfelOptions whatever the run's are, so that these limits keep their meaning.
 #pragma once
 
 #include "mapper/core/options.h"

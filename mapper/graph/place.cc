@@ -35,6 +35,15 @@ void PlaceOptions::Visit(OptionsVisitor& v) {
   v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cells that are searched, metres");
 }
 
+Scan WithinSight(Scan scan) {
+  constexpr auto kSight = static_cast<float>(kPlaceSightM);
+  for (Beam& beam : scan.beams) {
+    beam.hit = beam.hit && beam.range_m <= kSight;
+    beam.clear_to_m = std::min(beam.clear_to_m, kSight);
+  }
+  return scan;
+}
+
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options) {
   return FramesAround(frames, middle, options, 0, static_cast<int>(frames.size()));
@@ -69,8 +78,8 @@ OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector
   const Pose2 middle_from_map = Inverse(PoseAt(frames, middle));
   for (const int i : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
-    grid.Insert(
-        rasterizer.Rasterize(*frame.scan, middle_from_map * frame.map_from_base, resolution_m));
+    grid.Insert(rasterizer.Rasterize(WithinSight(*frame.scan),
+                                     middle_from_map * frame.map_from_base, resolution_m));
   }
   return grid.map();
 }
@@ -84,7 +93,7 @@ std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frame
   for (const int i : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    const Scan scan = *frame.scan;
+    const Scan scan = WithinSight(*frame.scan);
     for (const Beam& beam : scan.beams) {
       if (!beam.hit) continue;
       hits.emplace_back(middle_from_base * EndPoint(beam));

@@ -20,6 +20,12 @@ struct PlaceOptions {
   void Visit(OptionsVisitor& v);
 };
 
+// A place is told by what is near: what is seen farther off, in halls and outdoors, would only make
+// its grids large.
+constexpr double kPlaceSightM = 80.0;
+// What a scan shows within it.
+Scan WithinSight(Scan scan);
+
 // Where the mapped frame of this position is, map from base.
 inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return FrameAt(frames, i).map_from_base;

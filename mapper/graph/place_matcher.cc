@@ -135,16 +135,16 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
   // A direction that nothing is seen of has an infinite one, or of rounding alone a huge one: from
   // the eigenvalues, since an inverse may then be negative.
   const SymmetricEigen known = EigenOf(match.information / kOverconfidence);
-  if (known.values[0] <= 0.0) return false;
+  if (!(known.values[0] > 0.0)) return false;
   const Eigen::Matrix3d covariance =
       known.vectors * known.values.cwiseInverse().asDiagonal() * known.vectors.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar;
   planar.computeDirect(covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   const double sigma_m = std::sqrt(planar.eigenvalues()[1]);
   const double sigma_rad = std::sqrt(covariance(2, 2));
-  if (sigma_m > options_.max_sigma_m || sigma_rad > RadFromDeg(options_.max_sigma_deg)) {
-    return false;
-  }
+  const bool is_known =
+      sigma_m <= options_.max_sigma_m && sigma_rad <= RadFromDeg(options_.max_sigma_deg);
+  if (!is_known) return false;
   loop.sigma_translation_m = std::max(sigma_m, kLeastSigmaM);
   loop.sigma_yaw_rad = std::max(sigma_rad, kLeastSigmaRad);
   return true;

@@ -8,14 +8,11 @@
 #include <utility>
 
 #include "mapper/core/median.h"
+#include "mapper/io/body_rule.h"
 
 namespace depthgrid {
 namespace {
 
-// Chosen; what they tell apart was tried on rendered rooms (docs/formats.md).
-constexpr double kMostBodyM = 1.0;
-constexpr double kBandM = 0.03;
-constexpr double kBandShare = 0.05;
 // Something may come before it, but not be behind it, but for a bad measurement.
 constexpr double kLastingShare = 0.5;
 constexpr double kBeyondShare = 0.05;
@@ -35,8 +32,6 @@ constexpr int kFloorFits = 4;
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kFarMm = 65535.0;  // what is farther counts as so far
-
-double BandM(double depth_m) { return std::max(kBandM, kBandShare * depth_m); }
 
 // A pixel's place and inverse depth, in which planes are linear.
 struct InversePixel {
@@ -109,8 +104,8 @@ BodyFinder::Middle BodyFinder::MiddleOf(std::size_t pixel) const {
   double near = 0.0, beyond = 0.0;
   for (const std::uint16_t mm : measured) {
     const double off_m = mm / kMmPerM - depth_m;
-    near += std::abs(off_m) < BandM(depth_m) ? 1.0 : 0.0;
-    beyond += off_m >= BandM(depth_m) ? 1.0 : 0.0;
+    near += std::abs(off_m) < BodyBandM(depth_m) ? 1.0 : 0.0;
+    beyond += off_m >= BodyBandM(depth_m) ? 1.0 : 0.0;
   }
   const auto all = static_cast<double>(count);
   return {depth_m, near / all, beyond / all};
@@ -135,7 +130,7 @@ std::vector<Eigen::Vector3d> BodyFinder::LevelPlanes() const {
 }
 
 std::optional<BodyMask> BodyFinder::Find() const {
-  if (views_mm_.size() < kFewestViews) return {};
+  if (views_mm_.size() < kFewestBodyViews) return {};
   std::vector<Seen> seen;
   for (int v = 0; v < height_px_; ++v) {
     for (int u = 0; u < width_px_; ++u) {

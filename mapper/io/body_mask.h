@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapper/core/depth_image.h"
+#include "mapper/io/body_rule.h"
 
 namespace depthgrid {
 
@@ -30,19 +31,17 @@ struct BodyMask {
 
 class BodyFinder {
  public:
-  static constexpr std::size_t kFewestViews = 9;  // half a turn
   static constexpr std::size_t kMostViews = 24;
-  static constexpr double kViewTurnDeg = 20.0;
 
-  // An image since whose forerunner the camera had turned by kViewTurnDeg. Those of another size
-  // than the first are not looked at.
+  // An image since whose forerunner the camera had turned by kBodyViewTurnDeg. Those of another
+  // size than the first are not looked at.
   void Add(const DepthImage& view);
 
   // Pixels nearer than 1 m behind which hardly anything (5 % of what was measured) was seen, while
   // half of it is within 3 cm or 5 % of one depth, in half of the views at least; and three pixels
   // around. Nothing that stands in a room, walks ahead or is carried past stays like that; what
   // does is the floor before a camera that is always as high and as steep, so what lies in one
-  // plane with such pixels beyond 1 m is none of it. Nothing of fewer than kFewestViews, nor of
+  // plane with such pixels beyond 1 m is none of it. Nothing of fewer than kFewestBodyViews, nor of
   // half the image or more.
   std::optional<BodyMask> Find() const;
 

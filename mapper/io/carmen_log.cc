@@ -217,6 +217,7 @@ class CarmenLogSource : public FrameSource {
 
   // Also where it was set back before the part: whose stamps are others than the log's.
   void WarnOfClock() {
+    if (names_.stamps_s.empty()) return;  // RequireScans() says so
     const double end_s = part_.to_s > 0.0 ? names_.stamps_s.front() + part_.to_s
                                           : std::numeric_limits<double>::infinity();
     for (std::string& warning : clock_.Warnings(path_, end_s)) {

@@ -24,7 +24,7 @@ struct FrameFolder {
 // Whether the folder looks like one: numbered depth images. Poses may be a file's elsewhere.
 bool IsFrameFolder(const std::string& folder);
 
-// Throws InputError when there are no depth images or no poses.
+// Throws InputError when there are no depth images.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
 
 // The folder's own poses. Throws InputError when there are none, with the first file and what is

@@ -25,7 +25,7 @@ std::vector<std::string> ViewsOf(const DepthSequence& sequence, const RecordingO
     const auto pose = track.At(image.stamp_s).slam_from_camera;
     if (!pose) continue;
     const Eigen::Quaterniond& now = pose->rotation;
-    if (last && last->angularDistance(now) < RadFromDeg(BodyFinder::kViewTurnDeg)) continue;
+    if (last && last->angularDistance(now) < RadFromDeg(kBodyViewTurnDeg)) continue;
     last = now;
     turned.push_back(image.depth_path);
   }
@@ -48,7 +48,7 @@ std::string Said(const BodyMask& body, const std::string& name) {
 
 void internal::LeaveOutBody(const RecordingOptions& options, DepthSequence& sequence) {
   const std::vector<std::string> views = ViewsOf(sequence, options);
-  if (views.size() < BodyFinder::kFewestViews) return;
+  if (views.size() < kFewestBodyViews) return;
   const DepthReader reader = sequence.reader;
   ImagesAhead images(0, views.size(), UsualImagesAhead(), [&](std::size_t i) {
     ReadImage read;

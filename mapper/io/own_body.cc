@@ -5,22 +5,15 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
+#include "mapper/io/body_rule.h"
 
 namespace depthgrid {
 namespace {
 
-// Chosen; what they tell apart was tried on simulated lasers in two rooms (docs/formats.md).
-constexpr double kViewTurnRad = RadFromDeg(20.0);
-constexpr std::size_t kFewestViews = 9;  // half a turn
 constexpr std::size_t kMostViews = 64;
-constexpr double kMostBodyM = 1.0;
-constexpr double kBandM = 0.03;
-constexpr double kBandShare = 0.05;
 constexpr double kLastingShare = 0.95;
 // Beams that meet the edge of a part show it now and then.
 constexpr double kEdgeRad = RadFromDeg(1.0);
-
-double BandM(double range_m) { return std::max(kBandM, kBandShare * range_m); }
 
 }  // namespace
 
@@ -29,7 +22,8 @@ void OwnBody::Add(const CarmenScan& line, double min_range_m) {
   if (views_m_.empty()) {
     count_ = line.range_m.size();
     step_rad_ = line.bearing_step_rad;
-  } else if (std::abs(WrapAngle(line.odom_from_laser.yaw_rad - yaw_rad_)) < kViewTurnRad) {
+  } else if (std::abs(WrapAngle(line.odom_from_laser.yaw_rad - yaw_rad_)) <
+             RadFromDeg(kBodyViewTurnDeg)) {
     return;
   }
   if (line.range_m.size() != count_) return;
@@ -49,13 +43,13 @@ double OwnBody::LastedAtM(std::size_t reading) const {
   if (static_cast<double>(near_m.size()) < least) return 0.0;
   const double middle_m = UpperMedian(near_m);
   const auto lasted = std::count_if(near_m.begin(), near_m.end(), [&](double range_m) {
-    return std::abs(range_m - middle_m) < BandM(middle_m);
+    return std::abs(range_m - middle_m) < BodyBandM(middle_m);
   });
   return static_cast<double>(lasted) < least ? 0.0 : middle_m;
 }
 
 void OwnBody::Find() {
-  if (views_m_.size() < kFewestViews) return;
+  if (views_m_.size() < kFewestBodyViews) return;
   const auto edge = static_cast<std::size_t>(
       std::max(2.0, std::ceil(kEdgeRad / std::max(std::abs(step_rad_), 1e-9))));
   std::vector<double> lasted_m;  // of the part at the end
@@ -65,7 +59,7 @@ void OwnBody::Find() {
     body_to_m_.resize(count_, 0.0);
     const std::size_t end = std::min(count_, i + edge + 1);
     for (std::size_t beside = i < edge ? 0 : i - edge; beside < end; ++beside) {
-      body_to_m_[beside] = std::max(body_to_m_[beside], range_m + BandM(range_m));
+      body_to_m_[beside] = std::max(body_to_m_[beside], range_m + BodyBandM(range_m));
     }
     if (parts_.empty() || i > parts_.back().last + edge) {
       parts_.push_back({.first = i});

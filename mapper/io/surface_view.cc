@@ -11,8 +11,8 @@ constexpr int kPatchesAcross = 80;  // an image, whatever its size
 // Half the baseline of a normal as a share of the width: wide enough to average noise, narrow
 // enough for furniture (6 of 640 pixels).
 constexpr double kBaselineShare = 0.0094;
-constexpr double kMaxDepthM = 5.0;         // farther normals are noise on real sensors
-constexpr double kSameSurfaceShare = 0.1;  // depth change over the baseline, of the depth
+constexpr double kMaxDepthM = 5.0;    // farther normals are noise on real sensors
+constexpr double kSmoothShare = 0.1;  // depth change over the baseline, of the depth
 
 }  // namespace
 
@@ -30,7 +30,7 @@ SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
       const float around[] = {image.At(u - base_px, v), image.At(u + base_px, v),
                               image.At(u, v - base_px), image.At(u, v + base_px)};
       const auto apart = [&](float other) {
-        return !(other > 0.0F) || std::abs(other - z) > kSameSurfaceShare * z;
+        return !(other > 0.0F) || std::abs(other - z) > kSmoothShare * z;
       };
       if (std::any_of(std::begin(around), std::end(around), apart)) continue;
       const Eigen::Vector3d along_u = point_at(u + base_px, v) - point_at(u - base_px, v);

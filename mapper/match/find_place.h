@@ -47,6 +47,7 @@ bool IsElsewhere(const Pose2& map_from_base, const Pose2& map_from_other);
 
 // A place may be wrong by as much where nobody says how well it is known, and 12 degrees.
 constexpr double kKnownWithinM = 1.5;
+constexpr double kMostWithinM = 5.0;
 
 // Where it is known already, to so many metres and 12 degrees: there, where the scans fit about as
 // well as anywhere near, or the best place next to it. Nothing is said of others, nor how sure it

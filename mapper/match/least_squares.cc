@@ -18,7 +18,7 @@ Eigen::Vector3d DampedStep(const Eigen::Matrix3d& hessian, const Eigen::Vector3d
                            double damping) {
   double shift = damping;
   const double largest = hessian.cwiseAbs().maxCoeff();
-  if (!(largest > 0.0)) return Eigen::Vector3d::Zero();
+  if (!(largest > 0.0 && std::isfinite(largest))) return Eigen::Vector3d::Zero();
   const double least = 1e-4 * largest;
   while (true) {
     const Eigen::LLT<Eigen::Matrix3d> llt(hessian + shift * Eigen::Matrix3d::Identity());

@@ -164,7 +164,7 @@ void FindLanes(const BandFound& found, std::size_t rows, const ReturnLimits& lim
     for (int mean = 1;; ++mean) {
       AddAll(found.samples, rows, i, around);
       for (std::size_t k = 0; k < kTogether; ++k) nearest[k].Keep(around[k]);
-      if (mean == NoiseWindow::kMeansOfNarrow) break;
+      if (mean == NoiseWindow::kMeansOfCapped) break;
       bool any_narrow = false;
       for (const NearestLanes& lane : nearest) any_narrow = any_narrow || lane.AnyNarrow();
       if (!any_narrow) break;

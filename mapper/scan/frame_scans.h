@@ -21,6 +21,11 @@ struct FrameScans {
   std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
   std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
   std::optional<CameraStand> stand = {};  // of depth images, and of scans made from such
+  // What of `matched` was seen to stand where that is not all (MovingObjects), else null.
+  std::shared_ptr<const Scan> standing = {};
+
+  // What becomes part of what later scans are matched against.
+  const std::shared_ptr<const Scan>& kept() const { return standing ? standing : matched; }
 };
 
 // Scans that are written again once nobody else holds them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace depthgrid {
 namespace {
@@ -31,6 +32,12 @@ bool IsOnOneObject(const Beam& a, const Beam& b) {
   return a.hit && b.hit && std::abs(a.range_m - b.range_m) <= kJumpM + kJumpShare * nearer_m;
 }
 
+Eigen::Vector2d MeanEndPoint(const std::vector<Beam>& beams, std::size_t begin, std::size_t end) {
+  Eigen::Vector2d sum_m = Eigen::Vector2d::Zero();
+  for (std::size_t i = begin; i < end; ++i) sum_m += EndPoint(beams[i]);
+  return sum_m / static_cast<double>(end - begin);
+}
+
 bool IsBehind(const Beam& beam, const Beam& edge) {
   return !beam.hit || beam.range_m > edge.range_m;
 }
@@ -44,15 +51,23 @@ std::optional<MovingObjects::Object> MovingObjects::ObjectOf(const Scan& scan, s
   const std::size_t count = end - begin;
   const bool is_large = count >= kLeastBeams && static_cast<double>(count) >=
                                                     kLeastShare * static_cast<double>(beams.size());
-  // At the edge of the view the rest of it is not seen.
-  if (!is_large || begin == 0 || end == beams.size()) return {};
-  if (!IsBehind(beams[begin - 1], beams[begin]) || !IsBehind(beams[end], beams[end - 1])) return {};
+  if (!is_large) return {};
+  const bool has_first = begin > 0;
+  const bool has_last = end < beams.size();
+  if (!has_first && !has_last) return {};
+  if (has_first && !IsBehind(beams[begin - 1], beams[begin])) return {};
+  if (has_last && !IsBehind(beams[end], beams[end - 1])) return {};
   if ((EndPoint(beams[end - 1]) - EndPoint(beams[begin])).norm() > kWidestM) return {};
+  const Eigen::Vector2d middle_m = MeanEndPoint(beams, begin, end);
+  if (middle_m.norm() > kFarthestM) return {};
   Object object{.begin = begin, .end = end};
-  for (std::size_t i = begin; i < end; ++i) object.at_m += EndPoint(beams[i]);
-  object.at_m /= static_cast<double>(count);
-  object.began_at_m = object.would_be_m = object.at_m;
-  return object.at_m.norm() <= kFarthestM ? std::optional(object) : std::nullopt;
+  const auto follow = [&](std::size_t point, const Eigen::Vector2d& at_m) {
+    object.points[point] = {.at_m = at_m, .began_at_m = at_m, .would_be_m = at_m};
+  };
+  if (has_first && has_last) follow(kMiddle, middle_m);
+  if (has_first) follow(kFirstEnd, MeanEndPoint(beams, begin, begin + kLeastBeams));
+  if (has_last) follow(kLastEnd, MeanEndPoint(beams, end - kLeastBeams, end));
+  return object;
 }
 
 void MovingObjects::Find(const Scan& scan) {
@@ -76,70 +91,91 @@ void MovingObjects::Carry(const Pose2& base_from_before) {
   }
   objects_.clear();
   for (Object& object : before_) {
-    object.would_be_m = base_from_before * object.would_be_m;
-    if (object.verdict != Verdict::kMoves) object.at_m = base_from_before * object.at_m;
+    for (std::optional<Point>& point : object.points) {
+      if (!point) continue;
+      point->would_be_m = base_from_before * point->would_be_m;
+      if (object.verdict != Verdict::kMoves) point->at_m = base_from_before * point->at_m;
+    }
     ++object.unseen_scans;
   }
 }
 
+// Of the middles, or of an end where one of the two is cut; infinite where they are at opposite
+// edges.
+double MovingObjects::OffM(const Object& known, const Object& seen) {
+  for (std::size_t i = 0; i < known.points.size(); ++i) {
+    if (known.points[i] && seen.points[i]) {
+      return (known.points[i]->at_m - seen.points[i]->at_m).norm();
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 void MovingObjects::Recognise(Object& object) {
-  const auto off_m = [&](const Object& known) { return (known.at_m - object.at_m).norm(); };
-  const auto nearest =
-      std::min_element(before_.begin(), before_.end(),
-                       [&](const Object& a, const Object& b) { return off_m(a) < off_m(b); });
-  if (nearest == before_.end() || off_m(*nearest) > kFarthestStepM) return;
-  object.began_at_m = nearest->began_at_m;
-  object.would_be_m = nearest->would_be_m;
+  const auto nearest = std::min_element(
+      before_.begin(), before_.end(),
+      [&](const Object& a, const Object& b) { return OffM(a, object) < OffM(b, object); });
+  if (nearest == before_.end() || OffM(*nearest, object) > kFarthestStepM) return;
+  for (std::size_t i = 0; i < object.points.size(); ++i) {
+    if (!object.points[i] || !nearest->points[i]) continue;
+    object.points[i]->began_at_m = nearest->points[i]->began_at_m;
+    object.points[i]->would_be_m = nearest->points[i]->would_be_m;
+  }
   object.verdict = nearest->verdict;
   before_.erase(nearest);
   Judge(object);
 }
 
 void MovingObjects::Judge(Object& object) const {
-  const double way_m = (object.would_be_m - object.began_at_m).norm();
+  // The middle if there is one.
+  const Point& judged = **std::find_if(object.points.begin(), object.points.end(),
+                                       [](const auto& point) { return point.has_value(); });
+  const double way_m = (judged.would_be_m - judged.began_at_m).norm();
   if (way_m < after_m_) return;
-  const bool moves = (object.at_m - object.would_be_m).norm() > kMovingShare * way_m;
+  const bool moves = (judged.at_m - judged.would_be_m).norm() > kMovingShare * way_m;
   object.verdict = moves ? Verdict::kMoves : Verdict::kStands;
-  if (moves || way_m > kLongestWay * after_m_) {
-    object.began_at_m = object.would_be_m = object.at_m;
+  if (!moves && way_m <= kLongestWay * after_m_) return;
+  for (std::optional<Point>& point : object.points) {
+    if (point) point->began_at_m = point->would_be_m = point->at_m;
   }
 }
 
-bool MovingObjects::IsLeftOut(const Object& object, bool unjudged_too) {
-  return object.verdict == Verdict::kMoves || (unjudged_too && object.verdict == Verdict::kNone);
+bool MovingObjects::Moves(const Object& object, Unjudged unjudged) {
+  if (object.verdict != Verdict::kNone) return object.verdict == Verdict::kMoves;
+  return unjudged == Unjudged::kMoves || (unjudged == Unjudged::kMovesIfFree && object.is_free());
 }
 
-std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan>& scan) {
-  const std::vector<Beam>& beams = scan->beams;
+bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
   std::size_t unjudged = 0;
   for (const Object& object : objects_) {
     if (object.verdict == Verdict::kNone) unjudged += object.end - object.begin;
   }
-  const auto hits = static_cast<std::size_t>(
-      std::count_if(beams.begin(), beams.end(), [](const Beam& beam) { return beam.hit; }));
-  const bool unjudged_too = 2 * unjudged < hits;
-  const bool any = std::any_of(objects_.begin(), objects_.end(), [&](const Object& object) {
-    return IsLeftOut(object, unjudged_too);
-  });
+  const auto hits = static_cast<std::size_t>(std::count_if(
+      scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; }));
+  return 2 * unjudged >= hits;
+}
+
+// The scan itself where nothing moves.
+std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan>& scan,
+                                                Unjudged unjudged) {
+  const bool any = std::any_of(objects_.begin(), objects_.end(),
+                               [&](const Object& object) { return Moves(object, unjudged); });
   if (!any) return scan;
   const std::shared_ptr<Scan> rest = pool_.Take();
-  rest->max_range_m = scan->max_range_m;
-  rest->beams.clear();
-  auto next = beams.begin();
+  *rest = *scan;
   for (const Object& object : objects_) {
-    if (!IsLeftOut(object, unjudged_too)) continue;
-    const auto first = beams.begin() + static_cast<std::ptrdiff_t>(object.begin);
-    rest->beams.insert(rest->beams.end(), next, first);
-    next = beams.begin() + static_cast<std::ptrdiff_t>(object.end);
+    if (!Moves(object, unjudged)) continue;
+    for (std::size_t i = object.begin; i < object.end; ++i) {
+      rest->beams[i] = {.bearing_rad = scan->beams[i].bearing_rad};  // says nothing
+    }
   }
-  rest->beams.insert(rest->beams.end(), next, beams.end());
   return rest;
 }
 
-std::shared_ptr<const Scan> MovingObjects::ToMatch(const std::shared_ptr<const Scan>& scan,
-                                                   const Pose2& slam_from_base, int epoch) {
-  if (after_m_ <= 0.0) return scan;
-  if (!slam_from_before_ || epoch_ != epoch) {
+void MovingObjects::Follow(const Scan& scan, const Pose2& slam_from_base, int epoch) {
+  if (after_m_ <= 0.0) return;
+  const bool begins = !slam_from_before_ || epoch_ != epoch;
+  if (begins) {
     objects_.clear();
     before_.clear();
     slam_from_before_ = slam_from_base;
@@ -147,9 +183,23 @@ std::shared_ptr<const Scan> MovingObjects::ToMatch(const std::shared_ptr<const S
   epoch_ = epoch;
   Carry(Between(slam_from_base, *slam_from_before_));
   slam_from_before_ = slam_from_base;
-  Find(*scan);
-  for (Object& object : objects_) Recognise(object);
-  return Rest(scan);
+  Find(scan);
+  for (Object& object : objects_) {
+    // The first scans say where the map lies: what is cut, mostly walls, is in them.
+    if (begins && !object.is_free()) object.verdict = Verdict::kStands;
+    Recognise(object);
+  }
+}
+
+void MovingObjects::TakeOut(FrameScans& scans) {
+  const std::shared_ptr<const Scan> all = scans.matched;
+  const bool half_unjudged = IsHalfUnjudged(*all);
+  scans.matched = Rest(all, half_unjudged ? Unjudged::kStands : Unjudged::kMovesIfFree);
+  scans.standing = nullptr;
+  const bool any_cut = std::any_of(objects_.begin(), objects_.end(), [](const Object& object) {
+    return object.verdict == Verdict::kNone && !object.is_free();
+  });
+  if (any_cut && !half_unjudged) scans.standing = Rest(all, Unjudged::kMoves);
 }
 
 }  // namespace depthgrid

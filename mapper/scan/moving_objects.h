@@ -2,6 +2,7 @@
 // that the camera stands. SLAM says that it does not (docs/math.md, "What moves").
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -20,30 +21,44 @@ class MovingObjects {
   // view if it stands; 0: nothing is followed.
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
-  // What is to be matched: the scan without what moves, and without what is not judged yet unless
-  // that is half of what is seen; mostly the scan itself. Of frames that have one, in the order of
-  // time, with SLAM's pose; nothing is compared from one epoch to another (SlamEpochs).
-  std::shared_ptr<const Scan> ToMatch(const std::shared_ptr<const Scan>& scan,
-                                      const Pose2& slam_from_base, int epoch);
+  // The matched scans of frames that have one, in the order of time, with SLAM's pose; nothing is
+  // compared from one epoch to another (SlamEpochs).
+  void Follow(const Scan& scan, const Pose2& slam_from_base, int epoch);
+  // Of the scan that was followed last, as `matched`, what moves. What is not judged yet is not
+  // `standing`, nor matched where it stands free, unless it is half of what is seen.
+  void TakeOut(FrameScans& scans);
 
  private:
   enum class Verdict { kNone, kStands, kMoves };
+  // How what is not judged yet is taken.
+  enum class Unjudged { kStands, kMovesIfFree, kMoves };
+  struct Point {
+    Eigen::Vector2d at_m;
+    // Since it is being judged.
+    Eigen::Vector2d began_at_m;
+    Eigen::Vector2d would_be_m;  // by now, if it stood
+  };
+  // The middle of what is seen of an object, and its two ends. Of what the edge of the view cuts
+  // the other end alone is followed: the middle goes along with the edge.
+  using Points = std::array<std::optional<Point>, 3>;
   struct Object {
     std::size_t begin = 0, end = 0;  // its beams of the last scan
-    Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
-    // Since it is being judged.
-    Eigen::Vector2d began_at_m = Eigen::Vector2d::Zero();
-    Eigen::Vector2d would_be_m = Eigen::Vector2d::Zero();  // by now, if it stood
+    Points points = {};
     Verdict verdict = Verdict::kNone;
     int unseen_scans = 0;
+
+    bool is_free() const { return points[kMiddle].has_value(); }
   };
+  static constexpr std::size_t kMiddle = 0, kFirstEnd = 1, kLastEnd = 2;
   static std::optional<Object> ObjectOf(const Scan& scan, std::size_t begin, std::size_t end);
   void Find(const Scan& scan);
   void Carry(const Pose2& base_from_before);
+  static double OffM(const Object& known, const Object& seen);
   void Recognise(Object& object);
   void Judge(Object& object) const;
-  static bool IsLeftOut(const Object& object, bool unjudged_too);
-  std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan);
+  static bool Moves(const Object& object, Unjudged unjudged);
+  bool IsHalfUnjudged(const Scan& scan) const;
+  std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan, Unjudged unjudged);
 
   double after_m_;
   std::optional<Pose2> slam_from_before_;

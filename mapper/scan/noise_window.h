@@ -44,12 +44,12 @@ class NoiseWindow {
   void At(std::span<const float> ranges_m, float* widths_m) const;
 
   // The mean over a window lies nearer to the surface than the window's centre: of one six sigma
-  // wide .03 of the way is left. Where sigma is so large that the window is narrower, w sigma, each
-  // mean leaves w phi(w/2) / (2 Phi(w/2) - 1) of it (.37 of 3.3 sigma, .71 of 2), seven of the
-  // latter a tenth.
-  static constexpr int kMeansOfNarrow = 7;
-  static bool IsNarrow(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
-  static int MeansOf(float width_m) { return IsNarrow(width_m) ? kMeansOfNarrow : 1; }
+  // wide .03 of the way is left. Where sigma is so large that the window is capped, and so
+  // narrower, w sigma, each mean leaves w phi(w/2) / (2 Phi(w/2) - 1) of it (.37 of 3.3 sigma, .71
+  // of 2), seven of the latter a tenth.
+  static constexpr int kMeansOfCapped = 7;
+  static bool IsCapped(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
+  static int MeansOf(float width_m) { return IsCapped(width_m) ? kMeansOfCapped : 1; }
 
   // Something was measured this far away or up to half a metre farther, and little beyond (but for
   // what is 32 m away and more, which no depth camera measures); 0 if nothing was.

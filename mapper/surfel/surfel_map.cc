@@ -182,7 +182,8 @@ double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
   if (pieces.empty()) return 0.0;
   const Motion2 motion(map_from_base);
   const AssociationGate gate = GateOf(options_.match);
-  const int before = surfels_before_[static_cast<std::size_t>(frame)];
+  const auto position = static_cast<std::size_t>(frame);
+  const int before = position < surfels_before_.size() ? surfels_before_[position] : map_.size();
   const auto seen = std::count_if(pieces.begin(), pieces.end(), [&](const Surfel& piece) {
     const int surfel = map_.Nearest(motion * piece, gate);
     return surfel >= 0 && surfel < before;

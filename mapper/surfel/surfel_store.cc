@@ -61,7 +61,7 @@ SurfelStore::Found SurfelStore::Search(const Surfel& piece, const AssociationGat
     const bool is_nearest =
         distance2 < found.distance2 || (distance2 == found.distance2 && i < found.index);
     if (is_nearest && std::abs(a) <= 1.0 && std::abs(o) <= 1.0 && cosine >= gate.min_cosine) {
-      found.next_distance2 = found.distance2;
+      found.next_distance2 = std::min(found.next_distance2, found.distance2);
       found.distance2 = distance2;
       found.index = i;
     } else {

@@ -118,6 +118,12 @@ TEST_F(ProgramAblate, SeedsThatChangeNothingAreOneMeasurement) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 7);  // as they were run
 }
 
+TEST(AblationCsv, HasTheScoresOfEveryRun) {
+  const std::vector<AblationRun> runs = {{"a", 1, {{"x", 1.0}}},
+                                         {"b", 1, {{"x", 2.0}, {"y", 3.0}}}};
+  EXPECT_EQ(AblationCsv(runs), "variant,seed,x,y\na,1,1,\nb,1,2,3\n");
+}
+
 TEST_F(ProgramAblate, WritesTheSameTableAtAnyNumberOfThreads) {
   const Outcome first = Program("ablate ./small.yaml --seeds 2 --threads 1 -o one");
   ASSERT_EQ(first.exit_code, 0) << first.err;

@@ -307,6 +307,8 @@ TEST_F(ProgramErrors, OptionsAreNamedAsTheyWereGiven) {
   ExpectRefusal("regrid . --resolution 0", {"must be from 0.005 to 1"});
   ExpectRefusal("eval trajectory a b --max-difference=-1",
                 {"is '-1', must be a number, 0 or more"});
+  ExpectRefusal("eval trajectory a b --time-offset nan",
+                {"--time-offset: is 'nan', must be a number"});
 }
 
 TEST_F(ProgramErrors, AShippedNameOfAnotherKindIsSaidToBeOne) {

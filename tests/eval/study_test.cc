@@ -48,6 +48,23 @@ TEST_F(StudyRun, EachCaseIsWhatItWouldBeAlone) {
   }
 }
 
+TEST_F(StudyRun, EachCaseHasTheWarningsThatItWouldHaveAlone) {
+  Write("lost.yaml", R"(
+frames: 90
+seed: 5
+sensor: {width: 160, height: 120}
+cases:
+  - {name: lost, scene: living_room, slam: {profile: orb_slam2, lost_rate_hz: 3}}
+  - {name: truth, scene: living_room, slam: {profile: ground_truth}}
+)");
+  Succeed("run ./lost.yaml -o out");
+  Succeed("run out/lost/run.yaml -o alone");
+  const std::string warnings = ReadFile(Path("alone/warnings.txt"));
+  EXPECT_THAT(warnings, HasSubstr("SLAM was lost before frame"));
+  EXPECT_EQ(ReadFile(Path("out/lost/warnings.txt")), warnings);
+  EXPECT_EQ(ReadFile(Path("out/truth/warnings.txt")), "");
+}
+
 // They took the same time, though one was written after the other.
 TEST_F(StudyRun, CasesThatRunTogetherHaveTheSameTimes) {
   Succeed("run ./study.yaml -o out");

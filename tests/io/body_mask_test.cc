@@ -107,7 +107,7 @@ TEST(BodyFinder, IsWhatNothingIsSeenBehind) {
 TEST(BodyFinder, NeedsViewsAndLeavesMostOfTheImage) {
   std::vector<DepthImage> views = Views();
   for (DepthImage& view : views) Paint(kGripper, 0.4F, view);
-  views.resize(BodyFinder::kFewestViews);
+  views.resize(kFewestBodyViews);
   EXPECT_TRUE(Found(views));
   views.pop_back();
   EXPECT_FALSE(Found(views));

@@ -161,7 +161,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         slice_hits += plain_slice.hit ? 1 : 0;
         ++cases;
         hits += plain.hit ? 1 : 0;
-        narrow += plain.hit && NoiseWindow::IsNarrow(window.At(plain.range_m)) ? 1 : 0;
+        narrow += plain.hit && NoiseWindow::IsCapped(window.At(plain.range_m)) ? 1 : 0;
         gaps += plain.gap_below.last > 0 || plain.gap_above.last > 0 ? 1 : 0;
       }
     }

@@ -34,12 +34,20 @@ int HitsNear(const Scan& scan, const Eigen::Vector2d& at_m) {
   return hits;
 }
 
+FrameScans After(MovingObjects& moving, const std::shared_ptr<const Scan>& scan,
+                 const Pose2& slam_from_base, int epoch) {
+  moving.Follow(*scan, slam_from_base, epoch);
+  FrameScans scans{scan, scan};
+  moving.TakeOut(scans);
+  return scans;
+}
+
 Seen Follow(MovingObjects& moving, const Pose2& world_from_base, const Pose2& slam_from_base,
             const Eigen::Vector2d& post_m, int epoch = 0) {
   const auto scan = std::make_shared<const Scan>(ScanOfRoom(world_from_base, post_m));
   const Eigen::Vector2d in_view_m = Inverse(world_from_base) * post_m;
   return {HitsNear(*scan, in_view_m),
-          HitsNear(*moving.ToMatch(scan, slam_from_base, epoch), in_view_m)};
+          HitsNear(*After(moving, scan, slam_from_base, epoch).matched, in_view_m)};
 }
 
 Pose2 At(int step) { return {kStepM * step, 0.0, 0.0}; }
@@ -139,15 +147,75 @@ TEST(MovingObjects, WhatIsHalfOfTheViewIsMatchedUntilItIsJudged) {
     }
     return std::make_shared<const Scan>(seen);
   };
-  EXPECT_EQ(HitsNear(*moving.ToMatch(scan(1.0), At(0), 0), {1.0, 0.0}), 39);
-  for (int i = 1; i < 6; ++i) moving.ToMatch(scan(1.0), At(i), 0);
-  EXPECT_EQ(HitsNear(*moving.ToMatch(scan(1.0), At(7), 0), {1.0, 0.0}), 0);
+  EXPECT_EQ(HitsNear(*After(moving, scan(1.0), At(0), 0).matched, {1.0, 0.0}), 39);
+  for (int i = 1; i < 6; ++i) After(moving, scan(1.0), At(i), 0);
+  EXPECT_EQ(HitsNear(*After(moving, scan(1.0), At(7), 0).matched, {1.0, 0.0}), 0);
 }
 
 TEST(MovingObjects, ZeroFollowsNothing) {
   MovingObjects moving(0.0);
   const auto scan = std::make_shared<const Scan>(ScanOfRoom({}, {1.5, 0.0}));
-  EXPECT_EQ(moving.ToMatch(scan, {}, 0), scan);
+  const FrameScans scans = After(moving, scan, {}, 0);
+  EXPECT_EQ(scans.matched, scan);
+  EXPECT_EQ(scans.kept(), scan);
+}
+
+// 58 degrees of the room, with a post that the edge of the view cuts.
+FrameScans FollowCut(MovingObjects& moving, const Pose2& pose, const Eigen::Vector2d& post_m,
+                     Seen* matched, Seen* kept) {
+  Scan scan = ScanOfRoom(pose, post_m);
+  std::erase_if(scan.beams, [](const Beam& beam) {
+    return std::abs(beam.bearing_rad) > static_cast<float>(RadFromDeg(29.0));
+  });
+  const auto seen = std::make_shared<const Scan>(scan);
+  FrameScans scans = After(moving, seen, pose, 0);
+  const Eigen::Vector2d in_view_m = Inverse(pose) * post_m;
+  const int beams = HitsNear(*seen, in_view_m);
+  *matched = {beams, HitsNear(*scans.matched, in_view_m)};
+  *kept = {beams, HitsNear(*scans.kept(), in_view_m)};
+  return scans;
+}
+
+// Who comes in at the edge and walks on there is never kept, and matched until they are known to
+// move, after .12 m.
+TEST(MovingObjects, WhoIsCutByTheEdgeOfTheViewIsNeverKept) {
+  for (const double side : {-1.0, 1.0}) {
+    MovingObjects moving(kAfterM);
+    Seen matched, kept;
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector2d at_m =
+          i < 10 ? Eigen::Vector2d(0.0, 9.0) : Eigen::Vector2d(1.4, 0.75 * side);
+      FollowCut(moving, At(100 + i), At(100 + i) * at_m, &matched, &kept);
+      if (i < 10) continue;
+      ASSERT_GT(matched.beams, 40);
+      EXPECT_EQ(kept.left, 0) << i;
+      if (i != 16) EXPECT_EQ(matched.left, i < 16 ? matched.beams : 0) << i;
+    }
+  }
+}
+
+// From the free middle of the view into its edge and back.
+TEST(MovingObjects, WhoMovesIsKnownAgainAtTheEdge) {
+  MovingObjects moving(kAfterM);
+  Seen matched, kept;
+  for (int i = 0; i < 200; ++i) {
+    const double aside_m = 0.7 * std::sin(0.05 * i);
+    FollowCut(moving, At(50 + i), At(50 + i) * Eigen::Vector2d(1.4, aside_m), &matched, &kept);
+    ASSERT_GT(matched.beams, 40) << i;
+    EXPECT_EQ(matched.left, 0) << i;
+    EXPECT_EQ(kept.left, 0) << i;
+  }
+}
+
+// Most of what the edge cuts is a wall that leaves the view; in the first scan nothing is doubted.
+TEST(MovingObjects, WhatStandsAtTheEdgeIsKept) {
+  MovingObjects moving(kAfterM);
+  Seen matched, kept;
+  for (int i = 0; i < 30; ++i) {
+    FollowCut(moving, At(100 + i), {3.6, 0.8}, &matched, &kept);
+    EXPECT_EQ(matched.left, matched.beams) << i;
+    EXPECT_EQ(kept.left, kept.beams) << i;
+  }
 }
 
 // SLAM's way is 1 % too long. Who walks on 1.5 m ahead takes up a third of the view.

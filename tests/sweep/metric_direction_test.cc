@@ -82,6 +82,12 @@ void CollectBreakdowns(const nlohmann::json& json, const std::string& path,
   }
 }
 
+std::set<std::string> AsSet(const NamedValues& values) {
+  std::set<std::string> names;
+  for (const auto& [name, value] : values) names.insert(name);
+  return names;
+}
+
 TEST(ScoreNames, WhatIsNoColumn) {
   std::set<std::string> keys;
   CollectBreakdowns(nlohmann::json::parse(MetricsOf(FullScores())), "", keys);
@@ -91,6 +97,14 @@ TEST(ScoreNames, WhatIsNoColumn) {
                                 "scored_cells", "tolerance_0", "tolerance_2", "tolerance_cells",
                                 "true_cells", "xy", "xyz"));
   EXPECT_FALSE(IsBreakdown("map.walls.low"));  // of consistency alone
+}
+
+// Of a map that shows nothing they are null, which makes no column of the group's name.
+TEST(ScoreNames, GroupsThatAreNotThereAreNoColumns) {
+  const std::set<std::string> all = AsSet(SweepMetrics(FullScores()));
+  for (const std::string& name : AsSet(SweepMetrics(RunScores{}))) {
+    EXPECT_TRUE(all.contains(name)) << name;
+  }
 }
 
 TEST(ScoreNames, ThoseThatComeFirstAreColumns) {

@@ -60,10 +60,15 @@ TEST_F(SweepPlanTest, RangesOfWholeNumbersAreWhole) {
       PlanOf("axes: {mapper.submap.scans: {from: 5, to: 20, count: 4, scale: log}}\n");
   EXPECT_THAT(ValuesOf(log, "mapper.submap.scans"), ElementsAre("5", "8", "13", "20"));
   const SweepPlan drawn =
-      PlanOf("mode: random\nsamples: 50\naxes: {mapper.submap.scans: {from: 5, to: 7}}\n");
+      PlanOf("mode: random\nsamples: 300\naxes: {mapper.submap.scans: {from: 5, to: 7}}\n");
   const std::vector<std::string> values = ValuesOf(drawn, "mapper.submap.scans");
   EXPECT_EQ(std::set<std::string>(values.begin(), values.end()),
             (std::set<std::string>{"5", "6", "7"}));
+  // Each as often as the others.
+  const auto fives = std::count(values.begin(), values.end(), "5");
+  const auto sevens = std::count(values.begin(), values.end(), "7");
+  EXPECT_NEAR(static_cast<double>(fives), 100.0, 25.0);
+  EXPECT_NEAR(static_cast<double>(sevens), 100.0, 25.0);
   EXPECT_THROW(PlanOf("axes: {mapper.submap.scans: {from: 0.5, to: 7, count: 3}}\n"), InputError);
   try {
     PlanOf("axes: {mapper.submap.scans: {from: 1, to: 3, count: 5}}\n");
