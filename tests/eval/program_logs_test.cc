@@ -199,6 +199,8 @@ TEST_F(ProgramLogs, APartThatIsNotThereIsRefused) {
   ExpectRefusal("map robot.log -o out --set sequence.from_s=41",
                 {"depthgrid: --set sequence.from_s=41: sequence.from_s is 41, must be at most "
                  "40.000: robot.log is 40.000 s long"});
+  Write("hello.log", "hello\n");
+  ExpectRefusal("map hello.log -o out --set sequence.to_s=20", {"hello.log"});
   ExpectRefusal("map robot.log -o out --set sequence.to_s=50",
                 {"depthgrid: --set sequence.to_s=50: sequence.to_s is 50, must be at most 41.000: "
                  "robot.log is 40.000 s long"});

@@ -22,6 +22,24 @@ std::vector<MappedFrame> StraightOn(int count) {
   return frames;
 }
 
+// A laser that sees 600 m would have grids of 24,000 cells a side.
+TEST(Place, EndsWhereNothingTellsItFromOthersAnyMore) {
+  Scan scan;
+  scan.max_range_m = 600.0;
+  scan.beams = {{.bearing_rad = 0.0F, .range_m = 590.0F, .clear_to_m = 590.0F, .hit = true},
+                {.bearing_rad = 0.1F, .range_m = 30.0F, .clear_to_m = 30.0F, .hit = true},
+                {.bearing_rad = 0.2F, .clear_to_m = 600.0F}};
+  MappedFrame frame;
+  frame.scan = ScanArchive().Keep(scan);
+  const std::vector<MappedFrame> frames = {frame};
+  EXPECT_EQ(PointsOfPlace(frames, {0}, 0, 0.05).size(), 1U);
+  const GridGeometry grid = DrawPlace(frames, {0}, 0, 0.05).geometry;
+  EXPECT_LE(grid.width_cells, (kPlaceSightM + 10.0) / 0.05);
+  const SeenPlace seen = SeenFrom(frames, {0}, 0, {});
+  EXPECT_EQ(seen.points.size(), 1U);
+  EXPECT_LE(seen.geometry.width_cells, (kPlaceSightM + 10.0) / 0.05);
+}
+
 TEST(WallPyramid, SumsOfSquaresAreThoseOfEachSquare) {
   const std::vector<MappedFrame> frames = StraightOn(10);
   const WallPyramid walls(DrawPlace(frames, {0, 3, 6, 9}, 5, 0.05));

@@ -1,8 +1,9 @@
 #include "mapper/map_start.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <deque>
+#include <limits>
 #include <memory>
 
 #include "mapper/core/error.h"
@@ -271,6 +272,27 @@ TEST(FindStart, RefusesWhatIsNotSound) {
       .width_px = 4, .height_px = 3, .fx_px = 3, .fy_px = 3, .cx_px = 1.5, .cy_px = 1};
   EXPECT_EQ(error_of(map, image, camera),
             "frame 0: its depth image has 4 x 2 pixels, must have the camera's 4 x 3 pixels");
+}
+
+TEST(FindStartNear, RefusesWhatIsNoPlace) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const PriorMap map = MapOfHall();
+  WalkThroughHall walk({24.0, 0.0, kPi}, 1.0);
+  const auto error_of = [&](const Pose2& begin, double within_m) -> std::string {
+    try {
+      FindStartNear(map, begin, walk, MapperOptions{}, within_m);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(
+      error_of({nan, 0.0, 0.0}, 1.0),
+      "start in the map: map_from_base is (nan, 0.000000, 0.000000), must be finite and within "
+      "10,000 km");
+  for (const double within_m : {nan, -1.0, 5.1}) {
+    EXPECT_THAT(error_of({}, within_m), testing::HasSubstr("start in the map: within_m is "));
+  }
 }
 
 TEST(FindStart, IsNothingWithoutFrames) {

@@ -243,6 +243,24 @@ TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
   }
 }
 
+// SLAM's poses moved into another's frame, with nothing in it yet.
+TEST(PriorMap, AFrameWithoutAMapIsKeptToTheEnd) {
+  MapperOptions options;
+  options.fusion.mode = FusionMode::kFixed;
+  options.fusion.gain = {0.0, 0.0, 0.0};
+  IncrementalMapper mapper(options, std::nullopt);
+  PriorMap prior;
+  prior.map_from_slam = {100.0, 0.0, 0.0};
+  mapper.StartFrom(prior);
+  Frame lost = PriorFrameAt(0, TruthAt(0));
+  lost.slam_from_camera.reset();
+  EXPECT_EQ(mapper.AddFrame(lost).map_from_slam, prior.map_from_slam);
+  for (int i = 1; i < 10; ++i) mapper.AddFrame(PriorFrameAt(i, TruthAt(i)));
+  const auto online = mapper.CurrentPoses();
+  EXPECT_NEAR(BaseOf(*online[9]).x_m, TruthAt(9).x_m + 100.0, 1e-9);
+  EXPECT_EQ(mapper.Finish().map_from_camera, online);
+}
+
 // They join frames of which none is mapped yet.
 TEST(PriorMap, LoopsOfItsFirstNewFrameAreRejected) {
   IncrementalMapper mapper({}, std::nullopt);

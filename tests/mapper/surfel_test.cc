@@ -119,6 +119,24 @@ TEST(SurfelStore, FirmPiecesKeepTheirSurfel) {
   EXPECT_GT(lost, 100);  // three times as far some do not
 }
 
+// A nearer surfel whose normal just misses the gate may be the piece's next, whichever was added
+// first.
+TEST(SurfelStore, WhatMissesAGateNarrowlyKeepsNoPieceFirm) {
+  const AssociationGate gate{0.08, 0.2, 0.9};
+  const double turn_rad = std::acos(0.8975);
+  const Surfel near{{1.0, 0.0}, {std::cos(turn_rad), std::sin(turn_rad)}, 1.0, 1.0};
+  const Surfel other{{1.0, 0.02}, {1.0, 0.0}, 1.0, 1.0};
+  const Surfel piece{{1.0, 0.0}, {1.0, 0.0}, 1.0, 1.0};
+  for (const bool near_first : {true, false}) {
+    SurfelStore store;
+    store.Add(near_first ? near : other);
+    store.Add(near_first ? other : near);
+    const Association found = store.NearestFirmly(piece, gate);
+    EXPECT_EQ(found.index, near_first ? 1 : 0);
+    EXPECT_EQ(found.firm_m, 0.0);
+  }
+}
+
 TEST(SurfelStore, MergingMovesAlongTheNormalByInformation) {
   SurfelStore store;
   store.Add({{1.0, 0.0}, {-1.0, 0.0}, 3.0, 1.0});
