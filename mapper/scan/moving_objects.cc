@@ -27,9 +27,11 @@ constexpr double kMovingShare = 0.4;
 // Judging begins anew after so many times the least way: who walks does not walk evenly.
 constexpr double kLongestWay = 2.5;
 
+double JumpM(double nearer_m) { return kJumpM + kJumpShare * nearer_m; }
+
 bool IsOnOneObject(const Beam& a, const Beam& b) {
   const double nearer_m = std::min(a.range_m, b.range_m);
-  return a.hit && b.hit && std::abs(a.range_m - b.range_m) <= kJumpM + kJumpShare * nearer_m;
+  return a.hit && b.hit && std::abs(a.range_m - b.range_m) <= JumpM(nearer_m);
 }
 
 Eigen::Vector2d MeanEndPoint(const std::vector<Beam>& beams, std::size_t begin, std::size_t end) {
@@ -40,6 +42,20 @@ Eigen::Vector2d MeanEndPoint(const std::vector<Beam>& beams, std::size_t begin, 
 
 bool IsBehind(const Beam& beam, const Beam& edge) {
   return !beam.hit || beam.range_m > edge.range_m;
+}
+
+// Whether what is seen behind beams `begin` to `end` of an object's end is no part of it, `step` by
+// step from `next` on. Noise alone parts walls by a beam now and then.
+bool IsAnEnd(const std::vector<Beam>& beams, std::size_t begin, std::size_t end, std::size_t next,
+             int step) {
+  double range_m = 0.0;
+  for (std::size_t i = begin; i < end; ++i) range_m += beams[i].range_m;
+  range_m /= static_cast<double>(end - begin);
+  std::size_t behind = 0;
+  for (std::size_t i = 0; i < kLeastBeams && next < beams.size(); ++i, next += step) {
+    behind += !beams[next].hit || beams[next].range_m > range_m + JumpM(range_m) ? 1 : 0;
+  }
+  return behind + 1 >= kLeastBeams;
 }
 
 }  // namespace
@@ -57,6 +73,9 @@ std::optional<MovingObjects::Object> MovingObjects::ObjectOf(const Scan& scan, s
   if (!has_first && !has_last) return {};
   if (has_first && !IsBehind(beams[begin - 1], beams[begin])) return {};
   if (has_last && !IsBehind(beams[end], beams[end - 1])) return {};
+  const bool is_cut = !has_first || !has_last;
+  if (is_cut && has_first && !IsAnEnd(beams, begin, begin + kLeastBeams, begin - 1, -1)) return {};
+  if (is_cut && has_last && !IsAnEnd(beams, end - kLeastBeams, end, end, 1)) return {};
   if ((EndPoint(beams[end - 1]) - EndPoint(beams[begin])).norm() > kWidestM) return {};
   const Eigen::Vector2d middle_m = MeanEndPoint(beams, begin, end);
   if (middle_m.norm() > kFarthestM) return {};
