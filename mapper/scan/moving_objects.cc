@@ -20,6 +20,12 @@ constexpr std::size_t kLeastBeams = 5;
 constexpr double kFarthestStepM = 0.1;
 // What noise, or somebody before it, hides for a moment is known again.
 constexpr int kMostUnseenScans = 5;
+// Who walks along a wall is one piece with it for a while.
+constexpr int kMostHiddenScans = 30;
+constexpr double kHiddenRadiusM = 0.3;
+constexpr double kNewStepShare = 0.2;
+// They stop going towards it then (0.7 and 0.9 do as well).
+constexpr double kKeptStepShare = 0.8;
 // What lies off by this share of the way that it would have gone if it stood does not stand. The
 // middle of what is seen of a thing that stands goes along by less, as other sides of it come into
 // view (docs/tried.md, "What moves").
@@ -113,42 +119,56 @@ void MovingObjects::Carry(const Pose2& base_from_before) {
     for (std::optional<Point>& point : object.points) {
       if (!point) continue;
       point->would_be_m = base_from_before * point->would_be_m;
-      if (object.verdict != Verdict::kMoves) point->at_m = base_from_before * point->at_m;
+      if (object.verdict == Verdict::kMoves) {
+        point->at_m += object.step_m;
+      } else {
+        point->at_m = base_from_before * point->at_m;
+      }
     }
     ++object.unseen_scans;
   }
 }
 
-// Of the middles, or of an end where one of the two is cut; infinite where they are at opposite
-// edges.
-double MovingObjects::OffM(const Object& known, const Object& seen) {
+// From the middle to the middle, or from end to end where one of the two is cut; infinite where
+// they are at opposite edges.
+Eigen::Vector2d MovingObjects::OffM(const Object& known, const Object& seen) {
   for (std::size_t i = 0; i < known.points.size(); ++i) {
-    if (known.points[i] && seen.points[i]) {
-      return (known.points[i]->at_m - seen.points[i]->at_m).norm();
-    }
+    if (known.points[i] && seen.points[i]) return seen.points[i]->at_m - known.points[i]->at_m;
   }
-  return std::numeric_limits<double>::infinity();
+  return Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+}
+
+// The middle if there is one.
+const MovingObjects::Point& MovingObjects::FirstOf(const Points& points) {
+  return **std::find_if(points.begin(), points.end(),
+                        [](const auto& point) { return point.has_value(); });
 }
 
 void MovingObjects::Recognise(Object& object) {
-  const auto nearest = std::min_element(
-      before_.begin(), before_.end(),
-      [&](const Object& a, const Object& b) { return OffM(a, object) < OffM(b, object); });
-  if (nearest == before_.end() || OffM(*nearest, object) > kFarthestStepM) return;
+  const auto nearest =
+      std::min_element(before_.begin(), before_.end(), [&](const Object& a, const Object& b) {
+        return OffM(a, object).norm() < OffM(b, object).norm();
+      });
+  if (nearest == before_.end()) return;
+  const bool was_hidden = nearest->verdict == Verdict::kMoves && nearest->unseen_scans > 1;
+  const double farthest_m = was_hidden ? kHiddenRadiusM : kFarthestStepM;
+  if (OffM(*nearest, object).norm() > farthest_m) return;
   for (std::size_t i = 0; i < object.points.size(); ++i) {
     if (!object.points[i] || !nearest->points[i]) continue;
     object.points[i]->began_at_m = nearest->points[i]->began_at_m;
     object.points[i]->would_be_m = nearest->points[i]->would_be_m;
   }
   object.verdict = nearest->verdict;
+  object.step_m = nearest->step_m;
+  if (object.verdict == Verdict::kMoves && !was_hidden) {
+    object.step_m += kNewStepShare * OffM(*nearest, object);
+  }
   before_.erase(nearest);
   Judge(object);
 }
 
 void MovingObjects::Judge(Object& object) const {
-  // The middle if there is one.
-  const Point& judged = **std::find_if(object.points.begin(), object.points.end(),
-                                       [](const auto& point) { return point.has_value(); });
+  const Point& judged = FirstOf(object.points);
   const double way_m = (judged.would_be_m - judged.began_at_m).norm();
   if (way_m < after_m_) return;
   const bool moves = (judged.at_m - judged.would_be_m).norm() > kMovingShare * way_m;
@@ -157,6 +177,28 @@ void MovingObjects::Judge(Object& object) const {
   for (std::optional<Point>& point : object.points) {
     if (point) point->began_at_m = point->would_be_m = point->at_m;
   }
+}
+
+// What moved and is no object of its own in this scan: what lies where it must be by now is taken
+// for it. Whether it gets there is not asked, so only for a while.
+void MovingObjects::FindHidden(const Scan& scan) {
+  const auto is_hidden = [&](const Object& known) {
+    if (known.verdict != Verdict::kMoves || known.unseen_scans > kMostHiddenScans) return false;
+    const Eigen::Vector2d& at_m = FirstOf(known.points).at_m;
+    Object hidden = known;
+    hidden.begin = scan.beams.size();
+    for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+      const Beam& beam = scan.beams[i];
+      if (!beam.hit || (EndPoint(beam) - at_m).norm() > kHiddenRadiusM) continue;
+      hidden.begin = std::min(hidden.begin, i);
+      hidden.end = i + 1;
+    }
+    if (hidden.begin == scan.beams.size()) return false;
+    hidden.step_m *= kKeptStepShare;
+    objects_.push_back(hidden);
+    return true;
+  };
+  std::erase_if(before_, is_hidden);
 }
 
 bool MovingObjects::Moves(const Object& object, Unjudged unjudged) {
@@ -208,6 +250,7 @@ void MovingObjects::Follow(const Scan& scan, const Pose2& slam_from_base, int ep
     if (begins && !object.is_free()) object.verdict = Verdict::kStands;
     Recognise(object);
   }
+  FindHidden(scan);
 }
 
 void MovingObjects::TakeOut(FrameScans& scans) {

@@ -45,6 +45,8 @@ class MovingObjects {
     std::size_t begin = 0, end = 0;  // its beams of the last scan
     Points points = {};
     Verdict verdict = Verdict::kNone;
+    Eigen::Vector2d step_m =
+        Eigen::Vector2d::Zero();  // of what moves, from scan to scan in the view
     int unseen_scans = 0;
 
     bool is_free() const { return points[kMiddle].has_value(); }
@@ -53,9 +55,11 @@ class MovingObjects {
   static std::optional<Object> ObjectOf(const Scan& scan, std::size_t begin, std::size_t end);
   void Find(const Scan& scan);
   void Carry(const Pose2& base_from_before);
-  static double OffM(const Object& known, const Object& seen);
+  static Eigen::Vector2d OffM(const Object& known, const Object& seen);
+  static const Point& FirstOf(const Points& points);
   void Recognise(Object& object);
   void Judge(Object& object) const;
+  void FindHidden(const Scan& scan);
   static bool Moves(const Object& object, Unjudged unjudged);
   bool IsHalfUnjudged(const Scan& scan) const;
   std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan, Unjudged unjudged);

@@ -209,6 +209,23 @@ TEST(MovingObjects, WhoMovesIsKnownAgainAtTheEdge) {
   }
 }
 
+// Who comes so near to a wall that they are one piece with it is left out there too, for a second.
+TEST(MovingObjects, WhoMovesIsLeftOutBesideAWallToo) {
+  MovingObjects moving(kAfterM);
+  Seen matched, kept;
+  int beside = 0;
+  for (int i = 0; i < 60; ++i) {
+    // To the wall on the right and along it.
+    const double y_m = std::max(-2.2, -1.0 - 0.03 * i);
+    FollowCut(moving, {3.0 + kStepM * i, -1.0, -0.6}, {4.5 + kStepM * i, y_m}, &matched, &kept);
+    ASSERT_GT(matched.beams, 20) << i;
+    beside += y_m <= -2.2 ? 1 : 0;
+    if (i < 10 || beside > 20) continue;
+    EXPECT_LT(kept.left, matched.beams / 3) << i;
+  }
+  EXPECT_GT(beside, 10);
+}
+
 // Most of what the edge cuts is a wall that leaves the view; in the first scan nothing is doubted.
 TEST(MovingObjects, WhatStandsAtTheEdgeIsKept) {
   MovingObjects moving(kAfterM);
