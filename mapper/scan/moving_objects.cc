@@ -20,7 +20,9 @@ constexpr std::size_t kLeastBeams = 5;
 constexpr double kFarthestStepM = 0.1;
 // What noise, or somebody before it, hides for a moment is known again.
 constexpr int kMostUnseenScans = 5;
-// Who walks along a wall is one piece with it for a while.
+// Who walks along a wall is one piece with it for a while. Once is not enough: what noise makes an
+// object of now and then would cost a part of the view each time.
+constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
 constexpr double kHiddenRadiusM = 0.3;
 constexpr double kNewStepShare = 0.2;
@@ -150,7 +152,7 @@ void MovingObjects::Recognise(Object& object) {
         return OffM(a, object).norm() < OffM(b, object).norm();
       });
   if (nearest == before_.end()) return;
-  const bool was_hidden = nearest->verdict == Verdict::kMoves && nearest->unseen_scans > 1;
+  const bool was_hidden = nearest->times_moved >= kSurelyMoved && nearest->unseen_scans > 1;
   const double farthest_m = was_hidden ? kHiddenRadiusM : kFarthestStepM;
   if (OffM(*nearest, object).norm() > farthest_m) return;
   for (std::size_t i = 0; i < object.points.size(); ++i) {
@@ -160,6 +162,7 @@ void MovingObjects::Recognise(Object& object) {
   }
   object.verdict = nearest->verdict;
   object.step_m = nearest->step_m;
+  object.times_moved = nearest->times_moved;
   if (object.verdict == Verdict::kMoves && !was_hidden) {
     object.step_m += kNewStepShare * OffM(*nearest, object);
   }
@@ -173,6 +176,7 @@ void MovingObjects::Judge(Object& object) const {
   if (way_m < after_m_) return;
   const bool moves = (judged.at_m - judged.would_be_m).norm() > kMovingShare * way_m;
   object.verdict = moves ? Verdict::kMoves : Verdict::kStands;
+  object.times_moved = moves ? object.times_moved + 1 : 0;
   if (!moves && way_m <= kLongestWay * after_m_) return;
   for (std::optional<Point>& point : object.points) {
     if (point) point->began_at_m = point->would_be_m = point->at_m;
@@ -183,7 +187,7 @@ void MovingObjects::Judge(Object& object) const {
 // for it. Whether it gets there is not asked, so only for a while.
 void MovingObjects::FindHidden(const Scan& scan) {
   const auto is_hidden = [&](const Object& known) {
-    if (known.verdict != Verdict::kMoves || known.unseen_scans > kMostHiddenScans) return false;
+    if (known.times_moved < kSurelyMoved || known.unseen_scans > kMostHiddenScans) return false;
     const Eigen::Vector2d& at_m = FirstOf(known.points).at_m;
     Object hidden = known;
     hidden.begin = scan.beams.size();

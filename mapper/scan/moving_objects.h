@@ -45,6 +45,7 @@ class MovingObjects {
     std::size_t begin = 0, end = 0;  // its beams of the last scan
     Points points = {};
     Verdict verdict = Verdict::kNone;
+    int times_moved = 0;  // judged so, one after the other
     Eigen::Vector2d step_m =
         Eigen::Vector2d::Zero();  // of what moves, from scan to scan in the view
     int unseen_scans = 0;
