@@ -33,10 +33,12 @@ TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
   ExpectRefusal("report m -o mine --force", "mine/report.html: is no page of depthgrid's");
   fs::remove(Path("mine/report.html"));
   for (const char* name : {"timing.js", "experiment.yaml", "sweep_again.yaml"}) {
-    Write(std::string("mine/") + name, "mine");
-    ExpectRefusal("report s -o mine --force", std::string("mine/") + name + ": is of no page");
-    EXPECT_EQ(ReadFile(Path(std::string("mine/") + name)), "mine");
-    fs::remove(Path(std::string("mine/") + name));
+    const std::string file = std::string("mine/") + name;
+    Write(file, "mine");
+    const std::string of = file.ends_with(".js") ? "m" : "s";
+    ExpectRefusal("report " + of + " -o mine --force", file + ": is of no page");
+    EXPECT_EQ(ReadFile(Path(file)), "mine");
+    fs::remove(Path(file));
   }
   // A run's page brings no experiment.yaml, so that this one is somebody's own.
   Succeed("report m -o mine --force");
