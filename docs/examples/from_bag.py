@@ -366,8 +366,8 @@ def convert(bag, arguments):
         write = write_log if arguments.scan else write_folder
         written, without_pose = write(bag, arguments, work + "/result")
         if without_pose:
-            print(f"from_bag.py: {arguments.bag}: of {arguments.scan or arguments.depth}, {without_pose} have no pose at "
-                  "their time", file=sys.stderr)
+            topic = arguments.scan or arguments.depth
+            print(f"from_bag.py: {arguments.bag}: of {topic}, {without_pose} have no pose at their time", file=sys.stderr)
         if written == 0:
             raise BadInput(f"{arguments.bag}: no pose is known at the time of any scan or image")
         os.rename(work + "/result", arguments.output)

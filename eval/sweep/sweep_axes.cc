@@ -150,9 +150,10 @@ double AxisRange::At(double share) const {
 }
 
 double AxisRange::Drawn(double share) const {
-  if (!whole) return At(share);
-  const AxisRange around{from - 0.5, to + 0.5, scale};
-  return std::clamp(std::round(around.At(share)), from, to);
+  const double least = std::ceil(std::min(from, to)), most = std::floor(std::max(from, to));
+  if (!whole || least > most) return At(share);
+  const AxisRange around{least - 0.5, most + 0.5, scale};
+  return std::clamp(std::round(around.At(share)), least, most);
 }
 
 bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }

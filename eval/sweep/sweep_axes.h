@@ -24,8 +24,8 @@ struct AxisRange {
 
   // At `share` of the way, 0 to 1, to the nearest whole number if need be; the ends are exact.
   double At(double share) const;
-  // The same for random shares: of whole numbers each is drawn as often as its neighbours, the ends
-  // too.
+  // The same for random shares: of whole numbers on a linear scale each is drawn as often as its
+  // neighbours, the ends too.
   double Drawn(double share) const;
 };
 

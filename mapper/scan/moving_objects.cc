@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mapper/core/angle.h"
+
 namespace depthgrid {
 namespace {
 
@@ -25,6 +27,7 @@ constexpr int kMostUnseenScans = 5;
 constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
 constexpr double kHiddenRadiusM = 0.3;
+constexpr auto kWidestHiddenRad = static_cast<float>(RadFromDeg(120.0));
 constexpr double kNewStepShare = 0.2;
 // They stop going towards it then (0.7 and 0.9 do as well).
 constexpr double kKeptStepShare = 0.8;
@@ -34,6 +37,8 @@ constexpr double kKeptStepShare = 0.8;
 constexpr double kMovingShare = 0.4;
 // Judging begins anew after so many times the least way: who walks does not walk evenly.
 constexpr double kLongestWay = 2.5;
+
+bool SaysSomething(const Beam& beam) { return beam.hit || beam.clear_to_m > beam.clear_from_m; }
 
 double JumpM(double nearer_m) { return kJumpM + kJumpShare * nearer_m; }
 
@@ -76,8 +81,10 @@ std::optional<MovingObjects::Object> MovingObjects::ObjectOf(const Scan& scan, s
   const bool is_large = count >= kLeastBeams && static_cast<double>(count) >=
                                                     kLeastShare * static_cast<double>(beams.size());
   if (!is_large) return {};
-  const bool has_first = begin > 0;
-  const bool has_last = end < beams.size();
+  // The view ends where nothing is told any more: some cameras have bands without depth.
+  const auto at = [&](std::size_t i) { return beams.begin() + static_cast<std::ptrdiff_t>(i); };
+  const bool has_first = std::any_of(beams.begin(), at(begin), SaysSomething);
+  const bool has_last = std::any_of(at(end), beams.end(), SaysSomething);
   if (!has_first && !has_last) return {};
   if (has_first && !IsBehind(beams[begin - 1], beams[begin])) return {};
   if (has_last && !IsBehind(beams[end], beams[end - 1])) return {};
@@ -177,6 +184,7 @@ void MovingObjects::Judge(Object& object) const {
   const bool moves = (judged.at_m - judged.would_be_m).norm() > kMovingShare * way_m;
   object.verdict = moves ? Verdict::kMoves : Verdict::kStands;
   object.times_moved = moves ? object.times_moved + 1 : 0;
+  if (!moves) object.step_m.setZero();
   if (!moves && way_m <= kLongestWay * after_m_) return;
   for (std::optional<Point>& point : object.points) {
     if (point) point->began_at_m = point->would_be_m = point->at_m;
@@ -198,6 +206,10 @@ void MovingObjects::FindHidden(const Scan& scan) {
       hidden.end = i + 1;
     }
     if (hidden.begin == scan.beams.size()) return false;
+    // The first beams and the last of a scanner that sees all round lie beside each other.
+    const float across_rad =
+        scan.beams[hidden.end - 1].bearing_rad - scan.beams[hidden.begin].bearing_rad;
+    if (across_rad > kWidestHiddenRad) return false;
     hidden.step_m *= kKeptStepShare;
     objects_.push_back(hidden);
     return true;
@@ -250,7 +262,7 @@ void MovingObjects::Follow(const Scan& scan, const Pose2& slam_from_base, int ep
   slam_from_before_ = slam_from_base;
   Find(scan);
   for (Object& object : objects_) {
-    // The first scans say where the map lies: what is cut, mostly walls, is in them.
+    // A run's first scan says where the map lies: what is cut, mostly walls, is in it.
     if (begins && !object.is_free()) object.verdict = Verdict::kStands;
     Recognise(object);
   }

@@ -68,7 +68,7 @@ class MovingObjects {
   double after_m_;
   std::optional<Pose2> slam_from_before_;
   int epoch_ = 0;
-  std::vector<Object> objects_;  // of the last scan, by bearing
+  std::vector<Object> objects_;  // of the last scan
   std::vector<Object> before_;   // known before it, and not recognised in it
   ScanPool pool_;
 };

@@ -226,6 +226,28 @@ TEST(MovingObjects, WhoMovesIsLeftOutBesideAWallToo) {
   EXPECT_GT(beside, 10);
 }
 
+// Half of who walks behind a scanner that sees all round is among its first beams, half among its
+// last: the scan is not lost for that.
+TEST(MovingObjects, WhoMovesBehindHidesNotTheWholeView) {
+  MovingObjects moving(kAfterM);
+  const PlanarLaser round{.beams = 720, .field_of_view_rad = 2.0 * kPi};
+  for (int i = 0; i < 80; ++i) {
+    const Pose2 pose{2.0 + kStepM * i, 0.0, 0.0};
+    const double aside_m = i < 40 ? 0.5 : std::max(0.0, 0.5 - 0.05 * (i - 40));
+    const double x = pose.x_m - 1.0;
+    PlanarWorld world = RectangleWorld(-1.0, -2.5, 7.0, 2.5);
+    for (const Wall& side : RectangleWorld(x - 0.1, aside_m - 0.1, x + 0.1, aside_m + 0.1)) {
+      world.push_back(side);
+    }
+    const auto scan = std::make_shared<const Scan>(ScanOf(world, pose, round));
+    const FrameScans scans = After(moving, scan, pose, 0);
+    const auto hits = [](const Scan& of) {
+      return std::count_if(of.beams.begin(), of.beams.end(), [](const Beam& b) { return b.hit; });
+    };
+    EXPECT_GT(hits(*scans.kept()), hits(*scan) / 2) << i;
+  }
+}
+
 // Most of what the edge cuts is a wall that leaves the view; in the first scan nothing is doubted.
 TEST(MovingObjects, WhatStandsAtTheEdgeIsKept) {
   MovingObjects moving(kAfterM);
