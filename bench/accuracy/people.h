@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mapper/core/angle.h"
@@ -34,6 +35,25 @@ inline void AddPerson(const Eigen::Vector2d& at_m, LaserWorld& world) {
   for (int i = 0; i < kSides; ++i) world.walls.push_back({corner(i), corner(i + 1)});
 }
 
+// Where in the robot's axes somebody walks who stays before it; empty where nobody does.
+inline std::optional<Eigen::Vector2d> BeforeRobotM(People people, double at_s) {
+  switch (people) {
+    case People::kAhead:
+      return Eigen::Vector2d(kPersonAheadM, 0.0);
+    case People::kSwaying:
+      return Eigen::Vector2d(kPersonAheadM + 0.25 * std::sin(2.0 * kPi * 0.3 * at_s),
+                             0.08 * std::sin(2.0 * kPi * 0.9 * at_s));
+    case People::kAside:
+      return Eigen::Vector2d(1.0, 0.5);
+    case People::kWeaving:
+      return Eigen::Vector2d(1.2, 0.6 * std::sin(2.0 * kPi * 0.15 * at_s));
+    case People::kNone:
+    case People::kCrossing:
+      break;
+  }
+  return {};
+}
+
 // The world as it is at a frame of this path.
 inline LaserWorld WithPeople(const LaserWorld& world, People people,
                              const std::vector<Pose2>& world_from_base, std::size_t frame) {
@@ -49,19 +69,9 @@ inline LaserWorld WithPeople(const LaserWorld& world, People people,
     }
   }
   constexpr std::size_t kRound = 400, kAheadFrames = 300;
-  const double at_s = static_cast<double>(frame) / kFrameRateHz;
-  if ((people == People::kAside || people == People::kWeaving) && frame % kRound < kAheadFrames) {
-    AddPerson(world_from_base[frame] *
-                  (people == People::kAside
-                       ? Eigen::Vector2d(1.0, 0.5)
-                       : Eigen::Vector2d(1.2, 0.6 * std::sin(2.0 * kPi * 0.15 * at_s))),
-              peopled);
-  }
-  if ((people == People::kAhead || people == People::kSwaying) && frame % kRound < kAheadFrames) {
-    const double sways = people == People::kSwaying ? 1.0 : 0.0;
-    const Eigen::Vector2d ahead_m(kPersonAheadM + 0.25 * sways * std::sin(2.0 * kPi * 0.3 * at_s),
-                                  0.08 * sways * std::sin(2.0 * kPi * 0.9 * at_s));
-    AddPerson(world_from_base[frame] * ahead_m, peopled);
+  const auto before_m = BeforeRobotM(people, static_cast<double>(frame) / kFrameRateHz);
+  if (before_m && frame % kRound < kAheadFrames) {
+    AddPerson(world_from_base[frame] * *before_m, peopled);
   }
   return peopled;
 }

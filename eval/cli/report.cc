@@ -61,10 +61,12 @@ void RequireNoneButItsFiles(const std::string& folder, const fs::path& written) 
 
 // A link would be replaced itself, by a file.
 void RequireNoLinks(const std::string& folder) {
-  for (const char* name : {"report.html", "timing.js", "experiment.yaml", "sweep_again.yaml"}) {
-    const fs::path path = fs::path(folder) / name;
-    if (!fs::is_symlink(path)) continue;
-    throw InputError(path.string(), "is a link, and stays; -o names another folder for the page");
+  const FileRule is_of_page = FilesOf(ResultKind::kPage);
+  std::error_code missing;
+  for (const auto& entry : fs::directory_iterator(folder, missing)) {
+    if (!entry.is_symlink() || !is_of_page(entry.path().filename())) continue;
+    throw InputError(folder + "/" + entry.path().filename().string(),
+                     "is a link, and stays; -o names another folder for the page");
   }
 }
 

@@ -64,11 +64,7 @@ std::shared_ptr<Scan> ScanPool::Take() {
   const auto is_free = [](const std::shared_ptr<Scan>& scan) { return scan.use_count() == 1; };
   const auto found = std::find_if(scans_.begin(), scans_.end(), is_free);
   if (found != scans_.end()) return *found;
-  auto scan = std::make_shared<Scan>();
-  // A frame and the one before hold no more. Who holds hundreds, for a time, lets them go.
-  constexpr std::size_t kMostKept = 8;
-  if (scans_.size() < kMostKept) scans_.push_back(scan);
-  return scan;
+  return scans_.emplace_back(std::make_shared<Scan>());
 }
 
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)

@@ -22,14 +22,18 @@ constexpr std::size_t kLeastBeams = 5;
 constexpr double kFarthestStepM = 0.1;
 // What noise, or somebody before it, hides for a moment is known again.
 constexpr int kMostUnseenScans = 5;
-// Who walks along a wall is one piece with it for a while. Once is not enough: what noise makes an
-// object of now and then would cost a part of the view each time.
+// Who walks along a wall is one piece with it for a while: up to 27 scans in simulated logs
+// (docs/tried.md, "What moves"). Once is not enough: what noise makes an object of now and then
+// would cost a part of the view each time.
 constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
+// A person's half width, and what the step is off by.
 constexpr double kHiddenRadiusM = 0.3;
+// What is wider lies round the base, or at both ends of a scan that goes all round.
 constexpr auto kWidestHiddenRad = static_cast<float>(RadFromDeg(120.0));
+// Chosen: a step is the mean over some five scans, and dies away as fast, as who comes to a wall
+// goes no farther towards it (0.7 to 0.9 are alike).
 constexpr double kNewStepShare = 0.2;
-// They stop going towards it then (0.7 and 0.9 do as well).
 constexpr double kKeptStepShare = 0.8;
 // What lies off by this share of the way that it would have gone if it stood does not stand. The
 // middle of what is seen of a thing that stands goes along by less, as other sides of it come into
@@ -57,8 +61,8 @@ bool IsBehind(const Beam& beam, const Beam& edge) {
   return !beam.hit || beam.range_m > edge.range_m;
 }
 
-// Whether what is seen behind beams `begin` to `end` of an object's end is no part of it, `step` by
-// step from `next` on. Noise alone parts walls by a beam now and then.
+// Whether an object ends with its beams `begin` to `end`: all but one of as many beams beyond, from
+// `next` on by `step`, lie behind. A single one may do so by noise.
 bool IsAnEnd(const std::vector<Beam>& beams, std::size_t begin, std::size_t end, std::size_t next,
              int step) {
   double range_m = 0.0;
@@ -206,7 +210,6 @@ void MovingObjects::FindHidden(const Scan& scan) {
       hidden.end = i + 1;
     }
     if (hidden.begin == scan.beams.size()) return false;
-    // The first beams and the last of a scanner that sees all round lie beside each other.
     const float across_rad =
         scan.beams[hidden.end - 1].bearing_rad - scan.beams[hidden.begin].bearing_rad;
     if (across_rad > kWidestHiddenRad) return false;

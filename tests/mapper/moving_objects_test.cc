@@ -236,7 +236,7 @@ TEST(MovingObjects, WhoMovesBehindHidesNotTheWholeView) {
     const double aside_m = i < 40 ? 0.5 : std::max(0.0, 0.5 - 0.05 * (i - 40));
     const double x = pose.x_m - 1.0;
     PlanarWorld world = RectangleWorld(-1.0, -2.5, 7.0, 2.5);
-    for (const Wall& side : RectangleWorld(x - 0.1, aside_m - 0.1, x + 0.1, aside_m + 0.1)) {
+    for (const Wall& side : RectangleWorld(x - 0.2, aside_m - 0.2, x + 0.2, aside_m + 0.2)) {
       world.push_back(side);
     }
     const auto scan = std::make_shared<const Scan>(ScanOf(world, pose, round));
