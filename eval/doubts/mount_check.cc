@@ -1,6 +1,6 @@
 #include "eval/doubts/mount_check.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
@@ -59,25 +59,29 @@ struct MountFit {
 
 // Linear least squares with a heading of any length, then the position again with one of length 1.
 MountFit SolveMount(const std::vector<HandEye>& equations, bool with_position) {
-  Eigen::Matrix4d h = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d g = Eigen::Vector4d::Zero();
+  Eigen::Matrix2d h_position = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d h_both = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d h_heading = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d g_position = Eigen::Vector2d::Zero();
+  Eigen::Vector2d g_heading = Eigen::Vector2d::Zero();
   for (const HandEye& equation : equations) {
-    Eigen::Matrix<double, 2, 4> row;
-    row << equation.of_position, equation.of_heading;
-    h += row.transpose() * row;
-    g += row.transpose() * equation.value;
+    h_position += equation.of_position.transpose() * equation.of_position;
+    h_both += equation.of_position.transpose() * equation.of_heading;
+    h_heading += equation.of_heading.transpose() * equation.of_heading;
+    g_position += equation.of_position.transpose() * equation.value;
+    g_heading += equation.of_heading.transpose() * equation.value;
   }
-  constexpr double kWithout = 1e12;
-  const double near =
-      with_position ? kStretchErrorM * kStretchErrorM / (kMountNearM * kMountNearM) : kWithout;
-  h.diagonal().head<2>().array() += near;
-  const Eigen::Vector4d solved = h.ldlt().solve(g);
-  const Eigen::Vector2d heading = solved.tail<2>().normalized();
-  const Eigen::Matrix2d h_position = h.topLeftCorner<2, 2>();
-  const Eigen::Vector2d g_position = g.head<2>() - h.topRightCorner<2, 2>() * heading;
-  const Eigen::Vector2d position = h_position.ldlt().solve(g_position);
-  return {{position.x(), position.y(), std::atan2(heading.y(), heading.x())},
-          solved.tail<2>().norm()};
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();  // none: it is known to be 0
+  if (with_position) {
+    constexpr double kNear = kStretchErrorM * kStretchErrorM / (kMountNearM * kMountNearM);
+    position_covariance = (h_position + kNear * Eigen::Matrix2d::Identity()).inverse();
+  }
+  const Eigen::Matrix2d h_rest = h_heading - h_both.transpose() * position_covariance * h_both;
+  const Eigen::Vector2d g_rest = g_heading - h_both.transpose() * position_covariance * g_position;
+  const Eigen::Vector2d solved = h_rest.inverse() * g_rest;
+  const Eigen::Vector2d heading = solved.normalized();
+  const Eigen::Vector2d position = position_covariance * (g_position - h_both * heading);
+  return {{position.x(), position.y(), std::atan2(heading.y(), heading.x())}, solved.norm()};
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ void AddPost(double range_m, std::vector<CarmenScan>& lines) {
   }
 }
 
-OwnBody Found(const std::vector<CarmenScan>& lines) {
+OwnBody OwnBodyOf(const std::vector<CarmenScan>& lines) {
   OwnBody body;
   for (const CarmenScan& line : lines) body.Add(line, 0.1);
   body.Find();
@@ -70,7 +70,7 @@ TEST(OwnBody, IsWhatStaysWhileTheRobotTurns) {
   for (const double range_m : {0.15, 0.3, 0.9}) {
     std::vector<CarmenScan> lines = Turn(kPi + 0.2);
     AddPost(range_m, lines);
-    const OwnBody body = Found(lines);
+    const OwnBody body = OwnBodyOf(lines);
     ASSERT_EQ(body.parts().size(), 1U) << range_m;
     const OwnBody::Part& part = body.parts()[0];
     EXPECT_EQ(part.first, 40U);
@@ -89,7 +89,7 @@ TEST(OwnBody, AloneIsDropped) {
   line.range_m[60] = 0.3;
   line.range_m[41] = std::numeric_limits<double>::quiet_NaN();
   const CarmenScan before = line;
-  Found(lines).Drop(line);
+  OwnBodyOf(lines).Drop(line);
   for (std::size_t i = 0; i < line.range_m.size(); ++i) {
     if (i == 41) continue;
     const bool is_body = i >= 39 && i < 50 && i != 45;
@@ -97,7 +97,7 @@ TEST(OwnBody, AloneIsDropped) {
   }
   CarmenScan other = before;
   other.range_m.push_back(1.0);
-  Found(lines).Drop(other);
+  OwnBodyOf(lines).Drop(other);
   EXPECT_EQ(other.range_m[39], 0.31);  // of a laser with another count of readings
 }
 
@@ -105,27 +105,27 @@ TEST(OwnBody, MayBeMissedNowAndThen) {
   std::vector<CarmenScan> lines = Turn(8.0 * kPi);
   AddPost(0.3, lines);
   for (std::size_t i = 10; i < lines.size(); i += 30) lines[i].range_m[44] = 1.5;
-  EXPECT_EQ(Found(lines).parts().size(), 1U);
+  EXPECT_EQ(OwnBodyOf(lines).parts().size(), 1U);
   for (std::size_t i = 10; i < lines.size(); i += 2) lines[i].range_m[44] = 1.5;
-  EXPECT_EQ(Found(lines).parts().size(), 1U);
+  EXPECT_EQ(OwnBodyOf(lines).parts().size(), 1U);
   CarmenScan line = lines[11];
-  Found(lines).Drop(line);
+  OwnBodyOf(lines).Drop(line);
   EXPECT_EQ(line.range_m[44], 0.0);
 }
 
 TEST(OwnBody, NeedsHalfATurnAndIsNear) {
   std::vector<CarmenScan> lines = Turn(0.8 * kPi);
   AddPost(0.3, lines);
-  EXPECT_THAT(Found(lines).parts(), IsEmpty());
+  EXPECT_THAT(OwnBodyOf(lines).parts(), IsEmpty());
   lines = Turn(4.0 * kPi);
   AddPost(1.2, lines);
-  EXPECT_THAT(Found(lines).parts(), IsEmpty());
-  EXPECT_THAT(Found({}).parts(), IsEmpty());
+  EXPECT_THAT(OwnBodyOf(lines).parts(), IsEmpty());
+  EXPECT_THAT(OwnBodyOf({}).parts(), IsEmpty());
 }
 
 // Whatever the way is wide: in the middle of a small room, along a wall and round its corners.
 TEST(OwnBody, IsNoWall) {
-  EXPECT_THAT(Found(Turn(8.0 * kPi, {0.7, 0.7})).parts(), IsEmpty());
+  EXPECT_THAT(OwnBodyOf(Turn(8.0 * kPi, {0.7, 0.7})).parts(), IsEmpty());
   RandomStream random(7, RandomStage::kTest);
   std::vector<CarmenScan> lines;
   for (int lap = 0; lap < 4; ++lap) {
@@ -142,7 +142,7 @@ TEST(OwnBody, IsNoWall) {
       }
     }
   }
-  EXPECT_THAT(Found(lines).parts(), IsEmpty());
+  EXPECT_THAT(OwnBodyOf(lines).parts(), IsEmpty());
 }
 
 std::string LogOf(const std::vector<CarmenScan>& lines) {

@@ -23,7 +23,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kHeightM = 1.2;
+constexpr double kCameraHeightM = 1.2;
 
 class SequenceTest : public TemporaryFolderTest {
  protected:
@@ -38,7 +38,8 @@ class SequenceTest : public TemporaryFolderTest {
     std::vector<double> stamps_s;
     for (int i = 0; i < frames; ++i) {
       const double stamp_s = 0.125 * i;
-      const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.0, kPi * i / 6.0}, kHeightM, 0.35, 0.1);
+      const Pose3 pose =
+          TiltedCamera({0.3 * std::cos(i), 0.0, kPi * i / 6.0}, kCameraHeightM, 0.35, 0.1);
       writer.WriteFrame(stamp_s, room.Render(Camera().camera, pose), nullptr);
       stamps_s.push_back(stamp_s);
       truth.push_back({stamp_s, pose});
@@ -84,7 +85,7 @@ TEST_F(SequenceTest, TiltedAndCameraAxisWorldsBecomeLevel) {
     ASSERT_EQ(sequence.final_poses.size(), truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const Pose3 pose = *sequence.source->Next()->slam_from_camera;
-      EXPECT_NEAR(pose.translation.z() - *sequence.floor_z_m, kHeightM, 0.03);
+      EXPECT_NEAR(pose.translation.z() - *sequence.floor_z_m, kCameraHeightM, 0.03);
       // The camera leans by as much as it truly does.
       const auto down = [](const Pose3& p) { return (p.rotation * Eigen::Vector3d::UnitZ()).z(); };
       EXPECT_NEAR(down(pose), down(truth[i].world_from_camera), 0.01);
@@ -112,7 +113,7 @@ TEST_F(SequenceTest, WhereNoFloorIsSeenTheAxisTakenIsWarnedOf) {
     DepthImage wall(Camera().camera.width_px, Camera().camera.height_px);
     std::fill(wall.z_m.begin(), wall.z_m.end(), 2.0F);
     writer.WriteFrame(stamp_s, wall, nullptr);
-    poses.push_back({stamp_s, CameraOf({}, kHeightM)});
+    poses.push_back({stamp_s, CameraOf({}, kCameraHeightM)});
   }
   writer.Finish(stamps_s, false, poses);
   const Sequence sequence = OpenSequence(folder_);

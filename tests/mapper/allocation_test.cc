@@ -122,14 +122,14 @@ double AllocationsAFrame(const MapperOptions& options, std::vector<Frame> round)
   return static_cast<double>(allocations - before) / kCounted;
 }
 
-MapperOptions PaperOptions() {
+MapperOptions PaperMethod() {
   MapperOptions options;
   options.method = MapperMethod::kPaper;
   options.fusion.mode = FusionMode::kFixed;  // as it ships
   return options;
 }
 
-MapperOptions SurfelOptions() {
+MapperOptions SurfelMethod() {
   MapperOptions options;
   options.method = MapperMethod::kSurfel;
   options.fusion.mode = FusionMode::kLearned;
@@ -138,9 +138,9 @@ MapperOptions SurfelOptions() {
 }
 
 TEST(Allocation, AScanHasHardlyAnyInSteadyState) {
-  EXPECT_LT(AllocationsAFrame(PaperOptions(), LaserRound()), 0.5);
-  EXPECT_LT(AllocationsAFrame(SurfelOptions(), LaserRound()), 0.5);
-  MapperOptions averaged = PaperOptions();
+  EXPECT_LT(AllocationsAFrame(PaperMethod(), LaserRound()), 0.5);
+  EXPECT_LT(AllocationsAFrame(SurfelMethod(), LaserRound()), 0.5);
+  MapperOptions averaged = PaperMethod();
   averaged.submap.walls = SubmapWalls::kAveraged;
   // Two rectangles more that grow with each submap.
   EXPECT_LT(AllocationsAFrame(averaged, LaserRound()), 1.0);
@@ -148,7 +148,7 @@ TEST(Allocation, AScanHasHardlyAnyInSteadyState) {
 
 // Those whose scans are not kept (KeepOptions) ask which kept frame they lie by.
 TEST(Allocation, AScanThatIsNotKeptHasTwo) {
-  MapperOptions options = SurfelOptions();
+  MapperOptions options = SurfelMethod();
   options.keep.first_frames = 200;
   options.keep.scans_per_place = 5;
   options.keep.more_each_doubling = 0.0;
@@ -156,8 +156,8 @@ TEST(Allocation, AScanThatIsNotKeptHasTwo) {
 }
 
 TEST(Allocation, ADepthImageHasHardlyAnyInSteadyState) {
-  EXPECT_LT(AllocationsAFrame(PaperOptions(), DepthRound()), 0.9);  // two scans of each are kept
-  EXPECT_LT(AllocationsAFrame(SurfelOptions(), DepthRound()), 0.9);
+  EXPECT_LT(AllocationsAFrame(PaperMethod(), DepthRound()), 0.9);  // two scans of each are kept
+  EXPECT_LT(AllocationsAFrame(SurfelMethod(), DepthRound()), 0.9);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kWallM = 4.0;
+constexpr double kBackWallM = 4.0;
 constexpr double kTableM = 2.0;
 constexpr double kTableTopM = 0.9;
 
@@ -24,7 +24,7 @@ std::shared_ptr<const DepthImage> WallBehindTable(const PinholeCamera& camera) {
   for (int v = 0; v < camera.height_px; ++v) {
     const double drop = (v - camera.cy_px) / camera.fy_px;
     const bool table = kCameraHeightM - kTableM * drop < kTableTopM;
-    std::fill_n(image->Row(v), camera.width_px, static_cast<float>(table ? kTableM : kWallM));
+    std::fill_n(image->Row(v), camera.width_px, static_cast<float>(table ? kTableM : kBackWallM));
   }
   return image;
 }
@@ -51,7 +51,7 @@ Frame WallFrame() {
 TEST(FrameScanner, ObstaclesAreTheNearestSurfaceAndTheSliceIsLevelWithTheCamera) {
   const FrameScans scans = FrameScanner(PinholeCamera{}, ScanOptions{}).ScansOf(WallFrame());
   EXPECT_NEAR(MeanForwardM(*scans.obstacles), kTableM, 1e-3);
-  EXPECT_NEAR(MeanForwardM(*scans.matched), kWallM, 1e-3);
+  EXPECT_NEAR(MeanForwardM(*scans.matched), kBackWallM, 1e-3);
 }
 
 TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
@@ -77,7 +77,7 @@ TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
 // Depth as a function of the height above the camera, with noise of 6 mm.
 template <typename DepthAt>
 Frame NoisyFrame(const DepthAt& depth_at, std::uint64_t seed) {
-  constexpr double kSigmaM = 0.006;
+  constexpr double kDepthSigmaM = 0.006;
   const PinholeCamera camera;
   RandomStream random(seed, RandomStage::kTest);
   auto image = std::make_shared<DepthImage>(camera.width_px, camera.height_px);
@@ -85,7 +85,7 @@ Frame NoisyFrame(const DepthAt& depth_at, std::uint64_t seed) {
     const double rise = (camera.cy_px - v) / camera.fy_px;
     const double z_m = depth_at(rise);
     for (int u = 0; u < camera.width_px; ++u) {
-      image->Row(v)[u] = static_cast<float>(z_m + kSigmaM * random.Normal());
+      image->Row(v)[u] = static_cast<float>(z_m + kDepthSigmaM * random.Normal());
     }
   }
   Frame frame;

@@ -57,7 +57,7 @@ double PoseErrorM(const Pose2& pose, const Pose2& truth) {
 }
 
 // SLAM's pose of each frame of another round.
-std::vector<Pose2> DriftingRound() {
+std::vector<Pose2> DriftedRound() {
   std::vector<Pose2> slam_from_base = {TruthAt(0)};
   for (int i = 1; i < kPriorRound; ++i) {
     slam_from_base.push_back(slam_from_base.back() * Between(TruthAt(i - 1), TruthAt(i)) * kDrift);
@@ -85,7 +85,7 @@ RoundErrors ErrorsOfASecondRound(const MapperOptions& options, int frames = kPri
   IncrementalMapper mapper(options, std::nullopt);
   mapper.StartFrom(FinishedRound());
   RoundErrors errors;
-  const std::vector<Pose2> slam_from_base = DriftingRound();
+  const std::vector<Pose2> slam_from_base = DriftedRound();
   EXPECT_GT(PoseErrorM(slam_from_base.back(), TruthAt(kPriorRound - 1)), 0.2);
   for (int i = 0; i < frames; ++i) {
     const FrameReport report =
@@ -139,7 +139,7 @@ TEST(PriorMap, ItsLastFramesAreNotOneGroupWithTheFirstNewOnes) {
 // With a prior map of more frames than that, and than the last round has.
 TEST(PriorMap, TheFirstRoundComesAfterAsManyNewFrames) {
   constexpr int kFirst = 20;
-  const std::vector<Pose2> slam_from_base = DriftingRound();
+  const std::vector<Pose2> slam_from_base = DriftedRound();
   std::vector<FrameReport> reports[2];
   for (const bool with_rounds : {false, true}) {
     MapperOptions options;
@@ -221,7 +221,7 @@ TEST(PriorMap, AFrameBeyondTheMapIsNotMapped) {
 
 // What is asked for between two frames does not touch what comes after it.
 TEST(PriorMap, AnEndChangesNothingOfTheFramesAfterIt) {
-  const std::vector<Pose2> slam_from_base = DriftingRound();
+  const std::vector<Pose2> slam_from_base = DriftedRound();
   IncrementalMapper undisturbed({}, std::nullopt), asked({}, std::nullopt);
   for (int i = 0; i < kPriorRound; ++i) {
     const Frame frame = PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]);
@@ -319,7 +319,7 @@ TEST(PriorMap, SlamsCorrectionsAfterALossMoveWhatWasSeenSince) {
 TEST(PriorMap, IsMadeOfAMapperThatStillRuns) {
   constexpr int kFrames = 100;
   IncrementalMapper mapper(MapperOptions{}, std::nullopt);
-  const std::vector<Pose2> slam_from_base = DriftingRound();
+  const std::vector<Pose2> slam_from_base = DriftedRound();
   Pose3 last;
   for (int i = 0; i < kFrames; ++i) {
     last = *mapper.AddFrame(PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]))

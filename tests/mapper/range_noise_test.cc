@@ -16,11 +16,11 @@ namespace {
 
 constexpr int kBeams = 640;
 constexpr double kStepRad = 0.0017;
-constexpr double kWallM = 3.0;
-constexpr double kSigma = 0.01;  // of the range
+constexpr double kRangeM = 3.0;
+constexpr double kRelativeSigma = 0.01;  // of the range
 
 // A wall across the view; errors are correlated by exp(-(d / length)^2 / 2), 0: not.
-Scan WallWithNoise(RandomStream& random, double length, double sigma = kSigma) {
+Scan WallWithNoise(RandomStream& random, double length, double sigma = kRelativeSigma) {
   constexpr int kReach = 40;
   std::vector<double> white(kBeams + 2 * kReach);
   for (double& value : white) value = random.Normal();
@@ -36,7 +36,7 @@ Scan WallWithNoise(RandomStream& random, double length, double sigma = kSigma) {
     }
     const double bearing_rad = (i - 0.5 * (kBeams - 1)) * kStepRad;
     const double range_m =
-        kWallM / std::cos(bearing_rad) * (1.0 + sigma * sum / std::sqrt(squares));
+        kRangeM / std::cos(bearing_rad) * (1.0 + sigma * sum / std::sqrt(squares));
     Beam beam;
     beam.bearing_rad = static_cast<float>(bearing_rad);
     beam.range_m = static_cast<float>(range_m);
@@ -53,7 +53,7 @@ TEST(RangeNoise, BeamsThatErrByThemselvesAllCount) {
     noise.Add(WallWithNoise(random, 0.0));
     EXPECT_EQ(noise.stride(), 1) << i;
   }
-  EXPECT_NEAR(noise.RelativeSigma(kWallM, 1), kSigma, 0.1 * kSigma);
+  EXPECT_NEAR(noise.RelativeSigma(kRangeM, 1), kRelativeSigma, 0.1 * kRelativeSigma);
 }
 
 // The longest ranges of a wall near the sensor's reach are missing, so what is left differs less.
@@ -82,8 +82,9 @@ TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
     }
     EXPECT_EQ(noise.stride(), stride) << length;
     EXPECT_EQ(all.stride(), 1) << length;
-    EXPECT_NEAR(noise.RelativeSigma(kWallM, stride), kSigma, 0.4 * kSigma) << length;
-    EXPECT_LT(noise.RelativeSigma(kWallM, 1), 0.4 * kSigma) << length;
+    EXPECT_NEAR(noise.RelativeSigma(kRangeM, stride), kRelativeSigma, 0.4 * kRelativeSigma)
+        << length;
+    EXPECT_LT(noise.RelativeSigma(kRangeM, 1), 0.4 * kRelativeSigma) << length;
   }
 }
 
@@ -94,7 +95,7 @@ TEST(RangeNoise, OfBeamsThatErrVerySmoothlyFewCount) {
     RangeNoise noise;
     for (int i = 0; i < 40; ++i) noise.Add(WallWithNoise(random, length, sigma));
     EXPECT_EQ(noise.stride(), length > 6.0 ? 16 : 8) << length;
-    EXPECT_GT(noise.RelativeSigma(kWallM, noise.stride()), 0.2 * sigma) << length;
+    EXPECT_GT(noise.RelativeSigma(kRangeM, noise.stride()), 0.2 * sigma) << length;
   }
 }
 

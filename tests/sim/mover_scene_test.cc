@@ -33,7 +33,7 @@ Scene RoomWith(const TriangleMesh& mesh) {
 }
 
 // The camera stands still, a frame every 0.505 s: the walker goes half a metre.
-Trajectory Standing(int frames) {
+Trajectory StandingFor(int frames) {
   Trajectory trajectory;
   for (int i = 0; i < frames; ++i) trajectory.push_back({100.0 + 0.505 * i, kPose});
   return trajectory;
@@ -53,7 +53,7 @@ Scene Frozen(const Scene& scene, const MoverPlace& place) {
 TEST(MoverScene, ClockBeginsWithTheFirstFrame) {
   const Scene scene = RoomWith(MakeBox({0.4, 0.6, 1.8}));
   const MoverScene movers(scene, RayIsa::kAvx2);
-  const Trajectory trajectory = Standing(5);
+  const Trajectory trajectory = StandingFor(5);
   for (std::size_t frame = 0; frame < 5; ++frame) {
     const auto places = movers.At(trajectory, frame);
     ASSERT_EQ(places.size(), 1U);
@@ -69,7 +69,7 @@ TEST(MoverCamera, SeesTheMoverBeforeTheRoom) {
   const DepthCamera camera(RayScene(scene.mesh), pinhole);
   const DepthFrame room = camera.RenderWithIncidence(kPose);
   DepthFrame frame = room;
-  const auto places = movers.At(Standing(2), 1);
+  const auto places = movers.At(StandingFor(2), 1);
   MoverCamera(movers, pinhole).DrawOver(kPose, places, frame);
   const DepthFrame expected =
       DepthCamera(RayScene(Frozen(scene, places[0]).mesh), pinhole).RenderWithIncidence(kPose);
@@ -99,7 +99,7 @@ TEST(MoverCamera, SeesTheMoverBeforeTheRoom) {
 TEST(MoverScene, DistanceIsToTheSurfaceAndNothingInside) {
   const Scene scene = RoomWith(MakeBox({2.0, 2.0, 2.0}));
   const MoverScene movers(scene, RayIsa::kAvx2);
-  const MoverPlace place = movers.At(Standing(1), 0)[0];  // its middle is (3, 0)
+  const MoverPlace place = movers.At(StandingFor(1), 0)[0];  // its middle is (3, 0)
   EXPECT_NEAR(movers.DistanceM(place, {1.5, 0, 1}, 5.0), 0.5, 1e-5);
   EXPECT_NEAR(movers.DistanceM(place, {1.5, 0, 1}, 0.3), 0.3, 1e-5);
   EXPECT_EQ(movers.DistanceM(place, {3.0, 0.2, 1}, 5.0), 0.0);
@@ -112,12 +112,12 @@ TEST(MoverScene, SaysWhereItMeetsTheCamera) {
   scene.movers[0].options.waypoints = {{{0.0, -3.0}}, {{0.0, 3.0}}};
   const MoverScene movers(scene, RayIsa::kAvx2);
   // From 3 m away by half a metre a frame: its front is 0.3 m away in frame 5, around it in 6.
-  const auto text = NearMoverText(Standing(13), scene, movers, 0.31);
+  const auto text = NearMoverText(StandingFor(13), scene, movers, 0.31);
   ASSERT_TRUE(text.has_value());
   EXPECT_THAT(*text, HasSubstr("frame 5 at (0.00, 0.00, 1.00) is 0.300 m from mover 'walker', must "
                                "be at least 0.310 m"));
-  EXPECT_FALSE(NearMoverText(Standing(5), scene, movers, 0.31).has_value());
-  const auto inside = NearMoverText(Standing(13), scene, movers, 0.1);
+  EXPECT_FALSE(NearMoverText(StandingFor(5), scene, movers, 0.31).has_value());
+  const auto inside = NearMoverText(StandingFor(13), scene, movers, 0.1);
   ASSERT_TRUE(inside.has_value());
   EXPECT_THAT(*inside, HasSubstr("frame 6 at (0.00, 0.00, 1.00) is 0.000 m from mover 'walker'"));
 }
@@ -127,23 +127,23 @@ TEST(MoverScene, SaysWhereItPassesThroughTheCamera) {
   Scene scene = RoomWith(MakeBox({0.02, 3.0, 1.8}));
   scene.movers[0].options.waypoints = {{{0.0, -2.75}}, {{0.0, 3.0}}};
   const MoverScene movers(scene, RayIsa::kAvx2);
-  const auto text = NearMoverText(Standing(11), scene, movers, 0.1);
+  const auto text = NearMoverText(StandingFor(11), scene, movers, 0.1);
   ASSERT_TRUE(text.has_value());
   EXPECT_EQ(*text,
             "frame 6 at (0.00, 0.00, 1.00): mover 'walker' has gone through the camera since the "
             "frame before");
-  EXPECT_FALSE(NearMoverText(Standing(6), scene, movers, 0.1).has_value());
+  EXPECT_FALSE(NearMoverText(StandingFor(6), scene, movers, 0.1).has_value());
   // Lower than the camera.
   scene.movers[0].mesh = MakeBox({0.02, 3.0, 0.8});
   EXPECT_FALSE(
-      NearMoverText(Standing(11), scene, MoverScene(scene, RayIsa::kAvx2), 0.1).has_value());
+      NearMoverText(StandingFor(11), scene, MoverScene(scene, RayIsa::kAvx2), 0.1).has_value());
 }
 
 // The camera goes through a screen that stands, its pose turned.
 TEST(MoverScene, PassesIsToldInItsOwnAxes) {
   const Scene scene = RoomWith(MakeBox({0.02, 3.0, 1.8}));
   const MoverScene movers(scene, RayIsa::kAvx2);
-  MoverPlace place = movers.At(Standing(1), 0)[0];
+  MoverPlace place = movers.At(StandingFor(1), 0)[0];
   const Eigen::Vector3d forward = place.world_from_mover.rotation * Eigen::Vector3d::UnitX();
   const Eigen::Vector3d at = place.world_from_mover.translation + Eigen::Vector3d(0, 0, 1);
   EXPECT_TRUE(movers.Passes(place, at - 0.3 * forward, place, at + 0.3 * forward));
@@ -172,7 +172,7 @@ TEST(ColourCamera, DrawsMoversWhereTheyAre) {
   scene.materials[0].texture = TextureKind::kPlain;
   scene.lighting.lights.push_back({{0, 2, 2.5}, {2, 2, 2}});
   const MoverScene movers(scene, RayIsa::kAvx2);
-  const auto places = movers.At(Standing(2), 1);
+  const auto places = movers.At(StandingFor(2), 1);
   ColourCamera camera(scene, PinholeCamera{});
   const ColourFrame frame = camera.Render(kPose, places);
   ColourCamera frozen(Frozen(scene, places[0]), PinholeCamera{});
