@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/scan/frame_scans.h"
+#include "mapper/scan/moving_objects.h"
 
 namespace depthgrid {
 
@@ -21,6 +22,9 @@ class Beginning {
   // The next frame, while it lasts: with more than 300 frames it is over. By then something was
   // learnt in other ways, and going through all of it would hold up a frame for too long.
   void Add(const Frame& frame, const FrameScans& scans);
+  // An object that moved, in some of the frames; between them it is where it was before or after.
+  // False where none of them is here.
+  bool TakeOut(const std::vector<MovingObjects::Beams>& object);
   void End();
   bool lasts() const { return lasts_; }
   const std::vector<Seen>& frames() const { return frames_; }

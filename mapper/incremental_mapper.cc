@@ -81,6 +81,7 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
 void IncrementalMapper::State::Map(const Frame& frame, FrameReport& report) {
   Begin(frame, report);
   const FrameScans scans = ScansOf(frame, report);
+  TakeOutMistaken(frame);
   MapScans(frame, scans, report);
   beginning.Add(frame, scans);
 }
@@ -114,7 +115,8 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   const StageTimer timer(clocks, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
   if (reference && scans.matched && frame.slam_from_camera) {
-    moving.Follow(*scans.matched, BaseOf(*frame.slam_from_camera), history.newest().epoch);
+    moving.Follow(frame.index, *scans.matched, BaseOf(*frame.slam_from_camera),
+                  history.newest().epoch);
     moving.TakeOut(scans);
   }
   report.stand = scans.stand;
@@ -141,7 +143,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   if (frame.loops.empty()) {
     if (rounds.IsDue(mapped.size() - mapped.standing() - prior_frames)) {
       const std::optional<MotionSpread> spread = AdjustBetweenFrames();
-      if (spread && beginning.lasts()) GoThroughAgain(frame, *spread);
+      if (spread && beginning.lasts() && AwaitsSpread()) GoThroughAgain(frame, *spread);
     }
     return;
   }

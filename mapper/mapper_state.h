@@ -46,6 +46,7 @@ struct IncrementalMapper::State {
   SlipSearch slips;
   AdjustmentRounds rounds;
   MappedFrames mapped;
+  std::optional<MotionSpread> first_spread;  // that the beginning was gone through with
   Beginning beginning;
   bool has_prior = false;            // a map or but its frame, which SLAM's poses are moved into
   int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
@@ -69,8 +70,8 @@ struct IncrementalMapper::State {
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
         mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)),
-        beginning(opts.method == MapperMethod::kSurfel && opts.rounds.again &&
-                  opts.rounds.first_frames > 0 && filter.Learns()) {
+        beginning(opts.method == MapperMethod::kSurfel &&
+                  (AwaitsSpread() || opts.surfel.moving_m > 0.0)) {
     if (options.fusion.TrustsSlamAlone()) return;
     reference = MakeReference(options);
     if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
@@ -82,7 +83,8 @@ struct IncrementalMapper::State {
   void MapScans(const Frame& frame, const FrameScans& scans, FrameReport& report);
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   std::optional<MotionSpread> AdjustBetweenFrames();
-  void GoThroughAgain(const Frame& newest, const MotionSpread& spread);
+  void GoThroughAgain(const Frame& newest, const std::optional<MotionSpread>& spread);
+  void TakeOutMistaken(const Frame& newest);
   void FindLoops(const FrameScans& scans, FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
@@ -101,6 +103,11 @@ struct IncrementalMapper::State {
   void Insert(const FrameScans& scans, const Prediction& prediction, const FusedPose& fused,
               FrameReport& report);
 
+  // Whether the first frames are to be gone through again for what an adjustment tells.
+  bool AwaitsSpread() const {
+    return options.rounds.again && options.rounds.first_frames > 0 && filter.Learns() &&
+           !first_spread;
+  }
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
   bool SearchesSlips() const;

@@ -233,10 +233,11 @@ void AddOptions(CLI::App& app, Experiment& experiment) {
   app.add_option("--slip-m", prior.slip_m, "and forward or back by so much")
       ->check(FromTo(-100, 100));
   const std::map<std::string, People> people = {
-      {"none", People::kNone},   {"crossing", People::kCrossing},
-      {"ahead", People::kAhead}, {"swaying", People::kSwaying},
-      {"aside", People::kAside}, {"weaving", People::kWeaving}};
-  app.add_option("--people", experiment.people, "none, crossing, ahead, swaying, aside or weaving")
+      {"none", People::kNone},       {"crossing", People::kCrossing}, {"ahead", People::kAhead},
+      {"swaying", People::kSwaying}, {"aside", People::kAside},       {"weaving", People::kWeaving},
+      {"close", People::kClose}};
+  app.add_option("--people", experiment.people,
+                 "none, crossing, ahead, swaying, aside, weaving or close")
       ->transform(CLI::CheckedTransformer(people));
   app.add_flag("-v", experiment.verbose);
 }

@@ -18,6 +18,7 @@ enum class People {
   kAhead,     // one walks on before the robot, for three quarters of the time
   kSwaying,   // the same, now nearer, now farther, and from foot to foot
   kAside,     // the same, 1 m ahead and .5 m aside: the edge of a view of 58 degrees cuts them
+  kClose,     // the same, .75 m ahead: they fill 34 of 58 degrees
   kWeaving,   // the same, 1.2 m ahead and now more on this side, now on that, into the edges
 };
 
@@ -45,6 +46,8 @@ inline std::optional<Eigen::Vector2d> BeforeRobotM(People people, double at_s) {
                              0.08 * std::sin(2.0 * kPi * 0.9 * at_s));
     case People::kAside:
       return Eigen::Vector2d(1.0, 0.5);
+    case People::kClose:
+      return Eigen::Vector2d(0.75, 0.05);
     case People::kWeaving:
       return Eigen::Vector2d(1.2, 0.6 * std::sin(2.0 * kPi * 0.15 * at_s));
     case People::kNone:

@@ -25,6 +25,9 @@ struct Beam {
   bool operator==(const Beam&) const = default;
 };
 
+// A beam there that says nothing.
+inline Beam Silent(const Beam& beam) { return {.bearing_rad = beam.bearing_rad}; }
+
 // Their origin is base's origin. Of a laser's readings ScanOf() in mapper/io/carmen_log.h makes
 // one.
 struct Scan {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mapper/core/angle.h"
 
@@ -27,6 +28,12 @@ constexpr int kMostUnseenScans = 5;
 // would cost a part of the view each time.
 constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
+// SLAM that errs by a third of its way made walls seem to move for up to four times the least way.
+constexpr int kNoErrorOfSlam = 5;
+// What else lies so near to the middle of what moves is a part of it.
+constexpr double kBesideM = 0.2;
+// A robot that stands shows nothing: the first frames are no longer there.
+constexpr std::size_t kMostAssumed = 300;
 // A person's half width, and what the step is off by.
 constexpr double kHiddenRadiusM = 0.3;
 // What is wider lies round the base, or at both ends of a scan that goes all round.
@@ -174,6 +181,8 @@ void MovingObjects::Recognise(Object& object) {
   object.verdict = nearest->verdict;
   object.step_m = nearest->step_m;
   object.times_moved = nearest->times_moved;
+  object.is_assumed = nearest->is_assumed;
+  object.assumed = std::move(nearest->assumed);
   if (object.verdict == Verdict::kMoves && !was_hidden) {
     object.step_m += kNewStepShare * OffM(*nearest, object);
   }
@@ -181,7 +190,7 @@ void MovingObjects::Recognise(Object& object) {
   Judge(object);
 }
 
-void MovingObjects::Judge(Object& object) const {
+void MovingObjects::Judge(Object& object) {
   const Point& judged = FirstOf(object.points);
   const double way_m = (judged.would_be_m - judged.began_at_m).norm();
   if (way_m < after_m_) return;
@@ -190,6 +199,11 @@ void MovingObjects::Judge(Object& object) const {
   object.times_moved = moves ? object.times_moved + 1 : 0;
   if (!moves) object.step_m.setZero();
   if (!moves && way_m <= kLongestWay * after_m_) return;
+  if (!moves || object.times_moved >= kNoErrorOfSlam) {
+    if (moves && object.is_assumed) mistaken_.push_back(std::move(object.assumed));
+    object.is_assumed = false;
+    object.assumed = {};
+  }
   for (std::optional<Point>& point : object.points) {
     if (point) point->began_at_m = point->would_be_m = point->at_m;
   }
@@ -222,7 +236,17 @@ void MovingObjects::FindHidden(const Scan& scan) {
 
 bool MovingObjects::Moves(const Object& object, Unjudged unjudged) {
   if (object.verdict != Verdict::kNone) return object.verdict == Verdict::kMoves;
-  return unjudged == Unjudged::kMoves || (unjudged == Unjudged::kMovesIfFree && object.is_free());
+  switch (unjudged) {
+    case Unjudged::kStands:
+      return false;
+    case Unjudged::kStandsIfCut:
+      return object.is_free();
+    case Unjudged::kStandsIfAssumed:
+      return !object.is_assumed;
+    case Unjudged::kMoves:
+      break;
+  }
+  return true;
 }
 
 bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
@@ -233,6 +257,15 @@ bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
   const auto hits = static_cast<std::size_t>(std::count_if(
       scan.beams.begin(), scan.beams.end(), [](const Beam& beam) { return beam.hit; }));
   return 2 * unjudged >= hits;
+}
+
+// Of what moves some beams are no part of it: between those that the sensor's least range lost.
+void MovingObjects::SilenceBeside(const Object& object, const Scan& scan, Scan& rest) {
+  const Eigen::Vector2d& at_m = FirstOf(object.points).at_m;
+  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
+    const Beam& beam = scan.beams[i];
+    if (beam.hit && (EndPoint(beam) - at_m).norm() < kBesideM) rest.beams[i] = Silent(beam);
+  }
 }
 
 // The scan itself where nothing moves.
@@ -246,14 +279,36 @@ std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan
   for (const Object& object : objects_) {
     if (!Moves(object, unjudged)) continue;
     for (std::size_t i = object.begin; i < object.end; ++i) {
-      rest->beams[i] = {.bearing_rad = scan->beams[i].bearing_rad};  // says nothing
+      rest->beams[i] = Silent(scan->beams[i]);
     }
+    if (object.verdict == Verdict::kMoves) SilenceBeside(object, *scan, *rest);
   }
   return rest;
 }
 
-void MovingObjects::Follow(const Scan& scan, const Pose2& slam_from_base, int epoch) {
+// A run's first scan says where the map lies: what is cut, mostly walls, is in it, and all if it is
+// half of what is seen.
+void MovingObjects::AssumeTheyStand(const Scan& scan) {
+  const bool half_unjudged = IsHalfUnjudged(scan);
+  for (Object& object : objects_) {
+    object.is_assumed = half_unjudged || !object.is_free();
+    if (!object.is_free()) object.verdict = Verdict::kStands;
+  }
+}
+
+void MovingObjects::Remember(Object& object) const {
+  if (!object.is_assumed || object.verdict == Verdict::kMoves) return;
+  if (object.assumed.size() == kMostAssumed) {
+    object.is_assumed = false;
+    object.assumed = {};
+    return;
+  }
+  object.assumed.push_back({.frame = frame_, .begin = object.begin, .end = object.end});
+}
+
+void MovingObjects::Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch) {
   if (after_m_ <= 0.0) return;
+  frame_ = frame;
   const bool begins = !slam_from_before_ || epoch_ != epoch;
   if (begins) {
     objects_.clear();
@@ -265,22 +320,34 @@ void MovingObjects::Follow(const Scan& scan, const Pose2& slam_from_base, int ep
   slam_from_before_ = slam_from_base;
   Find(scan);
   for (Object& object : objects_) {
-    // A run's first scan says where the map lies: what is cut, mostly walls, is in it.
-    if (begins && !object.is_free()) object.verdict = Verdict::kStands;
     Recognise(object);
   }
+  if (begins) AssumeTheyStand(scan);
   FindHidden(scan);
 }
 
 void MovingObjects::TakeOut(FrameScans& scans) {
   const std::shared_ptr<const Scan> all = scans.matched;
   const bool half_unjudged = IsHalfUnjudged(*all);
-  scans.matched = Rest(all, half_unjudged ? Unjudged::kStands : Unjudged::kMovesIfFree);
-  scans.standing = nullptr;
-  const bool any_cut = std::any_of(objects_.begin(), objects_.end(), [](const Object& object) {
-    return object.verdict == Verdict::kNone && !object.is_free();
+  for (Object& object : objects_) Remember(object);
+  const Unjudged matched = half_unjudged ? Unjudged::kStands : Unjudged::kStandsIfCut;
+  const Unjudged drawn = half_unjudged ? Unjudged::kStandsIfAssumed : Unjudged::kMoves;
+  scans.matched = Rest(all, matched);
+  const bool differ = std::any_of(objects_.begin(), objects_.end(), [&](const Object& object) {
+    return Moves(object, matched) != Moves(object, drawn);
   });
-  if (any_cut && !half_unjudged) scans.standing = Rest(all, Unjudged::kMoves);
+  scans.standing = differ ? Rest(all, drawn) : nullptr;
+}
+
+std::vector<std::vector<MovingObjects::Beams>> MovingObjects::TakeMistaken() {
+  return std::exchange(mistaken_, {});
+}
+
+bool MovingObjects::MayBeMistaken() const {
+  const auto is_assumed = [](const Object& object) { return object.is_assumed; };
+  if (after_m_ <= 0.0) return false;
+  return !slam_from_before_ || std::any_of(objects_.begin(), objects_.end(), is_assumed) ||
+         std::any_of(before_.begin(), before_.end(), is_assumed);
 }
 
 }  // namespace depthgrid

@@ -21,17 +21,29 @@ class MovingObjects {
   // view if it stands; 0: nothing is followed.
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
+  // Beams of the scan of one frame.
+  struct Beams {
+    int frame = 0;
+    std::size_t begin = 0, end = 0;
+  };
+
   // The matched scans of frames that have one, in the order of time, with SLAM's pose; nothing is
   // compared from one epoch to another (SlamEpochs).
-  void Follow(const Scan& scan, const Pose2& slam_from_base, int epoch);
+  void Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch);
+  // What moves, as the scan that was followed last shows, but was taken to stand before anything
+  // showed how it moves, and so was drawn: an object's beams in the order of time. Told once.
+  std::vector<std::vector<Beams>> TakeMistaken();
+  // Whether there may be more to tell.
+  bool MayBeMistaken() const;
   // Of the scan that was followed last, as `matched`, what moves. What is not judged yet is not
-  // `standing`, nor matched where it stands free, unless it is half of what is seen.
+  // `standing`, nor matched where it stands free, unless it is half of what is seen; of a run's
+  // first scan what is cut and what is half of it stands.
   void TakeOut(FrameScans& scans);
 
  private:
   enum class Verdict { kNone, kStands, kMoves };
   // How what is not judged yet is taken.
-  enum class Unjudged { kStands, kMovesIfFree, kMoves };
+  enum class Unjudged { kStands, kStandsIfCut, kStandsIfAssumed, kMoves };
   struct Point {
     Eigen::Vector2d at_m;
     // Since it is being judged.
@@ -49,6 +61,9 @@ class MovingObjects {
     Eigen::Vector2d step_m =
         Eigen::Vector2d::Zero();  // of what moves, from scan to scan in the view
     int unseen_scans = 0;
+    // Taken to stand while nothing showed how it moves: its beams since, until it surely stands.
+    bool is_assumed = false;
+    std::vector<Beams> assumed = {};
 
     bool is_free() const { return points[kMiddle].has_value(); }
   };
@@ -56,20 +71,25 @@ class MovingObjects {
   static std::optional<Object> ObjectOf(const Scan& scan, std::size_t begin, std::size_t end);
   void Find(const Scan& scan);
   void Carry(const Pose2& base_from_before);
+  void AssumeTheyStand(const Scan& scan);
+  void Remember(Object& object) const;
   static Eigen::Vector2d OffM(const Object& known, const Object& seen);
   static const Point& FirstOf(const Points& points);
   void Recognise(Object& object);
-  void Judge(Object& object) const;
+  void Judge(Object& object);
   void FindHidden(const Scan& scan);
   static bool Moves(const Object& object, Unjudged unjudged);
   bool IsHalfUnjudged(const Scan& scan) const;
+  static void SilenceBeside(const Object& object, const Scan& scan, Scan& rest);
   std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan, Unjudged unjudged);
 
   double after_m_;
   std::optional<Pose2> slam_from_before_;
   int epoch_ = 0;
+  int frame_ = 0;
   std::vector<Object> objects_;  // of the last scan
   std::vector<Object> before_;   // known before it, and not recognised in it
+  std::vector<std::vector<Beams>> mistaken_;
   ScanPool pool_;
 };
 
