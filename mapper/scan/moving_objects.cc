@@ -259,13 +259,25 @@ bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
   return 2 * unjudged >= hits;
 }
 
-// Of what moves some beams are no part of it: between those that the sensor's least range lost.
+// Where the sensor's least range cuts somebody near, some beams of theirs hang beside: among those
+// that say nothing.
 void MovingObjects::SilenceBeside(const Object& object, const Scan& scan, Scan& rest) {
+  const std::vector<Beam>& beams = scan.beams;
   const Eigen::Vector2d& at_m = FirstOf(object.points).at_m;
-  for (std::size_t i = 0; i < scan.beams.size(); ++i) {
-    const Beam& beam = scan.beams[i];
-    if (beam.hit && (EndPoint(beam) - at_m).norm() < kBesideM) rest.beams[i] = Silent(beam);
-  }
+  const auto silence_from = [&](std::size_t first, std::size_t step) {
+    bool beyond = false;
+    for (std::size_t i = first; i < beams.size(); i += step) {
+      if (!SaysSomething(beams[i])) {
+        beyond = true;
+      } else if (!beams[i].hit || (EndPoint(beams[i]) - at_m).norm() > kBesideM) {
+        break;
+      } else if (beyond) {
+        rest.beams[i] = Silent(beams[i]);
+      }
+    }
+  };
+  silence_from(object.end, 1);
+  silence_from(object.begin - 1, static_cast<std::size_t>(-1));  // ends below 0
 }
 
 // The scan itself where nothing moves.

@@ -152,6 +152,25 @@ TEST(MovingObjects, WhatIsHalfOfTheViewIsMatchedUntilItIsJudged) {
   EXPECT_EQ(HitsNear(*After(moving, scan(1.0), At(7), 0).matched, {1.0, 0.0}), 0);
 }
 
+// Of who walks on .5 m ahead the sensor's least range loses the middle, but for a few beams.
+TEST(MovingObjects, WhatTheLeastRangeLeavesBesideWhoMovesIsLeftOut) {
+  Scan seen;
+  seen.max_range_m = 6.0;
+  for (int i = -50; i < 50; ++i) {
+    Beam beam{.bearing_rad = 0.01F * static_cast<float>(i), .range_m = 5.0F, .hit = true};
+    if (std::abs(i) <= 20) beam.range_m = 0.5F;
+    if (i > -10 && i <= 20 && i != 4 && i != 5) beam.hit = false;  // says nothing
+    seen.beams.push_back(beam);
+  }
+  const auto scan = std::make_shared<const Scan>(seen);
+  MovingObjects moving(kAfterM);
+  for (int i = 0; i < 5; ++i) After(moving, scan, At(i), 0);
+  EXPECT_EQ(HitsNear(*scan, {0.5, 0.0}), 13);
+  const FrameScans after = After(moving, scan, At(8), 0);
+  EXPECT_EQ(HitsNear(*after.matched, {0.5, 0.0}), 0);
+  EXPECT_EQ(HitsNear(*after.matched, {5.0, 0.0}), HitsNear(*scan, {5.0, 0.0}));
+}
+
 TEST(MovingObjects, ZeroFollowsNothing) {
   MovingObjects moving(0.0);
   const auto scan = std::make_shared<const Scan>(ScanOfRoom({}, {1.5, 0.0}));
