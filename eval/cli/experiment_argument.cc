@@ -30,9 +30,6 @@ Config ExperimentFile(const std::string& path) {
   if (IsMeshFile(path)) {
     throw InputError(path, "is a mesh; an experiment is a YAML file that names it as its scene");
   }
-  if (fs::exists(fs::path(path) / "run.yaml")) {
-    throw InputError(path, "is a folder; the run.yaml in it can be run again");
-  }
   Config config = Config::FromFile(path);
   if (config.Has("shapes") && !config.Has("scene")) {
     throw InputError(path, "is a scene; an experiment is a YAML file that names it as its scene");

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "eval/experiment/idle_settings.h"
+#include "eval/experiment/shipped.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -59,6 +60,25 @@ void RequireOptionsFor(const std::vector<std::string>& overrides) {
     if (!config.Has(named.key)) continue;
     throw InputError(config.PlaceOfKey(named.key),
                      fmt::format("is for a map's run.yaml as input; {}", named.instead));
+  }
+}
+
+// What another command takes, or what one wrote.
+void RefuseOtherInputs(const std::string& input, SequenceFormat format) {
+  namespace fs = std::filesystem;
+  const std::string shipped = ShippedFolder(ShippedKind::kExperiment);
+  std::error_code error;  // such as of a name that is too long
+  if (!IsFileName(input) && !fs::exists(input, error) &&
+      fs::exists(fs::path(shipped) / (input + ".yaml"), error)) {
+    throw InputError(input, "is a shipped experiment; `depthgrid run` takes it");
+  }
+  if (format != SequenceFormat::kAuto || !fs::exists(fs::path(input) / "run.yaml", error)) return;
+  try {
+    DetectFormat(input);
+  } catch (const InputError&) {
+    throw InputError(input,
+                     "is the folder of a finished run, no recording; `--map` goes on in its map, "
+                     "and the run.yaml in it makes it again");
   }
 }
 
@@ -152,6 +172,7 @@ MapRequest ReadMapRequest(const MapArguments& given) {
                  [&](const std::string& key) { return PlaceOfKey({&request.config}, key); });
   request.arguments = WithFilesOf(settings, given);
   const MapArguments& arguments = request.arguments;
+  RefuseOtherInputs(arguments.input, settings.sequence.format);
   request.start = PlaceOf(settings.start);
   RequireMapFor(request);
   RefuseMapMode(arguments);

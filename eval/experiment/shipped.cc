@@ -23,6 +23,24 @@ const char* WordFor(ShippedKind kind) {
   Broken("a shipped file is of one of the kinds");
 }
 
+// None of what is looked for is a folder.
+[[noreturn]] void RefuseFolder(const std::string& folder, ShippedKind kind) {
+  switch (kind) {
+    case ShippedKind::kScene:
+      throw InputError(folder, "is a folder, must be a scene or mesh file");
+    case ShippedKind::kExperiment:
+      if (fs::exists(fs::path(folder) / "run.yaml")) {
+        throw InputError(folder, "is a folder; the run.yaml in it can be run again");
+      }
+      throw InputError(folder,
+                       "is a folder, must be an experiment's YAML file; `depthgrid map` takes "
+                       "folders of recordings");
+    case ShippedKind::kSweep:
+      throw InputError(folder, "is a folder, must be a sweep's YAML file");
+  }
+  Broken("a shipped file is of one of the kinds");
+}
+
 }  // namespace
 
 bool IsFileName(const std::string& name) {
@@ -59,12 +77,10 @@ std::vector<std::string> ShippedNames(ShippedKind kind) {
 }
 
 std::string ResolveName(const std::string& name, ShippedKind kind, const std::string& base_folder) {
+  const fs::path path = fs::path(base_folder) / name;  // an absolute name replaces the base
   if (IsFileName(name)) {
-    const fs::path path = fs::path(base_folder) / name;  // an absolute name replaces the base
     if (!fs::exists(path)) throw InputError(path.string(), "no such file");
-    if (kind == ShippedKind::kScene && fs::is_directory(path)) {
-      throw InputError(path.string(), "is a folder, must be a scene or mesh file");
-    }
+    if (fs::is_directory(path)) RefuseFolder(path.string(), kind);
     return path.string();
   }
   const std::vector<std::string> names = ShippedNames(kind);
@@ -77,9 +93,12 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
     throw InputError(name, std::string("is a shipped ") + WordFor(other) + ", no " + WordFor(kind) +
                                "; see `depthgrid scenes`");
   }
-  const std::string hint = DidYouMean(name, names);
-  throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" +
-                             (hint.empty() ? "; see `depthgrid scenes`" : hint));
+  std::error_code error;  // such as of a name that is too long
+  if (fs::is_directory(path, error)) RefuseFolder(path.string(), kind);
+  std::string hint = DidYouMean(name, names);
+  if (hint.empty()) hint = "; see `depthgrid scenes`";
+  if (fs::exists(path, error)) hint = "; the file is ./" + name;
+  throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" + hint);
 }
 
 std::string ResolveNameAt(const std::string& place, const std::string& name, ShippedKind kind,

@@ -127,6 +127,29 @@ TEST_F(ProgramRun, AMapsOwnSettingsGiveItAgain) {
   EXPECT_THAT(other_way.err, HasSubstr("is an experiment; `depthgrid run` takes it"));
 }
 
+TEST_F(ProgramRun, WhatAnotherCommandTakesIsSaidToBeIts) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Succeed("map seq -o out");
+  const auto said = [&](const std::string& command) {
+    const Outcome refused = Program(command + " -o other");
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    return refused.err;
+  };
+  EXPECT_THAT(said("run seq"),
+              HasSubstr("depthgrid: seq: is a folder, must be an experiment's YAML "
+                        "file; `depthgrid map` takes folders"));
+  EXPECT_THAT(said("sweep seq"), HasSubstr("seq: is a folder, must be a sweep's YAML file"));
+  EXPECT_THAT(said("map living_room"),
+              HasSubstr("living_room: is a shipped experiment; `depthgrid run` takes it"));
+  EXPECT_THAT(said("map out"), HasSubstr("depthgrid: out: is the folder of a finished run, no"));
+  Write("mine", "scene: ./room.yaml\n");
+  EXPECT_THAT(said("run mine"),
+              HasSubstr("mine: no shipped experiment has this name; the file is ./mine"));
+  // A map may lie in its recording's folder.
+  Succeed("map seq -o seq --force");
+  Succeed("map seq -o third");
+}
+
 TEST_F(ProgramRun, SaysWhichInstructionSetCastItsRays) {
   const auto says = [&](const std::string& folder, const std::string& isa) {
     EXPECT_THAT(ReadFile(Path(folder + "/run.yaml")), HasSubstr("ray_instruction_set: " + isa));
