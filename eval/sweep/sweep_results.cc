@@ -22,7 +22,13 @@ std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format(
 
 [[noreturn]] void FailFinding(const std::string& folder, const char* what, const std::string& name,
                               const std::vector<std::string>& names) {
-  throw InputError(folder, fmt::format("has no {} '{}'{}", what, name, DidYouMean(name, names)));
+  constexpr std::size_t kMostListed = 12;
+  std::string hint = DidYouMean(name, names);
+  if (hint.empty()) hint = DidYouMeanKey(name, names, true);
+  if (hint.empty() && !names.empty() && names.size() <= kMostListed) {
+    hint = fmt::format(", must be one of {}", fmt::join(names, ", "));
+  }
+  throw InputError(folder, fmt::format("has no {} '{}'{}", what, name, hint));
 }
 
 }  // namespace

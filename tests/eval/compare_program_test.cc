@@ -148,6 +148,8 @@ TEST_F(ProgramCompare, Refusals) {
   ExpectRefusal("compare a b --where seed", {"--where", "key.path=value"});
   ExpectRefusal("compare a b --where-b seed", {"--where-b: is 'seed'", "key.path=value"});
   ExpectRefusal("compare a b --where sed=1", {"sed", "'seed'"});
+  ExpectRefusal("compare a b --where-a gain=1", {"no axis 'gain', must be one of ", "seed"});
+  ExpectRefusal("compare a b --metric mean_euclidean_m", {"did you mean '", kComparedScore});
   ExpectRefusal("compare a b --where-a seed=77", {"seed = 77"});
   ExpectRefusal("compare a/0 b/1", {"shares no run"});
   Write("b/0/metrics.json", "{");
