@@ -1,5 +1,5 @@
 // Maps what a depth camera on a robot sees with the poses that SLAM gives, its corrections and its
-// loops, and writes the map for Nav2. Usage: depth_mapper FOLDER
+// loops, and writes the map for Nav2. Usage: depth_mapper FOLDER (to write)
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -62,11 +62,16 @@ int main(int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   const bool asks = first == "--help" || first == "-h";
   if (argc != 2 || asks) {
-    std::fprintf(asks ? stdout : stderr, "usage: depth_mapper FOLDER\n");
+    std::fprintf(asks ? stdout : stderr, "usage: depth_mapper FOLDER   (to write)\n");
     return asks ? 0 : 2;
   }
   const std::filesystem::path folder = first;
-  std::filesystem::create_directories(folder);
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
+    return 2;
+  }
   MapperOptions options;
   options.scan.beams = kCamera.width_px;  // not more than there are columns
   options.scan.min_range_m = 0.3;

@@ -21,8 +21,13 @@ import sys
 import tempfile
 import zlib
 
-import numpy as np
-import rosbag
+MISSING = ""
+try:
+    import numpy as np
+    import rosbag
+except ImportError as error:  # --help does without
+    MISSING = (f"{error}: apt-get install python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs "
+               "python3-numpy, for /usr/bin/python3")
 
 # A gap in the poses that no straight line is drawn across.
 MOST_GAP_S = 0.5
@@ -391,6 +396,9 @@ def main():
                         help="of the laser on the robot: m forward, m left, degrees to the left")
     parser.add_argument("-o", "--output", help="the log, or the folder, to write")
     arguments = parser.parse_args()
+    if MISSING:
+        print(f"from_bag.py: {MISSING}", file=sys.stderr)
+        return 2
     try:
         with rosbag.Bag(arguments.bag) as bag:
             if not (arguments.scan or arguments.depth or arguments.output):

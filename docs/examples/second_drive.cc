@@ -1,5 +1,5 @@
 // Maps what a laser's driver gives with a robot's odometry and saves the map; a second drive, begun
-// somewhere else, finds its place in it and goes on. Usage: second_drive FOLDER
+// somewhere else, finds its place in it and goes on. Usage: second_drive FOLDER (to write)
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -93,10 +93,15 @@ int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : "";
   const bool asks = folder == "--help" || folder == "-h";
   if (argc != 2 || asks) {
-    std::fprintf(asks ? stdout : stderr, "usage: second_drive FOLDER\n");
+    std::fprintf(asks ? stdout : stderr, "usage: second_drive FOLDER   (to write)\n");
     return asks ? 0 : 2;
   }
-  std::filesystem::create_directories(folder);
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
+    return 2;
+  }
   const MapperOptions options;
 
   IncrementalMapper first(options, std::nullopt);
