@@ -44,7 +44,7 @@ function initPlots() {
 }
 
 // ---- stage times: timing.js, beside this page, so that the page is the same bytes every time ----
-const STAGES = [["scan", "depth to scan", "slam"], ["match", "match", "est"], ["fuse", "fuse", "truth"], ["insert", "insert", "invented"], ["loops", "loops", "missed"], ["rest", "rest", "online"]];
+const STAGES = [["scan", RUN.input_poses === "odometry" ? "scan" : "depth to scan", "slam"], ["match", "match", "est"], ["fuse", "fuse", "truth"], ["insert", "insert", "invented"], ["loops", "loops", "missed"], ["rest", "rest", "online"]];
 const LEAST_US = 1;  // shown: a stage that had nothing to do takes a fraction of it
 // Of at least 25 frames each, at most 200 of them.
 const BLOCK_FRAMES = Math.max(25, Math.ceil(frameCount / 200));
