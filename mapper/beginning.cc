@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::size_t kMostFrames = 300;
 
-void Silence(std::shared_ptr<const Scan>& scan, std::size_t begin, std::size_t end) {
+void Silence(std::shared_ptr<const Scan>& scan, float first_rad, float last_rad) {
   if (!scan) return;
   const auto rest = std::make_shared<Scan>(*scan);
-  for (std::size_t i = begin; i < end; ++i) {
-    rest->beams[i] = Silent(rest->beams[i]);
+  for (Beam& beam : rest->beams) {
+    if (beam.bearing_rad >= first_rad && beam.bearing_rad <= last_rad) beam = Silent(beam);
   }
   scan = rest;
 }
@@ -42,14 +42,14 @@ bool Beginning::TakeOut(const std::vector<MovingObjects::Beams>& object) {
     while (next != object.end() && next->frame < seen.frame.index) ++next;
     if (next == object.end()) break;
     if (!seen.scans.matched) continue;
-    std::size_t begin = next->begin, end = next->end;
+    float first_rad = next->first_rad, last_rad = next->last_rad;
     if (next->frame > seen.frame.index) {
       if (next == object.begin()) continue;
-      begin = std::min(begin, std::prev(next)->begin);
-      end = std::max(end, std::prev(next)->end);
+      first_rad = std::min(first_rad, std::prev(next)->first_rad);
+      last_rad = std::max(last_rad, std::prev(next)->last_rad);
     }
-    Silence(seen.scans.matched, begin, end);
-    Silence(seen.scans.standing, begin, end);
+    Silence(seen.scans.matched, first_rad, last_rad);
+    Silence(seen.scans.standing, first_rad, last_rad);
     any = true;
   }
   return any;

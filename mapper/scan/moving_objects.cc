@@ -308,14 +308,16 @@ void MovingObjects::AssumeTheyStand(const Scan& scan) {
   }
 }
 
-void MovingObjects::Remember(Object& object) const {
+void MovingObjects::Remember(const Scan& scan, Object& object) const {
   if (!object.is_assumed || object.verdict == Verdict::kMoves) return;
   if (object.assumed.size() == kMostAssumed) {
     object.is_assumed = false;
     object.assumed = {};
     return;
   }
-  object.assumed.push_back({.frame = frame_, .begin = object.begin, .end = object.end});
+  object.assumed.push_back({.frame = frame_,
+                            .first_rad = scan.beams[object.begin].bearing_rad,
+                            .last_rad = scan.beams[object.end - 1].bearing_rad});
 }
 
 void MovingObjects::Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch) {
@@ -341,7 +343,7 @@ void MovingObjects::Follow(int frame, const Scan& scan, const Pose2& slam_from_b
 void MovingObjects::TakeOut(FrameScans& scans) {
   const std::shared_ptr<const Scan> all = scans.matched;
   const bool half_unjudged = IsHalfUnjudged(*all);
-  for (Object& object : objects_) Remember(object);
+  for (Object& object : objects_) Remember(*all, object);
   const Unjudged matched = half_unjudged ? Unjudged::kStands : Unjudged::kStandsIfCut;
   const Unjudged drawn = half_unjudged ? Unjudged::kStandsIfAssumed : Unjudged::kMoves;
   scans.matched = Rest(all, matched);

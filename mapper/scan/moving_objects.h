@@ -21,10 +21,10 @@ class MovingObjects {
   // view if it stands; 0: nothing is followed.
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
-  // Beams of the scan of one frame.
+  // Where in the scan of a frame something was: the bearings of its first and its last beam.
   struct Beams {
     int frame = 0;
-    std::size_t begin = 0, end = 0;
+    float first_rad = 0.0F, last_rad = 0.0F;
   };
 
   // The matched scans of frames that have one, in the order of time, with SLAM's pose; nothing is
@@ -72,7 +72,7 @@ class MovingObjects {
   void Find(const Scan& scan);
   void Carry(const Pose2& base_from_before);
   void AssumeTheyStand(const Scan& scan);
-  void Remember(Object& object) const;
+  void Remember(const Scan& scan, Object& object) const;
   static Eigen::Vector2d OffM(const Object& known, const Object& seen);
   static const Point& FirstOf(const Points& points);
   void Recognise(Object& object);

@@ -299,7 +299,7 @@ TEST(MovingObjects, WhatWasTakenToStandAndMovesIsTold) {
         ASSERT_EQ(object.size(), 6U);
         EXPECT_EQ(object.front().frame, 0);
         EXPECT_EQ(object.back().frame, 5);
-        EXPECT_GT(object.front().end - object.front().begin, 40U);
+        EXPECT_GT(object.front().last_rad - object.front().first_rad, 0.1F);
       }
     }
     EXPECT_EQ(told, walks ? 1 : 0);
