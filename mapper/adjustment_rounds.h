@@ -31,6 +31,7 @@ class AdjustmentRounds {
   // not count: where this run began in it is put right by the first round. Nor do those to which
   // SLAM stood, which tell nothing new.
   bool IsDue(int frames);
+  bool any_was_due() const { return next_ > options_.first_frames; }
 
  private:
   RoundOptions options_;

@@ -35,21 +35,22 @@ void Beginning::Add(const Frame& frame, const FrameScans& scans) {
   frames_.push_back(std::move(seen));
 }
 
-bool Beginning::TakeOut(const std::vector<MovingObjects::Beams>& object) {
+bool Beginning::TakeOut(const std::vector<MovingObjects::Sector>& object) {
   bool any = false;
   auto next = object.begin();
-  for (Seen& seen : frames_) {
-    while (next != object.end() && next->frame < seen.frame.index) ++next;
+  for (int frame = 0; frame < static_cast<int>(frames_.size()); ++frame) {
+    FrameScans& scans = frames_[static_cast<std::size_t>(frame)].scans;
+    while (next != object.end() && next->frame < frame) ++next;
     if (next == object.end()) break;
-    if (!seen.scans.matched) continue;
+    if (!scans.matched) continue;
     float first_rad = next->first_rad, last_rad = next->last_rad;
-    if (next->frame > seen.frame.index) {
+    if (next->frame > frame) {
       if (next == object.begin()) continue;
       first_rad = std::min(first_rad, std::prev(next)->first_rad);
       last_rad = std::max(last_rad, std::prev(next)->last_rad);
     }
-    Silence(seen.scans.matched, first_rad, last_rad);
-    Silence(seen.scans.standing, first_rad, last_rad);
+    Silence(scans.matched, first_rad, last_rad);
+    Silence(scans.standing, first_rad, last_rad);
     any = true;
   }
   return any;

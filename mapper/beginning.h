@@ -1,5 +1,5 @@
-// The first frames of a run and what they saw, to be gone through once more (docs/math.md, "The
-// first frames again").
+// The first frames of a run and what they saw, to be gone through again (docs/math.md, "The
+// first frames again" and "What moves").
 #pragma once
 
 #include <vector>
@@ -19,12 +19,12 @@ class Beginning {
   // `wanted`: whether anybody will go through them.
   explicit Beginning(bool wanted) : lasts_(wanted) {}
 
-  // The next frame, while it lasts: with more than 300 frames it is over. By then something was
-  // learnt in other ways, and going through all of it would hold up a frame for too long.
+  // The next frame, while it lasts: with more than 300 frames it is over. Going through more would
+  // hold up a frame for too long.
   void Add(const Frame& frame, const FrameScans& scans);
-  // An object that moved, in some of the frames; between them it is where it was before or after.
-  // False where none of them is here.
-  bool TakeOut(const std::vector<MovingObjects::Beams>& object);
+  // Something that moved: where it was seen, and in frames between two such all that lies from the
+  // one place to the other. Frames are counted from the first one added. False if none is here.
+  bool TakeOut(const std::vector<MovingObjects::Sector>& object);
   void End();
   bool lasts() const { return lasts_; }
   const std::vector<Seen>& frames() const { return frames_; }

@@ -81,7 +81,7 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
 void IncrementalMapper::State::Map(const Frame& frame, FrameReport& report) {
   Begin(frame, report);
   const FrameScans scans = ScansOf(frame, report);
-  TakeOutMistaken(frame);
+  TakeOutMistaken(frame, report);
   MapScans(frame, scans, report);
   beginning.Add(frame, scans);
 }
@@ -115,8 +115,8 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   const StageTimer timer(clocks, report.times.scan_us);
   FrameScans scans = scanner.ScansOf(frame);
   if (reference && scans.matched && frame.slam_from_camera) {
-    moving.Follow(frame.index, *scans.matched, BaseOf(*frame.slam_from_camera),
-                  history.newest().epoch);
+    moving.Follow(static_cast<int>(history.records().size()) - 1, *scans.matched,
+                  BaseOf(*frame.slam_from_camera), history.newest().epoch);
     moving.TakeOut(scans);
   }
   report.stand = scans.stand;

@@ -1,5 +1,6 @@
-// Once the first adjustment tells how SLAM errs, the first frames are mapped anew with that in mind
-// (docs/math.md, "The first frames again").
+// Once the first adjustment tells how SLAM errs, and when somebody who was drawn is seen to move,
+// the first frames are mapped anew with that in mind (docs/math.md, "The first frames again" and
+// "What moves").
 #include <utility>
 
 #include "mapper/mapper_state.h"
@@ -24,10 +25,12 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
   }
   FrameReport report;
   begin(newest, report);
-  if (spread) again.AdjustBetweenFrames();
+  if ((spread || rounds.any_was_due()) && !again.mapped.empty()) again.AdjustBetweenFrames();
+  again.errors.Break();
   // These know nothing of poses in the map.
   again.scanner = std::move(scanner);
   again.moving = std::move(moving);
+  again.moving.RenameEpoch(again.history.newest().epoch);  // slips may have been found elsewhere
   again.stands = std::move(stands);
   again.rounds = rounds;
   again.first_spread = spread;
@@ -37,12 +40,15 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
 
 // What was drawn though it moves carries the map along until it is left out: of the first frames it
 // is taken out once that shows.
-void IncrementalMapper::State::TakeOutMistaken(const Frame& newest) {
+void IncrementalMapper::State::TakeOutMistaken(const Frame& newest, FrameReport& report) {
   bool any = false;
-  for (const std::vector<MovingObjects::Beams>& object : moving.TakeMistaken()) {
+  for (const std::vector<MovingObjects::Sector>& object : moving.TakeMistaken()) {
     any = beginning.TakeOut(object) || any;
   }
-  if (any) GoThroughAgain(newest, first_spread);
+  if (any) {
+    const StageTimer timer(clocks, report.times.loops_us);
+    GoThroughAgain(newest, first_spread);
+  }
   if (!AwaitsSpread() && !moving.MayBeMistaken()) beginning.End();
 }
 

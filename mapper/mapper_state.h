@@ -70,7 +70,7 @@ struct IncrementalMapper::State {
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
                                                     : RoundOptions{.first_frames = 0}),
         mapped(opts.keep, std::max(kRecentFrames, 2 * opts.submap.scans)),
-        beginning(opts.method == MapperMethod::kSurfel &&
+        beginning(opts.method == MapperMethod::kSurfel && !opts.fusion.TrustsSlamAlone() &&
                   (AwaitsSpread() || opts.surfel.moving_m > 0.0)) {
     if (options.fusion.TrustsSlamAlone()) return;
     reference = MakeReference(options);
@@ -84,7 +84,7 @@ struct IncrementalMapper::State {
   void CloseLoops(const Frame& frame, const FrameScans& scans, FrameReport& report);
   std::optional<MotionSpread> AdjustBetweenFrames();
   void GoThroughAgain(const Frame& newest, const std::optional<MotionSpread>& spread);
-  void TakeOutMistaken(const Frame& newest);
+  void TakeOutMistaken(const Frame& newest, FrameReport& report);
   void FindLoops(const FrameScans& scans, FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);

@@ -30,9 +30,10 @@ constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
 // SLAM that errs by a third of its way made walls seem to move for up to four times the least way.
 constexpr int kNoErrorOfSlam = 5;
-// What else lies so near to the middle of what moves is a part of it.
+// What else lies so near to the middle of what moves, or to the end that is followed, may be a part
+// of it.
 constexpr double kBesideM = 0.2;
-// A robot that stands shows nothing: the first frames are no longer there.
+// While a robot stands nothing shows. By then the first frames are no longer there (Beginning).
 constexpr std::size_t kMostAssumed = 300;
 // A person's half width, and what the step is off by.
 constexpr double kHiddenRadiusM = 0.3;
@@ -131,8 +132,8 @@ void MovingObjects::Find(const Scan& scan) {
 void MovingObjects::Carry(const Pose2& base_from_before) {
   std::swap(objects_, before_);
   // What was not recognised in the last scan is still among before_, now objects_.
-  for (const Object& object : objects_) {
-    if (object.unseen_scans <= kMostUnseenScans) before_.push_back(object);
+  for (Object& object : objects_) {
+    if (object.unseen_scans <= kMostUnseenScans) before_.push_back(std::move(object));
   }
   objects_.clear();
   for (Object& object : before_) {
@@ -215,8 +216,7 @@ void MovingObjects::FindHidden(const Scan& scan) {
   const auto is_hidden = [&](const Object& known) {
     if (known.times_moved < kSurelyMoved || known.unseen_scans > kMostHiddenScans) return false;
     const Eigen::Vector2d& at_m = FirstOf(known.points).at_m;
-    Object hidden = known;
-    hidden.begin = scan.beams.size();
+    BeamRange hidden{scan.beams.size(), 0};
     for (std::size_t i = 0; i < scan.beams.size(); ++i) {
       const Beam& beam = scan.beams[i];
       if (!beam.hit || (EndPoint(beam) - at_m).norm() > kHiddenRadiusM) continue;
@@ -227,8 +227,11 @@ void MovingObjects::FindHidden(const Scan& scan) {
     const float across_rad =
         scan.beams[hidden.end - 1].bearing_rad - scan.beams[hidden.begin].bearing_rad;
     if (across_rad > kWidestHiddenRad) return false;
-    hidden.step_m *= kKeptStepShare;
-    objects_.push_back(hidden);
+    Object object = known;
+    object.begin = hidden.begin;
+    object.end = hidden.end;
+    object.step_m *= kKeptStepShare;
+    objects_.push_back(std::move(object));
     return true;
   };
   std::erase_if(before_, is_hidden);
@@ -261,23 +264,24 @@ bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
 
 // Where the sensor's least range cuts somebody near, some beams of theirs hang beside: among those
 // that say nothing.
-void MovingObjects::SilenceBeside(const Object& object, const Scan& scan, Scan& rest) {
+MovingObjects::BeamRange MovingObjects::WithFringe(const Object& object, const Scan& scan) {
   const std::vector<Beam>& beams = scan.beams;
   const Eigen::Vector2d& at_m = FirstOf(object.points).at_m;
-  const auto silence_from = [&](std::size_t first, std::size_t step) {
+  const auto farthest = [&](std::size_t last, std::size_t step) {
+    std::size_t found = last;
     bool beyond = false;
-    for (std::size_t i = first; i < beams.size(); i += step) {
+    for (std::size_t i = last + step; i < beams.size(); i += step) {  // ends below 0 too
       if (!SaysSomething(beams[i])) {
         beyond = true;
       } else if (!beams[i].hit || (EndPoint(beams[i]) - at_m).norm() > kBesideM) {
         break;
       } else if (beyond) {
-        rest.beams[i] = Silent(beams[i]);
+        found = i;
       }
     }
+    return found;
   };
-  silence_from(object.end, 1);
-  silence_from(object.begin - 1, static_cast<std::size_t>(-1));  // ends below 0
+  return {farthest(object.begin, static_cast<std::size_t>(-1)), farthest(object.end - 1, 1) + 1};
 }
 
 // The scan itself where nothing moves.
@@ -290,34 +294,31 @@ std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan
   *rest = *scan;
   for (const Object& object : objects_) {
     if (!Moves(object, unjudged)) continue;
-    for (std::size_t i = object.begin; i < object.end; ++i) {
-      rest->beams[i] = Silent(scan->beams[i]);
-    }
-    if (object.verdict == Verdict::kMoves) SilenceBeside(object, *scan, *rest);
+    const BeamRange beams = object.verdict == Verdict::kMoves ? WithFringe(object, *scan)
+                                                              : BeamRange{object.begin, object.end};
+    for (std::size_t i = beams.begin; i < beams.end; ++i) rest->beams[i] = Silent(scan->beams[i]);
   }
   return rest;
 }
 
-// A run's first scan says where the map lies: what is cut, mostly walls, is in it, and all if it is
-// half of what is seen.
+// The first scan says where the map, or the epoch, lies: what is cut, mostly walls, is in it, and
+// the rest too if it is half of what is seen.
 void MovingObjects::AssumeTheyStand(const Scan& scan) {
-  const bool half_unjudged = IsHalfUnjudged(scan);
   for (Object& object : objects_) {
-    object.is_assumed = half_unjudged || !object.is_free();
-    if (!object.is_free()) object.verdict = Verdict::kStands;
+    if (object.is_free()) continue;
+    object.verdict = Verdict::kStands;
+    object.is_assumed = true;
   }
+  if (!IsHalfUnjudged(scan)) return;
+  for (Object& object : objects_) object.is_assumed = true;
 }
 
 void MovingObjects::Remember(const Scan& scan, Object& object) const {
-  if (!object.is_assumed || object.verdict == Verdict::kMoves) return;
-  if (object.assumed.size() == kMostAssumed) {
-    object.is_assumed = false;
-    object.assumed = {};
-    return;
-  }
+  if (!object.is_assumed || object.assumed.size() == kMostAssumed) return;
+  const BeamRange beams = WithFringe(object, scan);
   object.assumed.push_back({.frame = frame_,
-                            .first_rad = scan.beams[object.begin].bearing_rad,
-                            .last_rad = scan.beams[object.end - 1].bearing_rad});
+                            .first_rad = scan.beams[beams.begin].bearing_rad,
+                            .last_rad = scan.beams[beams.end - 1].bearing_rad});
 }
 
 void MovingObjects::Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch) {
@@ -353,12 +354,14 @@ void MovingObjects::TakeOut(FrameScans& scans) {
   scans.standing = differ ? Rest(all, drawn) : nullptr;
 }
 
-std::vector<std::vector<MovingObjects::Beams>> MovingObjects::TakeMistaken() {
+std::vector<std::vector<MovingObjects::Sector>> MovingObjects::TakeMistaken() {
   return std::exchange(mistaken_, {});
 }
 
 bool MovingObjects::MayBeMistaken() const {
-  const auto is_assumed = [](const Object& object) { return object.is_assumed; };
+  const auto is_assumed = [](const Object& object) {
+    return object.is_assumed && object.assumed.size() < kMostAssumed;
+  };
   if (after_m_ <= 0.0) return false;
   return !slam_from_before_ || std::any_of(objects_.begin(), objects_.end(), is_assumed) ||
          std::any_of(before_.begin(), before_.end(), is_assumed);

@@ -22,22 +22,24 @@ class MovingObjects {
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
   // Where in the scan of a frame something was: the bearings of its first and its last beam.
-  struct Beams {
+  struct Sector {
     int frame = 0;
     float first_rad = 0.0F, last_rad = 0.0F;
   };
 
   // The matched scans of frames that have one, in the order of time, with SLAM's pose; nothing is
-  // compared from one epoch to another (SlamEpochs).
+  // compared from one epoch to another (SlamEpochs). Frames are counted by the caller, upwards.
   void Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch);
   // What moves, as the scan that was followed last shows, but was taken to stand before anything
-  // showed how it moves, and so was drawn: an object's beams in the order of time. Told once.
-  std::vector<std::vector<Beams>> TakeMistaken();
+  // showed how it moves, and so was drawn: each object's way, of 300 frames at most. Told once.
+  std::vector<std::vector<Sector>> TakeMistaken();
   // Whether there may be more to tell.
   bool MayBeMistaken() const;
+  // The epoch of the last scan is called so from now on.
+  void RenameEpoch(int epoch) { epoch_ = epoch; }
   // Of the scan that was followed last, as `matched`, what moves. What is not judged yet is not
-  // `standing`, nor matched where it stands free, unless it is half of what is seen; of a run's
-  // first scan what is cut and what is half of it stands.
+  // `standing`; where it stands free it is matched only if all such is half of what is seen. Of
+  // the first scan, and the first of an epoch, what is cut stands, and so does that half.
   void TakeOut(FrameScans& scans);
 
  private:
@@ -61,9 +63,10 @@ class MovingObjects {
     Eigen::Vector2d step_m =
         Eigen::Vector2d::Zero();  // of what moves, from scan to scan in the view
     int unseen_scans = 0;
-    // Taken to stand while nothing showed how it moves: its beams since, until it surely stands.
+    // Taken to stand while nothing showed how it moves: where it was since, until it surely stands
+    // or was told.
     bool is_assumed = false;
-    std::vector<Beams> assumed = {};
+    std::vector<Sector> assumed = {};
 
     bool is_free() const { return points[kMiddle].has_value(); }
   };
@@ -80,7 +83,10 @@ class MovingObjects {
   void FindHidden(const Scan& scan);
   static bool Moves(const Object& object, Unjudged unjudged);
   bool IsHalfUnjudged(const Scan& scan) const;
-  static void SilenceBeside(const Object& object, const Scan& scan, Scan& rest);
+  struct BeamRange {
+    std::size_t begin, end;
+  };
+  static BeamRange WithFringe(const Object& object, const Scan& scan);
   std::shared_ptr<const Scan> Rest(const std::shared_ptr<const Scan>& scan, Unjudged unjudged);
 
   double after_m_;
@@ -89,7 +95,7 @@ class MovingObjects {
   int frame_ = 0;
   std::vector<Object> objects_;  // of the last scan
   std::vector<Object> before_;   // known before it, and not recognised in it
-  std::vector<std::vector<Beams>> mistaken_;
+  std::vector<std::vector<Sector>> mistaken_;
   ScanPool pool_;
 };
 

@@ -32,6 +32,7 @@ struct SurfelOptions {
   // At the end each frame's pose stays near that of the joint adjustment (Smoothed).
   double stay_m = 0.3;
   // MovingObjects: what stands free is matched once it was seen to stand over so much of a way.
+  // What was drawn before and moves is taken out of the first frames, and these are mapped anew.
   double moving_m = 0.12;
 
   void Visit(OptionsVisitor& v);

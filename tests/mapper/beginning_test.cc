@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
 
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
@@ -46,6 +50,51 @@ TEST(Beginning, NothingIsHeldThatNobodyWants) {
   beginning.Add({}, {});
   EXPECT_FALSE(beginning.lasts());
   EXPECT_TRUE(beginning.frames().empty());
+}
+
+// From 0 to 1 rad.
+std::shared_ptr<const Scan> EvenScan(int beams) {
+  Scan scan;
+  for (int i = 0; i < beams; ++i) {
+    const float bearing_rad = static_cast<float>(i) / static_cast<float>(beams - 1);
+    scan.beams.push_back({.bearing_rad = bearing_rad, .range_m = 2.0F, .hit = true});
+  }
+  return std::make_shared<const Scan>(scan);
+}
+
+std::size_t SilentBeams(const std::shared_ptr<const Scan>& scan) {
+  const auto is_silent = [](const Beam& beam) { return beam == Silent(beam); };
+  return static_cast<std::size_t>(std::count_if(scan->beams.begin(), scan->beams.end(), is_silent));
+}
+
+TEST(Beginning, WhatMovedIsTakenOutByItsBearings) {
+  Beginning beginning(true);
+  const std::vector<int> beams = {11, 0, 21, 6, 11};  // 0: no scan
+  for (const int count : beams) {
+    const auto scan = count > 0 ? EvenScan(count) : nullptr;
+    // Numbers of frames need not go upwards.
+    Frame frame;
+    frame.index = 90 - count;
+    beginning.Add(frame, {.obstacles = scan, .matched = scan});
+  }
+  EXPECT_TRUE(beginning.TakeOut({{.frame = 0, .first_rad = 0.36F, .last_rad = 0.55F},
+                                 {.frame = 3, .first_rad = 0.55F, .last_rad = 0.86F}}));
+  const auto& frames = beginning.frames();
+  EXPECT_EQ(SilentBeams(frames[0].scans.matched), 2U);  // .4 and .5
+  EXPECT_EQ(frames[1].scans.matched, nullptr);
+  EXPECT_EQ(SilentBeams(frames[2].scans.matched), 10U);  // .4 to .85: in between it went along
+  EXPECT_EQ(SilentBeams(frames[3].scans.matched), 2U);   // .6 and .8
+  EXPECT_EQ(SilentBeams(frames[4].scans.matched), 0U);
+  EXPECT_EQ(SilentBeams(frames[0].scans.obstacles), 0U);  // the map of cells is drawn from all
+}
+
+TEST(Beginning, WhatIsNotInItChangesNothing) {
+  Beginning beginning(true);
+  beginning.Add({}, {.obstacles = EvenScan(11), .matched = EvenScan(11)});
+  EXPECT_FALSE(beginning.TakeOut({{.frame = 7, .first_rad = 0.0F, .last_rad = 1.0F}}));
+  EXPECT_EQ(SilentBeams(beginning.frames()[0].scans.matched), 0U);
+  beginning.End();
+  EXPECT_FALSE(beginning.TakeOut({{.frame = 0, .first_rad = 0.0F, .last_rad = 1.0F}}));
 }
 
 constexpr int kFrameCount = 150;

@@ -147,9 +147,17 @@ TEST(MovingObjects, WhatIsHalfOfTheViewIsMatchedUntilItIsJudged) {
     }
     return std::make_shared<const Scan>(seen);
   };
-  EXPECT_EQ(HitsNear(*After(moving, scan(1.0), At(0), 0).matched, {1.0, 0.0}), 39);
+  const FrameScans first = After(moving, scan(1.0), At(0), 0);
+  EXPECT_EQ(HitsNear(*first.matched, {1.0, 0.0}), 39);
+  EXPECT_EQ(first.kept(), first.matched);  // it says where the map lies
   for (int i = 1; i < 6; ++i) After(moving, scan(1.0), At(i), 0);
   EXPECT_EQ(HitsNear(*After(moving, scan(1.0), At(7), 0).matched, {1.0, 0.0}), 0);
+
+  MovingObjects later(kAfterM);
+  After(later, scan(5.0), At(0), 0);
+  const FrameScans second = After(later, scan(1.0), At(1), 0);
+  EXPECT_EQ(HitsNear(*second.matched, {1.0, 0.0}), 39);
+  EXPECT_EQ(HitsNear(*second.kept(), {1.0, 0.0}), 0);
 }
 
 // Of who walks on .5 m ahead the sensor's least range loses the middle, but for a few beams.
@@ -278,8 +286,7 @@ TEST(MovingObjects, WhatStandsAtTheEdgeIsKept) {
   }
 }
 
-// Those whom the first scan cuts are told once, when they were judged to move five times: the scans
-// before they first were.
+// Those whom the first scan cuts are told once, when they were judged to move five times.
 TEST(MovingObjects, WhatWasTakenToStandAndMovesIsTold) {
   for (const bool walks : {true, false}) {
     MovingObjects moving(kAfterM);
@@ -294,11 +301,11 @@ TEST(MovingObjects, WhatWasTakenToStandAndMovesIsTold) {
       if (i == 0) {
         EXPECT_TRUE(moving.MayBeMistaken());
       }
-      for (const std::vector<MovingObjects::Beams>& object : mistaken) {
+      for (const std::vector<MovingObjects::Sector>& object : mistaken) {
         EXPECT_NEAR(i * kStepM, 5.0 * kAfterM, kStepM + 1e-9);
-        ASSERT_EQ(object.size(), 6U);
+        ASSERT_EQ(object.size(), static_cast<std::size_t>(i));
         EXPECT_EQ(object.front().frame, 0);
-        EXPECT_EQ(object.back().frame, 5);
+        EXPECT_EQ(object.back().frame, i - 1);
         EXPECT_GT(object.front().last_rad - object.front().first_rad, 0.1F);
       }
     }
