@@ -112,6 +112,7 @@ void ReadList(const std::vector<std::string>& items, SweepAxis& axis) {
 SweepAxis ReadAxis(const ConfigEntry& entry) {
   SweepAxis axis;
   axis.place = entry.place;
+  axis.is_lone = !entry.map && !entry.items;
   axis.keys = KeysOf(entry.key);
   if (axis.keys.empty()) throw InputError(entry.place, "an axis needs the name of a key");
   if (entry.map && axis.keys.size() > 1) {

@@ -33,6 +33,7 @@ struct SweepAxis {
   std::vector<std::string> keys;                 // several: their values change together
   std::vector<std::vector<std::string>> values;  // [value][key], YAML in its shortest form
   std::optional<AxisRange> range;                // of a random sweep, instead of values
+  bool is_lone = false;                          // one value that is no list
   std::string place;
 
   // Seeds repeat each grid point instead of making others.

@@ -12,6 +12,7 @@
 #include "eval/experiment/idle_settings.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -121,6 +122,22 @@ std::optional<std::string> DoubtOfCameras(const SweepPlan& plan) {
   const std::string more =
       found.size() == 1 ? "" : fmt::format(" (the first of {} such warnings)", found.size());
   return fmt::format("{}: {}{}", plan.title, found.front(), more);
+}
+
+std::vector<std::string> DoubtsOfLoneSeeds(const std::vector<SweepAxis>& axes) {
+  std::vector<std::string> doubts;
+  for (const SweepAxis& axis : axes) {
+    if (!axis.is_lone || !axis.IsSeed()) continue;
+    const std::string& value = axis.values.front().front();
+    const auto number = ParseNumber(value);
+    const bool may_be_count = number && *number >= 2.0 && *number <= kMostSweepRuns;
+    if (!may_be_count) continue;
+    doubts.push_back(
+        fmt::format("{0}: axis '{1}' is the one seed {2}: write {{seeds: {2}}} where {2} seeds are "
+                    "meant, [{2}] where not",
+                    axis.place, axis.keys.front(), value));
+  }
+  return doubts;
 }
 
 std::optional<std::string> DoubtOfStop(const SweepPlan& plan, const std::string& place) {

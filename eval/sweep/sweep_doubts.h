@@ -15,6 +15,9 @@ namespace depthgrid {
 // effect there: one line, nothing when all differ. Of very many runs the first ones are looked at.
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
 
+// Axes of seeds with one number, by which so many seeds were most likely meant: a line each.
+std::vector<std::string> DoubtsOfLoneSeeds(const std::vector<SweepAxis>& axes);
+
 // A `stop`, which stands at `place`, for which the points have too few seeds.
 std::optional<std::string> DoubtOfStop(const SweepPlan& plan, const std::string& place);
 

@@ -294,9 +294,10 @@ std::vector<std::string> DoubtsOf(const SweepPlan& plan, const std::string& expe
     if (doubt) warnings.push_back(*doubt);
   }
   const ExperimentOptions base = ReadExperiment(plan.base, plan.base_folder);
-  for (const auto& doubts : {DoubtsOfRecord(experiment.path, experiment.record, base, anew),
-                             DoubtsOfAxisKeys(plan, layers.fixed, layers.set),
-                             DoubtsOfLayers(plan, layers, !IsFileName(experiment_name))}) {
+  for (const auto& doubts :
+       {DoubtsOfRecord(experiment.path, experiment.record, base, anew),
+        DoubtsOfAxisKeys(plan, layers.fixed, layers.set), DoubtsOfLoneSeeds(plan.axes),
+        DoubtsOfLayers(plan, layers, !IsFileName(experiment_name))}) {
     warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   }
   return warnings;

@@ -1,4 +1,4 @@
-// What a sweep says of runs whose maps are of no use.
+// What a sweep says of seeds that are hardly meant, and of runs whose maps are of no use.
 #include <gmock/gmock.h>
 
 #include "eval/sweep/sweep_doubts.h"
@@ -30,6 +30,21 @@ TEST(RunDoubts, TheFirstIsThatOfThePlanWhicheverEndsFirst) {
                 testing::ElementsAre(
                     "s.yaml: 3 of 4 runs, the first with seed=11: the map has no free cell"));
   }
+}
+
+// `seed: 10` is one run, and hardly meant so.
+TEST(LoneSeeds, ASeedThatMayBeACountIsSaid) {
+  const auto doubts = [](const std::string& axes) {
+    return DoubtsOfLoneSeeds(ReadAxes(Config::FromText(axes, "s.yaml")));
+  };
+  EXPECT_THAT(doubts("seed: 10\nslam_seed: 3"),
+              testing::ElementsAre(
+                  "s.yaml:1: axis 'seed' is the one seed 10: write {seeds: 10} where 10 seeds "
+                  "are meant, [10] where not",
+                  testing::HasSubstr("s.yaml:2: axis 'slam_seed' is the one")));
+  EXPECT_THAT(doubts("seed: [10]\nslam_seed: {seeds: 10}\ndepth_seed: 1\nframes: 20"),
+              testing::IsEmpty());
+  EXPECT_THAT(doubts("trajectory_seed: 20261128"), testing::IsEmpty());  // no count of runs
 }
 
 }  // namespace
