@@ -6,6 +6,8 @@
 
 #include "eval/doubts/aligned_misfit.h"
 #include "eval/metrics/alignment.h"
+#include "eval/metrics/trajectory_drift.h"
+#include "mapper/core/angle.h"
 
 namespace depthgrid {
 namespace {
@@ -80,6 +82,27 @@ std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs) {
   found.better_misfit_m = *better_m;
   const bool is_better = *better_m < kBetter * *misfit_m;
   return is_better && *misfit_m - *better_m > kLeastGainM ? std::optional(found) : std::nullopt;
+}
+
+bool TellsArmFromDrift(const std::vector<PosePair>& pairs) {
+  // Of 42 runs in the shipped rooms (SLAM's, online and final poses), 459 of 14,265 stretches of
+  // less looked like an arm, 3 of 1,341 others; of arms of 0.3 m put on these 0.94 of those found
+  // were right within 30 %, on those 0.58.
+  constexpr double kLeastTurnRad = RadFromDeg(120.0);
+  constexpr double kLeastPathM = 7.0;
+  constexpr std::size_t kMostCompared = 100;
+  if (pairs.empty()) return false;
+  if (ReferencePath(pairs).back() >= kLeastPathM) return true;
+  const std::size_t step = (pairs.size() + kMostCompared - 1) / kMostCompared;
+  const auto rotation = [&](std::size_t i) {
+    return pairs[i].reference.world_from_camera.rotation;
+  };
+  for (std::size_t i = 0; i < pairs.size(); i += step) {
+    for (std::size_t j = i + step; j < pairs.size(); j += step) {
+      if (rotation(i).angularDistance(rotation(j)) >= kLeastTurnRad) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace depthgrid

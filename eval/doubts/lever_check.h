@@ -22,4 +22,8 @@ std::vector<PosePair> MovedBy(std::vector<PosePair> pairs, const Eigen::Vector3d
 // The arm with which positions fit at less than 0.2 times the misfit. Empty where there is none.
 std::optional<LeverArm> FindLeverArm(const std::vector<PosePair>& pairs);
 
+// Whether the true poses turn by 120 degrees, or go 7 m: where they do neither, drift looks like an
+// arm.
+bool TellsArmFromDrift(const std::vector<PosePair>& pairs);
+
 }  // namespace depthgrid

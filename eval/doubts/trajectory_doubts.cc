@@ -141,8 +141,10 @@ std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
                                        const TrajectoryNames& names, double added_s) {
   const auto clock = FindClockOffset(reference, estimate);
-  const auto lever = FindLeverArm(Associate(reference, estimate));
+  const std::vector<PosePair> pairs = Associate(reference, estimate);
+  const auto lever = FindLeverArm(pairs);
   if (lever && (!clock || lever->better_misfit_m < clock->better_misfit_m)) {
+    if (!TellsArmFromDrift(pairs)) return {};
     return {LeverText(*lever, names)};
   }
   if (!clock) return {};

@@ -247,6 +247,24 @@ TEST(LeverCheck, DriftIsNoArm) {
   }
 }
 
+// SLAM's drift over a few poses goes with their turn too.
+TEST(LeverCheck, ShortStretchesDoNotTellAnArm) {
+  Trajectory moved = Eight();
+  for (StampedPose& pose : moved) {
+    Pose3& own = pose.world_from_camera;
+    own.translation += own.rotation * Eigen::Vector3d(0.4, 0.0, 0.0);
+  }
+  const auto said = [&](std::size_t poses) {
+    const Trajectory some(moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(poses));
+    return DoubtsOfClock(Eight(), some, kNames);
+  };
+  EXPECT_THAT(said(20), IsEmpty());  // 1.3 m with 51 degrees in them
+  EXPECT_THAT(said(50), ElementsAre(HasSubstr("another point of the robot")));  // 132 degrees
+  // Nor do many poses in one place.
+  EXPECT_FALSE(TellsArmFromDrift(std::vector<PosePair>(100, PosePair{})));
+  EXPECT_FALSE(TellsArmFromDrift({}));
+}
+
 TEST(TimeCoverage, OfGapsAndEnds) {
   const Trajectory truth = Eight();
   const auto coverage = [&](const Trajectory& estimate) {
