@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "mapper/core/error.h"
+#include "mapper/io/config_text.h"
 #include "mapper/io/config_tree_impl.h"
 #include "mapper/io/file.h"
 #include "mapper/io/yaml_text_impl.h"
@@ -77,11 +78,14 @@ Config Config::FromFile(const std::string& path) {
 }
 
 Config Config::FromText(const std::string& text, const std::string& place) {
+  const std::string other = OtherTextThanKeys(text);
+  if (!other.empty()) throw InputError(place, other);
   auto tree = std::make_unique<Tree>();
   tree->place = place;
   tree->root = ParseYaml(text, place);
   if (tree->root.IsNull()) throw InputError(place, "is empty");
-  if (!tree->root.IsMap()) throw InputError(place, "must be a map of keys");
+  if (!tree->root.IsMap())
+    throw InputError(place, "is no YAML of keys, must be 'key: value' lines");
   return Config(std::move(tree));
 }
 

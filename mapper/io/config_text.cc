@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 
 #include "mapper/io/config.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 
@@ -14,6 +16,23 @@ std::string Joined(const std::vector<std::string_view>& names) {
   std::string out;
   for (const auto& name : names) out += (out.empty() ? "" : ", ") + std::string(name);
   return out;
+}
+
+std::string OtherTextThanKeys(std::string_view text) {
+  constexpr std::size_t kLooked = 4096;  // a row of a laser log may be longer
+  const std::vector<TextRow> rows = SplitRows(text.substr(0, kLooked));
+  if (rows.empty()) return "";
+  const auto& fields = rows.front().fields;
+  constexpr std::array kMessages = {"FLASER",    "RLASER", "ROBOTLASER1",
+                                    "RAWLASER1", "PARAM",  "ODOM"};
+  if (fields.size() > 2 && std::ranges::find(kMessages, fields[0]) != kMessages.end()) {
+    return "is a laser log, no YAML of keys; `depthgrid map` takes it";
+  }
+  constexpr std::size_t kColumns = 8;
+  const auto is_number = [](std::string_view field) { return ParseNumber(field).has_value(); };
+  if (fields.size() != kColumns || !std::ranges::all_of(fields, is_number)) return "";
+  return "is a trajectory (rows of stamp x y z qx qy qz qw), no YAML of keys; `depthgrid eval "
+         "trajectory` takes it, and --poses of `depthgrid map`";
 }
 
 namespace {
