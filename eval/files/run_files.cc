@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "eval/files/one_grid.h"
+#include "eval/files/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
@@ -63,6 +64,12 @@ void RequireRunFolder(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) throw InputError(folder, "no such folder");
   if (fs::exists(fs::path(folder) / "run.yaml", error)) return;
+  if (fs::exists(fs::path(folder) / "depth.txt", error)) {
+    throw InputError(folder,
+                     fmt::format("is a sequence, no run's folder; `depthgrid map {} -o OUT` makes "
+                                 "a run of it",
+                                 ShellWord(folder)));
+  }
   const std::string picture = MapPictureAt(folder);
   if (picture.empty()) throw InputError(folder, "is no run's folder: it has no run.yaml");
   const fs::path around = fs::path(picture).parent_path();

@@ -141,6 +141,8 @@ TEST_F(ProgramRun, WhatAnotherCommandTakesIsSaidToBeIts) {
   EXPECT_THAT(said("sweep seq"), HasSubstr("seq: is a folder, must be a sweep's YAML file"));
   EXPECT_THAT(said("map living_room"),
               HasSubstr("living_room: is a shipped experiment; `depthgrid run` takes it"));
+  EXPECT_THAT(said("report seq"), HasSubstr("depthgrid: seq: is a sequence, no run's folder; "
+                                            "`depthgrid map seq -o OUT` makes a run of it\n"));
   EXPECT_THAT(said("map out"), HasSubstr("depthgrid: out: is the folder of a finished run, no"));
   Write("mine", "scene: ./room.yaml\n");
   EXPECT_THAT(said("run mine"),
