@@ -170,6 +170,13 @@ SequenceFormat DetectFormat(const std::string& path) {
   if (fs::exists(fs::path(path) / "depth.txt")) return SequenceFormat::kTum;
   if (IsIclFolder(path)) return SequenceFormat::kIcl;
   if (IsFrameFolder(path)) return SequenceFormat::kFrames;
+  const fs::path above = (fs::path(path) / "..").lexically_normal();
+  if (fs::exists(above / "depth.txt", ignored)) {
+    const bool ends_in_slash = !above.has_filename() && above.has_relative_path();
+    throw InputError(path, fmt::format("is no sequence, must be the folder above it, {}, which "
+                                       "holds depth.txt",
+                                       (ends_in_slash ? above.parent_path() : above).string()));
+  }
   throw InputError(path,
                    "is no kind of sequence that is known (docs/formats.md): no depth.txt, no "
                    "*.gt.freiburg, no numbered depth images");

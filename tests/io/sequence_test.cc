@@ -245,6 +245,12 @@ TEST_F(SequenceTest, OneClearLineForEachFault) {
   EXPECT_THAT(ErrorOf([&] { OpenSequence(folder_); }),
               HasSubstr("~: is no kind of sequence that is known"));
   WriteRoom();
+  for (const char* images : {"depth", "depth/"}) {
+    EXPECT_THAT(ErrorOf([&] { DetectFormat(Path(images)); }),
+                testing::AllOf(HasSubstr("depth"),
+                               HasSubstr(": is no sequence, must be the folder above it"),
+                               testing::EndsWith(", which holds depth.txt")));
+  }
   SequenceOptions tum;
   tum.format = SequenceFormat::kTum;
   EXPECT_EQ(ErrorOf([&] { OpenSequence(Path("camera.yaml"), tum); }),
