@@ -147,6 +147,19 @@ void RefuseSweep(const std::string& path) {
   throw InputError(path, "is a sweep, must be a scene or mesh file");
 }
 
+// At the end, when all there is to see is said and drawn: for scripts.
+void RequireNoneRefused(const std::string& scene, const std::vector<ScenePath>& paths) {
+  std::vector<std::string> refused;
+  for (const ScenePath& path : paths) {
+    if (!path.refusal.empty()) refused.push_back(path.name);
+  }
+  if (refused.empty()) return;
+  const bool is_one = refused.size() == 1;
+  throw InputError(scene, fmt::format("{} '{}' {} refused: no run can take {}",
+                                      is_one ? "path" : "paths", fmt::join(refused, "', '"),
+                                      is_one ? "is" : "are", is_one ? "it" : "them"));
+}
+
 }  // namespace
 
 void ShowScene(const ScenesArguments& arguments) {
@@ -171,9 +184,11 @@ void ShowScene(const ScenesArguments& arguments) {
   for (const ScenePath& path : paths) {
     if (!path.meeting.empty()) fmt::print("refused with movers: {}\n", path.meeting);
   }
-  if (arguments.plan.empty()) return;
-  WritePlan(arguments.plan, scene, paths);
-  fmt::print("look at {}\n", arguments.plan);
+  if (!arguments.plan.empty()) {
+    WritePlan(arguments.plan, scene, paths);
+    fmt::print("look at {}\n", arguments.plan);
+  }
+  RequireNoneRefused(arguments.scene, paths);
 }
 
 }  // namespace depthgrid::cli

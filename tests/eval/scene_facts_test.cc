@@ -18,12 +18,15 @@ class SceneFacts : public ProgramTest {
           "trajectories:\n"
           "  short: {kind: planar, waypoints: [{at: [1, 1]}, {at: [2, 3]}]}\n"
           "  through: {kind: planar, waypoints: [{at: [1, 2]}, {at: [5, 2]}]}\n");
+    const std::string hall = ReadFile(Path("hall.yaml"));
+    Write("free.yaml", hall.substr(0, hall.find("  through")));
   }
 };
 
 TEST_F(SceneFacts, SaysSizeFloorAndPathsWithWhatIsWrong) {
   const Outcome outcome = Program("scenes ./hall.yaml");
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 2);  // for scripts: a path is refused
+  EXPECT_EQ(outcome.err, "depthgrid: ./hall.yaml: path 'through' is refused: no run can take it\n");
   EXPECT_THAT(outcome.out,
               HasSubstr("hall: 24 triangles, x 0.00 to 6.00, y 0.00 to 4.00, z -0.10 to 1.00 m\n"
                         "floor at z = 0.00 m, no ceiling\n"));
@@ -62,7 +65,8 @@ TEST_F(SceneFacts, PathsAndMoversGoThroughNothingBetweenFrames) {
 }
 
 TEST_F(SceneFacts, ThePlanShowsWhatStands) {
-  Succeed("scenes ./hall.yaml --plan plan.png");
+  Succeed("scenes ./free.yaml");
+  EXPECT_EQ(Program("scenes ./hall.yaml --plan plan.png").exit_code, 2);  // and drawn all the same
   const RgbImage plan = DecodeRgbPng(ReadFile(Path("plan.png")), "plan.png");
   int black = 0;
   for (int v = 0; v < plan.height_px; ++v) {
@@ -70,8 +74,8 @@ TEST_F(SceneFacts, ThePlanShowsWhatStands) {
   }
   // 5 x 81 cells are, 7 pixels a side, less what paths and lines cover of them.
   EXPECT_GT(black, 5 * 70 * 7 * 7);
-  ExpectRefusal("scenes ./hall.yaml --plan plan.png", {"plan.png: is there already"});
-  Succeed("scenes ./hall.yaml --plan plan.png --force");
+  ExpectRefusal("scenes ./free.yaml --plan plan.png", {"plan.png: is there already"});
+  Succeed("scenes ./free.yaml --plan plan.png --force");
   // Neither the scene nor a mesh in it is overwritten.
   ExpectRefusal("scenes ./hall.yaml --plan hall.yaml --force", {"hall.yaml: must end in .png"});
   ExpectRefusal("scenes ./hall.yaml --plan hall.obj --force", {"hall.obj: must end in .png"});
@@ -124,8 +128,8 @@ TEST_F(SceneFacts, ThePlanTellsManyPathsApart) {
 TEST_F(SceneFacts, ForceWithoutAPictureIsSaid) {
   const std::string idle = "depthgrid: warning: --force: has no effect without --plan\n";
   EXPECT_EQ(Program("scenes --force").err, idle);
-  EXPECT_EQ(Program("scenes ./hall.yaml --force").err, idle);
-  EXPECT_EQ(Program("scenes ./hall.yaml --force --plan hall.png").err, "");
+  EXPECT_EQ(Program("scenes ./free.yaml --force").err, idle);
+  EXPECT_EQ(Program("scenes ./free.yaml --force --plan free.png").err, "");
 }
 
 TEST_F(SceneFacts, HowMoversGoIsSaid) {
