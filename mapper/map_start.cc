@@ -334,6 +334,7 @@ std::optional<MapStart> FindStartNear(const PriorMap& prior, const Pose2& map_fr
     const bool is_elsewhere =
         IsElsewhere(near->map_from_slam * slam_from_base, any->map_from_slam * slam_from_base);
     near->second_score = is_elsewhere ? any->score : any->second_score;
+    near->second = is_elsewhere ? any->map_from_slam : any->second;
     if (!is_elsewhere && within_m > 0.0) near->unsure = any->unsure;
     return near;
   };

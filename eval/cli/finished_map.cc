@@ -28,22 +28,40 @@ std::string WhyUncertain(const MapStart& start) {
   return "another place fits nearly as well";
 }
 
-std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& start) {
+std::string Numbers(const Pose2& pose) {
+  return fmt::format("{},{},{}", Number(pose.x_m, 2), Number(pose.y_m, 2),
+                     Number(DegFromRad(pose.yaw_rad), 1));
+}
+
+// "elsewhere", and where what is seen fits better than at the place that was given, as --start
+// takes it.
+std::string Elsewhere(const MapStart& start, const Pose2& base_from_laser) {
+  const FoundPlace& place = start.place;
+  if (!place.second || place.second_score <= place.score) return "elsewhere";
+  const Pose2 slam_from_base = Inverse(place.map_from_slam) * start.map_from_base;
+  return fmt::format("elsewhere (--start {} has fit {:.2f}, that one {:.2f})",
+                     Numbers(*place.second * slam_from_base * Inverse(base_from_laser)),
+                     place.second_score, place.score);
+}
+
+std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& start,
+                                        const Pose2& base_from_laser) {
   if (start.contradicted()) {
     return fmt::format(
         "{}: {}, {:.0f} % of what the sequence's first metres show there is free "
         "or behind a wall in it: it is of another place, begins {}, or much has "
         "changed",
         map, start.known ? "where it is said to begin" : "where it fits it best",
-        100.0 * start.trial->against, start.known ? "elsewhere" : "outside of the map");
+        100.0 * start.trial->against,
+        start.known ? Elsewhere(start, base_from_laser) : "outside of the map");
   }
   if (!start.uncertain()) return {};
   if (start.known) {
     const char* why = start.fits_badly()
                           ? "little of what the sequence's first metres show lies on it"
                           : "the sequence's first views fit worse than at another place";
-    return fmt::format(
-        "{}: where it is said to begin, {}: it begins elsewhere, or much has changed", map, why);
+    return fmt::format("{}: where it is said to begin, {}: it begins {}, or much has changed", map,
+                       why, Elsewhere(start, base_from_laser));
   }
   return fmt::format("{}: where in it the sequence begins is uncertain, {} (--start says where)",
                      map, WhyUncertain(start));
@@ -52,11 +70,6 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
 // A place that was given is moved to where what is seen fits, by so much without a word.
 constexpr double kLittleM = 0.05;
 constexpr double kLittleRad = RadFromDeg(3.0);
-
-std::string Numbers(const Pose2& pose) {
-  return fmt::format("{},{},{}", Number(pose.x_m, 2), Number(pose.y_m, 2),
-                     Number(DegFromRad(pose.yaw_rad), 1));
-}
 
 std::optional<std::string> DoubtOfMove(const Pose2& given, const Pose2& taken) {
   const Pose2 move = Between(given, taken);
@@ -140,7 +153,8 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   if (!start) throw InputError(arguments.input, "shows nothing that could be found in the map");
   prior.map_from_slam = start->place.map_from_slam;
   SayStart(arguments.map, prior, *start, source.Camera().has_value());
-  if (const auto doubt = DoubtOfStart(arguments.map, *start)) warnings.push_back(*doubt);
+  const auto doubt = DoubtOfStart(arguments.map, *start, base_from_laser);
+  if (doubt) warnings.push_back(*doubt);
   if (request.start) {
     const Pose2 taken = start->map_from_base * Inverse(base_from_laser);
     const auto moved = DoubtOfMove(*request.start, taken);

@@ -223,7 +223,7 @@ std::optional<FoundPlace> FindPlaceNear(const OccupancyMap& map,
   const Pose2& slam_from_first = scans.front().slam_from_base;
   const PlaceCandidate place = NextTo(walls, PointsOf(scans, kCoarsePoints), points,
                                       map_from_slam * slam_from_first, within_m);
-  return FoundPlace{place.map_from_first * Inverse(slam_from_first), place.score, 0.0, {}, {}};
+  return FoundPlace{place.map_from_first * Inverse(slam_from_first), place.score, 0.0, {}, {}, {}};
 }
 
 std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<PlacedScan>& scans,
@@ -245,16 +245,17 @@ std::optional<FoundPlace> FindPlace(const OccupancyMap& map, const std::vector<P
     if (candidate.score > best.score) best = candidate;
   }
   if (guessed.score >= kGuessShare * best.score) best = guessed;
-  FoundPlace found{best.map_from_first * Inverse(slam_from_first), best.score, 0.0, {}, {}};
+  FoundPlace found{best.map_from_first * Inverse(slam_from_first), best.score, 0.0, {}, {}, {}};
   for (const Pose2& other : OthersThan(best, candidates)) {
     found.others.push_back(other * Inverse(slam_from_first));
   }
   const UnsureAlong unsure = UnsureLine(walls, points, candidates, best);
   if (unsure.reach_m >= kLeastUnsureM) found.unsure = unsure;
   for (const PlaceCandidate& candidate : candidates) {
-    if (IsElsewhere(candidate.map_from_first, best.map_from_first)) {
-      found.second_score = std::max(found.second_score, candidate.score);
-    }
+    if (!IsElsewhere(candidate.map_from_first, best.map_from_first)) continue;
+    if (candidate.score <= found.second_score) continue;
+    found.second_score = candidate.score;
+    found.second = candidate.map_from_first * Inverse(slam_from_first);
   }
   return found;
 }

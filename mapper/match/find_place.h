@@ -29,6 +29,8 @@ struct FoundPlace {
   double score = 0.0;
   // That of the best place elsewhere (1 m or 30 degrees away): near `score`, the place is a guess.
   double second_score = 0.0;
+  // That place, the same as map_from_slam. Empty where there is none.
+  std::optional<Pose2> second;
   // Empty where the place is known to 0.2 m in every direction, which matching makes exact.
   std::optional<UnsureAlong> unsure;
   // Of other places (0.3 m or 8 degrees apart) that fit 0.8 times as well or better, seven at most:

@@ -286,8 +286,18 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   EXPECT_THAT(ReadFile(Path("as/run.yaml")), HasSubstr("start_within_m: 0\n"));
   Succeed("map robot.log --map first --localise --start 3,1,0 -o near");
   EXPECT_LT((begin_of("near") - Eigen::Vector3d(3.0, 1.0, 0.0)).norm(), 0.1);
-  EXPECT_THAT(Program("map robot.log --map first --start 3,2,90 -o wrong").err,
-              HasSubstr("first: where it is said to begin, "));
+  const std::string wrong = Program("map robot.log --map first --start 3,2,90 -o wrong").err;
+  EXPECT_THAT(wrong, HasSubstr("first: where it is said to begin, "));
+  // That it fits better elsewhere is said so that it can be typed.
+  const std::size_t at = wrong.find("it begins elsewhere (--start ");
+  ASSERT_NE(at, std::string::npos) << wrong;
+  const std::size_t begin = wrong.find("--start ", at);
+  const std::string option = wrong.substr(begin, wrong.find(" has fit ", begin) - begin);
+  Succeed("map robot.log --map first --localise " + option + " -o typed");
+  const Eigen::Vector3d typed = begin_of("typed");
+  EXPECT_LT(std::min((typed - Eigen::Vector3d(3.0, 1.0, 0.0)).norm(),
+                     (typed - Eigen::Vector3d(3.0, 3.0, 0.0)).norm()),
+            0.1);
   Succeed("map robot.log --map first --start -40,-2.5,90 -o far");  // no option of its own
 }
 

@@ -103,6 +103,11 @@ TEST(FindPlace, FindsTheFrameOfThePosesFromAFewScans) {
     EXPECT_GT(found->score, 0.8);
     // How far behind the second is depends on what the few scans show; up to 0.93 of the best here.
     EXPECT_LT(found->second_score, found->score);
+    ASSERT_EQ(found->second.has_value(), found->second_score > 0.0);
+    if (!found->second) continue;
+    EXPECT_TRUE(IsElsewhere(*found->second * scans[0].slam_from_base,
+                            found->map_from_slam * scans[0].slam_from_base));
+    EXPECT_NEAR(FitAt(map, scans, *found->second), found->second_score, 1e-6);
   }
 }
 
