@@ -160,6 +160,9 @@ void PrintWalls(const MapQuality& quality) {
                motion.x_m, motion.y_m, DegFromRad(motion.yaw_rad),
                quality.registration->mean_shift_m);
   }
+  if (FitsBetterAsItLies(quality)) {
+    fmt::print("the walls fit better as they lie: that motion is no error of the map\n");
+  }
 }
 
 std::optional<double> MeanOf(const std::optional<WallThickness>& thickness) {

@@ -85,4 +85,10 @@ MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
   return quality;
 }
 
+bool FitsBetterAsItLies(const MapQuality& quality) {
+  if (!quality.registered) return false;
+  const WallDistanceScore &lies = quality.walls, &moved = *quality.registered;
+  return moved.chamfer_m > lies.chamfer_m && moved.f1_5cm < lies.f1_5cm;
+}
+
 }  // namespace depthgrid

@@ -37,6 +37,10 @@ struct MapQuality {
   std::optional<Navigability> navigability;
 };
 
+// Whether walls moved by the registration's motion lie farther from the true ones than as they lie,
+// by the chamfer distance and by F1 at 5 cm: then the motion is no error of the map.
+bool FitsBetterAsItLies(const MapQuality& quality);
+
 // Over the observable cells, or those whose truth is known when nothing was said about what is
 // observable. Same resolution required of all three. `own_walls`: those of an estimate that was
 // redrawn on the truth's lattice, as it had them.

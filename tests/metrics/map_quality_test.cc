@@ -36,6 +36,24 @@ double DoubleRate(const std::vector<std::string>& truth, const std::vector<std::
   return *DoubleWallRate(Walls(t), Walls(DrawnMap(estimate)), Everywhere(t.geometry));
 }
 
+// The hill that registration climbs is not what scores count.
+TEST(MapQuality, AMotionThatMakesBothScoresWorseIsNoErrorOfTheMap) {
+  const auto fits_better = [](double chamfer_m, double f1_5cm) {
+    MapQuality quality;
+    quality.walls.chamfer_m = 0.0141;
+    quality.walls.f1_5cm = 0.9865;
+    WallDistanceScore& moved = quality.registered.emplace();
+    moved.chamfer_m = chamfer_m;
+    moved.f1_5cm = f1_5cm;
+    return FitsBetterAsItLies(quality);
+  };
+  EXPECT_TRUE(fits_better(0.0187, 0.9601));
+  EXPECT_FALSE(fits_better(0.0187, 0.9865));
+  EXPECT_FALSE(fits_better(0.0101, 0.9601));
+  EXPECT_FALSE(fits_better(0.0141, 0.9865));
+  EXPECT_FALSE(FitsBetterAsItLies(MapQuality{}));
+}
+
 TEST(DoubleWalls, HandWorked) {
   const std::vector<std::string> one = {"...#......", "...#......", "...#......", "...#......"};
   const std::vector<std::string> two = {"...#...#..", "...#...#..", "...#...#..", "...#...#.."};
