@@ -71,6 +71,15 @@ std::optional<double> WallF1(const MapScore& score) {
   return cells.occupied[kDefaultToleranceCells].f1;
 }
 
+// What the command line changed: published figures are of the study as it is written.
+void PrintOverrides(const Study& study) {
+  const bool published = std::ranges::any_of(
+      study.outline.cases, [](const StudyCase& one) { return one.published_mean_m.has_value(); });
+  if (!published || study.overrides.empty()) return;
+  fmt::print("published errors are those of the study as it is written, without {}\n",
+             Printable(fmt::format("{}", fmt::join(study.overrides, ", "))));
+}
+
 void PrintCases(const std::vector<CaseResult>& results) {
   std::vector<std::vector<std::string>> rows = {{"case", "published m", "input mean m",
                                                  "input ATE m", "output mean m", "output ATE m",
@@ -165,6 +174,7 @@ void RunCases(const RunArguments& arguments, const std::string& path) {
   }
   Warn(warnings);
   PrintCases(results);
+  PrintOverrides(study);
   SayReport(arguments.common.output);
 }
 
