@@ -13,6 +13,7 @@
 #include "eval/sweep/sweep_doubts.h"
 #include "eval/sweep/sweep_experiment.h"
 #include "eval/sweep/sweep_metrics.h"
+#include "eval/sweep/sweep_results.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/rng.h"
@@ -208,7 +209,7 @@ void CheckStop(const StopOptions& stop, const std::string& place) {
   const std::vector<std::string> names = SweepMetricNames();
   if (std::find(names.begin(), names.end(), stop.metric) != names.end()) return;
   throw InputError(place, fmt::format("stop.metric is '{}', must be a metric of results.csv{}",
-                                      stop.metric, DidYouMean(stop.metric, names)));
+                                      stop.metric, DidYouMeanColumn(stop.metric, names)));
 }
 
 std::string TextOf(const SweepFileOptions& file, const SweepPlan& plan) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "eval/sweep/sql_values_impl.h"
 #include "eval/sweep/sweep_database.h"
@@ -23,8 +24,7 @@ std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format(
 [[noreturn]] void FailFinding(const std::string& folder, const char* what, const std::string& name,
                               const std::vector<std::string>& names) {
   constexpr std::size_t kMostListed = 12;
-  std::string hint = DidYouMean(name, names);
-  if (hint.empty()) hint = DidYouMeanKey(name, names, true);
+  std::string hint = DidYouMeanColumn(name, names);
   if (hint.empty() && !names.empty() && names.size() <= kMostListed) {
     hint = fmt::format(", must be one of {}", fmt::join(names, ", "));
   }
@@ -32,6 +32,24 @@ std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format(
 }
 
 }  // namespace
+
+std::string DidYouMeanColumn(const std::string& name, const std::vector<std::string>& names) {
+  const std::string block = name.substr(0, name.find('.') + 1);
+  const std::size_t last = name.rfind('.') + 1;
+  std::vector<std::string> of_block;
+  std::ranges::copy_if(names, std::back_inserter(of_block),
+                       [&](const std::string& column) { return column.starts_with(block); });
+  const auto last_of = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
+  const auto begun = std::ranges::find_if(of_block, [&](const std::string& column) {
+    return last < name.size() && last_of(column).starts_with(name.substr(last));
+  });
+  if (begun != of_block.end()) {
+    // The point makes it the name of no column, which would not be named itself.
+    return DidYouMeanKey(name.substr(0, last) + "." + last_of(*begun), of_block, false);
+  }
+  const std::string near = DidYouMean(name, names);
+  return near.empty() ? DidYouMeanKey(name, names, true) : near;
+}
 
 bool IsSeedKey(const std::string& key) {
   return key == "seed" || key == "depth_seed" || key == "slam_seed" || key == "trajectory_seed";

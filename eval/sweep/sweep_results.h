@@ -24,6 +24,10 @@ struct SweepColumn {
   std::vector<double> values;  // one a row; NaN where not defined or the run failed
 };
 
+// ", did you mean ...?" of a column's name: those of its block ("trajectory.") whose last word its
+// own begins, else the nearest, by the whole name or by the last word; empty where none is near.
+std::string DidYouMeanColumn(const std::string& name, const std::vector<std::string>& names);
+
 struct SweepResults {
   std::string folder;
   // title, version, instruction_set, sweep (the file), experiment (every effective key), ...

@@ -23,5 +23,17 @@ stop: {metric: trajectory.slam.mean_euclidean_m, width: 100, min_seeds: 2}
   EXPECT_EQ(ReadSweep(Path("out")).rows(), 4U);
 }
 
+TEST_F(SweepStop, TheMetricThatWasLikelyMeantIsNamed) {
+  for (const auto& [given, meant] :
+       {std::pair{"mean_euclidean_m", "'trajectory.slam.mean_euclidean_m'"},
+        {"trajectory.mean", "'trajectory.est.mean_euclidean_m'"},
+        {"trajectory.slam.mean", "'trajectory.slam.mean_euclidean_m'"}}) {
+    Write("stop.yaml", std::string("experiment: ./small.yaml\naxes: {seed: {seeds: 3}}\n") +
+                           "stop: {metric: " + given + ", width: 100}\n");
+    ExpectRefusal("sweep ./stop.yaml -o out",
+                  {"stop.yaml:3: stop.metric is '", "did you mean ", meant});
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
