@@ -22,15 +22,15 @@ std::string OtherTextThanKeys(std::string_view text) {
   constexpr std::size_t kLooked = 4096;  // a row of a laser log may be longer
   const std::vector<TextRow> rows = SplitRows(text.substr(0, kLooked));
   if (rows.empty()) return "";
-  const auto& fields = rows.front().fields;
-  constexpr std::array kMessages = {"FLASER",    "RLASER", "ROBOTLASER1",
-                                    "RAWLASER1", "PARAM",  "ODOM"};
-  if (fields.size() > 2 && std::ranges::find(kMessages, fields[0]) != kMessages.end()) {
+  const TextRow& first = rows.front();
+  constexpr std::array<std::string_view, 6> kMessages = {"FLASER",    "RLASER", "ROBOTLASER1",
+                                                         "RAWLASER1", "PARAM",  "ODOM"};
+  if (first.fields.size() > 2 && std::ranges::find(kMessages, first.fields[0]) != kMessages.end()) {
     return "is a laser log, no YAML of keys; `depthgrid map` takes it";
   }
   constexpr std::size_t kColumns = 8;
   const auto is_number = [](std::string_view field) { return ParseNumber(field).has_value(); };
-  if (fields.size() != kColumns || !std::ranges::all_of(fields, is_number)) return "";
+  if (first.fields.size() != kColumns || !std::ranges::all_of(first.fields, is_number)) return "";
   return "is a trajectory (rows of stamp x y z qx qy qz qw), no YAML of keys; `depthgrid eval "
          "trajectory` takes it, and --poses of `depthgrid map`";
 }
