@@ -34,6 +34,10 @@ std::string CsvCell(double value) { return std::isnan(value) ? "" : fmt::format(
 }  // namespace
 
 std::string DidYouMeanColumn(const std::string& name, const std::vector<std::string>& names) {
+  const auto goes_on = [&](const std::string& column) { return column.starts_with(name); };
+  if (!name.empty() && std::ranges::count_if(names, goes_on) == 1) {
+    return fmt::format(", did you mean '{}'?", *std::ranges::find_if(names, goes_on));
+  }
   const std::string block = name.substr(0, name.find('.') + 1);
   const std::size_t last = name.rfind('.') + 1;
   std::vector<std::string> of_block;

@@ -24,8 +24,9 @@ struct SweepColumn {
   std::vector<double> values;  // one a row; NaN where not defined or the run failed
 };
 
-// ", did you mean ...?" of a column's name: those of its block ("trajectory.") whose last word its
-// own begins, else the nearest, by the whole name or by the last word; empty where none is near.
+// ", did you mean ...?" of a column's name: the only one that it begins, else those of its block
+// ("trajectory.") whose last word its own begins, else the nearest, by the whole name or by the
+// last word; empty where none is near.
 std::string DidYouMeanColumn(const std::string& name, const std::vector<std::string>& names);
 
 struct SweepResults {
