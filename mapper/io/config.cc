@@ -84,8 +84,9 @@ Config Config::FromText(const std::string& text, const std::string& place) {
   tree->place = place;
   tree->root = ParseYaml(text, place);
   if (tree->root.IsNull()) throw InputError(place, "is empty");
-  if (!tree->root.IsMap())
+  if (!tree->root.IsMap()) {
     throw InputError(place, "is no YAML of keys, must be 'key: value' lines");
+  }
   return Config(std::move(tree));
 }
 

@@ -28,10 +28,11 @@ constexpr int kMostUnseenScans = 5;
 // would cost a part of the view each time.
 constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
-// SLAM that errs by a third of its way made walls seem to move for up to four times the least way.
+// Odometry that drifts by 1.875 m made walls seem to move up to four times (docs/tried.md, "What
+// moves").
 constexpr int kNoErrorOfSlam = 5;
 // What else lies so near to the middle of what moves, or to the end that is followed, may be a part
-// of it.
+// of it: some person's half width.
 constexpr double kBesideM = 0.2;
 // While a robot stands nothing shows. By then the first frames are no longer there (Beginning).
 constexpr std::size_t kMostAssumed = 300;
