@@ -1,17 +1,20 @@
 #!/usr/bin/python3
-"""Makes of a ROS 1 bag what depthgrid maps: a CARMEN log of a laser, or a TUM folder of a depth camera.
+"""Makes of a ROS bag what depthgrid maps: a CARMEN log of a laser, or a TUM folder of a depth camera.
 
-    apt-get install python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs python3-numpy
+    apt-get install python3-numpy                                # for a ROS 2 bag: a folder, a .db3 or a .mcap
+    apt-get install python3-zstandard python3-lz4                # for a ROS 2 bag that is compressed
+    apt-get install python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs python3-numpy  # of ROS 1
     python3 from_bag.py drive.bag                                # which topics it has
     python3 from_bag.py drive.bag --scan /scan --odom /odom -o robot.log
     python3 from_bag.py drive.bag --depth /camera/depth/image_raw --odom /odom -o sequence
 
 Poses are those of `--odom` (nav_msgs/Odometry), or, without it, of the frames `--odom-frame` and `--base-frame` in /tf.
 Where the sensor is on the robot tells /tf_static or /tf; `--mount X Y YAW` (m, degrees) for a laser that neither knows.
-The bag is read by ROS's own library. Of a ROS 2 bag, `rosbags-convert` (pip install rosbags) makes one of ROS 1.
+A bag of ROS 1 is read by ROS's own library, one of ROS 2 by ros2_bag.py, which lies beside this.
 """
 import argparse
 import bisect
+import contextlib
 import math
 import os
 import shlex
@@ -21,13 +24,13 @@ import sys
 import tempfile
 import zlib
 
+sys.dont_write_bytecode = True  # no __pycache__ beside the examples
 MISSING = ""
 try:
     import numpy as np
-    import rosbag
+    import ros2_bag
 except ImportError as error:  # --help does without
-    MISSING = (f"{error}: apt-get install python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs "
-               "python3-numpy, for /usr/bin/python3")
+    MISSING = f"{error}: apt-get install python3-numpy, for /usr/bin/python3"
 
 # A gap in the poses that no straight line is drawn across.
 MOST_GAP_S = 0.5
@@ -381,6 +384,27 @@ def convert(bag, arguments):
     print(f"{written} written; next: {shlex.join(command)}")
 
 
+@contextlib.contextmanager
+def opened(path):
+    """The bag at a path, of either ROS."""
+    if ros2_bag.is_one(path):
+        with ros2_bag.Bag(path) as bag:
+            for name in bag.unfinished():
+                print(f"from_bag.py: {name}: was not closed, what its end held may be missing", file=sys.stderr)
+            yield bag
+        return
+    try:
+        import rosbag
+    except ImportError as error:
+        raise BadInput(f"{path}: of a ROS 1 bag: {error}: apt-get install python3-rosbag python3-sensor-msgs "
+                       "python3-nav-msgs python3-tf2-msgs, for /usr/bin/python3") from error
+    try:
+        with rosbag.Bag(path) as bag:
+            yield bag
+    except rosbag.ROSBagException as error:
+        raise BadInput(f"{path}: {error}") from error
+
+
 def main():
     about, _, more = __doc__.partition("\n\n")
     parser = argparse.ArgumentParser(description=about, epilog=more,
@@ -400,16 +424,16 @@ def main():
         print(f"from_bag.py: {MISSING}", file=sys.stderr)
         return 2
     try:
-        with rosbag.Bag(arguments.bag) as bag:
+        with opened(arguments.bag) as bag:
             if not (arguments.scan or arguments.depth or arguments.output):
                 for topic, (kind, count) in sorted(topics_of(bag).items()):
                     print(f"{topic}  {kind}  {count}")
                 return 0
             convert(bag, arguments)
         return 0
-    except BadInput as error:
+    except (BadInput, ros2_bag.BagError) as error:
         print(f"from_bag.py: {error}", file=sys.stderr)
-    except (rosbag.ROSBagException, OSError) as error:
+    except OSError as error:
         print(f"from_bag.py: {arguments.bag}: {error}", file=sys.stderr)
     return 2
 

@@ -130,28 +130,38 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
   return up;
 }
 
+[[noreturn]] void RefuseBag(const std::string& path, const char* name) {
+  throw InputError(path, fmt::format("is {}, which is not read: must be a folder of depth images "
+                                     "or a CARMEN laser log (docs/formats.md); "
+                                     "docs/examples/from_bag.py makes either of it",
+                                     name));
+}
+
 // Recordings that would be taken for damaged text.
 void RefuseOtherSystems(const std::string& path) {
-  struct Other {
-    const char* ending;
-    const char* name;
-    const char* way = "";
-  };
-  static constexpr const char* kRos1 = "; docs/examples/from_bag.py makes either of it";
-  static constexpr const char* kRos2 =
-      "; rosbags-convert makes a ROS 1 bag of it, and docs/examples/from_bag.py either of that";
-  static constexpr Other kOthers[] = {{".bag", "a ROS bag", kRos1},
-                                      {".db3", "a ROS 2 bag", kRos2},
-                                      {".mcap", "an MCAP recording", kRos2},
-                                      {".rawlog", "an MRPT rawlog"},
-                                      {".pbstream", "a Cartographer map"}};
-  for (const Other& other : kOthers) {
-    if (!path.ends_with(other.ending)) continue;
-    throw InputError(path,
-                     fmt::format("is {} by its name, which is not read: must be a folder of depth "
-                                 "images or a CARMEN laser log (docs/formats.md){}",
-                                 other.name, other.way));
+  if (path.ends_with(".bag")) RefuseBag(path, "a ROS bag by its name");
+  if (path.ends_with(".db3")) RefuseBag(path, "a ROS 2 bag by its name");
+  if (path.ends_with(".mcap")) RefuseBag(path, "an MCAP recording by its name");
+  for (const auto& [ending, name] :
+       {std::pair(".rawlog", "an MRPT rawlog"), std::pair(".pbstream", "a Cartographer map")}) {
+    if (!path.ends_with(ending)) continue;
+    throw InputError(path, fmt::format("is {} by its name, which is not read: must be a folder of "
+                                       "depth images or a CARMEN laser log (docs/formats.md)",
+                                       name));
   }
+}
+
+// What `ros2 bag record` writes.
+bool IsRos2Folder(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::exists(fs::path(path) / "metadata.yaml", ignored)) return false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, ignored)) {
+    const std::string name = entry.path().filename().string();
+    for (const char* kind : {".db3", ".mcap"}) {
+      if (name.find(kind) != std::string::npos) return true;
+    }
+  }
+  return false;
 }
 
 void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
@@ -170,6 +180,7 @@ SequenceFormat DetectFormat(const std::string& path) {
   if (fs::exists(fs::path(path) / "depth.txt")) return SequenceFormat::kTum;
   if (IsIclFolder(path)) return SequenceFormat::kIcl;
   if (IsFrameFolder(path)) return SequenceFormat::kFrames;
+  if (IsRos2Folder(path)) RefuseBag(path, "a ROS 2 bag");
   const fs::path above = (fs::path(path) / "..").lexically_normal();
   if (fs::exists(above / "depth.txt", ignored)) {
     const bool ends_in_slash = !above.has_filename() && above.has_relative_path();

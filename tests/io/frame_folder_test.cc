@@ -254,6 +254,8 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
 TEST_F(FrameFolderTest, RecordingsOfOtherSystemsAreNamed) {
   const char* from_bag = "; docs/examples/from_bag.py makes either of it";
   for (const auto& [name, what, way] : {std::tuple("drive.bag", "a ROS bag", from_bag),
+                                        std::tuple("drive.db3", "a ROS 2 bag", from_bag),
+                                        std::tuple("drive.mcap", "an MCAP recording", from_bag),
                                         std::tuple("drive.rawlog", "an MRPT rawlog", "")}) {
     Write(name, "#ROSBAG V2.0");
     EXPECT_EQ(Short(RefusalOf([&] { DetectFormat(Path(name)); })),
@@ -261,6 +263,12 @@ TEST_F(FrameFolderTest, RecordingsOfOtherSystemsAreNamed) {
                           "images or a CARMEN laser log (docs/formats.md){}",
                           name, what, way));
   }
+  std::filesystem::create_directories(Path("drive"));
+  Write("drive/metadata.yaml", "");
+  Write("drive/drive_0.mcap", "");
+  EXPECT_EQ(Short(RefusalOf([&] { DetectFormat(Path("drive")); })),
+            "~/drive: is a ROS 2 bag, which is not read: must be a folder of depth images or a "
+            "CARMEN laser log (docs/formats.md); docs/examples/from_bag.py makes either of it");
 }
 
 TEST_F(FrameFolderTest, ReadsTheSharedKinectFrames) {

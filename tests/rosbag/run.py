@@ -3,13 +3,17 @@
 
 Exit code 77 (skipped) where ROS's Python packages are not installed.
 """
+import filecmp
 import math
 import os
 import shutil
 import subprocess
 import sys
 
+sys.dont_write_bytecode = True
 try:
+    import ros2_writer
+    import zstandard
     import numpy as np
     import rosbag
     import rospy
@@ -18,7 +22,7 @@ try:
     from sensor_msgs.msg import CameraInfo, Image, LaserScan
     from tf2_msgs.msg import TFMessage
 except ImportError as missing:
-    print(f"skipped: {missing} (Debian: python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)")
+    print(f"skipped: {missing} (Debian: python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs python3-zstandard)")
     sys.exit(77)
 
 DEPTHGRID, FROM_BAG, FOLDER = sys.argv[1:4]
@@ -185,6 +189,39 @@ def require_refusal(text, *arguments):
     require("refused" not in os.listdir(FOLDER), f"{arguments} leave nothing")
 
 
+def require_same_of_ros2():
+    """Of the same messages as ROS 2 keeps them, the same log and folder."""
+    laser, camera = (ros2_writer.messages_of(f"{FOLDER}/{name}.bag", order) for name, order in
+                     [("plain", "<"), ("depth", ">")])
+    ros2_writer.write_sqlite(laser, f"{FOLDER}/laser_sqlite")
+    ros2_writer.write_mcap(laser, f"{FOLDER}/laser.mcap")
+    ros2_writer.write_sqlite(camera, f"{FOLDER}/camera_sqlite")
+    ros2_writer.write_mcap(camera, f"{FOLDER}/camera.mcap", zstandard.ZstdCompressor().compress)
+    for bag in ["laser_sqlite", "laser.mcap"]:
+        require(from_bag(bag).stdout == from_bag("plain.bag").stdout, f"{bag} has the topics of plain.bag")
+        from_bag(bag, "--scan", "/scan", "--odom", "/odom", "-o", f"{bag}.log")
+        require(filecmp.cmp(f"{FOLDER}/{bag}.log", f"{FOLDER}/plain.log", False), f"the log of {bag} is that of plain.bag")
+    for bag in ["camera_sqlite", "camera.mcap"]:
+        from_bag(bag, "--depth", "/camera/depth/image_raw", "--odom", "/odom", "-o", f"{bag}_sequence")
+        names = ["camera.yaml", "depth.txt", "odometry.txt"]
+        names += [f"depth/{name}" for name in os.listdir(f"{FOLDER}/sequence/depth")]
+        same, *others = filecmp.cmpfiles(f"{FOLDER}/sequence", f"{FOLDER}/{bag}_sequence", names, False)
+        require(len(same) == FRAMES + 3 and others == [[], []], f"the folder of {bag} is that of depth.bag: {others}")
+
+    with open(f"{FOLDER}/laser.mcap", "rb") as whole, open(f"{FOLDER}/cut.mcap", "wb") as cut:
+        cut.write(whole.read()[:600000])
+    said = from_bag("cut.mcap", "--scan", "/scan", "--odom", "/odom", "-o", "cut.log")
+    require("cut.mcap: was not closed" in said.stderr, said.stderr)
+    with open(f"{FOLDER}/cut.log", encoding="ascii") as cut, open(f"{FOLDER}/plain.log", encoding="ascii") as whole:
+        begin, log = cut.read(), whole.read()
+        require(log.startswith(begin) and 100000 < len(begin) < len(log), "what was recorded until then is there")
+    with open(f"{FOLDER}/no.db3", "w", encoding="ascii") as file:
+        file.write("no bag\n")
+    require_refusal("no.db3: file is not a database", "no.db3", "--scan", "/scan", "-o", "refused")
+    require_refusal("holds no .db3 and no .mcap", "sequence", "--scan", "/scan", "-o", "refused")
+    require_refusal("/odom is nav_msgs/Odometry, must be", "laser.mcap", "--scan", "/odom", "-o", "refused")
+
+
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
@@ -222,6 +259,7 @@ def main():
     require_refusal("joins no frame 'base_link' to 'odom'", "plain.bag", "--scan", "/scan", "-o", "refused")
     require_refusal("where 'laser' is on 'robot'", "plain.bag", "--scan", "/scan", "--odom", "/odom",
                     "--base-frame", "robot", "-o", "refused")
+    require_same_of_ros2()
     shutil.rmtree(FOLDER)
 
 
