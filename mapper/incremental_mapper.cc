@@ -94,6 +94,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   Prediction prediction = Predict(scans.matched, report);
   Match(scans.matched, prediction, report);
   prediction = AfterSlip(scans.matched, prediction, report);
+  LookForSlide(scans.matched, prediction, report);
   DoubtGuess(report);
   const FusedPose fused = Fuse(prediction, report);
   Insert(scans, prediction, fused, report);
@@ -175,18 +176,26 @@ std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
   return spread;
 }
 
+std::vector<PlanarLoop> IncrementalMapper::State::FoundLoops(const FrameScans& scans,
+                                                             const FrameReport& report) {
+  if (SearchesSlides()) {
+    if (const auto slide = slides.Mapped(mapped.all(), report.covariance)) return {*slide};
+  }
+  if (!loop_search) return {};
+  return loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
+}
+
 // Those that the mapper finds itself. The frame's online estimate stays as it was given.
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
-  if (!loop_search || !(report.inserted || report.well_seen)) return;
-  const std::vector<PlanarLoop> found =
-      loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
+  if (!(report.inserted || report.well_seen)) return;
+  const std::vector<PlanarLoop> found = FoundLoops(scans, report);
   if (found.empty()) return;
   const LoopCloser::Outcome outcome =
       loop_closer.Add(found, mapped.all(), *reference, errors.Mapped());
   report.loops_accepted += outcome.accepted;
   report.loops_rejected += outcome.rejected;
-  loop_search->Forget();
+  if (loop_search) loop_search->Forget();
   relocation.Joined(outcome.held);
   if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
 }
@@ -229,6 +238,7 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
   MovePart(relocation.first_frame(), *moved);
+  slides.Forget();
   if (loop_search) loop_search->Forget();
   report.relocated = true;
 }

@@ -25,6 +25,7 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Number("bend_frames", bend_frames, {0, 1e9},
            "mapped frames beyond which loops only bend the poses until the end");
   v.Group("search", search, "loops that the mapper finds itself");
+  v.Group("slide", slide, "where the estimate is after a stretch that told little of it");
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }
 

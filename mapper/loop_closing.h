@@ -10,6 +10,7 @@
 #include "mapper/graph/loop_overlap.h"
 #include "mapper/graph/loop_search_options.h"
 #include "mapper/graph/relocation.h"
+#include "mapper/graph/slide_search.h"
 
 namespace depthgrid {
 
@@ -23,6 +24,7 @@ struct LoopOptions {
   // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/tried.md, "Loops that hold up a frame").
   int bend_frames = 4000;
   LoopSearchOptions search;
+  SlideSearchOptions slide;
   RelocationOptions relocation;
 
   void Visit(OptionsVisitor& v);

@@ -11,6 +11,7 @@
 #include "mapper/fuse/match_noise.h"
 #include "mapper/fuse/pose_errors.h"
 #include "mapper/graph/loop_search.h"
+#include "mapper/graph/slide_search.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/loop_closing.h"
 #include "mapper/mapped_frames.h"
@@ -42,6 +43,7 @@ struct IncrementalMapper::State {
   std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
+  SlideSearch slides;
   Relocation relocation;
   SlipSearch slips;
   AdjustmentRounds rounds;
@@ -65,6 +67,7 @@ struct IncrementalMapper::State {
         filter(opts.fusion),
         errors(opts.submap.scans),
         loop_closer(opts.loops),
+        slides(opts.loops.slide, opts.loops.search, opts.loops.overlap),
         relocation(opts.loops.relocation, opts.loops.search, opts.loops.overlap),
         slips(opts.loops.relocation.slip_deg),
         rounds(opts.method == MapperMethod::kSurfel ? opts.rounds
@@ -86,6 +89,7 @@ struct IncrementalMapper::State {
   void GoThroughAgain(const Frame& newest, const std::optional<MotionSpread>& spread);
   void TakeOutMistaken(const Frame& newest, FrameReport& report);
   void FindLoops(const FrameScans& scans, FrameReport& report);
+  std::vector<PlanarLoop> FoundLoops(const FrameScans& scans, const FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
   void MovePart(int first, const Pose2& motion);
@@ -98,6 +102,8 @@ struct IncrementalMapper::State {
              FrameReport& report);
   Prediction AfterSlip(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
                        FrameReport& report);
+  void LookForSlide(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
+                    FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);
   void TellMotion(const FusedPose& fused, FrameReport& report);
   void Insert(const FrameScans& scans, const Prediction& prediction, const FusedPose& fused,
@@ -110,6 +116,7 @@ struct IncrementalMapper::State {
   }
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
+  bool SearchesSlides() const;
   bool SearchesSlips() const;
   std::optional<Pose2> TurnedTo(const std::shared_ptr<const Scan>& scan,
                                 const Prediction& prediction, FrameReport& report);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mapper/graph/old_views.h"
 #include "mapper/graph/place_search.h"
 
 namespace depthgrid {
@@ -15,62 +16,16 @@ constexpr int kUsualFrames = 1000;
 // The mean over the last ten frames or so.
 constexpr double kNewShare = 0.1;
 constexpr int kFramesToJudge = 15;
-// Old frames are drawn when they are so far from the one drawn before, and no more than so many.
-constexpr double kDrawnEveryM = 0.2;
-constexpr double kDrawnEveryRad = RadFromDeg(15.0);
-constexpr int kMostDrawn = 500;
 // Beyond the window, what could be seen from within.
 constexpr double kSightM = 6.0;
 // The search's points, at most: more say the same.
 constexpr std::size_t kMostPoints = 400;
-// Old frames that a new one is compared with.
-constexpr std::size_t kOldForEach = 2;
-
-// Frames before `end` around a pose that together show what can be seen there.
-std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,
-                           double reach_m) {
-  std::vector<int> old;
-  for (int i = 0; i < end; ++i) {
-    if (!frames[static_cast<std::size_t>(i)].scan) continue;
-    const Pose2& pose = PoseAt(frames, i);
-    if ((pose.translation() - around.translation()).norm() > reach_m) continue;
-    if (!old.empty()) {
-      const Pose2 step = Between(PoseAt(frames, old.back()), pose);
-      if (step.translation().norm() < kDrawnEveryM && std::abs(step.yaw_rad) < kDrawnEveryRad) {
-        continue;
-      }
-    }
-    old.push_back(i);
-  }
-  const std::size_t stride = old.size() / kMostDrawn + 1;
-  std::vector<int> drawn;
-  for (std::size_t k = 0; k < old.size(); k += stride) drawn.push_back(old[k]);
-  return drawn;
-}
 
 std::vector<Eigen::Vector2d> Thinned(const std::vector<Eigen::Vector2d>& points) {
   const std::size_t stride = points.size() / kMostPoints + 1;
   std::vector<Eigen::Vector2d> thinned;
   for (std::size_t k = 0; k < points.size(); k += stride) thinned.push_back(points[k]);
   return thinned;
-}
-
-// Those of the old frames that looked at what the new ones see, once they lie there.
-std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std::vector<int>& old,
-                              const std::vector<int>& members, const Pose2& shift) {
-  std::vector<int> near;
-  for (const int member : members) {
-    const Pose2 pose = shift * PoseAt(frames, member);
-    std::vector<int> ranked = old;
-    std::stable_sort(ranked.begin(), ranked.end(), [&](int a, int b) {
-      return Separation(PoseAt(frames, a), pose) < Separation(PoseAt(frames, b), pose);
-    });
-    const std::size_t count = std::min(ranked.size(), kOldForEach);
-    for (std::size_t k = 0; k < count; ++k) near.push_back(ranked[k]);
-  }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  return near;
 }
 
 // Beyond what is walked and turned in the time of a loss. Chosen, of no measurement: SLAM comes

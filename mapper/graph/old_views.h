@@ -1,0 +1,20 @@
+// Which of the frames mapped before saw what others see now.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/mapped_frame.h"
+
+namespace depthgrid {
+
+// Positions of frames before `end` within `reach_m` of a pose that together show what can be seen
+// there: those with a scan, thinned.
+std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,
+                           double reach_m);
+
+// Of these the nearest to each member once that is moved by `shift` (map axes): they looked at what
+// the members see. In order.
+std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std::vector<int>& old,
+                              const std::vector<int>& members, const Pose2& shift);
+
+}  // namespace depthgrid
