@@ -17,104 +17,104 @@
 namespace depthgrid {
 
 struct MapperResult {
-  // Per frame that AddFrame() took, in that order (one it refused has no place here): the final
-  // estimate; empty where neither SLAM nor the map knew a pose.
+  // The final estimate of each frame that AddFrame() accepted, in that order (refused frames have
+  // no entry); empty where neither SLAM nor the map gave a pose.
   std::vector<std::optional<Pose3>> map_from_camera;
-  // What the map was drawn from, at final poses: the frames whose scans are kept.
+  // The frames whose scans are kept, at final poses: the map is drawn from these.
   std::vector<MappedFrame> mapped;
   std::vector<PlanarLoop> loops;  // those that entered the graph
   OccupancyMap map;
 };
 
-// For fusion.mode `oracle`: the gain per base axis (forward, left, yaw) that an experiment which
-// knows the truth wants for a frame.
+// For fusion.mode `oracle`: the gain of a frame per base axis (forward, left, yaw), from an
+// experiment that knows the true pose.
 using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predicted_map_from_base,
                                                  const Pose2& matched_map_from_base)>;
 
-// The true pose of a frame in the map, for experiments that put it in place of the matched one;
-// what the match says of its own sureness stays.
+// The true map_from_base of a frame, for experiments that replace the matched pose by it; the
+// match's information matrix is kept.
 using MatchOracle = std::function<Pose2(int frame)>;
 
 // A map to go on from.
 struct PriorMap {
-  // In order of time, at final poses, each with both its scans, which may be one; their `frame` is
-  // below 0 and increases, by one within a drive: what a later drive saw counts more
-  // (GridOptions::earlier_scans). WriteMapped() saves `mapped` of a result, or of a mapper that
-  // runs, and ReadMapped() gives it back as this (mapper/io/mapped_files.h,
-  // docs/examples/second_drive.cc); without a file PriorNumbers() counts it so
-  // (mapper/core/drives.h). Of a frame its number, stamp, pose and scans are enough.
+  // In order of time, at final poses, each with both its scans (`scan` and `obstacles`, possibly
+  // the same). `frame` is negative and increasing, by one within a drive and by more between
+  // drives: later drives count more (GridOptions::earlier_scans). WriteMapped() saves
+  // MapperResult::mapped or CurrentMapped(), and ReadMapped() returns it numbered like this
+  // (mapper/io/mapped_files.h, docs/examples/second_drive.cc); without a file, PriorNumbers() gives
+  // the numbers (mapper/core/drives.h). Only number, stamp, pose and scans of a frame are used.
   std::vector<MappedFrame> frames;
-  // Where the new SLAM poses' frame lies in the map, to a few centimetres and degrees; FindStart()
-  // in mapper/map_start.h finds it. Nothing puts right one that is farther off.
+  // Pose of the new SLAM frame in the map, accurate to a few centimetres and degrees; FindStart()
+  // in mapper/map_start.h finds it. A larger error is not corrected later.
   Pose2 map_from_slam;
   // Localise only: nothing is inserted, no pose and no cell of the prior map changes.
   bool fixed = false;
 };
 
-// Not for two threads at once; two mappers share nothing. Nothing is printed, no file touched, no
-// thread started.
+// Not thread-safe; separate mappers share no state. Prints nothing, touches no file, starts no
+// thread.
 class IncrementalMapper {
  public:
-  // `camera` is that of the depth images, without distortion; it may be absent when every frame
-  // brings a ready scan. Throws InputError for a camera that is not sound and for options out of
-  // range or that contradict each other.
+  // `camera` is that of the depth images, without distortion; not needed when every frame brings a
+  // ready scan. Throws InputError for an invalid camera and for options that are out of range or
+  // contradict each other.
   IncrementalMapper(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
                     FrameClocks clocks = {}, GainOracle oracle = {});
   ~IncrementalMapper();
-  // What was moved from may be destroyed or assigned to, nothing else.
+  // A moved-from mapper may only be destroyed or assigned to.
   IncrementalMapper(IncrementalMapper&&) noexcept;
   IncrementalMapper& operator=(IncrementalMapper&&) noexcept;
 
-  // From the next frame on.
+  // Takes effect from the next frame on.
   void SetMatchOracle(MatchOracle oracle);
 
-  // Before the first frame, once. The result's `mapped` then begins with the prior frames. Throws
-  // InputError, and nothing was begun, when it comes later or again, when a frame's number, pose,
-  // stamp or scans are not as PriorMap wants them, a beam is none that CanBeKept(), or
-  // `map_from_slam` is not finite or lies beyond 10,000 km. Method paper matches against the last
-  // two submaps alone: `submap.scans` must be as many as the scans.
+  // Call once, before the first frame. The result's `mapped` then begins with the prior frames.
+  // Throws InputError, and changes nothing, when called later or twice, when a frame's number,
+  // pose, stamp or scans break PriorMap's rules, when a beam fails CanBeKept(), or when
+  // `map_from_slam` is not finite or beyond 10,000 km. Method paper matches against the last two
+  // submaps only, so there `submap.scans` must be at least the number of prior frames.
   void StartFrom(PriorMap prior);
 
-  // Once a frame, in the order of time. Throws InputError, and then it is as if the frame had never
-  // come, when
-  // - its number is below 0 or was given before, or its stamp is not finite;
-  // - its pose or a loop is not made of finite numbers: of a unit quaternion (to 0.001) within
-  //   10,000 km, a sigma positive;
-  // - its image is not the camera's size, there is no camera, or a scan as well; or all depths
-  //   are beyond 100 m, as millimetres are, by some hundreds of pixels that are looked at;
-  // - it has a scan and no stand, and its camera looks up or down, to 10 degrees, as where a
-  //   laser's planar pose came without CameraOf();
-  // - a scan's max_range_m is negative or not finite, or there is a matched_scan or a stand alone;
-  // - the stand is not made of finite numbers, or of a quaternion that is none.
+  // Call once per frame, in order of time. Throws InputError, and leaves the mapper unchanged, when
+  // - its number is negative or was used before, or its stamp is not finite;
+  // - its pose or a loop is not finite, has a quaternion that is not of unit norm (to 0.001), lies
+  //   beyond 10,000 km, or has a sigma that is not positive;
+  // - it has an image but the mapper has no camera, or one of another size, or a scan as well; or
+  //   all of some hundreds of sampled depths are beyond 100 m (probably millimetres);
+  // - it has a scan but no stand, and its camera's optical axis is within 10 degrees of vertical,
+  //   as when a laser's planar pose is given without CameraOf();
+  // - a scan's max_range_m is negative or not finite, or matched_scan or stand is set without a
+  //   scan;
+  // - the stand is not finite, or its quaternion is not of unit norm.
   //
-  // What else is amiss is lived with: without a pose nothing is known of the frame, without image
-  // or scan only its pose is corrected; beams and pixels that are no distances say nothing
-  // (mapper/scan/frame_scans.h); stamps that repeat or go back tell no speed; a loop with a frame
+  // Other faults are tolerated: a frame without a pose gets no estimate; without image or scan its
+  // pose is only corrected; beams and pixels with invalid distances are ignored
+  // (mapper/scan/frame_scans.h); stamps that repeat or go back give no speed; a loop to a frame
   // that never came or has no pose counts as rejected.
   //
-  // Time: mostly 0.1 to 0.3 ms. A few frames adjust or search the map, tens to hundreds of ms and
-  // more with many loops, or fill up what is remembered of all frames, which is then moved: 0.1 s
-  // each hour or so.
+  // Time: mostly 0.1 to 0.3 ms. Frames that trigger an adjustment or a search take tens to hundreds
+  // of ms, more with many loops. About once an hour a vector over all frames is reallocated (0.1
+  // s).
   //
   // Memory: a frame leaves 0.6 kB behind, 60 MB an hour, and its scan where that is kept
   // (KeepOptions), 3 kB and more.
   //
-  // The report's pose is of the camera, as the frame's was: of a laser, BaseOf(*map_from_camera).
+  // The report's pose is the camera's, as the frame's is; for a laser use BaseOf(*map_from_camera).
   FrameReport AddFrame(const Frame& frame);
-  // The last correction, then the map drawn from the stored scans at their final poses. It takes
-  // seconds after tens of thousands of frames in rooms, and as much longer as scans see more area;
-  // frames may come after it, and another end.
-  // `slam_final`, one a frame given or empty: SLAM's own final trajectory. It is the final estimate
-  // when SLAM is trusted alone (K = 0); frames without one keep their live pose. Throws InputError
-  // when it is of another length, or holds a pose that AddFrame() would not take, and when the map
-  // would be larger than 2^28 cells, 819 m square at 5 cm; CurrentPoses() tells the way even then.
+  // Does the final adjustment, then draws the map from the stored scans at their final poses. Takes
+  // seconds for tens of thousands of frames in rooms, more where scans cover more area. More
+  // frames, and another Finish(), may follow. `slam_final`: SLAM's own final trajectory, one entry
+  // per accepted frame, or empty. It is the final estimate when only SLAM is trusted (K = 0);
+  // frames without an entry keep their live pose. Throws InputError when its length is wrong or
+  // AddFrame() would refuse one of its poses, and when the map would be larger than 2^28 cells, 819
+  // m square at 5 cm; CurrentPoses() works even then.
   MapperResult Finish(const std::vector<std::optional<Pose3>>& slam_final = {});
-  // The map as it is known now, drawn anew from all kept scans: 0.1 s for 4,000 of them in rooms,
-  // so ask once in a while rather than after each frame. Empty, of no size, while nothing was
-  // mapped. Throws InputError, as Finish() does, when the map would be larger than 2^28 cells.
+  // The current map, redrawn from all kept scans: 0.1 s for 4,000 of them in rooms, so do not call
+  // it for every frame. Of size zero while nothing was mapped. Throws InputError, as Finish() does,
+  // when the map would be larger than 2^28 cells.
   OccupancyMap CurrentMap() const;
-  // What a result's `map_from_camera` and `mapped` would be without the last correction: the way
-  // so far, which loops move, and what is to be saved of a map that is not finished.
+  // `map_from_camera` and `mapped` as of now, without the final adjustment; later loops still move
+  // them. For showing the trajectory so far and for saving an unfinished map.
   std::vector<std::optional<Pose3>> CurrentPoses() const;
   std::vector<MappedFrame> CurrentMapped() const;
 

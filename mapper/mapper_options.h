@@ -18,8 +18,8 @@ namespace depthgrid {
 enum class MapperMethod { kPaper, kSurfel };
 
 struct MapperOptions {
-  // Surfels err by a fourth (rendered rooms) to a hundredth (laser logs) of what the paper's chain
-  // errs by (docs/results.md, "The paper's experiment" and "The paper's chain on laser logs").
+  // The surfel method's errors are a fourth (rendered rooms) to a hundredth (laser logs) of the
+  // paper's (docs/results.md, "The paper's experiment" and "The paper's chain on laser logs").
   MapperMethod method = MapperMethod::kSurfel;
   ScanOptions scan;
   GridOptions grid;
@@ -32,7 +32,7 @@ struct MapperOptions {
   RoundOptions rounds;
   KeepOptions keep;
 
-  // Method surfel takes what it finds well; the paper's chain is as the paper has it.
+  // `auto`: only method surfel searches; the published method does not.
   bool SearchesLoops() const {
     return loops.search.use == LoopSearchUse::kOn ||
            (loops.search.use == LoopSearchUse::kAuto && method == MapperMethod::kSurfel);

@@ -7,7 +7,7 @@
 
 namespace depthgrid {
 
-// Of images and cameras, whatever file they come from.
+// Limit on either side of an image, from any source.
 constexpr int kMostImageSidePx = 16384;
 
 // Pixel (u, v) has its centre at integer coordinates: column u covers [u - 0.5, u + 0.5).
@@ -25,7 +25,8 @@ struct PinholeCamera {
   bool operator==(const PinholeCamera&) const = default;
 };
 
-// The point at z-depth `z_m` behind pixel (u, v), in camera axes. Distortion is not undone here.
+// The point at z-depth `z_m` on the ray of pixel (u, v), in camera axes. Distortion is not undone
+// here.
 inline Eigen::Vector3d Unproject(const PinholeCamera& camera, double u_px, double v_px,
                                  double z_m) {
   return {z_m * (u_px - camera.cx_px) / camera.fx_px, z_m * (v_px - camera.cy_px) / camera.fy_px,
@@ -39,9 +40,9 @@ inline Eigen::Vector2d Project(const PinholeCamera& camera,
           camera.cy_px + camera.fy_px * point_in_camera.y() / point_in_camera.z()};
 }
 
-// Throws InputError naming `place` unless sides have 1 to kMostImageSidePx pixels (with distortion
-// 2 and more), focal lengths are positive, the principal point lies within ten of them of the image
-// and everything is finite.
+// Throws InputError naming `place` unless both sides have 1 to kMostImageSidePx pixels (with
+// distortion at least 2), focal lengths are positive, the principal point lies within ten focal
+// lengths of the image and everything is finite.
 void Validate(const PinholeCamera& camera, const std::string& place);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// How a camera stands over the floor: all that a level scan needs to know of its pose.
+// Tilt and height of a camera above the floor: the part of its pose that a level scan needs.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@ struct CameraStand {
   double height_m = 0.0;  // of the camera's centre above the floor
 };
 
-// As the pose has it.
+// According to SLAM's pose alone, without looking at the floor.
 inline CameraStand StandOf(const Pose3& slam_from_camera, double floor_z_m) {
   return {LevelFromCamera(slam_from_camera), slam_from_camera.translation.z() - floor_z_m};
 }

@@ -1,4 +1,4 @@
-// A set of cells: those that are observable, or in one state.
+// A set of cells, such as the observable ones or those in one state.
 #pragma once
 
 #include <cstdint>

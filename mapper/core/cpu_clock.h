@@ -1,4 +1,4 @@
-// Processor time and time that passes, for reports of speed; no result depends on them.
+// CPU time and wall time, for speed reports; no result depends on them.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace depthgrid {
 
-// Of the calling thread.
+// CPU time of the calling thread.
 inline double ThreadCpuS() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -15,13 +15,13 @@ inline double ThreadCpuS() {
 
 inline double ThreadCpuUs() { return 1e6 * ThreadCpuS(); }
 
-// That passes, whoever uses the processor; from some start.
+// Wall time from an arbitrary start.
 inline double SteadyUs() {
   const auto since_start = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double, std::micro>(since_start).count();
 }
 
-// Of the program so far, all threads.
+// CPU time of all threads of the program so far.
 inline double ProcessCpuS() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 }  // namespace depthgrid

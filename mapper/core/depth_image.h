@@ -7,16 +7,15 @@
 
 namespace depthgrid {
 
-// The value of a pixel the sensor could not measure; the mapper takes NaN and what is below 0 for
-// it as well. It is neither "too near" nor "too far": those are finite positive values outside the
-// mapper's range, and say something about free space (docs/conventions.md).
+// The value of a pixel the sensor could not measure; the mapper treats NaN and negative values the
+// same. It is neither "too near" nor "too far": those are finite positive values outside the
+// mapper's range, which carry information about free space (docs/conventions.md).
 constexpr float kInvalidDepth = 0.0F;
 
 struct DepthImage {
   int width_px = 0;
   int height_px = 0;
-  // width_px * height_px: kInvalidDepth or positive; infinity is as good as any distance that is
-  // too far.
+  // width_px * height_px: kInvalidDepth or positive; infinity counts as too far.
   std::vector<float> z_m;
 
   DepthImage() = default;

@@ -1,18 +1,18 @@
-// Drives that one map was made of, by the numbers of its frames.
+// Tells the drives that a map was made from by its frame numbers.
 #pragma once
 
 #include <vector>
 
 namespace depthgrid {
 
-// Whether a frame is the first of another drive than the one before it, by their numbers: those of
-// a prior map count up one by one within a drive.
+// Whether frame number `frame` starts a new drive after `before`: within a drive of a prior map,
+// numbers increase by one.
 constexpr bool BeginsDrive(int before, int frame) {
   return before < 0 && (frame >= 0 || frame != before + 1);
 }
 
-// The numbers that frames of a map get when it is gone on in, from those they have: up to -1, one
-// left out between two drives.
+// Frame numbers for a finished map used as prior, from its current ones: negative, the last is -1,
+// with one number skipped between drives.
 std::vector<int> PriorNumbers(const std::vector<int>& frames);
 
 }  // namespace depthgrid

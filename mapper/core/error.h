@@ -1,6 +1,6 @@
 // The two kinds of failure that are not results (docs/conventions.md, "Errors"): bad input, which
-// is the user's to mend, and a broken precondition, which is a bug. An ordinary algorithmic failure
-// is a field of a result instead.
+// the user can fix, and a broken precondition, which is a bug. An ordinary algorithmic failure is a
+// field of a result instead.
 #pragma once
 
 #include <stdexcept>
@@ -17,8 +17,8 @@ class InputError : public std::runtime_error {
       : std::runtime_error(place.empty() ? message : place + ": " + message) {}
 };
 
-// A setting that does not fit what it is used on: the key is the place, until who knows where it
-// was set names that (NamingPlaces).
+// A setting that does not fit the data it is used on. The place is the key; NamingPlaces() replaces
+// it by the file and line that set it, where known.
 class SettingError : public InputError {
  public:
   SettingError(const std::string& key, const std::string& message)
@@ -31,13 +31,13 @@ class SettingError : public InputError {
   std::string message_;
 };
 
-// Throws std::logic_error: where a precondition of the calling code did not hold. Behind a switch
-// over all values of an enum it says that there are no others (the compiler asks for all).
+// Throws std::logic_error for a violated precondition. Also placed after a switch over all values
+// of an enum, as unreachable code.
 [[noreturn]] inline void Broken(const char* rule) {
   throw std::logic_error(std::string("broken precondition: ") + rule);
 }
 
-// Throws it when the precondition does not hold.
+// Throws std::logic_error unless the precondition holds.
 inline void Require(bool condition, const char* rule) {
   if (!condition) Broken(rule);
 }

@@ -1,4 +1,4 @@
-// All that crosses from a source (simulation, a recorded folder, a laser log) to the mapper.
+// The data a source (simulation, a recorded folder, a laser log) passes to the mapper.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,48 +16,48 @@
 
 namespace depthgrid {
 
-// Farther from the origin a pose is wrong: on Earth, in metres, nothing lies farther from the
-// origin of its UTM zone. Cells of 5 mm are still numbered.
+// Poses farther from the origin are refused: no point on Earth lies farther from the origin of its
+// UTM zone. Indices of 5 mm cells still fit an int.
 constexpr double kFarthestPoseM = 1e7;
 // False for NaN.
 inline bool IsWithinReach(const Eigen::Vector3d& at) {
   return (at.array().abs() <= kFarthestPoseM).all();
 }
-// Nor does the map lie farther, with room for how far an estimate goes from poses that drift.
+// Limit for estimates: a margin over kFarthestPoseM, as they differ from SLAM poses that drift.
 constexpr double kFarthestMapM = 1.05 * kFarthestPoseM;
-// False for NaN too. The limit keeps cell indices within int.
+// False for NaN. The limit keeps cell indices within int.
 inline bool IsOnAMap(const Pose2& pose) {
   return std::abs(pose.x_m) < kFarthestMapM && std::abs(pose.y_m) < kFarthestMapM &&
          std::isfinite(pose.yaw_rad);
 }
 
-// At most one of `depth` and `scan` is set; a frame with neither carries a pose only (a missing
-// image), or only loops (SLAM is lost, and yet corrected itself).
+// At most one of `depth` and `scan` is set; a frame with neither carries only a pose (a missing
+// image), or only loops (SLAM is lost but reports a loop).
 struct Frame {
   // Position in the sequence from 0 on, counted by the source; loop closures refer to it. Numbers
-  // may be left out, none comes twice.
+  // may be skipped but not repeated.
   int index = 0;
-  double stamp_s = 0.0;  // seconds since whenever; differences are what counts
+  double stamp_s = 0.0;  // seconds from any origin; only differences matter
   std::shared_ptr<const DepthImage> depth;
   std::shared_ptr<const Scan> scan;
-  // With `scan` only: what is matched where that is another one (mapper/scan/frame_scans.h).
+  // With `scan` only: the scan to match, if different from `scan` (mapper/scan/frame_scans.h).
   std::shared_ptr<const Scan> matched_scan;
-  // With `scan` only: how the camera stood over the floor seen in the image that the scan was made
-  // from. Empty: as the pose has it.
+  // With `scan` only: the camera's tilt and height over the floor in the image that the scan was
+  // made from. Empty: those of the pose.
   std::optional<CameraStand> stand;
   // SLAM's pose of the depth image: optical axes (x right, y down, z forward) in a world with z up,
-  // metres (docs/conventions.md). Empty while SLAM is lost. A laser has no optical axes; with its
-  // planar pose (x forward, y left), and back (mapper/core/level.h):
+  // metres (docs/conventions.md). Empty while SLAM is lost. A laser has no optical axes; to convert
+  // its planar pose (x forward, y left) and back (mapper/core/level.h):
   //   frame.slam_from_camera = CameraOf(odom_from_laser);
   //   const Pose2 map_from_laser = BaseOf(*report.map_from_camera);
   std::optional<Pose3> slam_from_camera;
-  // Another number whenever SLAM corrected itself (a loop closed, relocalised): the difference of
-  // two poses is a motion only within an epoch, and a jump that is taken for one bends the map for
-  // good. A step that the motion before does not lead to (mapper/core/slam_step.h) begins one by
-  // itself; corrections of less than 0.1 m go unseen, and of less than 0.1 m + 10 m/s^2 t^2 over a
-  // step that takes t, up to a second; over more, all but one back to the origin.
+  // Must change whenever SLAM corrects itself (loop closure, relocalisation): the difference of two
+  // poses is a motion only within an epoch, and a jump taken for a motion bends the map
+  // permanently. A step inconsistent with the previous motion (mapper/core/slam_step.h) begins an
+  // epoch by itself. Unreported corrections are missed when smaller than 0.1 m + 10 m/s^2 t^2 over
+  // a step of duration t; for t above a second only a jump back to the origin is noticed.
   int slam_epoch = 0;
-  // Reported with this frame, to be applied before its pose is used.
+  // Loop closures reported with this frame, applied before its pose is used.
   std::vector<LoopClosure> loops;
 };
 
@@ -71,8 +71,8 @@ class FrameSource {
   virtual std::optional<PinholeCamera> Camera() const = 0;
   // How many frames Next() will give in all, for progress bars.
   virtual int FrameCount() const = 0;
-  // What was wrong with the input and survived (missing files, bad poses), one line each, complete
-  // at the end.
+  // Tolerated faults of the input (missing files, bad poses), one line each; complete after the
+  // last frame.
   virtual std::vector<std::string> Warnings() const = 0;
 };
 

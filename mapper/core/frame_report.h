@@ -1,4 +1,4 @@
-// What the mapper says of one frame, as it was known at the time.
+// The mapper's online result for one frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,13 @@
 
 namespace depthgrid {
 
-// Where a frame is before matching: SLAM's pose carried into the map, and how sure that is.
+// The pose of a frame before matching, SLAM's pose in the map, with its covariance.
 struct Prediction {
   Pose2 map_from_base;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // base axes: forward m, left m, yaw rad
 };
 
-// Units of small motions (forward m, left m, yaw rad) in which a metre and a radian weigh alike to
-// a view 3 m deep.
+// Scales of small motions (forward m, left m, yaw rad): 1/3 rad moves points 3 m away by 1 m.
 inline const Eigen::Vector3d kMotionUnit(1.0, 1.0, 1.0 / 3.0);
 
 // A scan matched against what was mapped before. Not finding a match is an ordinary outcome.
@@ -25,16 +24,16 @@ struct MatchResult {
   bool found = false;
   Pose2 map_from_base;  // meaningful only when found
   // Inverse covariance of map_from_base for a small motion (forward m, left m, yaw rad) in base
-  // axes (a mapper's report: those of the predicted pose); zero along directions the scan does not
-  // see (a corridor's axis).
+  // axes of the matched pose (in a FrameReport: of the predicted pose); zero along directions the
+  // scan does not constrain (a corridor's axis).
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;  // share of the beams that the map explains, 0..1
-  int explained = 0;   // how many pieces of surface these are; 0 where that is not counted
+  int explained = 0;   // as a number of surface pieces; 0 where not counted
   int iterations = 0;
 };
 
-// CPU time of a frame, and what its stages took of it (by the time that passed), microseconds.
-// Never part of the result, only of the timing files.
+// CPU time of a frame, divided among its stages in proportion to their wall time; microseconds.
+// Only written to the timing files.
 struct StageTimes {
   double scan_us = 0.0;
   double match_us = 0.0;
@@ -49,33 +48,33 @@ struct FrameReport {
   double stamp_s = 0.0;
   std::optional<Pose3> slam_from_camera;  // the input
   int slam_epoch = 0;
-  std::optional<Pose3> map_from_camera;  // the online estimate; empty while nothing is known
+  std::optional<Pose3> map_from_camera;  // the online estimate; empty while unknown
   Pose2 map_from_slam;                   // the correction after this frame
   MatchResult match;
   std::array<double, 3> innovation = {};  // match against prediction in base axes: m, m, rad
-  // Against its covariance, the errors of the map that was matched against included; of what the
-  // gate refused, against prediction and match as the gate has it.
+  // Chi-square of the innovation, its covariance including the errors of the matched map; where the
+  // gate refused the match, with the gate's covariance (prediction and match only).
   double innovation_chi2 = 0.0;
   std::array<double, 3> gain = {};  // the diagonal of K, base axes
-  // Of the estimate in base axes, the map taken for exact.
+  // Covariance of the estimate in base axes, taking the map as exact.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  // The motion of the estimate from an earlier frame (FrameReport::index; at most a submap's frames
-  // back, and none before a correction of the map) and its covariance, the errors of the map that
-  // it was matched against included: base axes of this frame; -1 and zero if not tracked.
+  // Covariance of the estimated motion from frame `motion_from` (a FrameReport::index, at most
+  // submap.scans back and not before a correction of the map) to this one, including the errors of
+  // the matched map, in base axes of this frame. -1 and zero if not tracked.
   int motion_from = -1;
   Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   bool innovation_rejected = false;  // the gate refused the match
-  int beams = 0;                     // beams with a hit, of what is matched
+  int beams = 0;                     // beams with a hit in the matched scan
   int loops_accepted = 0;            // loop events of this frame that entered the graph
   int loops_rejected = 0;
-  bool slipped = false;    // SLAM's motion to here did not fit what is seen: it was put right
-  bool relocated = false;  // what was mapped since a loss of SLAM was moved to where it belongs
-  // Since a loss of SLAM: where the frame lies to what was mapped before is a guess. It ends where
-  // the place is found, and where a loop is accepted that joins both.
+  bool slipped = false;    // SLAM's motion to here contradicted the scan and was corrected
+  bool relocated = false;  // the frames since a loss of SLAM were moved to where they belong
+  // After a loss of SLAM: the pose relative to the map from before it is only a guess, until the
+  // wide search finds the place or an accepted loop joins the two parts.
   bool guessed = false;
   bool inserted = false;             // its scan is kept for the map
-  bool well_seen = false;            // its place was seen enough: the frame moves with another's
-  std::optional<CameraStand> stand;  // of a depth image: what its scan was made with
+  bool well_seen = false;            // its place has enough scans: the frame is tied to a kept one
+  std::optional<CameraStand> stand;  // of a depth image: tilt and height its scan was made with
   StageTimes times;
 };
 

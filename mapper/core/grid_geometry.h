@@ -62,7 +62,7 @@ inline GridGeometry OnlyCell(const Cell& cell, double resolution_m) {
   return {resolution_m, cell, 1, 1};
 }
 
-// With so many cells more on every side.
+// Enlarged by `margin_cells` on every side.
 inline GridGeometry Widened(const GridGeometry& geometry, int margin_cells) {
   return {geometry.resolution_m,
           {geometry.min_cell.x - margin_cells, geometry.min_cell.y - margin_cells},
@@ -70,12 +70,12 @@ inline GridGeometry Widened(const GridGeometry& geometry, int margin_cells) {
           geometry.height_cells + 2 * margin_cells};
 }
 
-// The smallest rectangle that contains both; an empty one (zero size) counts for nothing. Same
-// resolution required. Of two so far apart that its sides have no number they are the largest there
-// is, and size() is more than memory holds: to be compared with kMaxMapCells first.
+// The smallest rectangle that contains both; an empty one (zero size) is ignored. Same resolution
+// required. Sides that overflow int are clamped to its maximum, so compare size() with kMaxMapCells
+// before allocating.
 GridGeometry Union(const GridGeometry& a, const GridGeometry& b);
 
-// The smallest rectangle that contains all of them; of none the empty one.
+// The smallest rectangle that contains all cells; empty for none.
 GridGeometry BoundsOf(const std::vector<Cell>& cells, double resolution_m);
 
 }  // namespace depthgrid

@@ -1,6 +1,6 @@
-// Scans kept for later, packed without loss: a day of driving is a matter of memory. Bearings are
-// shared, and of each beam only what the beams before it do not say is stored: a laser's scan takes
-// 5 bytes a beam instead of 20.
+// Lossless compression of stored scans, so that a day of driving fits in memory. Scans share their
+// bearings, and a beam stores only what does not follow from the beams before it: 5 bytes a beam
+// for a laser instead of 20.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace depthgrid {
 
-// What a kept scan is made of; see kept_scan.cc for the codes.
+// The compressed form of a scan; the codes are explained in kept_scan.cc.
 struct PackedScan {
   double max_range_m = 0.0;
   std::span<const float> bearings_rad;  // one a beam
@@ -22,9 +22,9 @@ struct PackedScan {
   std::span<const float> values;
 };
 
-// False when the codes ask for other values than there are.
+// False when the number of values is not what the codes require.
 bool IsWhole(const PackedScan& packed);
-// Of a whole one.
+// Requires IsWhole(packed).
 Scan Unpacked(const PackedScan& packed);
 
 // A handle, cheap to copy. Many scans share a block of memory, which lives as long as any of them.
@@ -33,7 +33,7 @@ class KeptScan {
   KeptScan() = default;
   explicit operator bool() const { return block_ != nullptr; }
   Scan operator*() const { return Unpacked(packed()); }
-  // Points into the block.
+  // A view of the block's memory.
   PackedScan packed() const;
 
   bool operator==(const KeptScan& other) const { return **this == *other; }
@@ -53,7 +53,7 @@ class KeptScan {
   std::size_t at_ = 0;
 };
 
-// Where scans are kept. Takes memory in blocks that grow, not for every scan.
+// Storage of scans. Allocates blocks of growing size rather than memory for every scan.
 class ScanArchive {
  public:
   KeptScan Keep(const Scan& scan);
@@ -63,7 +63,7 @@ class ScanArchive {
   std::shared_ptr<KeptScan::Block> BlockFor(const Scan& scan, std::size_t bytes);
 
   std::shared_ptr<KeptScan::Block> newest_;
-  // The last scan packed.
+  // Buffers of Pack(): the last scan packed.
   std::vector<std::uint8_t> codes_;
   std::vector<float> values_;
 };

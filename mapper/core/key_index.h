@@ -1,5 +1,5 @@
-// Which index has a key. A flat table: look-ups are the surfel matcher's inner loop, and emptying
-// it keeps its memory. It is never walked through, so its order cannot show.
+// A hash table from key to index. Open addressing, because look-ups are the surfel matcher's inner
+// loop; Clear() keeps the memory. It is never iterated, so its order affects no result.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@ namespace depthgrid {
 
 class KeyIndex {
  public:
-  // -1 when there is none.
+  // -1 when the key is not there.
   int Find(std::uint64_t key) const {
     if (entries_.empty()) return -1;
     for (std::size_t i = PlaceOf(key);; i = (i + 1) & (entries_.size() - 1)) {
       if (entries_[i].index < 0 || entries_[i].key == key) return entries_[i].index;
     }
   }
-  // A key that is not there yet; `index` is not negative.
+  // Requires a key that is not there yet and a non-negative index.
   void Add(std::uint64_t key, int index) {
     if (2 * (size_ + 1) > entries_.size()) Grow();
     std::size_t i = PlaceOf(key);

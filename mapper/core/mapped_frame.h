@@ -1,4 +1,5 @@
-// A frame of a map with its scans: what a map is drawn from, saved as and gone on in.
+// A frame of a map with its scans: maps are drawn from these, saved as these and continued from
+// these.
 #pragma once
 
 #include <optional>
@@ -12,18 +13,19 @@ namespace depthgrid {
 
 // A frame that was inserted, in order of time.
 struct MappedFrame {
-  int frame = 0;  // Frame::index; below 0: of a prior map
+  int frame = 0;  // Frame::index; negative: of a prior map
   double stamp_s = 0.0;
-  // Where a place is well seen already, the position of the kept frame this one moves with; -1: its
-  // own scans are kept. A tied frame soon loses them.
+  // -1: this frame's scans are kept. Otherwise its place is well seen already, and this is the
+  // index, in the vector of MappedFrame, of the kept frame it moves with; its own scans are dropped
+  // soon.
   int tied_to = -1;
   KeptScan scan;       // what is matched
   KeptScan obstacles;  // what the map is drawn from; often the same
   Pose2 map_from_base;
-  // SLAM's own motion from the mapped frame before this one; empty for the first and across epochs.
-  // Of a prior map's frame the motion between their final poses.
+  // SLAM's motion from the previous mapped frame; empty for the first and across epochs. In a prior
+  // map, the motion between the final poses.
   std::optional<Pose2> slam_motion;
-  // SLAM's pose stood still to here from the frame before (Standing).
+  // SLAM's pose did not move since the previous frame (Standing).
   bool stands = false;
   MatchResult match;
 

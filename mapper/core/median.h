@@ -1,4 +1,4 @@
-// Medians, for what outliers must not move.
+// Medians, for estimates robust to outliers.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace depthgrid {
 
-// The standard deviation of a normal variable of mean 0, over the median of its magnitude.
+// Ratio of the standard deviation of a zero-mean normal variable to the median of its magnitude.
 constexpr double kSigmaOfMedian = 1.4826;
 
-// The middle value by size; of an even number of values the upper of the two, no mean is taken.
-// `value` tells that of an item. Reorders the items, and takes no memory.
+// The median; of an even number of values the upper of the middle two, not their mean. `value` maps
+// an item to its value. Reorders the items and allocates nothing.
 template <typename Item, typename Value = std::identity>
 double UpperMedianAmong(std::span<Item> items, const Value& value = {}) {
   Require(!items.empty(), "a median needs values");
@@ -34,7 +34,7 @@ struct Weighed {
   double weight = 0.0;
 };
 
-// Half of the weight lies below it and half above; where nothing has weight all count alike.
+// The weighted median; with no positive weight all values count alike.
 inline double WeighedMedian(std::vector<Weighed> values) {
   double all = 0.0;
   for (const Weighed& v : values) all += v.weight;

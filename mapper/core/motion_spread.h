@@ -1,26 +1,24 @@
-// How far SLAM's motion is off, as an adjustment of poses and map tells afterwards.
+// Standard deviation of SLAM's motion, as estimated by the joint adjustment.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace depthgrid {
 
-// How SLAM's motion errs as seen from poses and map adjusted together: over stretches of so many
-// frames, as that of one frame if it grows with their number. Standard deviations, base axes
-// (forward m, left m, yaw rad).
+// Standard deviation of SLAM's motion per frame, estimated from motions over `frames` frames on the
+// assumption that it grows linearly with their number. Base axes (forward m, left m, yaw rad).
 struct MotionSpread {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   double frames = 1.0;
-  int stretches = 0;  // that saw something
-  // How well such a motion, of one frame, is told by what was seen; infinite where nothing tells
-  // it.
+  int stretches = 0;  // number of motions that were observed
+  // `sigma` over the root of the share of the motion that was observed; infinite where none was.
   Eigen::Vector3d seen_sigma = Eigen::Vector3d::Zero();
 
-  // Fewer are not believed for long: from the seven of the first 60 frames a prior that drifts
-  // 0.375 m was once called nearly perfect (docs/tried.md, "A nearly perfect prior").
+  // Fewer are not reliable: from seven in the first 60 frames, a prior that drifts by 0.375 m was
+  // estimated as nearly perfect (docs/tried.md, "A nearly perfect prior").
   bool IsSure() const { return stretches >= 20; }
-  // Of so few it says nothing of an axis along which they hardly saw, nor of one along which SLAM
-  // errs by so much that matches had better lead (docs/math.md, "The first frames again").
+  // With fewer, an axis is used only if it is well observed and SLAM's error along it is small;
+  // otherwise matches should dominate (docs/math.md, "The first frames again").
   bool Tells(int axis) const { return IsSure() || seen_sigma[axis] <= 0.01; }
 };
 

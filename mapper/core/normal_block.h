@@ -1,6 +1,6 @@
-// Standard normals in bulk: four for each of many consecutive items, the same draws whatever the
-// block they are asked for in. Only additions, multiplications, divisions and square roots, so the
-// bits do not depend on a maths library.
+// Standard normal draws in bulk: four for each of many consecutive items, independent of how items
+// are divided into blocks. Uses only + - * / and square roots, so the bits do not depend on a maths
+// library.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ struct NormalBlock {
   alignas(64) std::array<std::array<float, kNormalBlockItems>, 4> normals;
 };
 
-// Box-Muller on the words RandomWords gives for each item. 2^23 steps: no normal lies beyond 5.8.
+// Box-Muller on the words RandomWords gives for each item. The uniforms have 2^23 steps, so no
+// normal lies beyond 5.8.
 void FillNormals(std::uint64_t seed, RandomStage stage, std::uint32_t frame,
                  std::uint32_t first_item, NormalBlock& block);
 

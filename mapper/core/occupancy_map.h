@@ -1,4 +1,4 @@
-// A finished map: the probability of each cell to be occupied, and its reading in three states.
+// A finished map: the occupancy probability of each cell, and its classification into three states.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace depthgrid {
 
 constexpr float kUnknownProb = std::numeric_limits<float>::quiet_NaN();
 
-// A gigabyte of probabilities, 819 x 819 m at 5 cm: beyond it a pose or a file is wrong rather than
-// the building large, and the machine would be out of memory before anything was said.
+// A gigabyte of probabilities, 819 x 819 m at 5 cm: a larger map means a wrong pose or file rather
+// than a large building, and is reported before memory runs out.
 constexpr std::size_t kMaxMapCells = std::size_t{1} << 28U;
 
 struct OccupancyMap {
@@ -56,7 +56,7 @@ struct StateMap {
   bool operator==(const StateMap&) const = default;
 };
 
-// Of certain cells: probability 1, 0, or NaN where unknown.
+// Probability 1 where occupied, 0 where free, NaN where unknown.
 OccupancyMap CertainMap(const StateMap& map);
 
 StateMap StatesOf(const OccupancyMap& map);

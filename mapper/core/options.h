@@ -29,7 +29,7 @@ struct Interval {
 // "from 0 to 1", "at least 0", "a finite number".
 std::string Shown(const Interval& interval);
 
-// A value that is chosen by its name.
+// An enum value and its name in files.
 template <typename Enum>
 using ChoiceName = std::pair<Enum, std::string_view>;
 
@@ -49,15 +49,15 @@ class OptionsVisitor {
   // Exactly values.size() numbers, such as a point.
   virtual void Tuple(std::string_view key, std::span<double> values, Interval allowed,
                      std::string_view meaning) = 0;
-  // A list of lists of `width` numbers each, such as an outline; stored one behind the other.
+  // A list of lists of `width` numbers each, such as an outline; stored row after row in `values`.
   virtual void Rows(std::string_view key, std::vector<double>& values, std::size_t width,
                     Interval allowed, std::string_view meaning) = 0;
   // One number for all axes, or [forward, left, yaw].
   virtual void PerAxis(std::string_view key, std::array<double, 3>& values, Interval allowed,
                        std::string_view meaning) = 0;
 
-  // Two keys of this group of which the first must be less than the second, or not more. Only
-  // RequireInRange asks: whoever reads a file may be told one of them in another.
+  // Requires that the first of two keys of this group is less than (or not more than) the second.
+  // Only RequireInRange checks it: the two may be set in different files.
   virtual void Less(std::string_view /*low_key*/, double /*low*/, std::string_view /*high_key*/,
                     double /*high*/) {}
   virtual void NotMore(std::string_view /*low_key*/, double /*low*/, std::string_view /*high_key*/,
@@ -68,7 +68,7 @@ class OptionsVisitor {
   void Choice(std::string_view key, Enum& value, std::span<const ChoiceName<Enum>> allowed,
               std::string_view meaning) {
     std::vector<std::string_view> names;
-    int index = -1;  // a value of none of the names
+    int index = -1;  // no name has this value
     for (const auto& [candidate, name] : allowed) {
       if (candidate == value) index = static_cast<int>(names.size());
       names.push_back(name);
@@ -81,7 +81,7 @@ class OptionsVisitor {
               std::string_view meaning) {
     Choice(key, value, std::span<const ChoiceName<Enum>>(allowed.begin(), allowed.size()), meaning);
   }
-  // Of a table, which others go through as well.
+  // From a table that is also used elsewhere.
   template <typename Enum, std::size_t kCount>
   void Choice(std::string_view key, Enum& value,
               const std::array<ChoiceName<Enum>, kCount>& allowed, std::string_view meaning) {
@@ -101,12 +101,13 @@ class OptionsVisitor {
   virtual void ChoiceIndex(std::string_view key, int& index,
                            const std::vector<std::string_view>& names,
                            std::string_view meaning) = 0;
-  // False skips the group: nothing was said about it.
+  // False skips the group, as nothing in the input mentions it.
   virtual bool Begin(std::string_view key, std::string_view meaning) = 0;
   virtual void End() = 0;
 };
 
-// Where a key, "mapper.scan.beams", was given its value; empty where nobody gave it one.
+// The place (file and line) where a key such as "mapper.scan.beams" was set; empty where it was
+// not.
 using KeyPlaces = std::function<std::string(const std::string& key_path)>;
 
 namespace internal {
@@ -115,13 +116,14 @@ std::unique_ptr<OptionsVisitor> MakeRangeCheck(const std::string& path, KeyPlace
 
 // For options that were set in code or in several places: throws InputError for the first value
 // outside its interval, "PATH.group.key: is 2, must be from 0 to 1", or beyond another's, "must be
-// below max_range_m, 1"; and with its place in front, where that is known.
+// below max_range_m, 1"; the place of the key comes first, where known.
 template <typename Options>
 void RequireInRange(Options options, const std::string& path, KeyPlaces places = {}) {
   options.Visit(*internal::MakeRangeCheck(path, std::move(places)));
 }
 
-// Does `work`, whose SettingErrors come out as an InputError of the place where the key was set.
+// Calls `work` and rethrows its SettingError as an InputError naming the place where the key was
+// set.
 template <typename Work>
 void NamingPlaces(const KeyPlaces& places, const Work& work) {
   try {

@@ -48,13 +48,14 @@ inline Pose2 Between(const Pose2& world_from_i, const Pose2& world_from_j) {
   return Inverse(world_from_i) * world_from_j;
 }
 
-// How far apart two poses are where a radian counts like a metre, as it does to what is seen.
+// Distance of two poses in metres plus radians: a radian counts as a metre, as it shifts points a
+// metre away.
 inline double Separation(const Pose2& world_from_i, const Pose2& world_from_j) {
   const Pose2 i_from_j = Between(world_from_i, world_from_j);
   return i_from_j.translation().norm() + std::abs(i_from_j.yaw_rad);
 }
 
-// Whether one is farther from the other than this, or turned by more.
+// Whether they differ by more than `least_m` or by more than `least_rad`.
 inline bool AreApart(const Pose2& world_from_i, const Pose2& world_from_j, double least_m,
                      double least_rad) {
   const Pose2 i_from_j = Between(world_from_i, world_from_j);

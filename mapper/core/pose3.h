@@ -35,15 +35,15 @@ inline Pose3 Between(const Pose3& world_from_i, const Pose3& world_from_j) {
   return Inverse(world_from_i) * world_from_j;
 }
 
-// The rotation by |v| about v, and back: a vector of length in [0, pi].
+// The rotation by |v| about v, and its inverse, whose length is in [0, pi].
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation);
 
-// The smallest rotation that takes the direction of `from` to that of `to`, neither being zero;
-// about any axis across them where they are opposite.
+// The smallest rotation that takes the direction of `from` to that of `to`, neither of them zero;
+// about any perpendicular axis if they are opposite.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-// A rotation about z and a shift in xy, as the 6-DoF pose that does the same.
+// A planar pose as a 6-DoF pose with z = 0 and rotation about z.
 Pose3 Lift(const Pose2& a_from_b);
 
 // A planar correction applied to a camera pose: z, roll and pitch stay those of the camera pose.

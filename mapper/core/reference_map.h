@@ -21,37 +21,38 @@ struct PlanarLoop {
   Pose2 first_from_second;
   double sigma_translation_m = 0.02;
   double sigma_yaw_rad = 0.01;
-  // Nothing is wanted of an adjustment that does not accept it: it may end there.
+  // The caller discards an adjustment that rejects this loop, so the adjustment may stop there.
   bool on_trial = false;
 };
 
 struct Adjustment {
   std::vector<Pose2> map_from_base;  // one a mapped frame; the first is unchanged
   std::vector<bool> loop_accepted;   // one a loop given
-  // How SLAM's motion errs, as the adjusted poses tell; empty where they are too few.
+  // SLAM's motion noise estimated from the adjusted poses; empty with too few of them.
   std::optional<MotionSpread> motion_spread;
-  // Of the errors that the frames asked for have left, as they go together: three rows a frame, in
-  // map axes (true pose = Exp(error) * adjusted pose). Empty where nothing was solved for them.
+  // Joint covariance of the remaining errors of the `asked` frames: three rows a frame, in map axes
+  // (true pose = Exp(error) * adjusted pose). Empty if not computed.
   Eigen::MatrixXd covariance;
 };
 
-// How much an adjustment may cost, and what for.
+// The purpose, and thereby the cost, of an adjustment.
 enum class AdjustEffort {
   kRefine,      // during the run: poses are nearly right
-  kBend,        // during a long run: only what loops ask for, without looking at what was seen
-  kCloseLoops,  // during the run: loops may bend them
-  kFinish,      // once: each single frame as well as it can be known
+  kBend,        // during a long run: loops and motions only, no surfels
+  kCloseLoops,  // during the run: loops may move poses far
+  kFinish,      // at the end: every frame as accurately as possible
 };
 
 // A part of the map that a scan was matched against.
 struct MapPart {
-  double mapped = 0.0;  // the mean position, among the mapped frames, of those that drew it
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // what the match has from it, base axes
-  double noise_share = 0.0;  // of this information's variance, how much is the part's own noise
+  double mapped = 0.0;  // mean index of the mapped frames that drew it
+  Eigen::Matrix3d information =
+      Eigen::Matrix3d::Zero();  // its contribution to the match, base axes
+  double noise_share = 0.0;     // share of the variance that is the part's own noise
 };
 
-// How well it is guessed where a new epoch of SLAM's poses begins, from SLAM's own word or from the
-// motion before: m, m, rad (docs/math.md, "Epochs").
+// Standard deviation of the guess where a new SLAM epoch begins (SLAM's own pose, or the previous
+// motion continued): m, m, rad (docs/math.md, "Epochs").
 inline const Eigen::Vector3d kEpochSigma(0.1, 0.1, 0.05);
 
 enum class PartPlace { kKnown, kGuessed };
@@ -60,38 +61,39 @@ class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
 
-  // Matches around the prediction. Called for every frame once something is mapped. The covariance
-  // may bound or steady the search; the result must not contain it.
+  // Matches around the prediction. Called for every frame once something is mapped. The
+  // prediction's covariance may limit or regularise the search, but must not enter the result.
   virtual MatchResult Match(const std::shared_ptr<const Scan>& scan,
                             const Prediction& prediction) = 0;
-  // What the last match was made against; good until the next call of anything.
+  // The parts used by the last match; valid until the next call of any member function.
   virtual std::span<const MapPart> MatchedParts() const = 0;
-  // Where the frame to be inserted next was predicted, from the one before, and where it is but for
-  // what SLAM is off by in it alone.
+  // Called before inserting a frame: its predicted pose, and the fused pose without SLAM's jitter
+  // in this frame.
   virtual void Corrected(const Pose2& /*predicted_map_from_base*/, const Pose2& /*map_from_base*/) {
   }
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                       const Eigen::Matrix3d& covariance) = 0;
-  // A frame that only moves with the kept one at this position: its place is well seen.
+  // Adds a tied frame: it only moves with the kept frame at index `tied_to`, as its place is well
+  // seen.
   virtual void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                           int tied_to) = 0;
-  // The share of a scan at a pose that lies on what was inserted before the frame at this position;
-  // 0 where that is not known.
+  // The share of a scan at a pose that lies on surfaces inserted before mapped frame `frame`; 0
+  // where unknown.
   virtual double ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
                                  const Pose2& map_from_base, int frame) = 0;
-  // Corrects all poses at once, given loops (possibly none), and tells how well those of the frames
-  // at the positions `asked` are known then. Does not change the map; see Rebuild.
+  // Corrects all poses at once, given loops (possibly none), and gives the covariance of those at
+  // the indices `asked`. Does not change the map; see Rebuild.
   virtual Adjustment Adjust(const std::vector<MappedFrame>& frames,
                             const std::vector<PlanarLoop>& loops, AdjustEffort effort,
                             std::span<const int> asked) = 0;
   // Forgets everything and inserts the frames again at their (corrected) poses.
   virtual void Rebuild(const std::vector<MappedFrame>& frames) = 0;
-  // How the next frame and the one before lie to each other is not known: nothing is measured
-  // between them. kGuessed: neither is where it lies in the map.
+  // The relative pose of the next frame and the previous one is unknown: no motion constraint joins
+  // them. kGuessed: the next frame's pose in the map is unknown as well.
   virtual void BeginPart(PartPlace) {}
-  // As Rebuild, after the frames from this position on were moved as one.
+  // As Rebuild, after all frames from this index on were moved rigidly.
   virtual void RebuildMoved(const std::vector<MappedFrame>& frames, int) { Rebuild(frames); }
 };
 

@@ -16,8 +16,8 @@ namespace depthgrid {
 struct Beam {
   float bearing_rad = 0.0F;  // from base's x axis, counter-clockwise
   float range_m = 0.0F;      // horizontal distance of the obstacle; meaningful only when `hit`
-  // Horizontal distances. Where nothing came back, as far as the sensor would have seen something:
-  // the mapper leaves out what is infinite.
+  // Horizontal distances. Without a return, clear_to_m is the sensor's range; the mapper ignores
+  // infinite beams.
   float clear_from_m = 0.0F;
   float clear_to_m = 0.0F;
   bool hit = false;
@@ -25,41 +25,40 @@ struct Beam {
   bool operator==(const Beam&) const = default;
 };
 
-// A beam there that says nothing.
+// A beam of the same bearing without hit or free space.
 inline Beam Silent(const Beam& beam) { return {.bearing_rad = beam.bearing_rad}; }
 
-// Their origin is base's origin. Of a laser's readings ScanOf() in mapper/io/carmen_log.h makes
-// one.
+// All beams start at base's origin. ScanOf() in mapper/io/carmen_log.h makes a Scan of laser
+// readings.
 struct Scan {
-  // By increasing bearing; of a ready scan given to the mapper in any order.
+  // By increasing bearing; a ready scan given to the mapper may have any order.
   std::vector<Beam> beams;
-  // The range limit the scan was made with; no hit lies beyond it: the mapper ignores such. 0:
-  // unknown.
+  // The range limit the scan was made with; the mapper ignores hits beyond it. 0: unknown.
   double max_range_m = 0.0;
 
   bool operator==(const Scan&) const = default;
 };
 
-// Between neighbouring beams ranges change by this times the range and the angle at most, unless
-// they lie on two surfaces: the tangent of 85 degrees, at which hardly anything comes back.
+// On one surface, ranges of neighbouring beams differ by at most this times range times angle: the
+// tangent of 85 degrees of incidence, beyond which hardly anything is returned.
 constexpr double kSteepestTangent = 11.4;
-// A hit nearer than this is no surface: many drivers write 0 where nothing came back.
+// Nearer hits are ignored: many drivers write 0 for no return.
 constexpr float kNearestHitM = 1e-3F;
-// What no scanner of robots sees past, where a scan does not say how far it reaches.
+// Range limit of a scan that does not state one; no robot's scanner sees farther.
 constexpr double kFarthestSeenM = 1000.0;
-// Twice round, from wherever the scanner counts.
+// Two full turns, as scanners count bearings from different directions.
 constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);
 
-// False for a beam that no scanner of this reach can have seen, and for NaN.
+// False for a beam that no scanner of this range can have measured, and for NaN.
 inline bool IsSound(const Beam& beam, float reach_m) {
-  // One sum tells of three numbers whether all are finite.
+  // The sum is finite only if all three are.
   const float known = beam.bearing_rad + beam.clear_from_m + beam.clear_to_m;
   if (!std::isfinite(known) || beam.clear_from_m < 0.0F) return false;
   if (std::abs(beam.bearing_rad) > kFarthestBearingRad) return false;
   return !beam.hit || (beam.range_m >= kNearestHitM && beam.range_m <= reach_m);
 }
 
-// What a mapper can have kept, whatever the scan's reach was.
+// Whether a mapper can have stored this beam, whatever the scan's range.
 inline bool CanBeKept(const Beam& beam) {
   constexpr auto kReachM = static_cast<float>(kFarthestSeenM);
   return IsSound(beam, kReachM) && std::isfinite(beam.range_m) && beam.clear_to_m <= kReachM;

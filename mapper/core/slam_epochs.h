@@ -11,12 +11,12 @@ namespace depthgrid {
 
 class SlamEpochs {
  public:
-  // The frame's epoch, counted from 0: another one where Frame::slam_epoch changes, and where SLAM
-  // corrected itself without a word, as a step shows that nothing drives, or began anew, as a pose
-  // shows that lies where the first one did after a pause. A frame without a pose has that of the
-  // last one with a pose. Once a frame, in the order of time.
+  // The frame's epoch, counted from 0. A new one begins where Frame::slam_epoch changes, where a
+  // step is no possible motion (an unreported correction), and where SLAM restarted: after a pause,
+  // a pose at the origin or at the first pose. A frame without a pose has the epoch of the last one
+  // with a pose. Call once per frame, in order of time.
   int Of(const Frame& frame);
-  // The last frame begins another epoch as well, as something else told.
+  // Makes the last frame begin a new epoch, detected by other means (such as a slip).
   int BeginAtLast() { return ++epoch_; }
 
  private:
@@ -25,10 +25,10 @@ class SlamEpochs {
     Pose3 slam_from_camera;
     int slam_epoch = 0;
   };
-  // The last motions: a ring.
+  // Ring buffer of the last motions.
   struct Motions {
     std::array<SlamStep, 8> steps;
-    std::size_t count = 0;  // ever
+    std::size_t count = 0;  // added in all
     void Add(const SlamStep& step) { steps[count++ % steps.size()] = step; }
     bool AreFew() const;
     SlamStep Usual() const;  // their medians
@@ -40,9 +40,9 @@ class SlamEpochs {
   std::optional<Pose3> first_;
   std::optional<Posed> last_;
   int epoch_ = 0;
-  Motions since_;    // the last break or gap: by them the next step is judged
-  Motions before_;   // while those are few, by these as well
-  bool gap_ = true;  // between the two, or nothing was before
+  Motions since_;    // motions since the last break or gap, to judge the next step by
+  Motions before_;   // motions before that, used as well while `since_` has few
+  bool gap_ = true;  // whether a gap separates the two, or there is no `before_`
 };
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// What an RGB-D SLAM system says of a sequence: the pose of each frame as it was known live, the
-// events at which it corrected itself, and its own final trajectory.
+// Output of an RGB-D SLAM system for a sequence: the live pose of each frame, loop closures, and
+// its own final trajectory.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@ namespace depthgrid {
 // carries one standard deviation for translation and one for rotation (isotropic information
 // 1/sigma^2).
 struct LoopClosure {
-  // The event arrives with this frame, before its pose; >= max(first_frame, second_frame). For
-  // files: the mapper takes a loop when the frame comes that brings it (Frame::loops).
+  // The event arrives with this frame, before its pose; >= max(first_frame, second_frame). Only
+  // used in files: the mapper gets a loop with the frame that carries it (Frame::loops).
   int reported_at_frame = 0;
   int first_frame = 0;
   int second_frame = 0;

@@ -1,4 +1,4 @@
-// Whether SLAM's pose stands still: what is seen then says nothing of how SLAM errs when it moves
+// Detects that SLAM's pose stands still: matches then say nothing about SLAM's motion noise
 // (docs/math.md, "Standing still").
 #pragma once
 
@@ -10,22 +10,22 @@ namespace depthgrid {
 
 class Standing {
  public:
-  // Whether SLAM stands after this motion, the next one.
+  // Whether SLAM still stands if `motion` is its next motion (not added yet).
   bool After(const Pose2& motion) const;
-  // `map_from_base`: where the frame was matched, if it was. One that is seen to move does not
-  // stand, whatever SLAM says: a log may have no odometry.
+  // `map_from_base`: where the frame was matched, if it was. A frame seen to move does not stand,
+  // whatever SLAM's pose: a log may have no odometry.
   void Add(const Pose2& motion, const std::optional<Pose2>& map_from_base);
-  // The map was corrected: frames matched before lie elsewhere.
+  // Call after a correction of the map: earlier matched poses are no longer comparable.
   void MapMoved() { seen_.reset(); }
 
  private:
-  // It moves for so many frames from one that left where SLAM was, a third of a second at 30 Hz:
-  // slow motions leave it now and then.
+  // After leaving a place it counts as moving for this many frames (a third of a second at 30 Hz),
+  // because a slow motion exceeds the threshold only now and then.
   static constexpr int kMovingFrames = 10;
 
-  Pose2 since_left_;            // SLAM's motion since it left a place last
-  std::optional<Pose2> seen_;   // where it was seen to be then
-  int frames_ = kMovingFrames;  // since then
+  Pose2 since_left_;            // SLAM's motion since it last left a place
+  std::optional<Pose2> seen_;   // matched map_from_base at that time
+  int frames_ = kMovingFrames;  // frames since then
 };
 
 }  // namespace depthgrid

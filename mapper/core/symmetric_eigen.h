@@ -1,4 +1,5 @@
-// Symmetric matrices of 3 x 3 by their axes. Eigen's solvers take seconds to compile: once, here.
+// Eigendecomposition of symmetric 3 x 3 matrices. Eigen's solvers take seconds to compile, so they
+// are instantiated only here.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,17 +8,16 @@ namespace depthgrid {
 
 struct SymmetricEigen {
   Eigen::Vector3d values;   // in ascending order
-  Eigen::Matrix3d vectors;  // a column each, of unit length and at right angles
+  Eigen::Matrix3d vectors;  // in columns, orthonormal
 };
 
-// Of the symmetric matrix whose lower triangle is given: matrix v = value v. Not numbers where the
-// matrix has such.
+// matrix v = value v; only the lower triangle is read. NaN in, NaN out.
 SymmetricEigen EigenOf(const Eigen::Matrix3d& matrix);
 
-// a v = value b v, for a symmetric a and a positive definite b; vectors have v^T b v = 1 instead.
+// a v = value b v, for symmetric a and positive definite b; here vectors have v^T b v = 1.
 SymmetricEigen GeneralizedEigenOf(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 
-// The matrix with smaller eigenvalues raised to `least`.
+// The matrix with eigenvalues below `least` raised to it.
 Eigen::Matrix3d WithEigenvaluesAtLeast(const Eigen::Matrix3d& matrix, double least);
 
 }  // namespace depthgrid

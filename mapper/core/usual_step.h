@@ -1,4 +1,4 @@
-// Frames come in even steps of time, but for pauses.
+// The usual time step between frames, and how many steps a pause counts as.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 namespace depthgrid {
 
-// The usual one of these steps, their median; 0 of none. Reorders them.
+// The median step; 0 for none. Reorders the steps.
 inline double UsualStepS(std::span<double> steps_s) {
   return steps_s.empty() ? 0.0 : UpperMedianAmong(steps_s);
 }
 
-// How many usual steps a step took: more than one where frames did not come. A recording that
-// paused for longer than a thousand errs by no more. One where the usual step is not known, 0.
+// The length of a step in usual steps: more than one where frames are missing, at most a thousand
+// (SLAM's error over a longer pause is not taken to grow further). 1 where usual_s is unknown (0).
 inline int StepsIn(double step_s, double usual_s) {
   constexpr double kMostSteps = 1000.0;
   if (!(usual_s > 0.0) || !(step_s > usual_s)) return 1;
   return static_cast<int>(std::min(std::round(step_s / usual_s), kMostSteps));
 }
 
-// How far frames move, in the mean.
+// Mean motion per frame.
 class UsualMotion {
  public:
   void Add(const Pose2& motion) {
@@ -32,7 +32,8 @@ class UsualMotion {
     turn_rad_ += std::abs(motion.yaw_rad);
     ++motions_;
   }
-  // How many frames at least would have gone so far; infinite if nothing moved before.
+  // The number of mean frames needed for a motion, by way or by turn, the larger; infinite if
+  // nothing moved before.
   double FramesFor(const Pose2& motion) const {
     const auto times = [this](double length, double sum) {
       if (length == 0.0) return 0.0;
@@ -48,14 +49,13 @@ class UsualMotion {
   int motions_ = 0;
 };
 
-// A second at 30 Hz: pauses up to this count by the time alone, whatever moved.
+// A second at 30 Hz: shorter pauses count by their duration alone.
 constexpr int kFewSteps = 30;
 
-// SLAM errs as it moves: over a pause in which it hardly did, by no more than over a few frames,
-// however long it was. `steps` of time, and what SLAM moved by meanwhile.
+// The number of frames whose error a pause counts as. SLAM's error grows with motion, so a long
+// pause of `steps` steps with little `motion` counts as few frames.
 inline int MovingStepsIn(int steps, const Pose2& motion, const UsualMotion& usual) {
-  // Ways are rarely straight: chosen, of no measurement; what it gives is in docs/tried.md,
-  // "Pauses".
+  // The path is rarely straight. Chosen, not measured; its effect is in docs/tried.md, "Pauses".
   constexpr double kRoundabout = 2.0;
   if (steps <= kFewSteps) return steps;
   return static_cast<int>(std::clamp(std::ceil(kRoundabout * usual.FramesFor(motion)),
