@@ -1,17 +1,17 @@
-// Normal equations cleared of false information (docs/math.md, "Debiased information").
+// Removes false information from normal equations (docs/math.md, "Debiased information").
 #pragma once
 
 #include <Eigen/Core>
 
 namespace depthgrid {
 
-// Of a least-squares problem in a small motion (forward, left, yaw).
+// Normal equations of a least-squares problem in a small motion (forward, left, yaw).
 struct NormalEquations {
   Eigen::Matrix3d h = Eigen::Matrix3d::Zero();  // sum of w J J^T
   Eigen::Vector3d g = Eigen::Vector3d::Zero();  // -sum of w J e: the step is h^-1 g
-  // Sum of w sigma_n^2 Jt Jt^T with Jt the row for the tangent in place of the normal: what the
-  // uncertainty sigma_n of the normals' directions adds to `h` in expectation, though it tells
-  // nothing. In a corridor that is all `h` has along the axis, and it says "no motion".
+  // Sum of w sigma_n^2 Jt Jt^T with Jt the row for the tangent in place of the normal: the expected
+  // contribution of the normals' noise sigma_n to `h`, which is no information. In a corridor it is
+  // all that `h` has along the axis, and it says "no motion".
   Eigen::Matrix3d false_h = Eigen::Matrix3d::Zero();
 };
 

@@ -12,19 +12,18 @@ namespace depthgrid {
 
 struct SmootherFrame {
   Pose2 map_from_base;          // a good guess
-  MatchResult match;            // against the adjusted map; not found: the motion alone
-  std::optional<Pose2> motion;  // the prior's, from the frame before
-  bool stands = false;          // it stood still
+  MatchResult match;            // against the adjusted map; if not found, only the motion is used
+  std::optional<Pose2> motion;  // SLAM's, from the previous frame
+  bool stands = false;          // SLAM's pose stood still
 };
 
-// How the prior's motion errs, as the matches tell.
+// The noise of SLAM's motion, estimated from the matches.
 MotionNoise NoiseOf(const std::vector<SmootherFrame>& frames);
 
-// The most likely poses given all matches and motions. The prior's bias of each frame is unknown
-// too, and its jitter is told from the camera's own motion. Each pose stays near its guess, to
-// `stay_m` and a tenth of a radian for each metre of that (standard deviations; 0: anywhere): a
-// bias that is told before and after a stretch of a thousand frames says little of where they go
-// between.
+// The maximum a posteriori poses given all matches and motions. SLAM's bias in each frame is an
+// unknown as well, and its jitter is separated from the camera's motion. Each pose is held near its
+// guess with standard deviations `stay_m` and 0.1 rad/m * stay_m (0: not held): a bias known before
+// and after a stretch of a thousand frames hardly constrains the poses in between.
 std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const MotionNoise& noise,
                             double stay_m);
 

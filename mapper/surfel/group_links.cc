@@ -29,7 +29,7 @@ double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_grou
   return LinkError(link, map_from_group).cwiseQuotient(link.sigma).norm();
 }
 
-// A small motion of `first` moves second_from_first's far end by minus its adjoint.
+// A small motion d of `first` changes first_from_second by -AdjointOf(second_from_first) d.
 Eigen::Matrix3d ErrorByFirst(const GroupLink& link, const std::vector<Pose2>& map_from_group) {
   return -AdjointOf(Inverse(RelativePose(link, map_from_group)));
 }

@@ -1,4 +1,4 @@
-// What is known of groups' relative poses apart from surfels: the prior's motion and loops.
+// Constraints between groups other than surfels: SLAM's motion and loops.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,22 +10,22 @@
 namespace depthgrid {
 
 struct GroupLink {
-  int first = 0;  // another than `second`, before or after it
+  int first = 0;  // differs from `second`, in either order
   int second = 0;
   Pose2 first_from_second;                          // measured
-  Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // of its error, in axes of `second`
+  Eigen::Vector3d sigma = Eigen::Vector3d::Ones();  // standard deviations, axes of `second`
   double huber_sigmas = 0.0;                        // larger errors count linearly; 0: never
-  double cauchy_sigmas = 0.0;                       // larger errors count ever less; 0: never
-  bool on_trial = false;                            // as of PlanarLoop
+  double cauchy_sigmas = 0.0;                       // scale of Cauchy's weight; 0: none
+  bool on_trial = false;                            // as PlanarLoop::on_trial
 };
 
-// The measured relative pose against that of the poses: (forward m, left m, yaw rad) in axes of
-// `second`.
+// Error of the link: relative pose of the groups against the measured one, (forward m, left m, yaw
+// rad) in axes of `second`.
 Eigen::Vector3d LinkError(const GroupLink& link, const std::vector<Pose2>& map_from_group);
-// Its length in standard deviations.
+// Norm of the error in standard deviations.
 double LinkSigmas(const GroupLink& link, const std::vector<Pose2>& map_from_group);
 
-// How the error changes with a small motion of `first`; with one of `second` it changes by that.
+// Derivative of the error by a small motion of `first`; the one by `second` is the identity.
 Eigen::Matrix3d ErrorByFirst(const GroupLink& link, const std::vector<Pose2>& map_from_group);
 
 // Adds the link to the normal equations h step = g of small motions of all groups, three rows a

@@ -8,16 +8,15 @@
 namespace depthgrid {
 namespace {
 
-// A tied frame's pose is as good as its match, but neither better than this nor worse: m, m, rad.
+// Bounds on the accuracy of a tied frame's pose, otherwise that of its match: m, m, rad.
 const Eigen::Vector3d kLeastTieSigma(0.005, 0.005, 0.003);
 const Eigen::Vector3d kMostTieSigma(1.0, 1.0, 0.5);
-// Matches against the same noisy map are worth less than they say (docs/math.md, "Scans that are
-// kept").
+// Matches against the same noisy map are overconfident (docs/math.md, "Scans that are kept").
 constexpr double kTieOverconfidence = 4.0;
 constexpr double kTieHuberSigmas = 2.0;
 
-// A frame whose match says better than this where it is lies in the map as what was seen there
-// before: a group's own frames agree to as much (kGateM of surfel_groups.cc). m, m, rad.
+// A frame whose match is more accurate than this is settled: consistent with the map there as well
+// as frames of one group are (kGateM of surfel_groups.cc). m, m, rad.
 const Eigen::Vector3d kSettledSigma(0.02, 0.02, 0.01);
 
 Eigen::Vector3d SigmaOf(const MatchResult& match) {
@@ -28,13 +27,14 @@ Eigen::Vector3d SigmaOf(const MatchResult& match) {
   return information.inverse().diagonal().cwiseSqrt();
 }
 
-// From the group of a tied frame to that of the kept one after it, whose axes are nearly the same.
+// Link from the group of a tied frame to the group of the next, kept frame, whose axes are nearly
+// the tied frame's.
 GroupLink TieOf(const GroupPlace& tied, const MatchResult& match, const Pose2& motion, int group) {
   return {tied.group, group, tied.group_from_base * motion, SigmaOf(match).cwiseMax(kLeastTieSigma),
           kTieHuberSigmas};
 }
 
-// From a frame to the one that follows it; 0 where nothing tells.
+// Median time from a frame to the next; 0 where unknown.
 double UsualFrameStepS(const std::vector<MappedFrame>& frames) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -52,8 +52,8 @@ UsualMotion UsualFrameMotion(const std::vector<MappedFrame>& frames) {
   return usual;
 }
 
-// How many usual steps it took from the frame before: more than one where the recording paused and
-// SLAM moved on meanwhile, none where it stood.
+// Number of usual steps since the previous frame: more than one after a pause in which SLAM moved,
+// 0 where it stood.
 int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
             const UsualMotion& usual) {
   if (frame.stands) return 0;
@@ -62,7 +62,7 @@ int StepsTo(const MappedFrame& frame, const MappedFrame& before, double usual_s,
   return frame.slam_motion ? MovingStepsIn(steps, *frame.slam_motion, usual) : steps;
 }
 
-// How the frame before a group's first lies to it: that frame moves with an earlier group.
+// Link to a group from the (earlier) group that the frame before its first one belongs to.
 std::optional<GroupLink> TieBefore(const SurfelGroups& of, const std::vector<MappedFrame>& frames,
                                    std::size_t g) {
   const auto first = static_cast<std::size_t>(of.groups()[g].first_frame);
@@ -76,8 +76,8 @@ std::optional<GroupLink> TieBefore(const SurfelGroups& of, const std::vector<Map
   return TieOf(before, frames[first - 1].match, *motion, group);
 }
 
-// Whether the last kept frame before a group's first is in the group before it: groups that are
-// joined in place (SurfelGroups::Joined) hold frames of many times.
+// Whether the last kept frame before a group's first is in group g - 1. Not always so for groups
+// joined in place (SurfelGroups::Joined), which hold frames of several visits.
 bool GoesOnFromLast(const SurfelGroups& of, const std::vector<MappedFrame>& frames, std::size_t g) {
   auto before = static_cast<std::size_t>(of.groups()[g].first_frame) - 1;
   while (!frames[before].kept()) --before;
@@ -114,7 +114,7 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
 
 std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
   std::vector<GroupStart> starts;
-  bool in_place = false;  // since a frame was tied
+  bool in_place = false;  // no gap in SLAM's motion since a frame was tied
   for (const GroupMotion& motion : MotionsOf(of, frames)) {
     const SurfelGroup& group = of.groups()[starts.size()];
     const MatchResult& match = frames[static_cast<std::size_t>(group.first_frame)].match;
@@ -122,7 +122,7 @@ std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<Mappe
     const bool sure = (SigmaOf(match).array() <= kSettledSigma.array()).all();
     starts.push_back({!motion.known || motion.tie, in_place && sure, motion.of_prior_map});
   }
-  // The first one's motion says nothing.
+  // motions[0] is not used.
   if (!starts.empty()) starts[0].of_prior_map = frames[0].of_prior_map();
   return starts;
 }
@@ -132,16 +132,17 @@ GroupLimits LimitsFor(AdjustEffort effort, const JointOptions& joint,
   const int most = joint.groups.most;
   const auto groups = static_cast<int>(starts.size());
   const int prior = PriorGroups(starts);
-  // Without surfels only loops and the chain of groups tell how they lie: the more the better.
+  // Without surfels, cost is small and only loops and the chain of groups constrain: no need to
+  // join.
   if (effort == AdjustEffort::kBend) return {.most = most, .most_of_prior_map = prior};
   if (effort == AdjustEffort::kFinish) {
     return {.most = most,
             .most_of_prior_map = std::max(most / 2, most - (groups - prior)),
             .in_place = true};
   }
-  // Two as one, as some stay apart.
+  // A limit of 2/3, to halve the number: some groups cannot be joined.
   const auto run = [&](int count) { return std::max(joint.refine_groups, 2 * count / 3); };
-  // A prior map was adjusted when it was made: few of its groups hold those of this run.
+  // A prior map is adjusted already: few of its groups suffice to hold those of this run.
   const int of_prior = std::min(prior, joint.refine_groups);
   const int wanted = prior > of_prior ? of_prior + run(groups - prior) : run(groups);
   return {.most = std::min(most, wanted), .most_of_prior_map = of_prior, .in_place = true};

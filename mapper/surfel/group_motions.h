@@ -1,4 +1,4 @@
-// What is known of how groups of frames lie to each other, from the frames between.
+// Relative motions of groups, from the frames between them.
 #pragma once
 
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace depthgrid {
 
-// SLAM's motion from each group to the next, from those of the frames between. Where frames between
-// moved with earlier groups, the tie to the one that the frame before is in.
+// SLAM's motion from each group to the next, accumulated over the frames between. Where the frame
+// before a group's first is tied to an earlier group, also the tie to that group.
 std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames);
 
-// How far groups that were not joined yet may be.
+// How far the groups (not joined yet) may be joined.
 std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames);
 
-// How many groups such an adjustment takes.
+// The number of groups that an adjustment may have.
 GroupLimits LimitsFor(AdjustEffort effort, const JointOptions& joint,
                       const std::vector<GroupStart>& starts);
 
-// The position of the first frame that is not a prior map's.
+// Index of the first frame that is not a prior map's.
 int FirstNew(const std::vector<MappedFrame>& frames);
 
 }  // namespace depthgrid

@@ -15,26 +15,26 @@
 namespace depthgrid {
 namespace {
 
-// How well the online estimate joins neighbouring groups, before loops have bent it: what keeps the
-// chain together in the first step, which only has to bring revisits within the gate.
+// Accuracy of neighbouring groups' relative poses in the online estimate. Holds the chain together
+// in CloseLoops(), which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
-// Across a gap in SLAM's motion groups lie as the online estimate has them, or as loops have bent
-// it: what ties them together where both see nothing in common.
+// Across a gap in SLAM's motion, groups are held to their relative pose in the online estimate (as
+// bent by loops), in case the two sides have no landmark in common.
 constexpr double kGapHuberSigmas = 2.0;
-// To loops it gives way entirely. If it pulled on however far it is off, a loop that turns what
-// lies beyond would lose (docs/math.md, "Epochs").
+// In CloseLoops() a gap yields to loops entirely. With Huber's weight, a loop that turns all beyond
+// the gap would lose (docs/math.md, "Epochs").
 constexpr double kGapCauchySigmas = 2.0;
-// Measured: two steps where nothing has to move, 8 over a gap of 24 m, 12 to 20 and more where it
-// is off by a few sigmas only, so that it gives way slowly.
+// Measured: 2 steps where nothing has to move, 8 for a gap of 24 m, 12 to 20 and more for a gap off
+// by a few sigmas only, where Cauchy's weight falls slowly.
 constexpr int kLoopIterations = 20;
 constexpr double kLoopsClosed = 1e-4;  // m and rad of the last step
-// Where the prior is nearly perfect each round believes it more. Stopped early, poses stay where
-// they were and are known to be wrong.
+// Rounds continue while sigma falls below this share of the last one. With nearly perfect SLAM each
+// round trusts it more; stopped early, poses stay at their worse online estimates.
 constexpr double kSettledShare = 0.7;
-// Holds the first group where it is.
+// Information that holds the first group in place.
 constexpr double kAnchor = 1e12;
-// Keeps the factorisation alive where rounding leaves less than nothing of what is hardly
-// determined; far below any information.
+// Relative increase of the diagonal, so that rounding in weakly determined directions does not make
+// the matrix indefinite; far below any real information.
 constexpr double kRidge = 1e-9;
 
 struct Problem {
@@ -43,7 +43,8 @@ struct Problem {
   const JointOptions& options;
 };
 
-// The factor of a chain of groups that are linked to so many predecessors and by `links`.
+// Envelope (first non-zero column of each row) of a chain of groups, each linked to its
+// `predecessors` predecessors and by `links`.
 std::vector<int> ChainEnvelope(std::size_t groups, int predecessors,
                                const std::vector<GroupLink>& links) {
   std::vector<int> first(groups);
@@ -58,8 +59,8 @@ std::vector<int> ChainEnvelope(std::size_t groups, int predecessors,
   return first;
 }
 
-// Factors that cost more in order of time, in multiplications, are taken sparse: a tenth of a
-// second. Below, rows without gaps are faster than any order.
+// Multiplications (a tenth of a second) above which the sparse matrix is used. Below, the skyline
+// in order of time is faster.
 constexpr double kCostOfSparse = 3e8;
 
 std::unique_ptr<PoseMatrix> MatrixOf(const std::vector<int>& first_group) {
@@ -76,14 +77,14 @@ std::unique_ptr<PoseMatrix> MatrixOf(const std::vector<int>& first_group) {
   return std::make_unique<SkylineMatrix>(first);
 }
 
-// False when nothing could be solved.
+// False when the matrix is not positive definite.
 bool Factor(PoseMatrix& h) {
   for (int i = 0; i < h.size(); ++i) h.Diagonal(i) *= 1.0 + kRidge;
   for (int i = 0; i < 3; ++i) h.Diagonal(i) += kAnchor;
   return h.Factor();
 }
 
-// Solves for small motions of all groups and applies them. Returns the largest, m or rad.
+// Solves for small motions of all groups and applies them. Returns the largest component, m or rad.
 double Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
             std::vector<Pose2>& map_from_group) {
   const Eigen::VectorXd step = factored.Solve(g);
@@ -94,15 +95,15 @@ double Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
   return step.lpNorm<Eigen::Infinity>();
 }
 
-// From the group before, across a gap, as these poses have it.
+// Link from the previous group across a gap, with the relative pose of `map_from_group`.
 GroupLink GapLink(std::size_t group, const std::vector<Pose2>& map_from_group) {
   const int second = static_cast<int>(group);
   return {second - 1, second, Between(map_from_group[group - 1], map_from_group[group]),
           kEpochSigma};
 }
 
-// What is known of groups apart from SLAM's motion: ties to earlier ones than the one before, and
-// how the groups of a prior map lie. `before`: the poses before surfels move them.
+// Constraints other than SLAM's motion: ties, gaps, and the relative poses within a prior map.
+// `before`: poses before the first round.
 std::vector<GroupLink> SettledLinks(const Problem& problem, const std::vector<Pose2>& before) {
   std::vector<GroupLink> links;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
@@ -120,7 +121,7 @@ std::vector<GroupLink> SettledLinks(const Problem& problem, const std::vector<Po
   return links;
 }
 
-// Bends the chain of groups as the loops want it, without looking at surfels.
+// Bends the chain of groups to the loops, without surfels.
 void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
                 std::vector<Pose2>& map_from_group) {
   std::vector<GroupLink> links = loops;
@@ -147,7 +148,8 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
 }
 
 // The prior's error is mostly a slowly varying bias: over n frames it grows like n, not like its
-// root. `sigma` is that of one frame. A prior map's motions say nothing of how SLAM errs.
+// root. `sigma` is that of one frame. A prior map's motions are left out, as they carry no SLAM
+// error.
 std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d& sigma) {
   std::vector<GroupLink> links;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {
@@ -159,7 +161,7 @@ std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d
   return links;
 }
 
-// The same of a prior that errs by 1 a frame.
+// The same with sigma 1 per frame.
 std::vector<GroupLink> UnitMotionLinks(const Problem& problem) {
   return MotionLinks(problem, Eigen::Vector3d::Ones());
 }
@@ -181,14 +183,14 @@ SightingTrust TrustAt(const Landmarks& landmarks, const std::vector<Pose2>& map_
   return trust;
 }
 
-// How much each motion tells of SLAM's errors.
+// The weights of motions in estimating SLAM's sigma.
 std::vector<Eigen::Vector3d> AsJudged(std::vector<Eigen::Vector3d> shares,
                                       const JointOptions& options) {
   if (!options.judge_motions) std::fill(shares.begin(), shares.end(), MeanShare(shares));
   return shares;
 }
 
-// Before anything is solved: all of a motion between groups that saw something.
+// Shares before anything is solved: 1 for motions between groups with surfels, else 0.
 std::vector<Eigen::Vector3d> FirstShares(const Problem& problem,
                                          const std::vector<GroupLink>& motions) {
   const auto saw = [&](int group) {
@@ -202,8 +204,8 @@ std::vector<Eigen::Vector3d> FirstShares(const Problem& problem,
   return shares;
 }
 
-// One Gauss-Newton step of everything: landmarks are found anew at the current poses, and what is
-// known of the prior afterwards. False when nothing could be solved.
+// One Gauss-Newton step: associates landmarks at the current poses, solves, then re-estimates
+// SLAM's noise. False when the equations could not be solved.
 bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops,
                 const std::vector<Pose2>& before, double gate_m, JointResult& result) {
   result.factored.reset();  // two would be twice the memory

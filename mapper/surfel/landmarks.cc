@@ -13,10 +13,10 @@
 namespace depthgrid {
 namespace {
 
-// A landmark errs like most until more sightings than this tell (1 to 12 make no difference:
+// Prior weight, in sightings, of a landmark being as good as most (1 to 12 make no difference:
 // docs/tried.md, "Real SLAM's poses").
 constexpr double kSightingsLikeMost = 4.0;
-// Ten sigmas: one that belongs elsewhere does not speak for the others.
+// Ten sigmas: limits the effect of one wrong association.
 constexpr double kMostChi2 = 100.0;
 
 }  // namespace
@@ -65,8 +65,7 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   row.information = local.information / (trust.errors.variance_factor * shared);
   const double sigmas = std::abs(row.error_m) * std::sqrt(row.information);
   row.weight = row.information * std::min(1.0, trust.huber_sigmas / sigmas);
-  // After Huber's rule: a landmark that fits badly everywhere counts less than its residuals alone
-  // would let it.
+  // Applied after Huber's rule, so that a bad landmark counts less than its residuals alone imply.
   if (!trust.landmark_factor.empty()) {
     row.weight /= trust.landmark_factor[static_cast<std::size_t>(sighting.landmark)];
   }
@@ -102,7 +101,7 @@ SightingErrors Landmarks::ErrorsAt(const std::vector<Pose2>& map_from_group) con
     for (const Row& row : found.rows) {
       const auto group = static_cast<std::size_t>(row.group);
       const auto place = (sighting++)->surfel - groups_[group].surfels.data();
-      // The mean has the sighting in it, so less than the sighting's variance is left.
+      // The mean contains the sighting, so the residual's variance is less than the sighting's.
       const double variance = 1.0 / row.weight - 1.0 / found.weights;
       if (variance <= 0.0) continue;
       const double sigmas = (row.error_m - found.offset_m) / std::sqrt(variance);
@@ -129,7 +128,7 @@ std::vector<double> Landmarks::FactorsAt(const std::vector<Pose2>& map_from_grou
       const double off_m = row.error_m - found.offset_m;
       chi2 += std::min(off_m * off_m * row.information, kMostChi2);
     }
-    // The offset is taken from them.
+    // Minus one: the offset was fitted.
     factors[landmark] = chi2 / (kSightingsLikeMost + static_cast<double>(found.rows.size()) - 1.0);
     seen.push_back(factors[landmark]);
   }
@@ -145,7 +144,7 @@ void Landmarks::AddTo(const std::vector<Pose2>& map_from_group, const SightingTr
   Rows found;
   std::vector<PoseShare> sums;
   for (std::size_t landmark = 0; landmark + 1 < begin_.size(); ++landmark) {
-    if (SeenByOneGroup(landmark)) continue;  // says nothing of poses
+    if (SeenByOneGroup(landmark)) continue;  // does not constrain poses
     FindRows(landmark, motions, trust, found);
     // Sightings by the same group come one after the other: one sum of rows each.
     sums.clear();

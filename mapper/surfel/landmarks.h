@@ -1,4 +1,4 @@
-// Pieces of wall that several groups of frames saw.
+// Landmarks: pieces of wall seen by several groups of frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,19 +13,19 @@ namespace depthgrid {
 struct Sighting {
   int landmark = 0;
   int group = 0;
-  int company = 1;                 // as CountCompanions
+  int company = 1;                 // number of companions (CountCompanions)
   const Surfel* surfel = nullptr;  // in the group's axes
 };
 
-// How sightings err: with so many times the variance that the surfels claim, and companions (see
-// CountCompanions) alike to this correlation.
+// Errors of sightings: variance as a multiple of what the surfels claim, and correlation between
+// companions (CountCompanions).
 struct SightingErrors {
   double variance_factor = 1.0;
   double correlation = 0.0;
 };
 
-// How sightings count: larger residuals than so many sigmas linearly, companions together as much
-// as their mean tells, those of each landmark over its factor (FactorsAt; empty: 1).
+// Weighting of sightings: Huber's limit, their errors, and a divisor for each landmark (FactorsAt;
+// empty: 1).
 struct SightingTrust {
   double huber_sigmas = 2.5;
   SightingErrors errors;
@@ -34,17 +34,17 @@ struct SightingTrust {
 
 class Landmarks {
  public:
-  // Merges what the groups saw, placed at the given poses. The groups are to outlive it.
+  // Merges the groups' surfels at the given poses. The groups must outlive this object.
   Landmarks(const std::vector<SurfelGroup>& groups, const std::vector<Pose2>& map_from_group,
             const AssociationGate& gate);
 
   const SurfelStore& store() const { return store_; }
   // Lowers first[group] to the earliest group that shares a landmark with it.
   void ExtendEnvelope(std::vector<int>& first) const;
-  // By the offsets of sightings from their landmarks, at these poses.
+  // Estimates the errors from the sightings' offsets from their landmarks at these poses.
   SightingErrors ErrorsAt(const std::vector<Pose2>& map_from_group) const;
-  // How much worse the sightings of each landmark fit than those of most: their variance over what
-  // is trusted and over that of the median landmark, at least 1.
+  // Divisor for each landmark: the reduced chi-square of its sightings over that of the median
+  // landmark, at least 1.
   std::vector<double> FactorsAt(const std::vector<Pose2>& map_from_group,
                                 const SightingTrust& trust) const;
   // Adds all sightings to the normal equations of the groups' small motions. Each landmark's own
@@ -57,14 +57,14 @@ class Landmarks {
   struct Row {
     int group = 0;
     double information = 0.0;
-    double weight = 0.0;  // the same, of a larger residual less
+    double weight = 0.0;  // information times the robust weight
     double error_m = 0.0;
     Eigen::Vector3d jacobian;
   };
   bool SeenByOneGroup(std::size_t landmark) const {
     return sightings_[begin_[landmark]].group == sightings_[begin_[landmark + 1] - 1].group;
   }
-  // Of one landmark's sightings.
+  // The rows of one landmark's sightings.
   struct Rows {
     std::vector<Row> rows;
     double weights = 0.0;
@@ -77,7 +77,7 @@ class Landmarks {
   const std::vector<SurfelGroup>& groups_;
   SurfelStore store_;
   std::vector<Sighting> sightings_;  // by landmark, then by group
-  std::vector<std::size_t> begin_;   // of each landmark's sightings, and the end of the last
+  std::vector<std::size_t> begin_;   // start of each landmark's sightings, and end of the last
 };
 
 }  // namespace depthgrid

@@ -5,7 +5,7 @@
 namespace depthgrid {
 namespace {
 
-// Of the worst one's sigmas. Chosen; what it saves is in docs/results.md, "False loops".
+// Share of the worst loop's sigmas. Chosen; its benefit is in docs/results.md, "False loops".
 constexpr double kAlsoBad = 0.5;
 
 }  // namespace
@@ -24,7 +24,7 @@ bool LoopJury::Changes(const std::vector<Pose2>& map_from_group) {
   return true;
 }
 
-// The number of loops where all fit.
+// Index of the worst accepted loop; loops_.size() if all fit.
 std::size_t LoopJury::WorstAccepted(const std::vector<double>& sigmas) const {
   double most = max_sigmas_;
   std::size_t worst = loops_.size();

@@ -1,4 +1,4 @@
-// Which loops of a joint adjustment are believed (docs/math.md, "Joint adjustment").
+// Rejects loops that do not fit a joint adjustment (docs/math.md, "Joint adjustment").
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace depthgrid {
 
-// The worst loop may be what makes others look wrong, so those that are half as bad or worse are
-// taken out first, all adjusted again, and so on; then what fits without them comes back.
+// The worst loop may make others look wrong. So the worst is rejected together with those at least
+// half as bad, all is adjusted again, and so on; then rejected loops that now fit are accepted
+// again, once.
 class LoopJury {
  public:
-  // A loop farther than `max_sigmas` from the adjusted poses is taken out.
+  // A loop farther than `max_sigmas` from the adjusted poses is rejected.
   LoopJury(const std::vector<GroupLink>& loops, double max_sigmas)
       : loops_(loops),
         max_sigmas_(max_sigmas),
@@ -22,9 +23,9 @@ class LoopJury {
   // One for each loop.
   const std::vector<bool>& accepted() const { return accepted_; }
 
-  // Judges the loops by where the accepted ones have adjusted the groups to. True when these are
-  // others now, so that all must be adjusted again; false when that was the last word, as it is
-  // when one on trial is the worst.
+  // Judges the loops at poses adjusted with the accepted ones. True when the accepted loops
+  // changed, so that all must be adjusted again; false when the decision is final, as when the
+  // worst loop is one on trial.
   bool Changes(const std::vector<Pose2>& map_from_group);
 
  private:
@@ -34,7 +35,7 @@ class LoopJury {
   const std::vector<GroupLink>& loops_;
   double max_sigmas_;
   std::vector<bool> accepted_;
-  std::vector<bool> came_back_;  // each may once, so that it ends
+  std::vector<bool> came_back_;  // once per loop, so that the process terminates
 };
 
 }  // namespace depthgrid

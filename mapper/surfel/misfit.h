@@ -1,5 +1,5 @@
-// What the sensor's errors are really like, told by how badly surfels fit that should lie on each
-// other (docs/math.md, "Errors that beams share").
+// The sensor's actual errors, estimated from the residuals of surfels that should coincide
+// (docs/math.md, "Errors that beams share").
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ class Misfit {
     ++counts_[std::min(bin, kBins - 1)];
     ++count_;
   }
-  // Variance over expected variance, by the median, which wrong associations do not move; at least
-  // 1: where things fit better than expected, nothing is believed more.
+  // Variance over expected variance, by the median, which is robust to wrong associations. At least
+  // 1: a better fit than expected raises no confidence.
   double VarianceFactor() const {
     std::uint32_t below = 0;
     std::size_t bin = 0;

@@ -16,7 +16,7 @@ namespace {
 // none.
 constexpr std::size_t kLag = 4;
 constexpr int kMinLinkPairs = 20;
-// Errors that never end would be a slope that nothing bounds.
+// With 1, errors would be a random walk without bounds.
 constexpr double kMostPersistence = 0.97;
 
 constexpr int kForward = 0;
@@ -31,8 +31,8 @@ bool IsUnbroken(const std::vector<GroupLink>& links, std::size_t last) {
   return true;
 }
 
-// The error of `link` less what is left of that of `before`, and how it changes with the three
-// poses.
+// Adds the innovation: the error of `link` minus persistence times that of `before`, with its
+// derivatives by the three poses.
 void AddFollowing(const GroupLink& before, const GroupLink& link,
                   const Eigen::Vector3d& persistence, const std::vector<Pose2>& map_from_group,
                   PoseMatrix& h, Eigen::VectorXd& g) {
@@ -55,9 +55,9 @@ void AddFollowing(const GroupLink& before, const GroupLink& link,
   }
 }
 
-// Of the signs of so many pairs, those that agree less those that do not.
+// `agreement`: number of pairs with equal signs minus number with opposite signs.
 double PersistenceOf(double agreement, double pairs) {
-  // Less a standard error: the fourth root makes much of what independent errors feign.
+  // Minus one standard error: the fourth root amplifies chance agreement of independent errors.
   const double surely = agreement / pairs - 1.0 / std::sqrt(pairs);
   if (surely <= 0.0) return 0.0;
   const double kept = std::pow(CorrelationOfSigns(surely), 1.0 / static_cast<double>(kLag));

@@ -1,5 +1,5 @@
-// SLAM's motion errs much as it did just before: where nothing else is seen, its error goes on
-// (docs/math.md, "What SLAM gets wrong goes on").
+// SLAM's motion errors are correlated in time: where nothing else is observed, the last error is
+// continued (docs/math.md, "What SLAM gets wrong goes on").
 #pragma once
 
 #include <Eigen/Core>
@@ -11,19 +11,19 @@
 
 namespace depthgrid {
 
-// By axis (forward, left, yaw): what is left, in the next motion, of the error of one, from 0 (they
-// are independent) to below 1. A first-order autoregressive process, told by the signs of the
-// errors of `unit` four links apart, both of which were seen along the axis (`shares_seen`, one a
-// link, as of SharesSeen): the others' errors are what was made of their neighbours', and would
-// confirm it. An axis of few such pairs has what is least of those that tell. 0 on all axes where
-// little was seen forward in the mean, since the errors are those of the poses then.
+// Per axis (forward, left, yaw), the coefficient of a first-order autoregressive process of the
+// motions' errors, from 0 (independent) to below 1. Estimated from the signs of the errors of
+// `unit` links four apart, both observed along the axis (`shares_seen` of SharesSeen(), one per
+// link): errors of unobserved links are predicted by this process itself and would confirm any
+// value. An axis with few pairs takes the least value of the others. 0 on all axes where the mean
+// share observed forward is small, because then the errors are mostly those of the poses.
 Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
                                   const std::vector<Pose2>& map_from_group,
                                   const std::vector<Eigen::Vector3d>& shares_seen);
 
-// Adds the motions, in order of time, to the normal equations: each error e, over its sigma, is
-// persistence * that before + something new of variance 1 - persistence^2. One that does not follow
-// the motion before it stands for itself.
+// Adds the motions, in order of time, to the normal equations: each error e / sigma is persistence
+// * (the previous one) + an innovation of variance 1 - persistence^2. A motion that does not follow
+// the previous one is added on its own.
 void AddMotions(const std::vector<GroupLink>& motions, const Eigen::Vector3d& persistence,
                 const std::vector<Pose2>& map_from_group, PoseMatrix& h, Eigen::VectorXd& g);
 

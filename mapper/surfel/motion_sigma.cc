@@ -11,27 +11,26 @@
 namespace depthgrid {
 namespace {
 
-// The prior is never believed beyond this, a frame: simulated priors can be perfect.
+// Least sigma per frame: simulated SLAM can be perfect.
 const Eigen::Vector3d kLeastMotionSigma(1e-5, 1e-5, 2e-6);
-// Nor is it along one axis so much better than along the others: in a corridor nothing tells how it
-// errs lengthways, before one wall of a hall only the yaw is seen, and an axis' sigma may fall to
-// the least. Radians a metre for the yaw; in comparing, a radian of it counts as a metre.
+// Least sigma of an axis as a share of the largest one: in a corridor the error lengthways is
+// unobserved, before one wall of a hall only yaw is observed, and an unobserved axis' sigma would
+// fall to the least. For yaw in rad/m; to find the largest, a radian counts as a metre.
 const Eigen::Vector3d kLeastOfOthers(0.5, 0.5, 0.25);
 constexpr double kMetresARadian = 1.0;
-// Links that are probed together are so many apart: what is left of their errors is nearly
-// independent.
+// Links in the same probe are this many apart, so that their errors are nearly independent.
 constexpr std::size_t kProbes = 12;
 
 Eigen::Index ProbeOf(std::size_t link) { return static_cast<Eigen::Index>(link % kProbes); }
 
-// Motions of which this share was seen count as much as any: where the prior is nearly perfect
-// little is seen beside it, and of all motions alike.
+// Share observed from which a motion has full weight. Low, because beside nearly perfect SLAM the
+// share of sightings is small for all motions.
 constexpr double kWhollyCounted = 0.1;
 
-// Links probed together have signs without a pattern that repeats (Thue and Morse).
+// Signs of the links in a probe: the aperiodic Thue-Morse sequence.
 double SignOf(std::size_t link) { return std::popcount(link / kProbes) % 2 == 0 ? 1.0 : -1.0; }
 
-// How an axis of the link's error, over its sigma, changes with small motions of its two groups.
+// Derivative of one axis of a link's error / sigma by small motions of its two groups.
 struct ErrorRow {
   Eigen::RowVector3d by_first;
   Eigen::RowVector3d by_second;
@@ -41,15 +40,15 @@ ErrorRow RowOf(const GroupLink& link, int axis, const std::vector<Pose2>& map_fr
           Eigen::RowVector3d::Unit(axis) / link.sigma[axis]};
 }
 
-// So many motions on either side of one are near it. Of so many they must count for: a few that
-// were seen among others that were not tell of themselves.
+// Motions on either side that are averaged, and the least effective number of them: a few observed
+// ones among unobserved ones represent only themselves.
 constexpr std::size_t kNear = 5;
 constexpr double kLeastNear = 6.0;
-// They err by more than all if by so much: medians of so few differ by a third by chance, and where
-// SLAM's error is a slowly varying bias neighbours are all as large.
+// Least growth that is used: medians of so few differ by a third by chance, and a slowly varying
+// bias is large for all neighbours at once.
 constexpr double kLeastGrowth = 5.0;
 
-// The sigma of errors of which this share was seen. Each of weight by its share.
+// Sigma of errors that are weighted by the share of each that was observed.
 class ErrorSpread {
  public:
   void Add(double error, double share) {
@@ -124,8 +123,8 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
       const double error = LinkError(unit[i], map_from_group)[axis] / unit[i].sigma[axis];
       spread.Add(error, shares_seen[i][axis]);
     }
-    // Below the least share the prior is taken for a little better each time, down to the least
-    // sigma if it is perfect (docs/tried.md, "A nearly perfect prior").
+    // Below the least share sigma falls a little in each round, down to the least sigma if SLAM is
+    // perfect (docs/tried.md, "A nearly perfect prior").
     sigma[axis] = std::move(spread).Sigma(kLeastShareSeen);
   }
   const double most = std::max(sigma.head<2>().maxCoeff(), kMetresARadian * sigma.z());
@@ -150,7 +149,7 @@ std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
         spread.Add(errors[j][axis], shares_seen[j][axis]);
       }
       if (spread.Count() <= kLeastNear) continue;
-      // The errors' size over what it was believed to be.
+      // Size of the errors over that expected.
       const double ratio = std::move(spread).Sigma(kWhollyCounted);
       const double times = ratio * believed[i].sigma[axis] / (unit[i].sigma[axis] * sigma[axis]);
       if (ratio > 1.0 && times > kLeastGrowth) growth[i][axis] = times;

@@ -1,4 +1,4 @@
-// How well poses that were solved for together are known.
+// Covariance of jointly adjusted poses.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +10,9 @@
 
 namespace depthgrid {
 
-// Of the errors of these groups, as they go together: three rows a group, in map axes (true pose =
-// Exp(error) * pose). `factored` are the equations at the poses, for small motions of the groups in
-// their own axes. A group may be asked for more than once.
+// Joint covariance of the errors of these groups: three rows a group, in map axes (true pose =
+// Exp(error) * pose). `factored`: the equations for small motions of the groups in their own axes.
+// A group may occur more than once.
 Eigen::MatrixXd PoseCovariance(const PoseMatrix& factored, const std::vector<Pose2>& map_from_group,
                                std::span<const int> groups);
 

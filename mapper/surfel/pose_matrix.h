@@ -1,6 +1,6 @@
 // The symmetric matrix of normal equations whose unknowns are the small motions of poses, three
-// each. Two ways to keep and factor it: by rows from their first non-zero (skyline_matrix.h), and
-// sparse with poses in an order of its own (sparse_pose_matrix.h).
+// each. Two implementations: skyline (skyline_matrix.h), and sparse with fill-reducing order
+// (sparse_pose_matrix.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 
 namespace depthgrid {
 
-// A part of a row vector: what belongs to one pose.
+// The part of a row vector that belongs to one pose.
 struct PoseShare {
   int pose = 0;
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
@@ -19,11 +19,11 @@ class PoseMatrix {
   virtual ~PoseMatrix() = default;
 
   virtual int size() const = 0;
-  // Adds to the 3x3 block of two poses, row >= column; of a pose and itself the lower triangle
-  // counts.
+  // Adds to the 3x3 block of two poses, row >= column; of diagonal blocks only the lower triangle
+  // is used.
   virtual void AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) = 0;
-  // Adds left right^T to the blocks of `row_pose` and the poses of `right`, which come in order
-  // and before it.
+  // Adds left right^T to the blocks of `row_pose` and the poses of `right`, which are sorted and
+  // precede it.
   virtual void AddProducts(int row_pose, const Eigen::Vector3d& left,
                            std::span<const PoseShare> right) {
     for (const PoseShare& r : right) {
@@ -35,7 +35,7 @@ class PoseMatrix {
   virtual bool Factor() = 0;
   // x of A x = b, after Factor().
   virtual Eigen::VectorXd Solve(Eigen::VectorXd b) const = 0;
-  // The same of several b, one a column; all at once read the factor once.
+  // The same for several b, one per column, reading the factor only once.
   virtual Eigen::MatrixXd SolveAll(const Eigen::MatrixXd& b) const = 0;
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFirstRangeM = 0.25;
 constexpr int kRangeBinsPerOctave = 2;
-// Before anything is known: a cheap scanner's data sheet.
+// Initial value: a cheap scanner's data sheet.
 constexpr double kDefaultRelativeSigma = 0.01;
 // No sensor is better (0.2 mm at 1 m), and weights stay finite for simulated scans without noise.
 constexpr double kMinRelativeSigma = 2e-4;
@@ -19,17 +19,19 @@ constexpr double kSigmaOfMedianDifference = 1.0 / (0.674489750196 * 2.4494897427
 constexpr std::uint32_t kMinSamples = 200;
 // Three beams count as evenly spaced when their gaps agree within this share.
 constexpr float kSpacingTolerance = 0.05F;
-// Counting every scan is not needed once the histograms are full.
+// After this many scans only every kThinning-th is counted, as the histograms are full.
 constexpr std::int64_t kScansInFull = 50;
 constexpr std::int64_t kThinning = 8;
-// Independent errors tell 1 at every stride; errors correlated by exp(-(d / L)^2 / 2) tell .15 and
-// less up to d = 2 L / 3 and .5 at 4 L / 3 (docs/math.md, "Errors that beams share").
+// Variance ratio between a stride and its double below which beams share their errors. Independent
+// errors give 1; errors correlated by exp(-(d / L)^2 / 2) give at most .15 up to d = 2 L / 3 and .5
+// at 4 L / 3 (docs/math.md, "Errors that beams share").
 constexpr double kAlikeShare = 0.25;
-// Fewer beams are not left of a scan.
+// A stride must leave at least this many beams.
 constexpr std::size_t kLeastBeams = 40;
-// Within so many sigmas of the sensor's reach what would differ most is missing.
+// Ranges within this many sigmas of the sensor's reach are skipped: the returns that differ most
+// are missing there.
 constexpr float kUncut = 2.0F;
-constexpr int kValueBinOffset = (127 - 19) * 8;  // exponent bias of a float, eight bins an octave
+constexpr int kValueBinOffset = (127 - 19) * 8;  // bin of 2^-19: exponent bias, eight an octave
 
 int RangeBin(double range_m) {
   const double octave = std::log2(range_m / kFirstRangeM);
@@ -84,7 +86,8 @@ void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
     const float twice_cosine = 2.0F - gap * gap;
     const float difference =
         middle.range_m / left.range_m - twice_cosine + middle.range_m / right.range_m;
-    // The mean of three says nothing of their second difference, as one of them would.
+    // The bin is that of the mean, which is independent of the second difference, unlike a single
+    // range.
     const float mean_m = (left.range_m + middle.range_m + right.range_m) / 3.0F;
     const auto range_bin =
         static_cast<std::size_t>(std::clamp(RangeBin(mean_m), 0, kRangeBins - 1));
@@ -117,7 +120,8 @@ void RangeNoise::Differences::Refresh() {
     relative_sigma[r] = std::max(shown_sigma[r], kMinRelativeSigma);
   }
   if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;
-  for (int r = 0; r < kRangeBins; ++r) {  // unknown bins take the nearest known one's, nearer first
+  // Unknown bins take the nearest known one's, the shorter range's first.
+  for (int r = 0; r < kRangeBins; ++r) {
     for (int d = 0; !known[static_cast<std::size_t>(r)] && d < kRangeBins; ++d) {
       const int from = r - d >= 0 && known[static_cast<std::size_t>(r - d)] ? r - d : r + d;
       if (from >= kRangeBins || !known[static_cast<std::size_t>(from)]) continue;
@@ -127,8 +131,8 @@ void RangeNoise::Differences::Refresh() {
   }
 }
 
-// Whether beams this stride apart share most of the error that shows between beams twice as far
-// apart, over all ranges.
+// Whether beams 2^power apart share most of the error seen between beams twice as far apart, over
+// all ranges.
 bool RangeNoise::AreAlike(std::size_t power) const {
   const Differences& near = by_stride_[power];
   const Differences& far = by_stride_[power + 1];
@@ -142,8 +146,8 @@ bool RangeNoise::AreAlike(std::size_t power) const {
   return seen < kAlikeShare * samples;
 }
 
-// Whether beams this stride apart differ by more than the best sensor's would, over most of what
-// was seen: what is smaller, such as rounding, tells nothing of a sensor.
+// Whether beams 2^power apart differ by more than the best sensor's noise, for most samples:
+// smaller differences, such as rounding, are not sensor noise.
 bool RangeNoise::ShowNoise(std::size_t power) const {
   const Differences& differences = by_stride_[power];
   double noisy = 0.0, samples = 0.0;

@@ -1,4 +1,4 @@
-// How noisy the ranges are, learned from the scans themselves (docs/math.md, "Surfels").
+// Range noise, learned from the scans themselves (docs/math.md, "Surfels").
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 namespace depthgrid {
 
 // The relative standard deviation of a range as a function of the range. Along a straight wall the
-// inverse range is A cos(bearing) + B sin(bearing), whose second difference
-// u(-1) - 2 cos(step) u(0) + u(+1) vanishes; what is left of it is noise of variance 6 sigma_u^2.
-// The median makes corners and jumps harmless. Errors that neighbouring beams share vanish too, so
-// the same is done with beams farther apart: those that tell of more noise err by themselves.
+// inverse range is A cos(bearing) + B sin(bearing), whose second difference u(-1) - 2 cos(step)
+// u(0) + u(+1) vanishes but for noise of variance 6 sigma_u^2. The median makes it robust to
+// corners and jumps. Errors that neighbouring beams share vanish too, so the same is done with
+// beams farther apart, up to a spacing at which errors are independent.
 class RangeNoise {
  public:
-  // `skips_alike`: whether stride() may be more than 1.
+  // `skips_alike`: whether stride() may exceed 1.
   explicit RangeNoise(bool skips_alike = true);
   void Add(const Scan& scan);
-  // sigma(r) / r, as it shows between beams so many apart: 1, or stride().
+  // sigma(r) / r estimated from beams `stride` apart: 1, or stride().
   double RelativeSigma(double range_m, int stride) const;
-  // Beams err by themselves if so many apart: 1, 2, 4, 8, 16 or 32.
+  // Spacing of beams from which their errors are independent: 1, 2, 4, 8, 16 or 32.
   int stride() const { return 1 << chosen_; }
 
  private:
@@ -29,12 +29,12 @@ class RangeNoise {
   static constexpr int kValueBins = 160;  // eight an octave from 2^-19: up to 2
   static constexpr int kStrides = 6;      // 1 to 32
 
-  // Of beams one stride apart.
+  // Second differences of beams one stride apart.
   struct Differences {
     std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram{};
     std::array<std::uint32_t, kRangeBins> count{};
-    std::array<double, kRangeBins> shown_sigma{};  // of known bins: relative, as the median tells
-    std::array<double, kRangeBins> relative_sigma{};  // no less than that of the best sensor
+    std::array<double, kRangeBins> shown_sigma{};     // relative, by the median; known bins only
+    std::array<double, kRangeBins> relative_sigma{};  // at least that of the best sensor; all bins
 
     void Add(const Scan& scan, std::size_t stride);
     void Refresh();
@@ -43,8 +43,8 @@ class RangeNoise {
   bool AreAlike(std::size_t power) const;
   bool ShowNoise(std::size_t power) const;
 
-  std::array<Differences, kStrides> by_stride_{};  // by its power of two
-  std::size_t chosen_ = 0;                         // power of two
+  std::array<Differences, kStrides> by_stride_{};  // index k: stride 2^k
+  std::size_t chosen_ = 0;                         // stride() is 2^chosen_
   bool skips_alike_;
   std::int64_t scans_ = 0;
 };

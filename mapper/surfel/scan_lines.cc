@@ -8,33 +8,33 @@
 namespace depthgrid {
 namespace {
 
-// A surface's slope against the beam before anything is known of it, as the standard deviation of
-// the tangent of incidence (56 degrees): pieces too short to show their slope face the sensor.
+// Prior on a surface's slope: standard deviation of the tangent of the incidence angle (56
+// degrees). Lines too short to determine their slope face the sensor.
 constexpr double kPriorSlopeSigma = 1.5;
 // Candidates for a split are tried this far apart, then around the best.
 constexpr int kSplitStride = 4;
-// Weights come from the mean of so many neighbours on either side: a weight that knows its own
-// beam's error (nearer looks more precise) would bias the fit.
+// Weights use the mean range of this many neighbours on either side: a weight that depends on its
+// own beam's error (nearer looks more precise) would bias the fit.
 constexpr int kWeightWindow = 8;
 
-// A line fits as noise lets it until more returns than this tell (4 and 16 do the same:
+// Prior weight, in returns, of a line fitting as well as noise allows (4 and 16 do the same:
 // docs/tried.md, "Lines that do not fit").
 constexpr double kReturnsLikeNoise = 4.0;
-// Of a line.
+// Fitted parameters of a line.
 constexpr double kFitted = 2.0;
 
-// Determinant over squared trace of returns that have one bearing but for rounding; four beams, a
-// thousand to a right angle, have 1e-6.
+// Determinant over squared trace below which all returns have one bearing but for rounding; four
+// beams spaced by a thousandth of a right angle have 1e-6.
 constexpr double kOneBearing = 1e-12;
 
-// Beyond this, in sigmas before the reach, too few returns are left to tell where the wall is.
+// Distance before the reach, in sigmas, below which too few returns remain to locate the wall.
 constexpr double kLeastSigmas = 0.0;
-// Lines that tell less than so many returns far from the reach are there because noise put them.
+// A line with less information than this many returns far from the reach is an artefact of noise.
 constexpr double kLeastInformation = 10.0;
-// A line that noise drew nearer is corrected by too little at first.
+// Rounds of the correction: the first ones are too small, as the line starts too near.
 constexpr int kCorrections = 6;
 
-// How many sigmas the line lies before the sensor's reach at this return.
+// Distance of the line before the sensor's reach at this return, in sigmas.
 double SigmasWithinReach(const ScanLine& line, const ScanReturn& r, double max_range_m) {
   const double inverse_range = line.coefficients.dot(r.direction);
   return (max_range_m * inverse_range - 1.0) / r.relative_sigma;
@@ -83,7 +83,7 @@ void ScanLineFinder::Accumulate(const ScanReturns& returns) {
   }
 }
 
-// `inverse_range`: what the return's noise is a share of.
+// `inverse_range`: scales the return's relative noise.
 void ScanLineFinder::Add(const ScanReturn& r, double inverse_range, Sums& sums) {
   const double sigma = r.relative_sigma * inverse_range;
   const double w = r.information / (sigma * sigma);
@@ -104,7 +104,7 @@ ScanLineFinder::Sums ScanLineFinder::SumsOf(Span span) const {
   return {b.xx - a.xx, b.xy - a.xy, b.yy - a.yy, b.xu - a.xu, b.yu - a.yu, b.uu - a.uu};
 }
 
-// The weighted squared error of the best line; of returns of one bearing, that of their mean.
+// Chi-square of the best line; of their mean, if all returns have one bearing.
 double ScanLineFinder::Chi2(const Sums& s) {
   const double determinant = s.xx * s.yy - s.xy * s.xy;
   const double trace = s.xx + s.yy;
@@ -115,7 +115,7 @@ double ScanLineFinder::Chi2(const Sums& s) {
   return s.uu - explained / determinant;
 }
 
-// The index that divides the span best, -1 if one line is enough.
+// The index that best splits the span, -1 if one line is enough.
 int ScanLineFinder::BestSplit(Span span) const {
   const int first = span.begin + min_returns_;
   const int last = span.end - min_returns_;
@@ -164,9 +164,8 @@ ScanLine ScanLineFinder::Fit(Span span, const Sums& s, const ScanReturns& return
   return {span, a * ahead + b * left, std::sqrt(variance) / length2, std::max(misfit, 1.0)};
 }
 
-// Of the line's returns near the sensor's reach only those are left that noise made short: what the
-// others would have added is given back to them, as far as that can be told. Little or nothing is
-// left of a line beyond the reach.
+// Near the sensor's reach only returns that noise made short remain: adds their expected shortfall
+// (range_cutoff.h). Empty where too little of the line lies within the reach.
 std::optional<ScanLine> ScanLineFinder::WithinReach(const ScanLine& fitted,
                                                     ScanReturns& returns) const {
   if (!(returns.max_range_m() > 0.0)) return fitted;  // not known
@@ -176,7 +175,7 @@ std::optional<ScanLine> ScanLineFinder::WithinReach(const ScanLine& fitted,
   };
   for (int round = 0; round < kCorrections; ++round) {
     Span span = line.span;
-    // A line is farthest at its ends.
+    // The range along a line is largest at its ends.
     if (sigmas(span.begin) > kUncutSigmas && sigmas(span.end - 1) > kUncutSigmas) break;
     while (span.size() > 0 && sigmas(span.begin) < kLeastSigmas) ++span.begin;
     while (span.size() > 0 && sigmas(span.end - 1) < kLeastSigmas) --span.end;

@@ -14,20 +14,20 @@ struct ScanLine {
   Span span;
   Eigen::Vector2d coefficients;   // 1/r = coefficients . direction
   double sigma_normal_rad = 0.0;  // of the direction of `coefficients`
-  // How much farther from the line its returns lie than their noise explains, at least 1: of what
-  // is bent or an edge, and too short to be split.
+  // Reduced chi-square of the fit, at least 1: above 1 for bent surfaces and edges too short to be
+  // split.
   double variance_factor = 1.0;
 };
 
 class ScanLineFinder {
  public:
-  // `split_chi2`: a gain of fit this large makes two lines of one. Lines have at least
-  // `min_returns`. `correct_cutoff`: whether returns near the sensor's reach are corrected for
-  // those that are missing (range_cutoff.h).
+  // `split_chi2`: a decrease of chi-square by this much splits a line in two. Lines have at least
+  // `min_returns` returns. `correct_cutoff`: whether returns near the sensor's reach are corrected
+  // for those that are missing (range_cutoff.h).
   ScanLineFinder(double split_chi2, int min_returns, bool correct_cutoff)
       : split_chi2_(split_chi2), min_returns_(min_returns), correct_cutoff_(correct_cutoff) {}
 
-  // In order of bearing; valid until the next call. Corrects `returns`.
+  // In order of bearing; valid until the next call. Applies the correction to `returns`.
   const std::vector<ScanLine>& Find(ScanReturns& returns);
 
  private:
@@ -47,7 +47,7 @@ class ScanLineFinder {
   double split_chi2_;
   int min_returns_;
   bool correct_cutoff_;
-  std::vector<Sums> sums_;  // before each return
+  std::vector<Sums> sums_;  // prefix sums: of all returns before each
   std::vector<Span> stack_;
   std::vector<ScanLine> lines_;
 };

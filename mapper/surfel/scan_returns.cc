@@ -7,9 +7,9 @@
 namespace depthgrid {
 namespace {
 
-// Hits this many steps apart are still neighbours: beams between them were lost.
+// Hits up to this many steps apart are neighbours: beams may be lost between them.
 constexpr double kMaxGapSteps = 3.5;
-// The noise changes slowly with range: it is looked up again after this relative change.
+// Relative change of range after which the noise, which varies slowly, is looked up again.
 constexpr double kNoiseLookupShare = 0.1;
 
 }  // namespace
@@ -65,7 +65,7 @@ bool ScanReturns::Jumps(const ScanReturn& a, const ScanReturn& b) const {
          jump_sigmas_ * std::numbers::sqrt2 * a.relative_sigma + kSteepestTangent * gap_rad;
 }
 
-// A hit that differs from both neighbours, which agree with each other.
+// Drops hits that differ from both neighbours while these agree with each other.
 void ScanReturns::DropLoneOutliers() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < returns_.size(); ++i) {

@@ -21,23 +21,23 @@ struct ScanReturn {
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
   double range_m = 0.0;         // as measured
   double inverse_range = 0.0;   // 1/m; near the sensor's reach corrected for what it cut off
-  double relative_sigma = 0.0;  // of the range, and so of its inverse
-  double information = 1.0;     // as a share of that of a return far from the sensor's reach
+  double relative_sigma = 0.0;  // of the range and of its inverse
+  double information = 1.0;     // relative to a return far from the sensor's reach
 };
 
 class ScanReturns {
  public:
-  // `jump_sigmas`: a difference of two neighbours this unlikely cuts.
+  // `jump_sigmas`: a larger difference of two neighbours is a jump.
   explicit ScanReturns(double jump_sigmas) : jump_sigmas_(jump_sigmas) {}
 
-  // Every `stride`-th beam: 1, or the noise's own.
+  // Reads every `stride`-th beam: 1, or noise.stride().
   void Read(const Scan& scan, const RangeNoise& noise, int stride);
 
   int size() const { return static_cast<int>(returns_.size()); }
   const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
   ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
-  double step_rad() const { return step_rad_; }  // mean angle between those that are read
+  double step_rad() const { return step_rad_; }  // mean angle between beams read
   double max_range_m() const { return max_range_m_; }
 
  private:
@@ -47,10 +47,10 @@ class ScanReturns {
   void Cut();
 
   double jump_sigmas_;
-  std::vector<float> bearings_rad_;  // those the directions were computed for
+  std::vector<float> bearings_rad_;  // bearings of directions_
   std::vector<Eigen::Vector2d> directions_;
   double beam_step_rad_ = 1.0;
-  double step_rad_ = 1.0;  // of those that are read
+  double step_rad_ = 1.0;  // between beams read
   double max_range_m_ = 0.0;
   std::vector<ScanReturn> returns_;
   std::vector<Span> runs_;

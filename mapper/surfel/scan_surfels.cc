@@ -7,8 +7,8 @@
 namespace depthgrid {
 namespace {
 
-// A fit so steep that it leaves the field of view, or goes on to where nothing is seen, is no
-// surface that was seen; nor is one that goes half round the sensor, as of a few beams all round.
+// False for a fit that does not intersect its end beams within any sensor's range, and for one that
+// spans half a turn, as with a few beams all round.
 bool WasSeen(const ScanLine& line, const ScanReturns& returns) {
   const ScanReturn& first = returns[line.span.begin];
   const ScanReturn& last = returns[line.span.end - 1];
@@ -52,7 +52,7 @@ std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& no
   return surfels;
 }
 
-// How many beams the surfel that begins here gets: what is left of the line in equal parts.
+// Number of beams of the surfel that starts at `begin`: the rest of the line is divided equally.
 int ScanSurfelMaker::BeamsAt(const ScanLine& line, int begin) const {
   const Eigen::Vector2d& direction = returns_[begin].direction;
   const double inverse_range = line.coefficients.dot(direction);
@@ -66,8 +66,8 @@ int ScanSurfelMaker::BeamsAt(const ScanLine& line, int begin) const {
   return (left + parts - 1) / parts;
 }
 
-// The line's normal, at a distance that only these beams say: as a share of the line's own, so that
-// neither the slope nor the noise of other surfels enters.
+// A surfel with the line's normal and the distance measured by these beams alone, as a multiple of
+// the line's distance, so that neither the slope nor the noise of other beams enters.
 Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   double share = 0.0;
   double variance = 0.0;  // of the mean relative range
@@ -83,16 +83,16 @@ Surfel ScanSurfelMaker::SurfelOf(const ScanLine& line, Span span) const {
   const double factor = options_.judge_fit ? line.variance_factor : 1.0;
   variance *= factor / (count * count);
   direction.normalize();
-  // Grazing beams are not believed to be exact across the wall.
+  // Limits the precision across the wall of grazing beams.
   constexpr double kMinCosine = 0.05;
   const double line_inverse_range = line.coefficients.dot(direction);
   const double line_range_m = 1.0 / line_inverse_range;
   const double cosine = line_inverse_range / line.coefficients.norm();
   Surfel surfel;
   surfel.normal = -line.coefficients.normalized();
-  // Noise along the beam moves the piece along the normal only. Were it moved along the wall as
-  // well, a match would find what is off and how far it is to the side to go together, and turn too
-  // little; nor does a piece look more precise that noise drew nearer.
+  // Noise moves the piece along the normal only, not along the beam: a position along the wall that
+  // is correlated with the error across it would bias the match's yaw. For the same reason sigma
+  // uses the line's range, not the piece's (docs/math.md, "Scan").
   const double before_line_m = cosine * (line_range_m - line_range_m / share);
   surfel.point_m = line_range_m * direction + before_line_m * surfel.normal;
   const double sigma_m = std::sqrt(variance) * std::max(cosine, kMinCosine) * line_range_m;

@@ -1,4 +1,4 @@
-// A scan as surfels, in base axes: what is matched and what is mapped.
+// Converts a scan to surfels in base axes, for matching and mapping.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 namespace depthgrid {
 
 struct ScanSurfelOptions {
-  // A surfel has the mean of so many beams at most; a line's normal comes from all of its beams.
+  // Most beams averaged for a surfel's point; the normal comes from all beams of its line.
   int beams = 8;
-  // Nor is it longer than this, so that coarse scanners keep details.
+  // Greatest length of a surfel, so that coarse scanners keep details.
   double max_length_m = 0.2;
   double jump_sigmas = 5.0;
   double split_chi2 = 12.0;
   int min_line_beams = 4;
-  // Surfels of a line that fits its beams badly are believed less.
+  // Reduce the information of surfels whose line fits its beams badly.
   bool judge_fit = true;
-  // Of beams that err alike only every so many count (RangeNoise::stride).
+  // Where neighbouring beams share their errors, use only every RangeNoise::stride()-th beam.
   bool skip_alike = true;
-  // Returns near the sensor's reach are corrected for those that noise pushed beyond it.
+  // Correct returns near the sensor's reach for those that noise pushed beyond it.
   bool correct_cutoff = true;
 
   void Visit(OptionsVisitor& v);
@@ -34,8 +34,8 @@ class ScanSurfelMaker {
         returns_(options.jump_sigmas),
         lines_(options.split_chi2, options.min_line_beams, options.correct_cutoff) {}
 
-  // Of every `stride`-th beam: 1, or the noise's own. `memory`: of an earlier result, to be used
-  // again.
+  // Uses every `stride`-th beam: 1, or noise.stride(). `memory`: an earlier result whose memory is
+  // reused.
   std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise, int stride,
                            std::vector<Surfel> memory = {});
   std::vector<Surfel> Make(const Scan& scan, const RangeNoise& noise) {

@@ -11,10 +11,10 @@ namespace {
 // 0.6 m of wall. Longer stretches, up to all that a group saw, made no difference.
 constexpr std::size_t kStretch = 16;
 constexpr double kMinCosine = 0.94;  // 20 degrees between normals
-// Signs of so many pairs tell the correlation to 0.15.
+// The signs of this many pairs determine the correlation to 0.15.
 constexpr std::int64_t kMinPairs = 100;
 
-// Calls with the places of each two companions, the earlier first.
+// Calls `visit` with the indices of each pair of companions, the smaller first.
 template <typename Visitor>
 void ForCompanions(std::span<const Surfel> surfels, const Visitor& visit) {
   for (std::size_t begin = 0; begin < surfels.size(); begin += kStretch) {

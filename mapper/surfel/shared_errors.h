@@ -10,25 +10,24 @@
 
 namespace depthgrid {
 
-// Surfels in the order they were first seen are taken in stretches of 16. Those of a stretch whose
-// walls face the same way are companions: they may err alike. By surfel, how many they are, itself
-// included.
+// Surfels are divided, in the order first seen, into stretches of 16. Those of a stretch with
+// similar normals are companions, whose errors may be correlated. Gives the number of companions of
+// each surfel, itself included.
 void CountCompanions(std::span<const Surfel> surfels, std::vector<int>& companies);
 
-// A companion's information counts over this, so that all of them have the information of their
-// mean: n of equal variance and correlation r tell as much as n / (1 + (n - 1) r) that err
-// independently.
+// Divisor for the information of a companion: n surfels of equal variance with correlation r are
+// worth n / (1 + (n - 1) r) independent ones.
 inline double CountedOver(int company, double correlation) {
   return 1.0 + (company - 1) * correlation;
 }
 
-// How much companions share of their errors, told by the signs of their residuals, which wrong
-// associations hardly move.
+// Correlation of companions' errors, estimated from the signs of their residuals, which is robust
+// to wrong associations.
 class SharedErrors {
  public:
-  // Of one group, a residual a surfel; 0 where there is none.
+  // Adds one group, with a residual for each surfel; 0 for none.
   void Add(std::span<const Surfel> surfels, std::span<const double> residuals);
-  // Of two companions' errors. At least 0; of few pairs nothing is told.
+  // Correlation of two companions' errors, at least 0; 0 while there are few pairs.
   double Correlation() const;
 
  private:

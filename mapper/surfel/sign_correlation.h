@@ -1,5 +1,4 @@
-// How correlated errors are, from how often their signs agree: wrong associations and outliers
-// hardly move it.
+// Correlation of errors from how often their signs agree, which is robust to outliers.
 #pragma once
 
 #include <cmath>
@@ -8,7 +7,7 @@
 
 namespace depthgrid {
 
-// The correlation of two normal variables whose signs' product (+1 or -1) has this mean: it is
+// The correlation of two normal variables from the mean product of their signs (+1 or -1), which is
 // 2/pi asin(correlation) (Sheppard 1899).
 inline double CorrelationOfSigns(double mean_product) { return std::sin(0.5 * kPi * mean_product); }
 

@@ -22,8 +22,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<double, 4>;
 constexpr Lanes kLanes;
 
-// Unknowns come in threes (a pose), and so do rows that begin in one column: three rows times three
-// rows share what they load.
+// Unknowns and rows come in threes (a pose). The products of three rows with three rows share their
+// loads.
 constexpr int kBlock = 3;
 using Rows = std::array<double*, kBlock>;
 using Block = std::array<std::array<double, kBlock>, kBlock>;

@@ -14,30 +14,30 @@ namespace depthgrid {
 
 class SkylineMatrix : public PoseMatrix {
  public:
-  // Zero; first[i] <= i is the first column of row i.
+  // A zero matrix; first[i] <= i is the first stored column of row i.
   explicit SkylineMatrix(std::vector<int> first);
 
   int size() const override { return static_cast<int>(first_.size()); }
   int First(int row) const { return first_[static_cast<std::size_t>(row)]; }
-  // Element (row, column), First(row) <= column <= row, and what lies right of it in the row.
+  // Pointer to element (row, column), First(row) <= column <= row; the rest of the row follows it.
   double* At(int row, int column) {
     return values_.data() + begin_[static_cast<std::size_t>(row)] + (column - First(row));
   }
   const double* At(int row, int column) const {
     return values_.data() + begin_[static_cast<std::size_t>(row)] + (column - First(row));
   }
-  // The blocks given lie in the rows.
+  // Requires that the block lies within the stored rows.
   void AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) override;
   void AddProducts(int row_pose, const Eigen::Vector3d& left,
                    std::span<const PoseShare> right) override;
   double& Diagonal(int i) override { return *At(i, i); }
-  // Becomes the lower factor L of L L^T.
+  // Replaces the matrix by its lower Cholesky factor L.
   bool Factor() override;
   Eigen::VectorXd Solve(Eigen::VectorXd b) const override;
   Eigen::MatrixXd SolveAll(const Eigen::MatrixXd& b) const override;
 
  private:
-  // Whether rows come in threes that begin in one column, at a multiple of three.
+  // Whether each three rows begin in the same column, a multiple of three.
   bool IsInBlocks() const;
   bool FactorByBlocks();
   bool FactorByRows();

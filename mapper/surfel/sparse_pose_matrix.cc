@@ -12,10 +12,10 @@ struct SparsePoseMatrix::Factored {
   bool is_dense = false;
 };
 
-// A wide view joins most poses to most. With more blocks than this the sparse factor is half full
-// (a quarter of the blocks: 56 %), and one without gaps is had four times as fast.
+// Share of non-zero blocks above which a dense factor is used (a wide view couples most poses). At
+// twice this share the sparse factor is 56 % full and the dense one four times as fast.
 constexpr double kDenseShare = 0.125;
-// 430 MB.
+// Unknowns of the largest dense matrix: 430 MB.
 constexpr int kMostDense = 7500;
 
 SparsePoseMatrix::SparsePoseMatrix(int poses) : rows_(static_cast<std::size_t>(poses)) {}

@@ -1,8 +1,7 @@
-// Normal equations of very many poses that were here before: only blocks that are not zero are
-// kept, and poses are eliminated in an order that keeps the factor sparse (approximate minimum
-// degree, Amestoy, Davis and Duff 1996). What is seen again and again fills the rows of a
-// SkylineMatrix; here cost follows the area and how often it was seen, not the length of the run
-// squared.
+// Sparse normal equations for very many poses with revisits: only non-zero blocks are stored, and
+// poses are eliminated in approximate minimum degree order (Amestoy, Davis and Duff 1996). Revisits
+// fill the rows of a SkylineMatrix; here the cost grows with the area and the number of visits, not
+// with the square of the run's length.
 #pragma once
 
 #include <memory>
@@ -29,14 +28,14 @@ class SparsePoseMatrix : public PoseMatrix {
     int column = 0;
     int block = 0;
   };
-  // The block of two poses, zero at first.
+  // The block of two poses, created as zero.
   Eigen::Matrix3d& BlockAt(int row_pose, int column_pose);
 
   bool FactorDense();
   bool FactorSparse();
 
   struct Factored;
-  std::vector<std::vector<Entry>> rows_;  // each by column
+  std::vector<std::vector<Entry>> rows_;  // each sorted by column
   std::vector<Eigen::Matrix3d> blocks_;
   std::unique_ptr<Factored> factored_;
 };

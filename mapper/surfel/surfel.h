@@ -17,12 +17,12 @@ struct Surfel {
   double normal_information = 0.0;  // of the normal's direction, 1/rad^2
 };
 
-// How far the point lies before the surfel's line.
+// Signed distance of the point from the surfel's line, positive on the free side.
 inline double OffsetFrom(const Surfel& surfel, const Eigen::Vector2d& point_m) {
   return surfel.normal.dot(point_m - surfel.point_m);
 }
 
-// A pose with its rotation worked out, for many points.
+// A pose with precomputed sine and cosine, for many points.
 struct Motion2 {
   explicit Motion2(const Pose2& pose)
       : cosine(std::cos(pose.yaw_rad)), sine(std::sin(pose.yaw_rad)), shift_m(pose.translation()) {}

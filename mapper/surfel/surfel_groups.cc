@@ -13,11 +13,12 @@ namespace {
 constexpr double kGateM = 0.02;
 constexpr double kGateSigmas = 3.0;
 constexpr double kMaxAngleDeg = 40.0;
-// As kAlongShare: a group's surfels end up half to a whole spacing apart.
+// Like kAlongShare: a group's surfels end up half to one spacing apart.
 constexpr double kGroupAlongShare = 0.5;
-// Over more tied frames than this, a second, the online estimate does not join two to millimetres.
+// After more tied frames than this (a second), the online estimate no longer relates two frames to
+// millimetres.
 constexpr std::size_t kLongestGapFrames = 30;
-// 1.2 m: farther on another part of the room is in view.
+// 8 * 0.15 m = 1.2 m: farther on, another part of the room is in view.
 constexpr int kMostJoined = 8;
 
 }  // namespace
@@ -69,7 +70,7 @@ void SurfelGroups::Add(const std::vector<Surfel>& pieces, const Pose2& map_from_
   const Pose2 group_from_base = Between(group.map_from_group, map_from_base);
   places_.push_back({static_cast<int>(groups_.size()) - 1, group_from_base});
   Collect(pieces, group_from_base);
-  // Room for the frames to come, as neighbouring groups are alike; not a little more each frame.
+  // Reserves memory once, for about as many surfels as the previous group has.
   if (group.surfels.capacity() < newest_.surfels().size()) {
     const std::size_t like_before =
         groups_.size() > 1 ? groups_[groups_.size() - 2].surfels.size() : 0;
@@ -105,7 +106,7 @@ int SurfelGroups::NearestAround(const Pose2& map_from_group, const std::vector<S
   const double reach_m = options_.length_m * times;
   const double reach_rad = RadFromDeg(options_.turn_deg * times);
   int nearest = -1;
-  double least = 2.0;  // squares of shares of the reach
+  double least = 2.0;  // squared distance in units of the reach
   for (std::size_t i = 0; i < joined.size(); ++i) {
     const Pose2& there = joined[i].map_from_group;
     const double way2 = (there.translation() - map_from_group.translation()).squaredNorm();
@@ -163,7 +164,7 @@ SurfelGroups::Joining SurfelGroups::JoinedWithin(const GroupLimits& limits,
     for (rule.prior_times = 2; !fits() && rule.prior_times < kMostJoined; ++rule.prior_times) {
       if (count - others <= limits.most_of_prior_map) break;
     }
-    // The run's own are not joined for a prior map of too wide an area.
+    // The run's own groups are not joined further when the prior map alone exceeds its limit.
     most = std::max(most, count - others + limits.most - limits.most_of_prior_map);
     if (count <= most) return joining;
   }

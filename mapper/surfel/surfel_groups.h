@@ -1,4 +1,4 @@
-// Frames close together seen as one: what the joint adjustment moves.
+// Groups of nearby frames, which the joint adjustment moves as one.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 namespace depthgrid {
 
 struct SurfelGroupOptions {
-  // A group ends when the sensor is this far from where it began. Within it the poses' differences
-  // are those of the online estimate.
+  // A group ends when the sensor is this far from its start. Within it, relative poses are those of
+  // the online estimate.
   double length_m = 0.15;
   double turn_deg = 6.0;
-  // Between the surfels of a group, along a wall.
+  // Spacing of a group's surfels along a wall.
   double spacing_m = 0.04;
-  // Of longer runs, neighbouring groups are adjusted as one, and where that is not enough those of
-  // one place: the cost of solving for all of them grows like the cube where a wide view joins most
-  // to most (docs/results.md, "A whole building").
+  // With more groups, neighbouring ones are joined, and if that is not enough those of one place:
+  // the cost of solving grows like the cube of their number where a wide view couples most of them
+  // (docs/results.md, "A whole building").
   int most = 1000;
 
   void Visit(OptionsVisitor& v);
@@ -25,79 +25,78 @@ struct SurfelGroupOptions {
 
 struct SurfelGroup {
   int first_frame = 0;          // index into the mapped frames
-  int frames = 0;               // that are kept
+  int frames = 0;               // number of kept frames
   Pose2 map_from_group;         // the group's axes are those of its first frame
-  std::vector<Surfel> surfels;  // in them
+  std::vector<Surfel> surfels;  // in its axes
 };
 
-// Where a frame is in its group.
+// A frame's group and its pose in it.
 struct GroupPlace {
   int group = 0;
   Pose2 group_from_base;
 };
 
-// How a group begins, as far as it may be joined to earlier ones.
+// Properties of a group's start that decide to which earlier ones it may be joined.
 struct GroupStart {
-  bool apart = false;    // SLAM jumped between it and the one before, or frames were not kept
-  bool settled = false;  // where it is in the map was told by what was seen there before
+  bool apart = false;    // SLAM jumped or frames were tied between it and the previous one
+  bool settled = false;  // its pose in the map is accurately known from a match with older surfels
   bool of_prior_map = false;
 };
-// How many are a prior map's.
+// Number of groups of a prior map.
 int PriorGroups(const std::vector<GroupStart>& starts);
 
-// How many groups there may be, as far as they can be joined.
+// Limits on the number of groups, kept as far as groups can be joined.
 struct GroupLimits {
   int most = 0;
-  int most_of_prior_map = 0;  // of them
-  bool in_place = false;  // whether settled groups of one place are joined, whenever it was seen
+  int most_of_prior_map = 0;  // of these, a prior map's
+  bool in_place = false;      // whether settled groups of one place are joined, whatever their time
 };
 
-// What joined groups are wanted for: what was seen takes most of the time to join.
+// What joined groups contain: merging surfels takes most of the time.
 enum class GroupContent { kSurfels, kPosesOnly };
 
 class SurfelGroups {
  public:
   explicit SurfelGroups(const SurfelGroupOptions& options) : options_(options) {}
 
-  // The next frame; it belongs to the newest group.
+  // Adds the next frame to the newest group, or to a new one.
   void Add(const std::vector<Surfel>& pieces, const Pose2& map_from_base);
-  // The next frame, which moves with an earlier one and adds nothing to what its group saw.
+  // Adds the next frame as tied to an earlier one; its group's surfels do not change.
   void AddTied(int tied_to, const Pose2& map_from_base);
-  // The newest group is elsewhere than the estimate had it, by this motion of the map's axes. The
-  // first stays, as all others are placed by it; so does one that the next frame does not go
-  // on from.
+  // Moves the newest group by `motion`, in map axes. Does nothing to the first group, by which all
+  // others are placed, and to one that the next frame does not continue.
   void MoveNewest(const Pose2& motion);
-  // The next frame begins a group, wherever it is.
+  // Makes the next frame begin a new group.
   void BeginPart() { part_begins_ = true; }
   const std::vector<SurfelGroup>& groups() const { return groups_; }
-  const std::vector<GroupPlace>& places() const { return places_; }  // one a frame
-  // Corrected poses, one a frame. What the groups saw does not change.
+  const std::vector<GroupPlace>& places() const { return places_; }  // one per frame
+  // Sets corrected poses, one per frame. The groups' surfels do not change.
   void MoveTo(const std::vector<Pose2>& map_from_base);
-  // The same frames in no more groups than the limits allow, as far as these may be joined: groups
-  // that follow each other, and settled ones, as those of a prior map, with those of one place.
+  // The same frames in fewer groups, within the limits as far as possible: joins consecutive
+  // groups, and settled ones, such as a prior map's, with others of the same place.
   SurfelGroups Joined(const GroupLimits& limits, const std::vector<GroupStart>& starts,
                       GroupContent content = GroupContent::kSurfels) const;
 
  private:
-  // `times` its length and turn.
+  // Whether the pose is outside a group of `times` the usual length and turn.
   bool Ends(const Pose2& group_from_base, int times = 1) const;
   void Begin(int first_frame, const Pose2& map_from_group);
-  // More surfels of the newest group.
+  // Merges surfels into the newest group.
   void Collect(const std::vector<Surfel>& surfels, const Pose2& group_from_surfels);
-  // How groups are joined: to so many times their length along the way, and those of a place.
+  // How groups are joined: along the path up to `times` their length, and by place.
   struct JoinRule {
     int times = 1;
-    bool in_place = false;  // those that are settled
-    int prior_times = 0;    // of a prior map, which are joined in place then; 0: as the others
+    bool in_place = false;  // also by place, settled groups only
+    int prior_times = 0;    // for groups of a prior map, joined by place; 0: like the others
   };
-  // The groups that each of these is joined to: their poses, and this one's place in one of them.
+  // The joined groups, and for each original group its place in one of them.
   struct Joining {
     std::vector<SurfelGroup> groups;
     std::vector<GroupPlace> places;
   };
   Joining JoinedBy(const JoinRule& rule, const std::vector<GroupStart>& starts) const;
   Joining JoinedWithin(const GroupLimits& limits, const std::vector<GroupStart>& starts) const;
-  // The nearest that has room for a group there; -1: none.
+  // The nearest joined group within `times` the length and turn; -1: none.
   int NearestAround(const Pose2& map_from_group, const std::vector<SurfelGroup>& joined,
                     int times) const;
   SurfelGroups Filled(Joining joining, GroupContent content) const;
@@ -107,8 +106,8 @@ class SurfelGroups {
   std::vector<SurfelGroup> groups_;
   std::vector<GroupPlace> places_;
   bool part_begins_ = false;
-  std::size_t last_added_ = 0;  // the newest frame that is not tied
-  SurfelStore newest_;          // the surfels of the last group, found by place
+  std::size_t last_added_ = 0;  // the newest kept frame
+  SurfelStore newest_;          // the surfels of the last group, with spatial index
 };
 
 }  // namespace depthgrid

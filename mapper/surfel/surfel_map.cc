@@ -13,7 +13,7 @@
 namespace depthgrid {
 namespace {
 
-// The loop between two frames as one between their groups.
+// A loop between two frames as a link between their groups.
 GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) {
   const GroupPlace& first = places[static_cast<std::size_t>(loop.first)];
   const GroupPlace& second = places[static_cast<std::size_t>(loop.second)];
@@ -27,7 +27,7 @@ GroupLink LinkOf(const PlanarLoop& loop, const std::vector<GroupPlace>& places) 
   return link;
 }
 
-// Of frames at these positions; one that is to be mapped next counts to the newest group.
+// Groups of the frames at these indices; a frame not mapped yet counts to the newest group.
 std::vector<int> GroupsAt(std::span<const int> frames, const std::vector<GroupPlace>& places) {
   std::vector<int> groups;
   for (const int frame : frames) {
@@ -46,19 +46,19 @@ std::vector<Pose2> PosesOf(const std::vector<GroupPlace>& places,
   return poses;
 }
 
-// How well groups' poses are known to be adjusted, before each frame is looked at.
+// Accuracy of adjusted groups' poses, as prediction for the frames' final matches. m, m, rad.
 const Eigen::Vector3d kAdjustedSigma(0.02, 0.02, 0.01);
 
-// Fewer groups that saw something tell nothing of how the prior errs.
+// With fewer groups that have surfels, SLAM's noise is not estimated.
 constexpr int kMinGroupsForSpread = 4;
 
-// Whether some groups hold frames of several times (SurfelGroups::Joined).
+// Whether some groups hold frames of several visits (SurfelGroups::Joined).
 bool AreJoinedInPlace(const std::vector<GroupMotion>& motions) {
   return std::any_of(motions.begin(), motions.end(),
                      [](const GroupMotion& motion) { return motion.tie && !motion.known; });
 }
 
-// In the mean, of this run's own.
+// Mean frames per motion, of this run's own.
 double FramesAMotion(const std::vector<GroupMotion>& motions) {
   double frames = 0.0;
   int count = 0;
@@ -70,7 +70,7 @@ double FramesAMotion(const std::vector<GroupMotion>& motions) {
   return count > 0 ? frames / count : 1.0;
 }
 
-// How SLAM's motion errs from group to group of this run's own.
+// SLAM's motion noise between this run's own groups.
 std::optional<MotionSpread> SpreadOf(const std::vector<SurfelGroup>& groups,
                                      const std::vector<GroupMotion>& motions,
                                      const std::vector<MappedFrame>& frames,
@@ -165,7 +165,7 @@ void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map
   }
 }
 
-// The map stays as it is: over hours even a perfect match would carry it along.
+// Does not change the surfels: over hours even perfect matches would make the map drift.
 void SurfelMap::InsertTied(const std::shared_ptr<const Scan>&, const Pose2& map_from_base,
                            int tied_to) {
   surfels_before_.push_back(map_.size());
@@ -174,7 +174,7 @@ void SurfelMap::InsertTied(const std::shared_ptr<const Scan>&, const Pose2& map_
 
 double SurfelMap::ShareSeenBefore(const std::shared_ptr<const Scan>& scan,
                                   const Pose2& map_from_base, int frame) {
-  // A scan that is looked at again says nothing new of the ranges' noise.
+  // The range noise is not updated, as this scan was counted before.
   if (scan != scan_) {
     other_pieces_ = maker_.Make(*scan, noise_, noise_.stride(), std::move(other_pieces_));
   }
@@ -217,7 +217,7 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
       effort == AdjustEffort::kFinish
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)
           : PosesOf(groups.places(), result.map_from_group);
-  // Frames may come after an end: to them it was none.
+  // More frames may follow: their matches are judged as before.
   if (effort == AdjustEffort::kFinish) matcher_.ShareErrors(shared_before);
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
@@ -244,7 +244,7 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
         effort == AdjustEffort::kBend ? GroupContent::kPosesOnly : GroupContent::kSurfels);
   };
   if (groups_.places().size() >= frames.size()) return joined(groups_);
-  // A provisional frame at the end was not inserted yet.
+  // A provisional last frame was not inserted yet.
   SurfelGroups groups = groups_;
   for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
     groups.Add(maker_.Make(*frames[i].scan, noise_, 1), frames[i].map_from_base);
@@ -262,9 +262,9 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
   return joint;
 }
 
-// Each frame against the adjusted map, then all of them with SLAM's motion. Tied ones have their
-// match of the time, moved with the frame they are tied to. A prior map's frames went through this
-// when it was made, and stay where they are in their groups.
+// Matches each frame against the adjusted map, then smooths all with SLAM's motion. Tied frames use
+// their online match, moved along with their group. A prior map's frames were smoothed when it was
+// made and keep their poses in their groups.
 std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
                                            const SurfelGroups& groups,
                                            const std::vector<Pose2>& map_from_group,

@@ -21,18 +21,20 @@ struct SurfelOptions {
   ScanSurfelOptions scan;
   SurfelMatchOptions match;
   JointOptions joint;
-  // Between the map's surfels along a wall.
+  // Spacing of the map's surfels along a wall.
   double spacing_m = 0.05;
-  // A piece of scan changes a surfel that lies this near along the normal, and its own noise.
+  // A piece is merged into a surfel within this distance along the normal plus this many sigmas of
+  // the piece.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
-  // A match that moves the estimate, or what lies 3 m away, by more than this at once moves the
-  // frames just before with it (docs/math.md, "Joint adjustment").
+  // A match that moves the estimate, or points 3 m away, by more than this also moves the newest
+  // group (docs/math.md, "Joint adjustment").
   double jump_m = 0.02;
-  // At the end each frame's pose stays near that of the joint adjustment (Smoothed).
+  // Standard deviation by which Smoothed() holds final poses to those of the joint adjustment.
   double stay_m = 0.3;
-  // MovingObjects: what stands free is matched once it was seen to stand over so much of a way.
-  // What was drawn before and moves is taken out of the first frames, and these are mapped anew.
+  // MovingObjects: a free-standing object is matched once it stood still while the camera moved
+  // this far. Objects drawn before that turn out to move are removed from the first frames, which
+  // are mapped again.
   double moving_m = 0.12;
 
   void Visit(OptionsVisitor& v);
@@ -56,9 +58,9 @@ class SurfelMap : public ReferenceMap {
   void Rebuild(const std::vector<MappedFrame>& frames) override;
   void BeginPart(PartPlace) override { groups_.BeginPart(); }
 
-  // What Match and Insert make of a scan, for one that is matched again and again.
+  // The pieces that Match() and Insert() use, for a scan that is matched repeatedly.
   std::vector<Surfel> Cut(const Scan& scan);
-  // Insert for a map that is never adjusted.
+  // Insert() for a map that is never adjusted.
   void InsertCut(const std::vector<Surfel>& pieces, const Pose2& map_from_base) {
     InsertInto(map_, pieces, map_from_base, 0.0);
   }
@@ -71,9 +73,9 @@ class SurfelMap : public ReferenceMap {
  private:
   void InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
                   const Pose2& map_from_surfels, double frame) const;
-  // Whether bending the poses as loops want it leaves all of them nearly where they are.
+  // Whether bending the poses to the loops moves all of them by little.
   bool MoveLittle(const std::vector<PlanarLoop>& loops, const std::vector<MappedFrame>& frames);
-  // The frames' groups, joined as far as an adjustment wants them.
+  // The frames' groups, joined as the adjustment requires.
   SurfelGroups GroupsOf(const std::vector<MappedFrame>& frames, AdjustEffort effort);
   JointOptions JointOptionsFor(AdjustEffort effort) const;
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
@@ -87,13 +89,13 @@ class SurfelMap : public ReferenceMap {
   ScanSurfelMaker maker_;
   SurfelMatcher matcher_;
   SurfelStore map_;
-  std::vector<int> surfels_before_;  // of the map, when each frame was inserted
+  std::vector<int> surfels_before_;  // map_.size() when each frame was inserted
   SurfelGroups groups_;
-  // The last scan asked for, and its pieces: matching and inserting want the same.
+  // The last scan used and its pieces: Match() and Insert() need the same ones.
   std::shared_ptr<const Scan> scan_;
   std::vector<Surfel> pieces_;
-  std::vector<Surfel> other_pieces_;  // of another scan that was asked for in between
-  std::vector<Surfel> all_pieces_;    // where beams are skipped: those of all
+  std::vector<Surfel> other_pieces_;  // memory for another scan used in between
+  std::vector<Surfel> all_pieces_;    // with a stride above 1: pieces of all beams
   std::vector<MapPart> parts_;
 };
 

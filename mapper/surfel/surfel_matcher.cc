@@ -9,34 +9,35 @@
 namespace depthgrid {
 namespace {
 
-// Three directions need three pieces.
+// Three unknowns need three pieces.
 constexpr int kMinPieces = 3;
-// Steps smaller than this change nothing any more: a tenth of the best map's accuracy.
+// Steps smaller than this are negligible: a tenth of the best map's accuracy.
 constexpr double kConvergedM = 2e-5;
 constexpr double kConvergedRad = 4e-6;
-// Away from the minimum residuals are large because the prediction is wrong. Judged there, the
-// match would be believed less and stay with it; so many steps are taken before the misfit is
-// asked (1 is too few, 3 no better: docs/tried.md, "When a match is judged").
+// Steps before the misfit is used (1 is too few, 3 no better: docs/tried.md, "When a match is
+// judged"). Before, residuals are large because the prediction is wrong, and the misfit would keep
+// the match at it.
 constexpr int kStepsBeforeJudging = 2;
-// Surfels drawn in the mean by the last so many frames, a third of a second, may be of something
-// that moves (5, 7 and 20 do the same or less: docs/tried.md, "What moves").
+// Surfels whose mean frame is among the last this many (a third of a second) may belong to
+// something that moves (5, 7 and 20 are no better: docs/tried.md, "What moves").
 constexpr double kYoungFrames = 10.0;
-// Not among a run's first frames: all is young, nothing has shown how SLAM errs, and where one wall
-// is seen it decided alone what moves along it (docs/tried.md, "What moves").
+// Not applied to a run's first frames: all surfels are young, SLAM's noise is unknown, and before a
+// single wall SLAM alone would decide what moves along it (docs/tried.md, "What moves").
 constexpr double kFirstFrames = 60.0;
-// It does where they lie so far, as a mean chi-square, from where the others have them.
+// Young surfels move if their mean chi-square exceeds this at the pose found without them.
 constexpr double kMovingChi2 = 6.0;
-// As long as these and the prediction know every direction by such a share of what all know.
+// Least share of the information (prediction included) that must remain in every direction without
+// young surfels.
 constexpr double kLeastShareWithoutYoung = 0.1;
 constexpr int kStepsWithoutYoung = 4;
-// The prediction is never taken as exact (0.01 mm, 0.01 mrad), so that its inverse exists.
+// Added to the prediction's variances (0.01 mm, 0.01 mrad) so that the inverse exists.
 constexpr double kLeastVariance = 1e-10;
-// The linearised equations are not followed farther than this from where they were evaluated; what
-// the match says beyond it, it says in directions it hardly sees.
+// Limit on the last, linearised step: larger ones only occur in directions that the match hardly
+// constrains.
 constexpr double kFarthestM = 0.1;
 constexpr double kFarthestRad = 0.05;
 
-// h^-1 g over the directions that h sees.
+// h^-1 g over the directions in which h has information.
 Eigen::Vector3d SeenStep(const NormalEquations& equations) {
   const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d h = unit.asDiagonal() * equations.h * unit.asDiagonal();
@@ -112,7 +113,7 @@ Eigen::Vector3d SurfelMatcher::Step(const Prior& prior, Solution& solution) cons
                                    .ldlt()
                                    .solve(solution.seen.g + prior.information * back);
   solution.map_from_base = solution.map_from_base * Pose2::FromVector(step);
-  solution.seen.g -= solution.seen.h * step;  // as it is after the step
+  solution.seen.g -= solution.seen.h * step;  // the gradient after the step
   return step;
 }
 
@@ -135,7 +136,7 @@ SurfelMatcher::Solution SurfelMatcher::Solve(const SurfelStore& map, const Prior
   return solution;
 }
 
-// With the surfels that the pieces belong to now. Empty where the others tell too little.
+// With the current associations. Empty where too little information remains.
 std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double frame,
                                                                         const Prior& prior,
                                                                         const Solution& with_all) {
@@ -154,8 +155,8 @@ std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double f
   return solution;
 }
 
-// Somebody who walks is drawn anew with each frame and matched where they were the frame before.
-// What has stood for longer and the prediction tell another motion then.
+// Somebody who walks is drawn anew in each frame and matched at the previous position. The older
+// surfels and the prediction then imply another motion.
 void SurfelMatcher::LeaveOutMoving(double frame, const Prior& prior, Solution& solution) {
   const SurfelPairs::YoungPairs young = pairs_.YoungAt(frame, solution.map_from_base);
   if (young.count < kMinPieces || young.others < kMinPieces) return;

@@ -1,4 +1,4 @@
-// A scan's surfels against those of the map: robust point-to-line least squares.
+// Matches a scan's surfels against the map's by robust point-to-line least squares.
 #pragma once
 
 #include <optional>
@@ -11,56 +11,54 @@
 namespace depthgrid {
 
 struct SurfelMatchOptions {
-  double gate_m = 0.15;             // farther along the normal nothing is associated (GateOf)
-  double along_m = 0.075;           // nor farther along the wall: the map's surfels are 5 cm apart
-  double max_angle_deg = 45.0;      // nor with normals farther apart; none such are merged
+  double gate_m = 0.15;             // association gate along the normal (GateOf)
+  double along_m = 0.075;           // and along the wall; the map's surfels are 5 cm apart
+  double max_angle_deg = 45.0;      // and between normals; also for merging
   double huber_sigmas = 2.5;        // larger residuals count linearly
-  bool judge_misfit = true;         // information over the Misfit of the matched surfels
-  bool judge_sharing = true;        // and over what neighbours share of their errors
-  bool judge_moving = true;         // whether what was just drawn may have moved
-  double normal_floor_rad = 0.01;   // no normal is known better
-  double normal_floor_share = 0.3;  // nor than this share of the variance that its piece's line has
+  bool judge_misfit = true;         // divide information by the matched surfels' Misfit
+  bool judge_sharing = true;        // and by the correlation of neighbours' errors
+  bool judge_moving = true;         // leave out recently drawn surfels that seem to move
+  double normal_floor_rad = 0.01;   // least sigma of a normal
+  double normal_floor_share = 0.3;  // least variance, as share of the piece's line's
   double debias = 3.0;              // threshold of Debiased()
   int max_iterations = 10;
 
   void Visit(OptionsVisitor& v);
 };
 
-// Where a match looks for a piece's surfel, but for two sigmas of the piece along the normal. What
-// was seen before (SurfelMap::ShareSeenBefore) is judged by it as it is, and the map merges within
-// its angle.
+// The association gate; a match adds two sigmas of the piece along the normal.
+// SurfelMap::ShareSeenBefore() uses it as it is, and merging uses its angle.
 AssociationGate GateOf(const SurfelMatchOptions& options);
 
 class SurfelMatcher {
  public:
   explicit SurfelMatcher(const SurfelMatchOptions& options) : options_(options) {}
 
-  // What companions among the pieces share of their errors (shared_errors.h), from now on.
+  // Sets the correlation of companions' errors (shared_errors.h) for later matches.
   void ShareErrors(double correlation) { correlation_ = correlation; }
   double shared_errors() const { return correlation_; }
-  // Iterates towards the maximum a posteriori, which keeps directions that the scan does not see
-  // where the prediction puts them. What is returned is the match alone: the pose at which the
-  // debiased equations have their minimum, and their information. `parts`, if given, becomes what
-  // the match was made against.
+  // Iterates to the maximum a posteriori, in which the prediction fixes directions that the scan
+  // does not constrain. Returns the match alone: the minimum of the debiased equations and their
+  // information. `parts`, if given, receives the map parts matched against.
   MatchResult Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
                     const Prediction& prediction, std::vector<MapPart>* parts = nullptr);
 
  private:
-  // What is known without the scan.
+  // The prediction and its information.
   struct Prior {
     Pose2 map_from_base;
     Eigen::Matrix3d information;
   };
   struct Solution {
     Pose2 map_from_base;
-    NormalEquations seen;  // debiased, there
+    NormalEquations seen;  // debiased, at map_from_base
     PairEvaluation evaluation;
     int iterations = 0;
     bool found = false;
   };
   PairGates Gates() const;
   PairEvaluation Judged(PairEvaluation evaluation) const;
-  // Towards the maximum a posteriori; returns the step.
+  // One step towards the maximum a posteriori, which it returns.
   Eigen::Vector3d Step(const Prior& prior, Solution& solution) const;
   Solution Solve(const SurfelStore& map, const Prior& prior);
   std::optional<Solution> SolveWithoutYoung(double frame, const Prior& prior,
@@ -69,7 +67,7 @@ class SurfelMatcher {
   PairEvaluation Evaluate(const SurfelStore& map, const Pose2& map_from_base, bool judged);
 
   SurfelMatchOptions options_;
-  SurfelPairs pairs_;  // memory only, from one match to the next
+  SurfelPairs pairs_;  // a member only to reuse its memory
   double correlation_ = 0.0;
 };
 

@@ -20,9 +20,9 @@ constexpr DoubleLanes kDoubles;
 
 // A residual within this many standard deviations is explained.
 constexpr double kExplainedSigmas = 3.0;
-// Belongs to a surfel for no distance at all: it is looked for again.
+// As firm_m2: always associate again.
 constexpr double kNever = -1.0;
-// Five standard deviations: what is farther off is off, by how much does not matter.
+// Five standard deviations: limits the effect of outliers.
 constexpr double kMostChi2 = 25.0;
 
 double SumOf(Doubles lanes) { return hn::GetLane(hn::SumOfLanes(kDoubles, lanes)); }
@@ -73,7 +73,7 @@ void SurfelPairs::Assign(const std::vector<Surfel>& pieces, double correlation) 
 void SurfelPairs::Associate(const SurfelStore& map, const PairGates& gates,
                             const Pose2& map_from_base) {
   const Motion2 motion(map_from_base);
-  // Half, since each piece was associated within that of the yaw kept here.
+  // Half, since each piece was associated at a yaw within that of the yaw kept here.
   const double turn_rad = WrapAngle(map_from_base.yaw_rad - associated_yaw_rad_);
   const bool turned = !associated_ || std::abs(turn_rad) >= 0.5 * SurfelStore::kFirmRad;
   associated_ = true;
@@ -204,7 +204,7 @@ PairEvaluation SurfelPairs::Evaluate(const PairGates& gates, const Pose2& map_fr
       const Doubles normal_x = load(block.normal_x);
       const Doubles normal_y = load(block.normal_y);
       const Doubles information = load(block.information);
-      // The piece in the map, from its surfel.
+      // The piece in the map, relative to its surfel.
       const Doubles from_x = hn::Add(hn::NegMulAdd(sine, y, hn::Mul(cosine, x)),
                                      hn::Sub(shift_x, load(block.surfel_x_m)));
       const Doubles from_y = hn::Add(hn::MulAdd(sine, x, hn::Mul(cosine, y)),

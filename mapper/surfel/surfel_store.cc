@@ -6,11 +6,11 @@
 namespace depthgrid {
 namespace {
 
-// A surfel seen again so many frames after those that drew it was found by a match against it. What
-// is drawn there from then on errs as it does, so it is theirs still (docs/tried.md,
+// A frame this much later than those that drew a surfel was placed by a match against it and shares
+// its error, so the surfel's mean frame stays that of the first visit (docs/tried.md,
 // "Consistency").
 constexpr float kVisitFrames = 400.0F;
-// A surfel that moved stays in the cell it was added to; so much is looked beyond the gate for it.
+// Margin of the search beyond the gate: a surfel that moved stays in the cell it was added to.
 constexpr double kMovedM = 0.02;
 
 void Fuse(const Surfel& piece, Surfel& surfel) {
@@ -24,8 +24,8 @@ void Fuse(const Surfel& piece, Surfel& surfel) {
   surfel.normal = Motion2({0.0, 0.0, step_rad}).Turn(surfel.normal).normalized();
 }
 
-// The least distance, counted in gates, of a surfel outside of the box that is searched: the gate's
-// ellipse, turned as far as normals may differ, sticks out of the box above this size.
+// Lower bound, in units of the gate, on the distance of surfels outside the searched box: up to
+// this size the gate's ellipse, turned by the greatest angle between normals, fits in the box.
 double LeastOutside(const AssociationGate& gate) {
   const double cosine = std::clamp(gate.min_cosine - SurfelStore::kFirmRad, 0.0, 1.0);
   const double sine2 = 1.0 - cosine * cosine;
@@ -38,7 +38,7 @@ double LeastOutside(const AssociationGate& gate) {
 }  // namespace
 
 SurfelStore::Found SurfelStore::Search(const Surfel& piece, const AssociationGate& gate) const {
-  // The gate's rectangle, turned along the piece and put in a box.
+  // Bounding box of the gate's rectangle, aligned with the piece.
   const Eigen::Vector2d across = piece.normal.cwiseAbs();
   const Eigen::Vector2d along(across.y(), across.x());
   const Eigen::Vector2d half_m =
@@ -57,7 +57,7 @@ SurfelStore::Found SurfelStore::Search(const Surfel& piece, const AssociationGat
     const double a = (d_m.x() * surfel.normal.y() - d_m.y() * surfel.normal.x()) * per_along;
     const double o = d_m.dot(surfel.normal) * per_off;
     const double distance2 = a * a + o * o;
-    // Ties go to the surfel added first, wherever it is in its cell.
+    // Ties go to the surfel added first, regardless of its cell.
     const bool is_nearest =
         distance2 < found.distance2 || (distance2 == found.distance2 && i < found.index);
     if (is_nearest && std::abs(a) <= 1.0 && std::abs(o) <= 1.0 && cosine >= gate.min_cosine) {
@@ -68,7 +68,7 @@ SurfelStore::Found SurfelStore::Search(const Surfel& piece, const AssociationGat
       found.next_distance2 = std::min(found.next_distance2, distance2);
     }
   };
-  // Tile by tile, and in each row by row.
+  // Tile by tile, row by row within each.
   for (int tile_y = low.y; tile_y <= high.y; tile_y = (tile_y | kTileMask) + 1) {
     const int last_y = std::min(high.y, tile_y | kTileMask);
     for (int tile_x = low.x; tile_x <= high.x; tile_x = (tile_x | kTileMask) + 1) {
@@ -97,8 +97,8 @@ Association SurfelStore::NearestFirmly(const Surfel& piece, const AssociationGat
   const double next = std::min(std::sqrt(found.next_distance2), LeastOutside(gate));
   const double off = std::abs(OffsetFrom(surfel, piece.point_m)) / gate.off_m;
   const double along = std::sqrt(std::max(0.0, found.distance2 - off * off));
-  // A shift changes each distance by at most this much per metre; the two may change in opposite
-  // ways.
+  // A shift by s changes each scaled distance by at most s / min(along_m, off_m), the two possibly
+  // in opposite directions.
   const double slack = std::min(0.5 * (next - distance), 1.0 - std::max(off, along));
   return {found.index, std::max(0.0, slack) * std::min(gate.along_m, gate.off_m)};
 }

@@ -1,4 +1,4 @@
-// Surfels found by place. Memory grows with the area seen, look-ups do not slow down.
+// Surfels with a spatial index. Memory grows with the area seen; look-ups take constant time.
 #pragma once
 
 #include <array>
@@ -11,22 +11,22 @@
 
 namespace depthgrid {
 
-// What belongs together: a piece of surface and a surfel.
+// Limits within which a piece and a surfel are associated.
 struct AssociationGate {
   double along_m = 0.0;     // between their points, along the surfel
   double off_m = 0.0;       // along its normal
   double min_cosine = 0.0;  // between the normals
 };
 
-// AssociationGate::along_m over the spacing that surfels are to have along a wall: they end up 0.6
+// Ratio of AssociationGate::along_m to the wanted spacing of surfels along a wall: they end up 0.6
 // to 1.2 spacings apart.
 constexpr double kAlongShare = 0.6;
 
-// The surfel a piece belongs to, and for how long.
+// The surfel a piece is associated with, and how far that remains valid.
 struct Association {
   int index = -1;
-  // Shifted by less than this, and turned by less than SurfelStore::kFirmRad, the piece belongs to
-  // the same one.
+  // The association cannot change while the piece moves by less than this and turns by less than
+  // SurfelStore::kFirmRad.
   double firm_m = 0.0;
 };
 
@@ -43,12 +43,12 @@ class SurfelStore {
     return Search(piece, gate).index;
   }
   Association NearestFirmly(const Surfel& piece, const AssociationGate& gate) const;
-  // Moves that surfel along its normal and turns it by what the piece says, or adds the piece as a
-  // surfel of its own. Returns its index. `frame`: the one that saw it, or a mean of several.
+  // Fuses the piece into its nearest surfel, which moves along its normal and turns, or adds it as
+  // a new surfel. Returns the index. `frame`: the observing frame, or a mean of several.
   int Merge(const Surfel& piece, const AssociationGate& gate, double frame = 0.0);
   int Add(const Surfel& surfel, double frame = 0.0);
-  // The mean of the frames that drew a surfel, weighed by information; of those of its first visit
-  // when it was seen again long after.
+  // Information-weighted mean of the frames that drew a surfel; only those of the first visit, if
+  // it was seen again long after.
   double FrameOf(int index) const {
     return static_cast<double>(frames_[static_cast<std::size_t>(index)]);
   }
@@ -57,11 +57,11 @@ class SurfelStore {
   void Clear();
 
  private:
-  // Distances are counted in gates.
+  // Distances in units of the gate.
   struct Found {
     int index = -1;
     double distance2 = 2.0;
-    double next_distance2 = 2.0;  // of all others, those that miss a gate narrowly included
+    double next_distance2 = 2.0;  // of all others, also just outside the gate
   };
   Found Search(const Surfel& piece, const AssociationGate& gate) const;
 
