@@ -5,7 +5,7 @@
 namespace depthgrid {
 namespace {
 
-// `adaptive` never stops listening to the match: without it there are no innovations to learn from.
+// Least gain of `adaptive`.
 constexpr double kLeastAdaptiveGain = 0.02;
 
 Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
@@ -14,7 +14,7 @@ Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
 
 }  // namespace
 
-// What is learnt is how the correction moves, so it has to be carried on.
+// SLAM's noise is learnt from changes of the correction, so the prior must be relative.
 bool CorrectionFilter::Learns() const {
   return options_.mode == FusionMode::kLearned && options_.prior == PriorMode::kRelative;
 }
@@ -97,7 +97,7 @@ Eigen::Vector3d CorrectionFilter::AdaptedGain(const Eigen::Vector3d& innovation)
   return AsVector(gain_);
 }
 
-// The state is the reported pose itself.
+// Here the filter's state is the reported pose itself.
 FilterStep CorrectionFilter::StepTo(const Pose2& slam_from_base, double stamp_s) const {
   FilterStep step;
   step.predicted = PredictedPose(slam_from_base);
@@ -124,7 +124,7 @@ void CorrectionFilter::Place(const Pose2& slam_from_base, double stamp_s,
 
 void CorrectionFilter::Commit(const Pose2& slam_from_base, double stamp_s,
                               const Pose2& map_from_base, const Eigen::Matrix3d& covariance) {
-  // With an absolute prior nothing of what was fused here is in the next prediction.
+  // With an absolute prior the next prediction does not depend on this fused pose.
   const bool relative = options_.prior == PriorMode::kRelative;
   Place(slam_from_base, stamp_s, map_from_base,
         relative ? covariance : Predict(slam_from_base, stamp_s).covariance);

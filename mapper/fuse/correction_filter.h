@@ -1,5 +1,5 @@
 // The mapper's state: the planar correction map_from_slam, carried from frame to frame and moved
-// towards what matching observes (Eq. 3).
+// towards the matched poses (Eq. 3).
 #pragma once
 
 #include <array>
@@ -16,36 +16,36 @@ class CorrectionFilter {
   explicit CorrectionFilter(const FusionOptions& options)
       : options_(options), gain_(options.gain) {}
 
-  // SLAM's next pose comes so many frames after the last one committed: more than one where the
-  // recording paused. `learned`; the other modes count the time.
+  // Number of frames from the last committed pose to the next: more than one after a pause. Used by
+  // mode `learned`; the others use the stamps.
   void SetFrames(int frames) { tracker_.SetFrames(frames); }
 
-  // Where SLAM's pose is in the map before matching. The pose must be of the epoch of the last one
-  // committed: the difference of the two is taken as a motion.
+  // The pose in the map before matching. `slam_from_base` must be of the last committed pose's
+  // epoch: their difference is taken as a motion.
   Prediction Predict(const Pose2& slam_from_base, double stamp_s) const;
 
-  // Eq. 3 for the prediction of this pose. Without a match, the prediction. `outside_gain` is what
-  // mode `oracle` takes.
+  // Eq. 3 with the prediction of this pose. Returns the prediction if there is no match.
+  // `outside_gain`: the gain in mode `oracle`.
   FusedPose Fuse(const Pose2& slam_from_base, const Prediction& prediction,
                  const MatchResult& match, const Eigen::Vector3d& outside_gain);
 
   // Makes the fused pose the state: correction := map_from_base * slam_from_base^-1. The correction
-  // is left as it is, bit for bit, when the pose is where it already puts SLAM's.
+  // stays bit for bit the same when it already maps slam_from_base to this pose.
   void Commit(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance);
 
-  // SLAM's newest pose, of a new epoch or the run's first, lies there, known like this; as Commit()
-  // otherwise.
+  // Like Commit() for the first pose of a run or epoch, whose place in the map and covariance are
+  // given.
   void Restart(const Pose2& slam_from_base, double stamp_s, const Pose2& map_from_base,
                const Eigen::Matrix3d& covariance);
 
-  // The map was corrected: the last pose is now where this correction puts it.
+  // Sets the correction after the map was corrected; the last pose moves accordingly.
   void SetCorrection(const Pose2& map_from_slam);
 
-  // Mode `learned`, with poses whose differences are motions.
+  // Whether mode is `learned` with a relative prior.
   bool Learns() const;
-  // `learned`: how SLAM's motion errs, as an adjustment of all poses tells, and how the last match
-  // was off for pose and map together (DriftTracker).
+  // Mode `learned` (see DriftTracker): SLAM's motion noise from an adjustment, and the last
+  // innovation with its weight from the covariance of pose and map.
   void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }
   void AddInnovation(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& weight) {
     if (Learns()) tracker_.AddInnovation(innovation, weight);
@@ -54,7 +54,7 @@ class CorrectionFilter {
     tracker_.BeginWith(before.tracker_, spread);
   }
 
-  // What the last Commit() did to the errors of pose and bias.
+  // How the last Commit() propagated the errors of pose and bias.
   const FilterStep& step() const { return Learns() ? tracker_.step() : step_; }
 
   const Pose2& map_from_slam() const { return map_from_slam_; }
@@ -66,7 +66,8 @@ class CorrectionFilter {
     double stamp_s = 0.0;
   };
 
-  // Where SLAM's pose lies before the match: carried by the last correction, or as it is.
+  // SLAM's pose in the map before the match: with the last correction, or uncorrected (absolute
+  // prior).
   Pose2 PredictedPose(const Pose2& slam_from_base) const;
   // `humble`: the match, its information divided by `match_overconfidence`.
   FusedPose FuseByMode(const Pose2& slam_from_base, const Prediction& prediction,
@@ -78,12 +79,12 @@ class CorrectionFilter {
 
   FusionOptions options_;
   Pose2 map_from_slam_;
-  // Of the last pose in its base axes; with an absolute prior that of SLAM's.
+  // Covariance of the last pose in its base axes; with an absolute prior that of SLAM's pose.
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
   std::optional<Last> last_;
   // `learned`
   DriftTracker tracker_;
-  MatchResult last_match_;  // that Fuse() took
+  MatchResult last_match_;  // used by the last Fuse()
   Eigen::Matrix3d last_gain_ = Eigen::Matrix3d::Zero();
   FilterStep step_;
   // `adaptive`

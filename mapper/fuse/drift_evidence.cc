@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMemoryFrames = 30.0;
 constexpr double kRemembered = 1.0 - 1.0 / kMemoryFrames;
-// Directions that were not seen are known to a metre or a radian: far below any match.
+// Information added to every direction, for unobserved ones: 1 m or 1 rad, far below any match.
 constexpr double kUnseenWeight = 1.0;
 
 }  // namespace

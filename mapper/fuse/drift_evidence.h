@@ -1,5 +1,5 @@
-// Whether innovations, each small beside its own noise, point one way for long: a prior that was
-// taken for nearly perfect and is not.
+// Detects that innovations, each small compared to its noise, have the same direction for long:
+// SLAM drifts more than was assumed.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +11,8 @@ class DriftEvidence {
   // `weight`: inverse covariance of the innovation, zero along directions not seen.
   void Add(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& weight);
 
-  // Of the weighted mean of the last second or so of innovations (30 frames, forgotten
-  // exponentially); 3 in the mean for white innovations as large as they say.
+  // Chi-square of the weighted mean of recent innovations (exponential memory of 30 frames); 3 in
+  // the mean for white innovations of the stated covariance.
   double Chi2() const;
 
  private:

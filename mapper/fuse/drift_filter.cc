@@ -33,7 +33,7 @@ DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
                     const MotionNoise& noise) {
   DriftUpdate update;
   update.fused = FuseKalman(PredictionOf(predicted, noise), match);
-  // The match sees the camera, SLAM's pose is off by its jitter.
+  // The match measures the camera, from which SLAM's pose differs by its jitter.
   const Eigen::Matrix3d seen = WithAddedCovariance(match.information, Squared(noise.jitter));
   const Eigen::Matrix3d weight =
       WithAddedCovariance(seen, predicted.covariance.topLeftCorner<3, 3>());

@@ -1,4 +1,4 @@
-// A Kalman filter that knows SLAM's motion to have a slowly varying bias and its poses to jitter
+// A Kalman filter that models a slowly varying bias of SLAM's motion and jitter of its poses
 // (docs/math.md, "Prior noise").
 #pragma once
 
@@ -9,25 +9,25 @@
 
 namespace depthgrid {
 
-// Where SLAM's pose, jitter included, lies in the map; and its motion's bias. Covariance of
-// (pose, bias), pose in base axes.
+// SLAM's pose in the map, without its jitter, and the bias of its motion. Covariance of (pose,
+// bias), pose in base axes.
 struct DriftState {
   Pose2 map_from_base;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-// SLAM moved by `motion`, in so many frames' time.
+// The state after SLAM moved by `motion` during `frames` frames.
 DriftState Predicted(const DriftState& state, const Pose2& motion, int frames,
                      const MotionNoise& noise);
 
-// The pose of the camera itself: SLAM's without its jitter.
+// The camera's pose: the jitter of SLAM's pose is added to the covariance.
 Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise);
 
 struct DriftUpdate {
   DriftState state;
   FusedPose fused;
-  Eigen::Matrix<double, 6, 3> gain;  // of the state
+  Eigen::Matrix<double, 6, 3> gain;  // gain of the whole state
 };
 DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
                     const MotionNoise& noise);

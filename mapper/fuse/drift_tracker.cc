@@ -7,33 +7,31 @@
 namespace depthgrid {
 namespace {
 
-// Until something is learnt matches are believed: a prior that drifts would drag the young map
-// along, and what the first frames draw is never put right online.
+// Walk assumed before anything is learnt, large so that matches dominate: SLAM that drifts would
+// distort the young map, which is not corrected online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
-// As long as the matches alone say how SLAM errs they confirm what is believed of it (a map that
-// follows the prior agrees with it). For so many motions that are seen along an axis, and again
-// from where SLAM drifts more than it was taken to until the next adjustment, the filter believes
-// no less than this share of the first walk along it.
+// Matches alone confirm any belief about SLAM (a map that follows SLAM agrees with it). So the
+// filter's walk is at least this share of the first walk along an axis, for this many observed
+// motions, and again after SLAM was found to drift until the next adjustment.
 constexpr int kUnconfirmedMotions = 1000;
 constexpr double kLeastOfFirstWalk = 0.5;
-// With that it does not confirm itself, so what is told of the errors is what was learnt, once so
-// many motions are seen (docs/tried.md, "Consistency"); not where SLAM began to drift.
+// With that limit it does not confirm itself, so reported errors use the learnt noise without limit
+// once this many motions were observed (docs/tried.md, "Consistency"), unless SLAM drifted.
 constexpr int kTellingMotions = 50;
-// The filter takes the map for exact, but what is drawn at a pose carries the pose's error on.
-// SLAM's motion is believed this much less than learnt, so that it does not drag the map along
-// (docs/tried.md, "Settings on laser logs"). What is told of the errors has the map's in it.
+// Factor on the learnt walk and bias in the filter, which takes the map as exact although it
+// inherits the errors of the poses it was drawn at (docs/tried.md, "Settings on laser logs").
+// Reported errors include the map's instead (PoseErrors).
 constexpr double kCaution = 1.4;
-// Motions before the first look at the noise; later looks are a quarter of all frames apart.
+// Motions before the first fit of the noise; later fits come after a quarter more motions.
 constexpr int kFirstFit = 8;
 constexpr int kFitGrowth = 4;
-// What one frame's motion errs by is not learnt from motions over more frames: some may be missing
-// now and then, a pause is another thing.
+// Motions over more frames are not used for learning: a few frames may be missing, but no pause.
 constexpr int kMostLearntFrames = 3;
-// Of the mean innovation. Neighbouring innovations are not independent: with a perfect prior 170
-// was the most, with one that drifts by 4 cm it is above 1,000 (docs/tried.md).
+// Limit on DriftEvidence::Chi2(). Neighbouring innovations are correlated: at most 170 with perfect
+// SLAM, above 1,000 with one that drifts by 4 cm (docs/tried.md).
 constexpr double kMostChi2 = 200.0;
-// And of that by pose and map together, whose errors are better known: 31 was the most with a
-// perfect prior (docs/tried.md, "A nearly perfect prior").
+// The same with the covariance of pose and map, which is more realistic: at most 31 with perfect
+// SLAM (docs/tried.md, "A nearly perfect prior").
 constexpr double kMostMapChi2 = 60.0;
 
 MotionNoise FirstNoise() {
@@ -169,9 +167,8 @@ void DriftTracker::Learn(const Pose2& motion, bool stands, const MatchResult& be
   next_fit_ = learner_.motions() + std::max(kFirstFit / 2, learner_.motions() / kFitGrowth);
 }
 
-// Whether nothing from outside says how SLAM errs along an axis, or too little where it errs by
-// more than was thought at first: along a lone wall matches that follow it would soon agree with
-// it.
+// Whether SLAM's noise along an axis is known from matches alone, or the adjustment's estimate is
+// unsure and above the first walk: beside a lone wall, matches would soon agree with SLAM.
 bool DriftTracker::ConfirmsItself(int axis) const {
   if (!spread_) return true;
   if (spread_->IsSure()) return false;
@@ -193,15 +190,15 @@ void DriftTracker::BeginWith(const DriftTracker& before, const MotionSpread& spr
   BoundMotion(spread);
 }
 
-// While the prior is believed the map follows it, and the matches, made against that map, agree
-// with it; while the matches are believed the map wanders with them (docs/tried.md, "Laser logs").
+// If SLAM is trusted, the map follows it and matches against that map agree; if matches are
+// trusted, the map wanders with them (docs/tried.md, "Laser logs").
 void DriftTracker::BoundLearnt() {
   if (!spread_) return;
   Bound(*spread_, noise_);
   Bound(*spread_, learnt_);
 }
 
-// When SLAM begins to drift all that was learnt of it is wrong.
+// Forgets all that was learnt if SLAM drifts more than the bound allows.
 void DriftTracker::TestBound(const Prediction& prediction, const MatchResult& match) {
   evidence_.Add(InnovationOf(prediction.map_from_base, match.map_from_base),
                 InnovationWeight(prediction, match.information));

@@ -1,5 +1,4 @@
-// The learning Kalman filter from frame to frame: the equations of drift_filter.h with the noise
-// that MotionNoiseLearner finds.
+// Mode `learned`: the filter of drift_filter.h with the noise found by MotionNoiseLearner.
 #pragma once
 
 #include <optional>
@@ -16,35 +15,32 @@ class DriftTracker {
  public:
   DriftTracker();
 
-  // SLAM's next pose comes so many frames after the last one committed: more than one where the
-  // recording paused.
+  // Number of frames from the last committed pose to the next: more than one after a pause.
   void SetFrames(int frames) { frames_ = frames; }
   Prediction Predict(const Pose2& slam_from_base) const;
   FusedPose Fuse(const Pose2& slam_from_base, const MatchResult& match) const;
-  // The pose that SLAM's newest was given. When it is not what Fuse() returns for the match, it was
-  // set from outside and the filter starts from it.
+  // Takes the fused pose as state. If it is not what Fuse() returns for the match, it was set from
+  // outside and the filter restarts from it.
   void Commit(const Pose2& slam_from_base, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance, const MatchResult& match);
-  // SLAM's newest pose lies there, whatever came before: nothing of the bias is known. What was
-  // learnt of SLAM's noise stays.
+  // Restarts at the given pose with unknown bias. What was learnt of SLAM's noise stays.
   void Restart(const Pose2& slam_from_base, const Pose2& map_from_base,
                const Eigen::Matrix3d& covariance);
 
-  // How SLAM's motion errs, as an adjustment of all poses tells. What is learnt from the matches
-  // alone is bounded by it: these are made against what the filter's own estimates drew, whose
-  // wandering looks like SLAM's. Innovations that speak against the bound lift it.
+  // Bounds the learnt noise by SLAM's motion noise from an adjustment of all poses. The matches
+  // alone are no independent evidence, as the map was drawn at the filter's own estimates, whose
+  // wandering looks like SLAM's. Contradicting innovations remove the bound.
   void BoundMotion(const MotionSpread& spread);
-  // After Commit(): the innovation that it took, in base axes of the predicted pose, and the
-  // inverse of its covariance as pose and map together tell it (PoseErrors). An old part of the
-  // map, come back to, may be off by more than the filter knows: that does not speak against the
-  // bound.
+  // Call after Commit(): its innovation, in base axes of the predicted pose, and the inverse of its
+  // covariance with the map's errors included (PoseErrors). The filter ignores these; a revisited
+  // old part of the map may be off by more, which does not contradict the bound.
   void AddInnovation(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& weight) {
     map_evidence_.Add(innovation, weight);
   }
-  // Before the first pose: what another has learnt of the same SLAM's noise, and the bound on it.
+  // Call before the first pose: takes what another tracker learnt of the same SLAM, and the bound.
   void BeginWith(const DriftTracker& before, const MotionSpread& spread);
 
-  // What the last Commit() did to the errors of pose and bias.
+  // How the last Commit() propagated the errors of pose and bias.
   const FilterStep& step() const { return step_; }
 
   const MotionNoise& noise() const { return noise_; }
@@ -55,29 +51,29 @@ class DriftTracker {
     std::optional<MatchResult> match;
   };
   DriftState AnewAt(const Pose2& map_from_base, const Eigen::Matrix3d& covariance) const;
-  // So many frames' errors are in the motion to there: none where SLAM stands.
+  // Number of frames whose errors the motion to there contains: 0 where SLAM stands.
   int FramesTo(const Pose2& slam_from_base) const;
   DriftState StateAt(const Pose2& slam_from_base) const;
   FilterStep StepTo(const Pose2& slam_from_base, const Pose2& predicted) const;
   void Learn(const Pose2& motion, bool stands, const MatchResult& before, const MatchResult& now);
   bool ConfirmsItself(int axis) const;
-  void BoundLearnt();  // by the spread, if that is known
+  void BoundLearnt();  // by the spread, if known
   void TestBound(const Prediction& prediction, const MatchResult& match);
   void StartAnew();
 
-  MotionNoise noise_;   // what the filter believes: caution included
-  MotionNoise learnt_;  // without: what is told of the errors
+  MotionNoise noise_;   // used by the filter, caution included
+  MotionNoise learnt_;  // without caution: used for reported errors
   MotionNoiseLearner learner_;
   std::optional<MotionSpread> spread_;
-  bool drifted_ = false;        // SLAM, more than it was taken to since the last adjustment
-  DriftEvidence evidence_;      // against it, as the filter knows its errors,
-  DriftEvidence map_evidence_;  // and as pose and map together are known
+  bool drifted_ = false;        // SLAM drifts more than was assumed; until the next adjustment
+  DriftEvidence evidence_;      // against the bound, by the filter's covariance
+  DriftEvidence map_evidence_;  // and by that of pose and map together
   int next_fit_ = 0;
   FilterStep step_;
   DriftState state_;
   std::optional<Last> last_;
   Standing standing_;
-  int frames_ = 1;  // from it to the next pose
+  int frames_ = 1;  // from last_ to the next pose
 };
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// What a filter did in a frame to the errors of its state.
+// How a filter propagated the errors of its state in a frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,21 +8,21 @@
 
 namespace depthgrid {
 
-// The state: where SLAM's pose lies in the map, but for its jitter (forward m, left m, yaw rad in
-// base axes of `predicted`), and the bias of SLAM's motion (the same, a frame). Filters that know
-// no bias and no jitter leave them zero. Noises are standard deviations.
+// The state: SLAM's pose in the map without its jitter (forward m, left m, yaw rad in base axes of
+// `predicted`), and the bias of SLAM's motion (the same per frame). Filters without bias and jitter
+// leave them zero. Noises are standard deviations.
 struct FilterStep {
   using Gain = Eigen::Matrix<double, 6, 3>;
 
   Pose2 predicted;                                         // map_from_base
-  Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // added to the pose
-  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // of the bias before, to the pose
-  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias before
-  Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // added to it
-  // The bias was forgotten, and is known like this.
+  Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // noise added to the pose
+  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // factor of the old bias in the pose
+  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // factor of the old bias in the new
+  Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // noise added to the bias
+  // Set if the bias was reset: its standard deviation.
   std::optional<Eigen::Vector3d> new_bias;
   Eigen::Vector3d jitter = Eigen::Vector3d::Zero();  // of SLAM's pose
-  // The shares of the innovation that the reported pose and the state took.
+  // Gains of the reported pose and of the state.
   Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();
   Gain state_gain = Gain::Zero();
 };

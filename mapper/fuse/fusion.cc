@@ -13,7 +13,7 @@ namespace {
 
 // As the threshold of Debiased() (surfel/debias.h), for the same reason.
 constexpr double kFeigned = 3.0;
-// SLAM's error goes on growing for no longer, whatever the stamps say: a day.
+// Time after which SLAM's error is not taken to grow further: a day.
 constexpr double kLongestS = 86400.0;
 
 }  // namespace
@@ -26,7 +26,7 @@ Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information) {
   constexpr double kUnseen = 1e-9;  // of the largest eigenvalue
   const Eigen::Vector3d& unit = kMotionUnit;
   const Eigen::Matrix3d scaled = unit.asDiagonal() * information * unit.asDiagonal();
-  // Mostly all is seen, and nothing has to be told apart.
+  // Mostly all directions are observed and the plain inverse will do.
   constexpr double kPlain = 1e6;  // condition
   const Eigen::Matrix3d plain = scaled.inverse();
   if (scaled.norm() * plain.norm() < kPlain) return unit.asDiagonal() * plain * unit.asDiagonal();
@@ -100,8 +100,8 @@ FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
   fused.innovation = InnovationOf(prediction.map_from_base, match.map_from_base);
   fused.gain = gain.asDiagonal();
   fused.map_from_base = Moved(prediction.map_from_base, match.map_from_base, fused.gain);
-  // Joseph's form, right for any gain. Where the match sees nothing it keeps the prediction, and
-  // the gain takes nothing.
+  // Joseph's form, valid for any gain. Unobserved directions of the match equal the prediction, so
+  // the gain has no effect there.
   const Eigen::Matrix3d noise = SeenInverse(match.information);
   const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - fused.gain * noise * match.information;
   fused.covariance =

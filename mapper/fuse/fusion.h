@@ -1,6 +1,5 @@
-// Eq. 3 for one frame: a predicted pose and a matched one become one (docs/math.md, "Fusion").
-// Everything small - innovation, gain, covariance - is in base axes of the predicted pose: forward
-// (m), left (m), yaw (rad).
+// Eq. 3 for one frame: fuses a predicted and a matched pose (docs/math.md, "Fusion"). Innovation,
+// gain and covariance are in base axes of the predicted pose: forward (m), left (m), yaw (rad).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +18,7 @@ struct FusedPose {
   bool rejected = false;  // by the gate
 };
 
-// The matched pose seen from the predicted one; the angle wraps.
+// The matched pose relative to the predicted one; the angle is wrapped.
 Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& map_from_base);
 
 // The pose moved by gain * innovation. A zero gain returns `predicted` and a unit gain `matched`
@@ -27,37 +26,37 @@ Eigen::Vector3d InnovationOf(const Pose2& predicted_map_from_base, const Pose2& 
 Pose2 Moved(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
             const Eigen::Matrix3d& gain);
 
-// The covariance of independent errors.
+// Diagonal covariance matrix of independent errors.
 Eigen::Matrix3d Squared(const Eigen::Vector3d& sigma);
 
-// The covariance over the directions that a match sees; the others' is zero.
+// Pseudo-inverse: the covariance along observed directions, zero along others.
 Eigen::Matrix3d SeenInverse(const Eigen::Matrix3d& information);
 
-// Columns v with which vᵀ ν is what a match says of an innovation ν: one for each direction that it
-// sees at least a thousandth as well (sigma) as the best.
+// Columns v such that vᵀ ν are the observed components of an innovation ν: one for each direction
+// whose sigma is at most a thousand times the best one's.
 using SeenBasisMatrix = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 SeenBasisMatrix SeenBasis(const Eigen::Matrix3d& information);
 
-// nu^T S^-1 nu over the directions that a match with this information sees.
+// nu^T S^-1 nu over the directions that a match observes.
 struct InnovationSize {
   double chi2 = 0.0;
-  Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();  // S^-1, zero along the others
+  Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();  // S^-1, zero along unobserved directions
   int directions = 0;
 };
 InnovationSize SeenSize(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& information,
                         const Eigen::Vector3d& innovation);
 
-// A match's information for small motions in base axes of `pose`, which is near to its own. A wall
-// tells of what is across it; axes turned by a thousandth of a radian tell of what is along it too.
+// A match's information for small motions in base axes of `pose`, which is close to its own. Needed
+// even for a milliradian: across a wall, information is so much larger than along it.
 Eigen::Matrix3d InformationIn(const Pose2& pose, const MatchResult& match);
 
-// The same in base axes of the prediction, cleared of what it feigns of the direction in the plane
-// that the prediction knows least. `tilt_rad`: how uncertain it is which way that direction runs
-// to what is seen; 0 clears nothing (docs/math.md, "Fusion").
+// The same in base axes of the prediction, with information removed along the least certain
+// direction of the prediction (in the plane) as far as an angular error of `tilt_rad` between walls
+// and that direction could cause it; 0 removes nothing (docs/math.md, "Axes").
 Eigen::Matrix3d InformationFor(const Prediction& prediction, const MatchResult& match,
                                double tilt_rad);
 
-// A gain per axis that somebody chose. The covariance is that of a filter with this gain.
+// Fusion with a given gain per axis, and the resulting covariance.
 FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
                        const Eigen::Vector3d& gain);
 
@@ -65,8 +64,8 @@ FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
 // update without inverting P or L, either of which may be singular.
 FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
 
-// Information L of what errs by the covariance C in addition, (L^-1 + C)^-1 = (I + L C)^-1 L; L may
-// be singular.
+// Information L after an independent error of covariance C is added: (L^-1 + C)^-1 = (I + L C)^-1
+// L; L may be singular.
 Eigen::Matrix3d WithAddedCovariance(const Eigen::Matrix3d& information,
                                     const Eigen::Matrix3d& covariance);
 
@@ -83,7 +82,7 @@ Eigen::Matrix3d AdjointOf(const Pose2& b_from_a);
 // The covariance of a pose in the base axes it has after `motion` (base_before_from_base_after).
 Eigen::Matrix3d Transported(const Eigen::Matrix3d& covariance, const Pose2& motion);
 
-// What one step of SLAM adds.
+// Covariance added by one step of SLAM.
 Eigen::Matrix3d SlamStepCovariance(const SlamNoiseOptions& noise, const Pose2& motion,
                                    double duration_s);
 

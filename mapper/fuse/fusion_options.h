@@ -8,21 +8,21 @@
 namespace depthgrid {
 
 enum class PriorMode {
-  kRelative,  // the last correction of SLAM's poses is carried on
-  kAbsolute,  // every frame starts from SLAM's pose itself
+  kRelative,  // start from SLAM's pose with the last correction
+  kAbsolute,  // start from SLAM's pose itself
 };
 
 enum class SlamNoiseSource {
-  kSetting,  // the values beside it
-  // Worked out from the profile that SLAM was disturbed with, and put there, by an experiment's
-  // run; the mapper itself takes the values as they are.
+  kSetting,  // the values given here
+  // An experiment's run computes the values from its profile of simulated SLAM noise; the mapper
+  // itself uses the values as they are.
   kProfile,
 };
 
 enum class FusionMode {
   kFixed,     // K is a setting
   kKalman,    // K from SLAM's covariance (slam_noise) and the match's (from the matcher)
-  kLearned,   // K as with kalman, SLAM's covariance learnt from the matches as well
+  kLearned,   // as kalman, with SLAM's covariance learnt online
   kAdaptive,  // K per axis such that the innovations become white
   kOracle,    // K given from outside, for experiments that know the truth
 };
@@ -44,29 +44,29 @@ struct SlamNoiseOptions {
 
 struct FusionOptions {
   PriorMode prior = PriorMode::kRelative;
-  // The most accurate (docs/results.md); `fixed` makes the gain a knob.
+  // The most accurate (docs/results.md); `fixed` allows setting the gain.
   FusionMode mode = FusionMode::kLearned;
   // K of Eq. 3: the share of the innovation taken, per base axis (forward, left, yaw). With
-  // `fixed`, all zero takes SLAM's poses as they are and matches nothing, and all one takes the
-  // matched pose whole. `adaptive` starts from it.
+  // `fixed`, all zero uses SLAM's poses without matching, and all one the matched pose alone.
+  // `adaptive` starts from it.
   std::array<double, 3> gain = {0.5, 0.5, 0.5};
   SlamNoiseOptions slam_noise;
-  // The match's information is divided by this, for errors its beams have in common: `kalman` and
-  // `learned` take less of it, and in every mode errors are told as larger.
+  // Divisor of the match's information, for errors that its beams share: lowers the gain of
+  // `kalman` and `learned`, and raises reported errors in every mode.
   double match_overconfidence = 1.0;
-  // `learned`: whether what is told of the errors, innovation_chi2 and motion_covariance, takes
-  // matches for as noisy as their innovations show (MatchNoise). No pose depends on it.
+  // `learned`: whether the reported innovation_chi2 and motion_covariance scale the matches' noise
+  // to their innovations (MatchNoise). Poses do not depend on it.
   bool judge_innovations = true;
-  // What is seen is not told to run along the direction that the prediction knows least better than
-  // this: InformationFor().
+  // Angular uncertainty between walls and the prediction's least certain direction:
+  // InformationFor().
   double tilt_rad = 0.001;
-  // Innovations with a larger chi-square (3 degrees of freedom) are not taken; 0 takes all. Off:
+  // Innovations with a larger chi-square (3 degrees of freedom) are rejected; 0 accepts all. Off:
   // gates at 9-16 lock onto the prior and diverge (docs/math.md).
   double gate_chi2 = 0.0;
-  // `adaptive`: how fast the gain follows; about 1/rate frames.
+  // `adaptive`: rate at which the gain follows, within about 1/rate frames.
   double adaptive_rate = 0.02;
 
-  // With SLAM's noise from a setting it could as well be that which is wrong.
+  // Only if SLAM's noise is learnt: otherwise wrong settings of it could explain the innovations.
   bool JudgesInnovations() const { return mode == FusionMode::kLearned && judge_innovations; }
   bool TrustsSlamAlone() const {
     return mode == FusionMode::kFixed && gain == std::array<double, 3>{};

@@ -6,12 +6,12 @@
 namespace depthgrid {
 namespace {
 
-// So many innovations that are twice as large as they should be make the factor e times larger; 50
-// do the same (docs/tried.md, "Consistency").
+// Number of innovations of twice the expected chi-square that raise the factor e-fold; 50 gives the
+// same results (docs/tried.md, "Consistency").
 constexpr double kInnovations = 100.0;
-// A single one counts as so many times too large at most: it may be a wrong match.
+// Limit on chi-square per degree of freedom of a single innovation, as it may be a wrong match.
 constexpr double kMostTimes = 4.0;
-// Prediction and map, which are not changed, are in the innovation too.
+// The factor is limited, because the innovation contains the prediction's and map's errors too.
 constexpr double kLeastFactor = 0.2;
 constexpr double kMostFactor = 5.0;
 

@@ -1,6 +1,6 @@
-// How noisy matches are against what they claim, as innovations tell: as large as they were said to
-// be they are 1 a degree of freedom, squared (covariance matching: Mehra 1972, "Approaches to
-// adaptive filtering", IEEE Trans. Automatic Control 17).
+// Ratio of the matches' actual to claimed variance, estimated from innovations, whose chi-square
+// per degree of freedom should be 1 (covariance matching: Mehra 1972, "Approaches to adaptive
+// filtering", IEEE Trans. Automatic Control 17).
 #pragma once
 
 #include "mapper/fuse/fusion.h"
@@ -9,9 +9,9 @@ namespace depthgrid {
 
 class MatchNoise {
  public:
-  // Matches' variances, over those they claim.
+  // Actual over claimed variance of matches.
   double factor() const { return factor_; }
-  // Of an innovation whose covariance was told with this factor.
+  // Adds an innovation whose covariance was computed with the present factor.
   void Add(const InnovationSize& size);
 
  private:

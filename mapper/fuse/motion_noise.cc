@@ -8,16 +8,17 @@
 namespace depthgrid {
 namespace {
 
-// Directions that a match does not see are uncertain by a metre, or a radian.
+// Information added to each direction: unobserved ones get a sigma of 1 m or 1 rad.
 constexpr double kUnseenInformation = 1.0;
-// An axis that the match knows worse than this is not looked at.
+// An axis with a larger match sigma is skipped: m, m, rad.
 const Eigen::Vector3d kSeenSigma(0.03, 0.03, 0.02);
-// Times the bias may take to change, in frames.
+// Candidate time constants of the bias, frames.
 constexpr std::array<double, 4> kBiasFrames = {10.0, 40.0, 160.0, 640.0};
-// A lag counts when at least so many independent stretches of it were seen.
+// Least number of independent stretches for a lag to be used.
 constexpr double kMinStretches = 3.0;
 constexpr int kParts = 3;
-// How much more than the spread is learnt at most (docs/tried.md, "A nearly perfect prior").
+// Upper bound of learnt noise, as a multiple of the spread (docs/tried.md, "A nearly perfect
+// prior").
 constexpr double kMostOfSpread = 2.0;
 
 // The variance that each part, at unit size, gives the error summed over `lag` frames.
@@ -90,8 +91,8 @@ MotionErrors ErrorsOver(int frames, const MotionNoise& noise) {
     const double kept = noise.bias_kept[axis];
     errors.bias_kept[axis] = std::pow(kept, frames);
     errors.bias_added[axis] = kept < 1.0 ? (1.0 - errors.bias_kept[axis]) / (1.0 - kept) : frames;
-    // What is new in the bias on the way adds to the pose as well: all of the sum but what the bias
-    // before gives it.
+    // Bias arising on the way adds to the pose too: the variance of the summed bias less the old
+    // bias's part.
     const double added = errors.bias_added[axis];
     const double sum = kept < 1.0 ? UnitVariances(frames, kept)[2] : added * added;
     const double new_bias =
@@ -102,7 +103,7 @@ MotionErrors ErrorsOver(int frames, const MotionNoise& noise) {
   return errors;
 }
 
-// A bias sums up with the number of frames, a walk with its root.
+// Over n frames a bias grows like n, a walk like the root of n.
 void Bound(const MotionSpread& spread, MotionNoise& noise) {
   const double root = std::sqrt(spread.frames);
   const Eigen::Vector3d most = kMostOfSpread * spread.sigma;
@@ -114,7 +115,7 @@ void Bound(const MotionSpread& spread, MotionNoise& noise) {
     const double walked = noise.walk[axis] / root;
     const double bias = std::sqrt(std::max(least * least - walked * walked, 0.0));
     if (noise.bias[axis] >= bias) continue;
-    // With no bias learnt there is nothing to tell how fast it changes.
+    // If no bias was learnt, its time constant is unknown.
     if (noise.bias[axis] == 0.0) noise.bias_kept[axis] = MotionNoise().bias_kept[axis];
     noise.bias[axis] = bias;
   }
@@ -199,7 +200,7 @@ std::optional<MotionNoiseLearner::AxisNoise> MotionNoiseLearner::FitAxis(const A
     best = fit;
     noise.kept = kept;
   }
-  // The matches jitter too.
+  // The variance includes the matches' own.
   const double match_variance = axis.match_variance / std::max(axis.matches, 1);
   noise.jitter = std::sqrt(std::max(best.variance[0] - match_variance, 0.0));
   noise.walk = std::sqrt(best.variance[1]);

@@ -1,4 +1,4 @@
-// How SLAM's motion errs, learnt from the matches (docs/math.md, "Prior noise").
+// SLAM's motion noise, learnt from the matches (docs/math.md, "Prior noise").
 #pragma once
 
 #include <Eigen/Core>
@@ -18,45 +18,44 @@ struct MotionNoise {
   Eigen::Vector3d jitter = Eigen::Vector3d::Zero();
   Eigen::Vector3d walk = Eigen::Vector3d::Zero();  // a frame
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();  // a frame
-  // What is left of the bias after a frame.
+  // Share of the bias that remains after a frame.
   Eigen::Vector3d bias_kept = Eigen::Vector3d::Constant(0.98);
 };
 
-// What a motion does to the errors of a pose and of the bias before it. Standard deviations.
+// How a motion propagates the errors of pose and bias. Noises are standard deviations.
 struct MotionErrors {
-  Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // added to the pose
-  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // of the bias before, to the pose
-  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // of the bias before
-  Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // added to it
+  Eigen::Vector3d walk = Eigen::Vector3d::Zero();          // noise added to the pose
+  Eigen::Vector3d bias_added = Eigen::Vector3d::Ones();    // factor of the old bias in the pose
+  Eigen::Vector3d bias_kept = Eigen::Vector3d::Zero();     // factor of the old bias in the new
+  Eigen::Vector3d bias_renewed = Eigen::Vector3d::Zero();  // noise added to the bias
 };
-// Over so many frames at once, where a recording paused; 0: SLAM stands, and does not err.
+// For a motion over `frames` frames (more than 1 after a pause); 0: SLAM stands and has no error.
 MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
 
-// Keeps what is learnt from matches alone between once and twice the spread (docs/math.md, "Bounds
-// on what is learnt").
+// Limits noise learnt from matches alone to between once and twice the spread (docs/math.md,
+// "Bounds on what is learnt").
 void Bound(const MotionSpread& spread, MotionNoise& noise);
 
-// Variances of the summed error over 1, 2, 4, ... frames tell the three parts apart: jitter's stays
-// the same, that of a walk grows with the number of frames, that of a bias with its square until
-// the bias has changed.
+// The variances of the error summed over n = 1, 2, 4, ... frames separate the three parts: constant
+// for jitter, growing with n for a walk, and with n^2 for a bias until it has changed.
 class MotionNoiseLearner {
  public:
-  // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma` is that of
-  // the match; an axis that the match hardly sees says nothing.
+  // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma`: of the
+  // match; axes that it hardly observes are skipped.
   void Add(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
-  // The same where SLAM stands (Standing): no frame in which it erred. What poses and matches
-  // jitter by meanwhile is in the sums over frames before and after.
+  // The same where SLAM stands (Standing), so that the frame does not count in n. Its error still
+  // enters the sums over frames before and after.
   void AddStanding(const Eigen::Vector3d& error, const Eigen::Vector3d& match_sigma);
-  // The same from two matches in a row and SLAM's motion between them.
+  // Adds SLAM's motion between two consecutive matches, by Add() or AddStanding().
   void AddMatches(const Pose2& motion, bool stands, const MatchResult& before,
                   const MatchResult& now);
-  // The next motion does not follow the last.
+  // Call if the next motion does not follow the last one.
   void Break();
 
   int motions() const { return motions_; }
-  // Of them, those that the matches saw along each axis.
+  // Number of these that the matches observed, per axis.
   std::array<int, 3> seen() const;
-  // `unknown`: of axes along which nothing was seen yet.
+  // `unknown`: used for axes without observations.
   MotionNoise Fit(const MotionNoise& unknown = {}) const;
 
  private:
@@ -66,7 +65,7 @@ class MotionNoiseLearner {
   struct Axis {
     std::array<double, kLags> sum_squares{};
     std::array<double, kLags> count{};
-    std::vector<double> summed_error = std::vector<double>(kRing, 0.0);  // of the last frames
+    std::vector<double> summed_error = std::vector<double>(kRing, 0.0);  // before recent motions
     double total = 0.0;
     int run = 0;  // motions without a break
     double match_variance = 0.0;

@@ -10,9 +10,9 @@
 namespace depthgrid {
 namespace {
 
-// Frames newer than this are remembered as densely as those of this age.
+// Age, in frames, below which knots are not kept any denser.
 constexpr double kNewestAge = 8.0;
-// The noise of the map in view stays the same for so much of the map's age; measured
+// Correlation time of the noise of the map in view, as a share of the map's mean age; measured
 // (docs/tried.md, "Laser logs").
 constexpr double kNoiseAge = 0.4;
 
@@ -20,7 +20,7 @@ Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d&
   return adjoint * covariance * adjoint.transpose();
 }
 
-// How long ago the map in view was drawn, frames.
+// Mean age of the map in view, frames.
 double AgeOf(std::span<const MapPart> parts, int mapped) {
   double sum = 0.0;
   double weight = 0.0;
@@ -32,7 +32,7 @@ double AgeOf(std::span<const MapPart> parts, int mapped) {
   return weight > 0.0 ? std::max(sum / weight, 0.0) : 0.0;
 }
 
-// Of the match's variance.
+// Share of the map's noise in the match's variance.
 double ShareOfMapNoise(std::span<const MapPart> parts) {
   Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d noisy = Eigen::Matrix3d::Zero();
@@ -118,7 +118,7 @@ void PoseErrors::Add(const FilterStep& step, int index, int mapped,
   broken_ = false;
 }
 
-// SLAM's motion: the bias, which is kept in base axes, adds to the pose.
+// Propagates through SLAM's motion: the bias, which is in base axes, adds to the pose.
 void PoseErrors::Predict(const FilterStep& step, std::span<const MapPart> parts) {
   const Eigen::Matrix3d origin_from_step = OriginFromBase(step.predicted);
   const double noise_kept = 1.0 - 1.0 / (1.0 + kNoiseAge * AgeOf(parts, knots_.back().mapped + 1));
@@ -154,8 +154,7 @@ void PoseErrors::BeginEpoch(const Pose2& map_from_base, const Eigen::Matrix3d& a
   if (bias) RenewBias(*bias);
 }
 
-// The slot of the frame that drew this: the nearest remembered one; -1 for what was there before
-// the first.
+// Slot of the knot nearest to mapped frame `mapped`; -1 for parts drawn before the first knot.
 int PoseErrors::SlotOf(double mapped) const {
   if (mapped < knots_.front().mapped) return -1;
   const auto after = std::lower_bound(knots_.begin(), knots_.end(), mapped,
@@ -166,8 +165,8 @@ int PoseErrors::SlotOf(double mapped) const {
   return mapped - before->mapped < after->mapped - mapped ? before->slot : after->slot;
 }
 
-// A match's error is the mean of the errors of what it was made against, weighed by information:
-// error = (sum H_k)^-1 sum H_k error_k, in axes of the origin.
+// A match's error is the information-weighted mean of the errors of the matched parts: error = (sum
+// H_k)^-1 sum H_k error_k, in axes of the origin.
 void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_base) {
   for (const int slot : shared_) share_[static_cast<std::size_t>(slot)].setZero();
   shared_.clear();
@@ -187,8 +186,8 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
   }
 }
 
-// A match errs by what it was made against, by that surface's own noise, which is the same as long
-// as it stays in view, and by the noise of the scan, which is new each time.
+// A match's error has three parts: the errors of the frames that drew the map there, that surface's
+// own noise, which persists while it is in view, and the scan's noise, which is independent.
 PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matrix3d& information,
                                        std::span<const MapPart> parts) {
   MatchError match{Eigen::Matrix3d::Zero(), Matrix93::Zero()};
@@ -244,7 +243,7 @@ void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
                                      g * camera_with_i.transpose() + g * i * k.transpose();
   newest_.block<9, 3>(0, kCamera) = state_with_camera;
   newest_.block<3, 9>(kCamera, 0) = state_with_camera.transpose();
-  // What rounding makes asymmetric would grow from frame to frame.
+  // Asymmetry from rounding would grow from frame to frame.
   newest_ = (0.5 * (newest_ + newest_.transpose())).eval();
 
   const KnotsWith knots_with_pose = knots_with_newest_.middleCols<3>(kPose);
@@ -254,7 +253,7 @@ void PoseErrors::Take(const FilterStep& step, const MatchError& match) {
   knots_with_newest_.middleCols<3>(kCamera).noalias() -= knots_with_i * k.transpose();
 }
 
-// The knot that is missed least: the one whose neighbours are nearest each other for their age.
+// The knot to drop: the one whose neighbours are closest together relative to its age.
 std::size_t PoseErrors::Spare() const {
   std::size_t spare = 1;
   double least = std::numeric_limits<double>::infinity();

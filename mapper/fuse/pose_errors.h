@@ -1,8 +1,8 @@
-// How the errors of the online poses go together (docs/math.md, "What the map passes on"). What is
-// drawn at a pose carries that pose's error on, and every match against it repeats the error: a
-// filter that takes the map for exact believes its poses far better known than they are. Here the
-// error of the newest pose is carried along with those of earlier ones, and of a match's error that
-// share is theirs which they drew. Nothing here changes a pose; it says how well motions are known.
+// Joint covariance of the online poses' errors (docs/math.md, "What the map passes on"). The map
+// inherits the error of the poses it was drawn at, and a match against it repeats that error, so a
+// filter that takes the map as exact is overconfident. Here the newest pose's error is tracked
+// jointly with those of earlier ones, which contribute to a match's error as they drew the surface
+// matched. Changes no pose; gives the covariance of motions.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,62 +18,63 @@ namespace depthgrid {
 
 class PoseErrors {
  public:
-  // Motions are told over at most so many frames.
+  // `stretch_frames`: most frames over which motions are reported.
   explicit PoseErrors(int stretch_frames);
 
-  // The next frame with a pose. `index` is its own number, `mapped` its position among the mapped
-  // frames, or the one it would have. `information` is that of the match that the step took,
-  // `parts` what it was made against; none: the frame was not matched.
+  // Adds the next frame with a pose. `index`: its Frame::index; `mapped`: its (would-be) index
+  // among the mapped frames. `information`: of the match used in the step; `parts`: what was
+  // matched against, empty if the frame was not matched.
   void Add(const FilterStep& step, int index, int mapped, const Eigen::Matrix3d& information,
            std::span<const MapPart> parts);
-  // The map was corrected: no motion goes on from before.
+  // Call when the map was corrected: reported motions restart.
   void Break() { broken_ = true; }
-  // SLAM began anew: the next frame lies at this pose, which errs by so much in addition (base
-  // axes), and nothing goes on from before, the bias neither.
+  // Call when a new SLAM epoch begins with the next frame at this pose: adds covariance (base
+  // axes), restarts motions and resets the bias.
   void BeginEpoch(const Pose2& map_from_base, const Eigen::Matrix3d& added,
                   const std::optional<Eigen::Vector3d>& bias);
 
-  // The positions, among the mapped frames, of those whose errors are remembered.
+  // Indices, among the mapped frames, of the frames whose errors are tracked.
   std::vector<int> Mapped() const;
-  // Poses and map were adjusted together: what is left of the errors of the frames at Mapped()
-  // (three rows each, map axes; empty: not known), the newest of them last, and of the bias.
+  // Sets the covariance after a joint adjustment: of the frames in Mapped() order (three rows each,
+  // map axes; empty: unknown), and of the bias.
   void Adjusted(const Eigen::MatrixXd& covariance, const std::optional<Eigen::Vector3d>& bias);
 
-  // The frame that motions are told from; the newest itself after a break.
+  // Frame::index from which motions are reported; the newest frame itself after a break.
   int motion_from() const { return knots_[marked_].index; }
-  // Of the last match's innovation, in base axes of the predicted pose: what the pose and what it
-  // was matched against have in common is not in it. Of what the match does not see only the
-  // prediction's part is told. Empty: the last frame was not matched.
+  // Covariance of the last innovation, in base axes of the predicted pose, without the errors that
+  // pose and matched map share. Along unobserved directions only the prediction's part is included.
+  // Empty if the last frame was not matched.
   const std::optional<Eigen::Matrix3d>& innovation_covariance() const { return innovation_; }
-  // Of the motion from there to the newest frame, in base axes of the newest, at this pose.
+  // Covariance of the motion from motion_from() to the newest frame at `map_from_base`, in its base
+  // axes.
   Eigen::Matrix3d MotionCovariance(const Pose2& map_from_base) const;
 
  private:
-  // So many earlier frames are remembered, denser the newer they are.
+  // Number of earlier frames tracked (knots), denser the newer they are.
   static constexpr int kKnots = 32;
-  // Rows of newest_, in axes of origin_ but for the bias: true pose = Exp(error) * estimate.
+  // Rows of newest_, in axes of origin_ except the bias: true pose = Exp(error) * estimate.
   static constexpr int kPose = 0;      // the filter's state
-  static constexpr int kBias = 3;      // and its bias, in base axes
-  static constexpr int kMapNoise = 6;  // of the map's surface that is in view
+  static constexpr int kBias = 3;      // the filter's bias, in base axes
+  static constexpr int kMapNoise = 6;  // noise of the map surface in view
   static constexpr int kCamera = 9;    // the pose as reported
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
   using Matrix93 = Eigen::Matrix<double, 9, 3>;
   using KnotsWith = Eigen::Matrix<double, 3 * kKnots, 3>;
 
   struct Knot {
-    int frame = 0;  // counted by Add()
+    int frame = 0;  // count of Add() calls
     int index = 0;
-    int mapped = 0;  // position among the mapped frames
-    int slot = 0;    // its columns, in threes
+    int mapped = 0;  // index among the mapped frames
+    int slot = 0;    // its block of 3 rows and columns
   };
-  // The error of a match: covariance, and that with the state and the knots.
+  // The error of a match: its covariance, and its covariance with the state.
   struct MatchError {
     Eigen::Matrix3d covariance;
     Matrix93 with_state;
   };
 
-  // Errors are kept in axes of the origin, which lie as the map's. Far away a heading's error would
-  // be so large an error of place that nothing were left of the digits.
+  // Errors are kept in axes parallel to the map's at the first pose: with a distant origin, heading
+  // errors would cause huge position errors and lose all digits.
   Eigen::Matrix3d OriginFromBase(const Pose2& map_from_base) const;
   Eigen::Matrix3d BaseFromOrigin(const Pose2& map_from_base) const;
   void Predict(const FilterStep& step, std::span<const MapPart> parts);
@@ -87,18 +88,18 @@ class PoseErrors {
   std::size_t Spare() const;
 
   int stretch_frames_;
-  Pose2 origin_;  // where the first pose lies
+  Pose2 origin_;  // position of the first pose, yaw 0
   bool broken_ = false;
   std::optional<Eigen::Matrix3d> innovation_;
   int frame_ = -1;
   Eigen::Matrix<double, 12, 12> newest_ = Eigen::Matrix<double, 12, 12>::Zero();
-  // Rows: the knots, so that they lie side by side; columns: those of newest_.
+  // Covariance of the knots (rows) with newest_ (columns).
   Eigen::Matrix<double, 3 * kKnots, 12> knots_with_newest_;
   Eigen::Matrix<double, 3 * kKnots, 3 * kKnots> covariance_;  // of the knots
-  std::vector<Knot> knots_;                                   // by frame
+  std::vector<Knot> knots_;                                   // in order of frame
   std::size_t marked_ = 0;
-  // Of the match at hand: the share of its error that is a knot's, by slot; slots with a share; and
-  // the match's covariance with the knots.
+  // For the current match: weight of each knot's error in its error, by slot; slots with a weight;
+  // and the match's covariance with the knots.
   std::array<Eigen::Matrix3d, kKnots> share_;
   std::vector<int> shared_;
   KnotsWith knots_with_match_;
