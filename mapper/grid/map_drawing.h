@@ -1,5 +1,5 @@
 // The finished map: every stored scan drawn at its final pose. Storage is by tiles of 64 x 64
-// cells, made when a scan first touches them, so memory grows with the area seen.
+// cells, allocated on first use, so memory grows with the area seen.
 #pragma once
 
 #include <array>
@@ -18,12 +18,13 @@ class MapDrawing {
  public:
   explicit MapDrawing(const GridOptions& options);
 
-  // Throws InputError when the map would have more than kMaxMapCells, before it takes memory for
-  // them; so does Map() from then on.
+  // Throws InputError, before allocating, when the map would have more than kMaxMapCells; so does
+  // Map() from then on.
   void Add(const Scan& scan, const Pose2& map_from_base);
-  // Of a mapped frame of this number (MappedFrame::frame): where BeginsDrive(), it begins one.
+  // Adds the scan of a mapped frame (`frame`: MappedFrame::frame), which begins a drive where
+  // BeginsDrive() holds.
   void Add(int frame, const Scan& scan, const Pose2& map_from_base);
-  // What was added is of drives before the one whose scans come now (GridOptions::earlier_scans).
+  // Declares all scans added so far to be of earlier drives (GridOptions::earlier_scans).
   void BeginDrive();
   // The smallest rectangle around all cells that were seen; empty when none was.
   OccupancyMap Map() const;
@@ -33,12 +34,12 @@ class MapDrawing {
     std::uint32_t hits = 0;
     std::uint32_t passes = 0;
     int log_odds_units = 0;
-    // How much of a surface the cell holds, and the same times the direction it was seen along.
+    // Amount of surface in the cell, and the same times the unit viewing direction.
     float surface = 0.0F;
     float surface_x = 0.0F;
     float surface_y = 0.0F;
   };
-  // The most surface near a cell, and how many cells farther from the sensor it lies.
+  // The largest surface near a cell, and its distance behind the cell along the view, in cells.
   struct Peak {
     float surface = 0.0F;
     int step = 0;
@@ -68,7 +69,7 @@ class MapDrawing {
   ScanRasterizer rasterizer_;
   GridGeometry seen_;  // the smallest rectangle around all cells that were seen
   Tiles tiles_;
-  Tiles earlier_tiles_;  // of the drives before
+  Tiles earlier_tiles_;  // of earlier drives
   int last_frame_ = 0;
 };
 

@@ -1,5 +1,4 @@
-// The grid scans are matched against: clamped log-odds of every cell, and the same as
-// probabilities.
+// The grid that scans are matched against: clamped log-odds per cell, also as probabilities.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +14,15 @@ class ProbabilityGrid {
  public:
   explicit ProbabilityGrid(const GridOptions& options);
 
-  // Adds one update to every cell of the masks; grows as needed and loses nothing.
+  // Adds one update to every cell of the masks; grows as needed.
   void Insert(const ScanCells& cells);
 
-  // NaN where nothing was seen. Brings the probabilities of cells that changed up to date: a grid
-  // that nobody looks at does not pay for them. The reference stays good, its rectangle and buffer
-  // may change with every insertion.
+  // NaN where nothing was seen. Probabilities of changed cells are updated only here, so grids that
+  // are not read cost nothing. The reference stays valid; its rectangle and buffer may change with
+  // each insertion.
   const OccupancyMap& map();
 
-  // At least the rectangle that it grows to when this is inserted.
+  // A rectangle that contains the grid after inserting this mask.
   GridGeometry GeometryWith(const CellMask& mask) const;
 
  private:
@@ -37,7 +36,7 @@ class ProbabilityGrid {
   std::int16_t max_units_;
   std::vector<float> prob_of_units_;  // from min_units_ on
   OccupancyMap map_;                  // its rows are whole words of 64 cells
-  // Beside map_.occupied_prob. 0 until a cell is seen: indifferent.
+  // Parallel to map_.occupied_prob. 0 until a cell is seen.
   std::vector<std::int16_t> log_odds_units_;
   std::vector<std::uint64_t> changed_;  // bits of cells whose probability is out of date
 };

@@ -1,6 +1,6 @@
-// What a scan at a pose says of the cells: which were hit and which were passed. A cell is in at
-// most one of the two sets (a hit outweighs any number of passes), and once however many beams saw
-// it: that is "hits before misses, one update a cell and scan".
+// The cells that a scan at a pose hit and passed. A cell is in at most one of the two sets (a hit
+// outweighs any number of passes), and once for any number of beams: "hits before misses, one
+// update per cell and scan".
 #pragma once
 
 #include "mapper/grid/cell_mask.h"

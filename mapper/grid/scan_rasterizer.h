@@ -47,8 +47,8 @@ class ScanRasterizer {
   int RightCell(std::size_t beam, int row) const;
   double AllowedDistance(std::size_t beam) const;
   RowRange TouchingRows(std::size_t beam, double origin_y, const RowRange& rows) const;
-  // A run of beams begins, or ends, with this one in the rows from `first` to `last`, above or
-  // below the origin.
+  // Begins, or ends, a run of beams with this one in rows `first` to `last`, above or below the
+  // origin.
   void Open(std::size_t beam, bool above, int first, int last);
   void Close(std::size_t beam, bool above, int first, int last);
 
@@ -62,7 +62,7 @@ class ScanRasterizer {
   std::vector<std::int32_t> first_span_first_, first_span_last_;
   std::vector<std::int32_t> last_span_first_, last_span_last_;
   std::vector<std::int32_t> touches_;
-  std::vector<std::int32_t> open_x_;  // per row of the mask: the outer end of the run that is open
+  std::vector<std::int32_t> open_x_;  // per row of the mask: outer end of the open run
 };
 
 }  // namespace depthgrid

@@ -50,7 +50,7 @@ class SegmentBuilder {
   std::vector<double> clear_from_m_;
   std::vector<double> clear_to_m_;
   std::vector<double> range_m_;           // 0 where there is no hit
-  std::vector<float> known_bearing_rad_;  // whose directions these are
+  std::vector<float> known_bearing_rad_;  // bearings of cos_ and sin_
   std::vector<double> cos_;
   std::vector<double> sin_;
   std::vector<double> x_per_m_;

@@ -11,15 +11,15 @@
 
 namespace depthgrid {
 
-// What a submap says of the cells near a wall.
+// How a submap computes cells near a wall.
 enum class SubmapWalls {
-  kCounted,   // clamped log-odds of hits and misses, as of all other cells
+  kCounted,   // clamped log-odds, as for all other cells
   kAveraged,  // by the mean distance of the cell to the hits
 };
 
 struct SubmapOptions {
-  // A new submap starts every so many scans and takes twice as many: the first half while the one
-  // before it is matched against, the second half while it is matched against itself.
+  // A new submap starts every `scans` scans and receives twice as many: the first half while the
+  // previous one is matched against, the second half while it is matched against itself.
   int scans = 90;  // Cartographer's; 3 s at 30 Hz
   SubmapWalls walls = SubmapWalls::kCounted;
 
@@ -31,29 +31,30 @@ class Submap {
  public:
   Submap(const SubmapOptions& submap, const GridOptions& grid);
 
-  // `cells` and `walls` are those of a scan at its pose; no walls where they are counted.
+  // `cells` and `walls` of a scan at its pose; `walls` is empty with kCounted.
   void Insert(const ScanCells& cells, const std::vector<WallDistance>& walls);
   // NaN where nothing was seen. The reference stays good until the next insertion.
   const OccupancyMap& map();
-  // In cells, were these inserted.
+  // Size in cells after inserting these.
   std::size_t SizeWith(const ScanCells& cells) const;
 
  private:
   ProbabilityGrid grid_;
   std::optional<WallDistances> walls_;
-  OccupancyMap drawn_;  // with the walls, unless out of date
+  OccupancyMap drawn_;  // with the walls; valid if is_drawn_
   bool is_drawn_ = false;
 };
 
-// Which submaps the n-th scan goes into: n / scans and the one before it.
+// The submaps that scans are inserted into: scan n goes into submap n / scans and the one before
+// it.
 class ActiveSubmaps {
  public:
   ActiveSubmaps(const SubmapOptions& submap, const GridOptions& grid)
       : submap_options_(submap), grid_options_(grid) {}
 
-  // Puts the next scan into every active submap. One too far off for that begins them anew.
+  // Puts the next scan into every active submap. If a submap would become too large, starts anew.
   void Insert(const ScanCells& cells, const Scan& scan, const Pose2& map_from_base);
-  // Forgets everything and counts the next scan as the n-th.
+  // Clears all and counts the next scan as number `scan_count`.
   void RestartAt(int scan_count);
 
   // The older one, which scans are matched against; null before the first scan.

@@ -1,5 +1,5 @@
-// Where walls lie within their cells: of each cell near a hit, the mean distance of its centre
-// behind the walls that were hit (docs/math.md, "Where a wall lies within its cells").
+// Where walls lie within their cells: for each cell near hits, the mean signed distance of its
+// centre behind the wall (docs/math.md, "Where a wall lies within its cells").
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace depthgrid {
 
-// How far the centre of a cell lies behind the wall of a hit, negative before it.
+// Distance of a cell's centre behind the wall of a hit, negative before it.
 struct WallDistance {
   Cell cell;
   float behind_m = 0.0F;
@@ -23,8 +23,8 @@ struct WallMemory {
   std::vector<WallDistance> distances;
 };
 
-// What a scan says of the cells that its beams cross around their hits. Good until the memory is
-// used again.
+// The distances of the cells that a scan's beams cross near their hits. Valid until the memory is
+// reused.
 const std::vector<WallDistance>& FindWallDistances(const Scan& scan, const Pose2& map_from_base,
                                                    double resolution_m, WallMemory& memory);
 
@@ -44,8 +44,8 @@ class WallDistances {
   double free_prob_;
   double wall_prob_;
   GridGeometry geometry_;
-  std::vector<float> sum_m_;  // of a cell's distances; geometry_.size()
-  std::vector<float> count_;  // of them
+  std::vector<float> sum_m_;  // sum of a cell's distances; geometry_.size()
+  std::vector<float> count_;  // number of distances
 };
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// The direction across the wall that each hit of a scan lies on.
+// The normal of the wall at each hit of a scan.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ struct WallHit {
 };
 
 // The hits in the order of the beams; `hits` keeps its memory. The normal is that of the line
-// through the neighbouring hits within `reach_m` without a jump of more than `reach_m`; where they
-// make no line, the beam's own direction.
+// through the neighbouring hits within `reach_m` without a jump of more than `reach_m`; without
+// such neighbours, the beam's own direction.
 void FindWallHits(const Scan& scan, double reach_m, std::vector<WallHit>& hits);
 
 }  // namespace depthgrid

@@ -49,7 +49,7 @@ class CorrelativeSearch {
 
   CorrelativeOptions options_;
   LatticeScorer scorer_;
-  std::vector<LatticeStep> translations_;  // of one rotation, in the order in which ties are won
+  std::vector<LatticeStep> translations_;  // of one rotation, in tie-breaking order
   int ordered_half_cells_ = -1;
 };
 

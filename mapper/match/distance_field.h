@@ -1,4 +1,4 @@
-// How far a point of a map is from the nearest wall.
+// Distance of points of a map from the nearest wall.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,23 +8,23 @@
 
 namespace depthgrid {
 
-// Where along its way a beam asks whether the map is free.
+// Fractions of a beam's range at which the map is checked for free space.
 inline constexpr double kOnTheWay[] = {0.3, 0.6, 0.85};
 
 class DistanceField {
  public:
-  // Distances are cut at `farthest_m`.
+  // Distances are limited to `farthest_m`.
   DistanceField(const OccupancyMap& map, double farthest_m);
 
-  // Whether there is a wall at all.
+  // Whether the map has any wall.
   bool any() const { return any_; }
-  // From the middle of the point's cell to that of the nearest wall's, metres, within 8 %;
-  // the farthest outside of the map.
+  // Distance (m, within 8 %) between the centres of the point's cell and the nearest wall cell;
+  // farthest_m outside the map.
   double At(const Eigen::Vector2d& point_m) const {
     const Cell cell = CellOf(point_m, geometry_.resolution_m);
     return geometry_.Contains(cell) ? distance_m_[geometry_.Index(cell)] : farthest_m_;
   }
-  // 1 free, 0 not seen, -1 a wall.
+  // 1: free, 0: unknown, -1: wall.
   int FreeAt(const Eigen::Vector2d& point_m) const {
     const Cell cell = CellOf(point_m, geometry_.resolution_m);
     if (!geometry_.Contains(cell)) return 0;
@@ -33,8 +33,8 @@ class DistanceField {
   }
 
  private:
-  // A chamfer sweep (Borgefors 1986, weights 1 and sqrt 2), from one corner to the opposite one: 1
-  // or -1.
+  // A chamfer sweep (Borgefors 1986, weights 1 and sqrt 2); `way` is 1 or -1, the direction between
+  // opposite corners.
   void Sweep(int way);
 
   GridGeometry geometry_;

@@ -27,7 +27,7 @@ class FastMatchCost {
   // What the last Prepare was given; the points are borrowed.
   const MatchPoints& points() const { return *points_; }
   const ProbabilityView& view() const { return view_; }
-  // Lengths that points and cells have: of the points' arms, about, and of a cell.
+  // Length scales: typical lever arm of the points, and a cell.
   double arm_m() const { return std::max(0.5 * points_->farthest_m, 1e-3); }
   double resolution_m() const { return view_.geometry.resolution_m; }
 
@@ -49,7 +49,7 @@ class FastMatchCost {
   // Per point, filled up to whole vectors.
   std::vector<float> x_m_;
   std::vector<float> y_m_;
-  std::vector<float> weight_;         // 1; 0 for what fills up
+  std::vector<float> weight_;         // 1; 0 for padding
   std::vector<std::int32_t> square_;  // index of the point's square in probs_; -1 for none yet
   std::vector<float> polynomial_;     // 16 coefficients a point, vector by vector
 };

@@ -47,7 +47,7 @@ class LatticeScorer {
       row_pairs_;  // cell (x, y) in the low half, (x, y + 1) in the high half
   std::uint32_t largest_ = 0;
 
-  std::vector<int> cell_of_point_;  // of one block: index of its square's corner
+  std::vector<int> cell_of_point_;  // of one block: index of the corner of the point's square
   std::size_t row_of_sums_ = 0;
   std::vector<std::uint32_t> sums_;
 };

@@ -1,4 +1,4 @@
-// Whether what is seen from a place agrees with a finished map, beam by beam.
+// Compares scans with a finished map, beam by beam.
 #pragma once
 
 #include "mapper/core/pose2.h"
@@ -7,19 +7,20 @@
 
 namespace depthgrid {
 
-// Beams that agree with the map or contradict it, of as many scans as were added.
+// Counts of beams that agree with the map or contradict it, over all scans compared.
 struct MapAgreement {
-  int beams = 0;    // that were compared: every fourth with a return
-  int on_wall = 0;  // of these: their ends
-  int against = 0;  // that end where the map is free, or behind a wall of it
+  int beams = 0;    // compared: every fourth with a return
+  int on_wall = 0;  // of these, ends on a wall
+  int against = 0;  // of these, ends in free space or behind a wall
 
-  // a / (a + c + b / 10): what the map does not know counts little, a robot may leave it.
+  // on_wall / (on_wall + against + rest / 10): unknown space counts little, as a robot may leave
+  // the map.
   double share() const;
-  // c / (a + c).
+  // against / (on_wall + against).
   double share_against() const;
 };
 
-// A wall of the map is looked for this far from a return.
+// Distance from a return within which a wall of the map is searched.
 constexpr double kOffWallM = 0.3;
 
 // `walls` must reach farther than kOffWallM.

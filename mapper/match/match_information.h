@@ -1,5 +1,4 @@
-// How well a scan determines its pose in a submap: the inverse covariance of a match
-// (docs/math.md, "Scan matching").
+// The inverse covariance of a match in a submap (docs/math.md, "Scan matching").
 #pragma once
 
 #include "mapper/core/options.h"
@@ -14,16 +13,16 @@ struct MatchInformationOptions {
   // `surface`: from the scores of the poses around it (score_surface.h), the options after that.
   // Both are calibrated on the laser testbed; the surface costs three times a match.
   InformationSource source = InformationSource::kCurvature;
-  // Beams that end within this distance of each other share their error: neighbours meet the same
-  // cells. 0.05-0.2 m describe the errors on the laser testbed alike.
+  // Beams that end within this distance of each other share their error, as they meet the same
+  // cells. 0.05-0.2 m fit the errors on the laser testbed equally well.
   double patch_m = 0.1;
-  // Standard deviation of where the map has the wall of a patch. 0.015 m on the laser testbed, at
-  // 5 cm and at 2.5 cm cells alike.
+  // Standard deviation of the map's wall position, per patch. 0.015 m on the laser testbed, at 5 cm
+  // and at 2.5 cm cells alike.
   double map_sigma_m = 0.015;
-  // Uncertainty of the direction of walls as the map shows them. What walls could tell along
-  // themselves only through such an error is taken away, so that a corridor's axis stays
-  // undetermined; 0 takes away nothing. Corridors oblique to the cells need 0.13 (0.2 at worst),
-  // 95 % of the views of furnished rooms have more than that.
+  // Uncertainty of the direction of walls in the map. Information along walls that such an error
+  // could cause is removed, so that a corridor's axis stays undetermined; 0 removes nothing.
+  // Corridors oblique to the cells need 0.13 (0.2 at worst), 95 % of the views of furnished rooms
+  // have more than that.
   double wall_direction_sigma_rad = 0.15;
   // Half widths of the window whose scores are taken.
   double surface_window_m = 0.2;
@@ -36,19 +35,19 @@ struct MatchInformationOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// What a scan says at a pose, in map axes about base: sums over its points of second derivatives of
-// 1/2 (1 - M)^2 with respect to (x m, y m, yaw rad).
+// Sums over a scan's points at a pose, in map axes about base: second derivatives of 1/2 (1 - M)^2
+// with respect to (x m, y m, yaw rad).
 struct InformationSums {
   Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
   // The same with every wall turned by 90 degrees.
   Eigen::Matrix3d curvature_along_walls = Eigen::Matrix3d::Zero();
-  // Covariance of the gradient: scatter between patches, and what a shift of each patch's wall by
-  // map_sigma_m would do.
+  // Covariance of the gradient: scatter between patches, and the effect of shifting each patch's
+  // wall by map_sigma_m.
   Eigen::Matrix3d gradient_covariance = Eigen::Matrix3d::Zero();
-  int explained = 0;  // points where the map is rather occupied than free
+  int explained = 0;  // points where the map is more likely occupied
 };
 
-// Half of what one hit (0.55) adds to knowing nothing: above, a cell is rather occupied than free.
+// Above this a cell counts as occupied: halfway between unknown (0.5) and one hit (0.55).
 constexpr double kExplainedProb = 0.525;
 // Patches begin at multiples of this many points.
 constexpr int kPatchStep = 8;
@@ -71,13 +70,13 @@ Eigen::Matrix3d MapFromBaseAxes(double yaw_rad);
 Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_from_base,
                                  const MatchInformationOptions& options);
 
-// Without the directions whose standard deviation is above `max_sigma_m`; `arm_m` makes rotations
-// comparable with translations.
+// The information without directions whose standard deviation exceeds `max_sigma_m`; `arm_m` is the
+// lever arm that converts rotations to metres.
 Eigen::Matrix3d WithoutWeakDirections(const Eigen::Matrix3d& information, double max_sigma_m,
                                       double arm_m);
 
-// A matched pose says nothing along directions without information, where the search stopped by
-// chance: there the prediction's is taken. `arm_m` as above.
+// The matched pose, but the predicted one along directions without information, where the search
+// stopped arbitrarily. `arm_m` as above.
 Pose2 WithUndeterminedFrom(const Pose2& predicted_map_from_base, const Pose2& matched_map_from_base,
                            const Eigen::Matrix3d& information, double arm_m);
 

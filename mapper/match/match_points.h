@@ -7,8 +7,8 @@
 
 namespace depthgrid {
 
-// One point a beam that hit, in base axes and in the order of the beams. Single precision resolves
-// a micrometre at 10 m.
+// One point per hit, in base axes and in the order of the beams. Single precision resolves a
+// micrometre at 10 m.
 struct MatchPoints {
   std::vector<float> x_m;
   std::vector<float> y_m;

@@ -1,5 +1,5 @@
-// The first step of FindPlace(): a few returns laid over the whole map, at places and headings on a
-// lattice.
+// The first step of FindPlace(): scores a few returns at a lattice of positions and headings over
+// the whole map.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace depthgrid {
 
-// A return, with the sensor that saw it; metres, in the axes of the first scan's base.
+// A return and the position of the sensor; metres, in base axes of the first scan.
 struct PlaceReturn {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
@@ -23,13 +23,13 @@ struct PlaceCandidate {
   double score = 0.0;  // 0..1
 };
 
-// A return this far from a wall still counts exp(-1/2).
+// Sigma of the score's Gaussian in the distance of a return from a wall.
 inline constexpr double kCoarseSigmaM = 0.15;
-// What free space on a beam's way is worth beside its end: walls alone fit in many places, also
-// outside of the map, where no free space does.
+// Weight of free space along a beam relative to its end: walls alone fit in many places, even
+// outside the map, where there is no free space.
 inline constexpr double kFreeWorth = 0.5;
 
-// The best places, sixty at most, in no order that matters. Takes half a gigabyte at most.
+// The best places, at most sixty, unordered. Uses at most half a gigabyte.
 std::vector<PlaceCandidate> BestOnLattice(const OccupancyMap& map, const DistanceField& walls,
                                           const PlaceReturns& returns);
 

@@ -1,7 +1,7 @@
-// What the matchers read of a submap: the probability of every cell of the plane to be occupied.
-// Cells inside the rectangle have the stored value; never-seen cells (NaN) and everything outside
-// the rectangle have one constant, so the function is defined on the whole plane and a view of a
-// larger rectangle with NaN around it is the same view.
+// The matchers' view of a submap: the occupancy probability of every cell of the plane. Cells
+// inside the rectangle have the stored value; never-seen cells (NaN) and everything outside the
+// rectangle have one constant, so the function is defined on the whole plane and a view of a larger
+// rectangle with NaN around it is the same view.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace depthgrid {
 struct ProbabilityView {
   GridGeometry geometry;
   const float* occupied_prob = nullptr;  // geometry.size() values, row by row; NaN is "never seen"
-  // Taken for never-seen cells. ScanMatcher puts its own option here, whatever the provider said.
+  // Value of never-seen cells; ScanMatcher overwrites it with its own option.
   float unknown_prob = 0.5F;
 
   // In [0, 1] for every cell of the plane; never NaN.

@@ -1,4 +1,4 @@
-// The part of a map a matcher copies before it works on it.
+// The part of a map that a matcher copies.
 #pragma once
 
 #include "mapper/match/match_points.h"

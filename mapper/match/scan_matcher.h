@@ -1,5 +1,5 @@
-// Scan to submap: correlative search, then bicubic least squares (Eq. 4), then how well the scan
-// determines the pose.
+// Matches a scan to a submap: correlative search, then bicubic least squares (Eq. 4), then the
+// covariance.
 #pragma once
 
 #include "mapper/core/frame_report.h"
@@ -15,16 +15,16 @@ enum class MatchStages { kBoth, kSearch, kLeastSquares };
 
 struct ScanMatcherOptions {
   MatchStages stages = MatchStages::kBoth;
-  // What never-seen cells count. 0.5 is indifferent.
+  // Probability of never-seen cells; 0.5 is neutral.
   double unknown_prob = 0.5;
-  // Fewer hits than this are no scan to match.
+  // Scans with fewer hits are not matched.
   int min_points = 20;
   // A match is found when at least this share of its points lies where the map is occupied. Low on
-  // purpose: a gate that refuses doubtful matches locks onto a wrong prediction.
+  // purpose: rejecting doubtful matches keeps a wrong prediction wrong.
   double min_score = 0.2;
-  // A direction that the match knows worse than this counts as not determined: a fixed gain would
-  // take a guess of 5 cm at a corner that only just came into view. 3 cm loses 7 %, 2 cm 16 % of
-  // the accuracy with poses that drift (docs/tried.md).
+  // Directions with a larger standard deviation count as undetermined: a fixed gain would otherwise
+  // follow a guess of 5 cm at a corner just coming into view. 3 cm loses 7 %, 2 cm 16 % of the
+  // accuracy with poses that drift (docs/tried.md).
   double max_sigma_m = 0.04;
   CorrelativeOptions search;
   LeastSquaresOptions least_squares;
@@ -48,7 +48,7 @@ class ScanMatcher {
 
   ScanMatcherOptions options_;
   CorrelativeSearch search_;
-  MatchPoints points_;  // all of these are kept for their memory
+  MatchPoints points_;  // this and the following are members to reuse their memory
   FastMatchCost cost_;
   LatticeScorer scorer_;
   ScoreSurface surface_;

@@ -1,5 +1,5 @@
 // The covariance of a match from the scores of all poses around it (Olson 2009): slower and coarser
-// than the curvature at the match (match_information.h), but it sees other maxima.
+// than the curvature (match_information.h), but includes other maxima.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,9 +29,9 @@ void ScoreAll(const SearchLattice& lattice, const MatchPoints& points, const Pro
               LatticeScorer& scorer, ScoreSurface& surface);
 
 // Inverse covariance for a small motion (forward m, left m, yaw rad) in base axes of the lattice's
-// predicted pose. Candidates weigh exp(sharpness * (sum of probabilities - the best sum)). What the
-// window alone would say is taken out, so a direction in which the score does not fall within the
-// window has no information, and what the lattice rounds away is added.
+// predicted pose. Candidates weigh exp(sharpness * (sum of probabilities - the best sum)). The
+// information of the window itself is subtracted, so a direction in which the score does not fall
+// within the window has none; the lattice's rounding variance is added.
 Eigen::Matrix3d SurfaceInformation(const ScoreSurface& surface, double sharpness);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// The inner loops of mapper/scan/bearing_returns.cc: many bearings at once, one a vector lane. Each
+// The inner loops of mapper/scan/bearing_returns.cc: many bearings at once, one per SIMD lane. Each
 // lane computes what SampleAt and FindNearest define, operation by operation, so the values do not
 // depend on the width of the vectors and are those of the plain code bit for bit.
 #pragma once
@@ -14,8 +14,8 @@
 
 namespace depthgrid::internal {
 
-// Blocks that are sampled together at most: 128 columns of the image are lines of memory enough for
-// the processor to foresee the next ones, and their samples stay in the second-level cache.
+// Most blocks sampled together (a stripe): 128 image columns suffice for the hardware prefetcher,
+// and their samples stay in the L2 cache.
 constexpr std::size_t kMostStripeBlocks = 4;
 constexpr std::size_t StripeBlocks(std::size_t bearings, int width_px) {
   constexpr std::size_t kColumns = 128, kLeast = 2;
@@ -23,14 +23,14 @@ constexpr std::size_t StripeBlocks(std::size_t bearings, int width_px) {
   return std::clamp(in_columns / kBlockBearings, kLeast, kMostStripeBlocks);
 }
 
-// Rows are sampled in groups of so many, the same for all blocks. The smallest sample of each is
-// kept: whoever looks for near ones passes over the others.
+// Rows are sampled in groups of this size, the same for all blocks. Each group's smallest sample is
+// stored, so that searches for near samples can skip groups.
 constexpr std::size_t kGroupRows = 16;
 
 struct BearingBlock {
   const BearingLineBlock* lines = nullptr;
-  RowRange rows;          // in which any lane takes part, and those before in the first group
-  RowRange shared_rows;   // in which all of them do
+  RowRange rows;          // rows used by any lane, extended to the first group's start
+  RowRange shared_rows;   // rows used by all lanes
   bool all_ahead = true;  // no ray of these rows points backwards
   BlockLane first, last;  // rows of each lane
 
@@ -42,7 +42,7 @@ struct BearingBlock {
     const int from = rows.first + static_cast<int>(group * kGroupRows);
     return {from, std::min(from + static_cast<int>(kGroupRows) - 1, rows.last)};
   }
-  // Whether every lane takes part in every row.
+  // Whether all lanes use all of these rows.
   bool AreShared(const RowRange& some) const {
     return some.first >= shared_rows.first && some.last <= shared_rows.last;
   }
@@ -51,31 +51,32 @@ struct BearingBlock {
 BearingBlock MakeBearingBlock(const BearingLineBlock& lines, const ReturnLimits& limits);
 
 // A block's samples of one band: samples[row - rows.first][lane], and nearest[group][lane], the
-// smallest of each group of rows. Of groups whose smallest is no range the samples may be missing.
-// Unlike SampleAt's, ranges may exceed the limit: that is one comparison less for each, and whoever
-// reads them stops at it. least_depth[group][lane], null of a slice: if it is usable, so are all
-// samples of the group; where it is not, those that are not are there.
+// smallest of each group of rows. Samples may be missing in groups whose smallest is no range.
+// Unlike SampleAt's, ranges may exceed the limit, which saves a comparison; readers stop at it.
+// least_depth[group][lane] (null for a slice): if usable, so are all samples of the group; if not,
+// the unusable samples are stored.
 struct BandSamples {
   float* samples = nullptr;
   float* nearest = nullptr;
   float* least_depth = nullptr;
 };
 
-// Stands for the smallest of a group that was too far away to be sampled.
+// Smallest sample of a group that was skipped as too far away.
 constexpr float kSkipped = 1.5e9F;
 static_assert(kSkipped > kPassing && kSkipped < kUnusable);
 
-// Of each lane.
+// Results per lane.
 struct BandFound {
   BandSamples samples;
   BlockLane nearest;       // smallest sample
-  BlockLane skipped_from;  // groups that were skipped hold no smaller range
+  BlockLane skipped_from;  // skipped groups hold no smaller range
 };
 
-// `slice` has a range in the slice or kPassing, and only in groups whose smallest is a range.
+// Samples of `slice` are ranges within it or kPassing, stored only in groups whose smallest is a
+// range.
 struct BlockSamples {
   BandFound band, slice;
-  BlockLane least_depth;  // of its groups
+  BlockLane least_depth;  // minimum over groups
 };
 
 struct ImageBands {
@@ -84,7 +85,7 @@ struct ImageBands {
   SliceBand slice;
 };
 
-// The noise window's width at the end of each of so many steps.
+// Width of the noise window at the end of each step of range.
 struct SkipWidths {
   static constexpr std::size_t kSteps = 32;
   static constexpr float kStepM = 0.25F;
@@ -92,17 +93,16 @@ struct SkipWidths {
 };
 SkipWidths SkipWidthsOf(const NoiseWindow& window);
 
-// Samples blocks group by group from the lowest rows up, where the nearest things are seen, and
-// skips what lies so far behind them that it hardly matters. `found` has room for each block;
-// `survey` is memory.
+// Samples blocks group by group from the lowest rows up, where the nearest surfaces are seen, and
+// skips groups too far behind these to matter. `found` has an entry per block; `survey` is memory.
 void SampleBlocks(const ImageBands& bands, const SkipWidths& widths,
                   std::span<const BearingBlock> blocks, std::vector<float>& survey,
                   std::span<BlockSamples> found);
-// Samples what was skipped of a lane, and others beside it, after all.
+// Samples the skipped groups of a lane (and neighbouring lanes) after all.
 void SampleSkipped(const ImageBands& bands, const BearingBlock& block, std::size_t lane,
                    BlockSamples& found);
 
-// What the columns of some rows hold.
+// Statistics of the depths in each column over some rows.
 class Survey {
  public:
   Survey(int width_px, std::vector<float>& memory) : width_(static_cast<std::size_t>(width_px)) {
@@ -111,38 +111,38 @@ class Survey {
   }
   float* least() const { return columns_; }
   float* most() const { return columns_ + width_; }
-  // Least depth but that of missing pixels; very large when all are missing.
+  // Least depth ignoring missing pixels; very large if all are missing.
   float* least_there() const { return columns_ + 2 * width_; }
-  // Least of the greater depths of each pixel and the one to its right: not 0 when one of two
-  // neighbours is there everywhere.
+  // Least maximum of a pixel and its right neighbour: not 0 if at least one of the two exists in
+  // every row.
   float* least_of_two() const { return columns_ + 3 * width_; }
 
-  int first = 0, end = 0;  // the columns that are surveyed
-  bool has_holes = false;  // whether the last two are found as well
+  int first = 0, end = 0;  // surveyed columns
+  bool has_holes = false;  // whether the last two are computed
 
  private:
   std::size_t width_ = 0;
   float* columns_ = nullptr;
 };
-// Finds the first two of the columns from `first` up to `end`.
+// Computes least() and most() of columns [first, end).
 void SurveyColumns(const DepthImage& image, const RowRange& rows, int first, int end,
                    Survey& survey);
-// Finds the last two, unless they are found.
+// Computes least_there() and least_of_two() if not done yet.
 void SurveyHoles(const DepthImage& image, const RowRange& rows, Survey& survey);
 
-// Which rows are usable, and the longest gaps between them.
+// Finds the usable rows and the longest gaps between them.
 void FindViews(const BearingBlock& block, const BlockLane& least_depth, const BandSamples& band,
                float min_depth_m, BlockViews& views);
 
-// FindNearest of the lanes whose smallest sample is supported by others. Of each lane whose bit is
-// set: `alone`, the smallest sample is not; `doubtful`, what was skipped could matter.
+// FindNearest() of the lanes whose smallest sample is supported by others. Bits of other lanes:
+// `alone`, the smallest sample is unsupported; `doubtful`, skipped groups could matter.
 struct NearestOfBlock {
   std::uint64_t alone = 0, doubtful = 0;
 };
 NearestOfBlock FindSupported(const BandFound& found, std::size_t rows, const ReturnLimits& limits,
                              const NoiseWindow& window, BlockHits& hits);
 
-// SteadyRange of all lanes with a hit. `found` is the slice's.
+// SteadyRange() of all lanes with a hit. `found`: of the slice.
 void SteadySlice(const ImageBands& bands, const NoiseWindow& window, const BearingBlock& block,
                  const BandFound& found, BlockHits& hits);
 

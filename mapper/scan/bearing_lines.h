@@ -1,7 +1,7 @@
-// Eq. 2 turned round: for each bearing of the level scan, the line of the image whose rays have
-// that bearing. The vertical plane through the camera at a bearing cuts the image in a straight
-// line, whatever the tilt, and along it range and height are z times a linear function of the row.
-// So a tilted image is read bearing by bearing, and no beam inside the field of view stays empty.
+// Inverse of Eq. 2: for each bearing of the level scan, the image line whose rays have that
+// bearing. The vertical plane through the camera at a bearing cuts the image in a straight line,
+// whatever the tilt, and along it range and height are z times a linear function of the row. So a
+// tilted image is read bearing by bearing, and no beam inside the field of view stays empty.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,12 +19,12 @@ struct BearingLine {
   float u0 = 0.0F, u1 = 0.0F;
   float h0 = 0.0F, h1 = 0.0F;
   float g0 = 0.0F, g1 = 0.0F;
-  // Rows at which the line is inside the image and ahead of the camera; first > last when none.
+  // Rows at which the line is inside the image and ahead of the camera; first > last if none.
   int first_row = 0;
   int last_row = -1;
 };
 
-// Lines are kept in blocks of so many, each number of theirs side by side for vectors.
+// Lines are stored in blocks of this size, as a structure of arrays for SIMD.
 constexpr std::size_t kBlockBearings = 64;
 struct alignas(64) BlockLane : std::array<float, kBlockBearings> {};
 struct BearingLineBlock {
@@ -34,7 +34,7 @@ struct BearingLineBlock {
 class BearingLineTable {
  public:
   std::size_t size() const { return size_; }
-  // Lanes after the last line repeat it.
+  // Unused lanes repeat the last line.
   std::vector<BearingLineBlock> blocks;
 
   BearingLine operator[](std::size_t k) const;
@@ -65,7 +65,7 @@ struct BearingFan {
 };
 
 // Bearings of `beams` bins of equal angle over the field of view the camera would have if it were
-// level (rolled to the nearest quarter turn), increasing (counter-clockwise). They are `fan`'s.
+// level (rolled to the nearest quarter turn), increasing (counter-clockwise). Cached in `fan`.
 const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
                                          const Eigen::Quaterniond& level_from_camera, int beams,
                                          BearingFan& fan);
@@ -76,13 +76,12 @@ BearingLineTable BearingLines(const PinholeCamera& camera,
                               const std::vector<Bearing>& bearings, bool transposed,
                               BearingLineTable memory = {});
 
-// Whether the image shows what lies straight ahead at the camera's own height, at whatever
-// distance: one that looks below the horizon does not.
+// Whether the horizon straight ahead is in the image; not so for a camera that looks below it.
 bool ShowsHorizon(const BearingLineTable& lines);
 
 namespace internal {
-// The camera as the (possibly transposed) image has it: rows of the matrix are forward, left and up
-// of a ray (a, b, 1), a along the image's columns and b along its rows.
+// The camera of the (possibly transposed) image: rows of the matrix are forward, left and up of a
+// ray (a, b, 1), a along the image's columns and b along its rows.
 struct ImageAxes {
   Eigen::Matrix3d level_from_ray;
   double fx_px, fy_px, cx_px, cy_px;
@@ -91,7 +90,7 @@ struct ImageAxes {
 struct BlockDirections {
   alignas(64) std::array<double, kBlockBearings> cosine, sine;
 };
-// The lines of a block, one bearing a vector lane.
+// Computes the lines of a block, one bearing per lane.
 void FindLines(const ImageAxes& axes, const BlockDirections& directions, BearingLineBlock& lines);
 }  // namespace internal
 

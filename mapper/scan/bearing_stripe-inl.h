@@ -1,6 +1,5 @@
-// What the tiles of a stripe hold in a group of rows, found for all of them at once, one a vector
-// lane (bearing_block.h). Compiled once for each instruction set by bearing_block.cc, so without an
-// ordinary guard.
+// Classifies all tiles of a stripe in a group of rows at once, one per SIMD lane (bearing_block.h).
+// Included once per instruction set by bearing_block.cc, hence the special include guard.
 #if defined(DEPTHGRID_BEARING_STRIPE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DEPTHGRID_BEARING_STRIPE_INL_H
 #undef DEPTHGRID_BEARING_STRIPE_INL_H
@@ -18,11 +17,11 @@ namespace HWY_NAMESPACE {
 
 constexpr std::size_t kMostTiles = kMostStripeBlocks * kBlockBearings / hn::MaxLanes(Floats());
 
-// One number a tile.
+// One number per tile.
 template <class T>
 struct alignas(64) PerTile : std::array<T, kMostTiles> {};
 
-// Linear in the row.
+// A linear function of the row.
 struct AlongRows {
   float at_0 = 0.0F, per_row = 0.0F;
 };
@@ -43,35 +42,35 @@ struct AllAlongRows {
   }
 };
 
-// The vectors of a stripe's bearings, of which each makes a tile of each group of rows.
+// The vectors of bearings of a stripe; each vector and group of rows form a tile.
 struct StripeVectors {
   std::size_t count = 0;
-  PerTile<std::size_t> of, lane;  // which block, and which lane of it is the first
-  AllAlongRows left, right;       // columns of the first lane and of the last
-  // No ray rises less or more a depth, or comes less far, rounding included.
+  PerTile<std::size_t> of, lane;  // block, and first lane in it
+  AllAlongRows left, right;       // columns of the first and last lane
+  // Bounds of height and range per depth over all rays, rounding included.
   AllAlongRows lowest, highest, shortest;
   PerTile<float> rows_first, rows_last;      // of the block
-  PerTile<float> shared_first, shared_last;  // rows in which all of its bearings take part
-  PerTile<float> is_known;                   // 1 where pixels of its tiles lie side by side, or 0
-  PerTile<float> skip_from;                  // nothing from here on matters
-  PerTile<float> skipped_from;               // what was skipped holds nothing nearer
+  PerTile<float> shared_first, shared_last;  // rows used by all of its bearings
+  PerTile<float> is_known;                   // 1 if the pixels of its tiles are contiguous, else 0
+  PerTile<float> skip_from;                  // ranges from here on do not matter
+  PerTile<float> skipped_from;               // skipped tiles hold nothing nearer
 };
 
-// Of a group of rows. Tiles after the last one repeat it.
+// Tiles of a group of rows. Padding repeats the last tile.
 struct GroupTiles {
   int first_row = 0;
   int first_column = 0, end_column = 0;  // of all of them
   PerTile<float> last_row, is_shared;
-  PerTile<int> rows;            // 0 of those that have no part in the group
-  PerTile<int> start, columns;  // as of Tile
-  PerTile<int> inside;          // whether columns need not be kept in the image
+  PerTile<int> rows;            // 0 if not in the group
+  PerTile<int> start, columns;  // as in Tile
+  PerTile<int> inside;          // whether columns need no clamping to the image
   PerTile<float> usable_from;   // no usable depth is smaller; 0 unless all are usable
-  PerTile<float> range_from;    // nor a range
+  PerTile<float> range_from;    // no range is smaller
   PerTile<int> content;
 };
 
-// Columns are monotonic in the row, and in the bearing while all rays look ahead: the corners bound
-// them. They are not known otherwise, nor of images narrower than two vectors.
+// Columns are monotonic in the row, and in the bearing if all rays look ahead, so the corners bound
+// them. Otherwise, and in images narrower than two vectors, the columns are unknown.
 void LayOut(const StripeVectors& vectors, int width, const RowRange& rows, GroupTiles& tiles) {
   const Floats d;
   const Ints di;
@@ -118,7 +117,7 @@ void LayOut(const StripeVectors& vectors, int width, const RowRange& rows, Group
   tiles.end_column = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, end_of_all)));
 }
 
-// The smallest or largest lane of each of some vectors, a power of two of them, in their order.
+// The smallest or largest lane of each vector (a power of two of them), in order.
 template <std::size_t kLanes, std::size_t kCount, class Choose>
 HWY_INLINE Vec OfEach(Floats d, std::array<Vec, kCount> vectors, const Choose& choose) {
   if constexpr (kLanes == 1) {
@@ -135,8 +134,7 @@ HWY_INLINE Vec OfEach(Floats d, std::array<Vec, kCount> vectors, const Choose& c
   }
 }
 
-// What `vector_of` makes of each of `count` tiles, a power of two of them: the smallest or largest
-// lane of each.
+// The smallest or largest lane of `vector_of` each of `count` tiles, a power of two.
 template <class VectorOf, class Choose>
 HWY_INLINE Vec OfTiles(Floats d, std::size_t count, const VectorOf& vector_of,
                        const Choose& choose) {
@@ -153,8 +151,8 @@ HWY_INLINE Vec OfTiles(Floats d, std::size_t count, const VectorOf& vector_of,
   return of(std::integral_constant<std::size_t, 4>());
 }
 
-// Of the tiles from `at` on, one a lane: the smallest or largest of what was surveyed of their
-// columns, `unknown` of those without columns.
+// For the tiles from `at` on, one per lane: the smallest or largest survey value of their columns;
+// `unknown` if their columns are.
 template <class Choose>
 HWY_INLINE Vec OverColumns(Floats d, const GroupTiles& tiles, std::size_t at, std::size_t count,
                            const float* HWY_RESTRICT survey, float unknown, const Choose& choose) {
@@ -179,17 +177,17 @@ struct Larger {
   HWY_INLINE Vec operator()(Vec a, Vec b) const { return hn::Max(a, b); }
 };
 
-// By the noise window. Whether what is skipped was far enough is seen afterwards.
+// Skip limit by the noise window. Whether skipped groups were far enough is checked afterwards.
 class SkipRule {
  public:
   SkipRule(const SkipWidths& widths, float max_range_m)
       : widths_(widths), max_range_m_(max_range_m) {}
-  // From where on samples do not matter once each lane of a vector has one as near as this: the
-  // second mean looks half a window beyond the first.
+  // The range beyond which samples do not matter once each lane has one as near as this: the second
+  // mean reaches half a window beyond the first.
   HWY_INLINE Vec From(Floats d, Vec nearest_m) const {
     const Ints di;
     const Vec max_range = hn::Set(d, max_range_m_);
-    // Rounding may leave a range below 0 of a camera whose centre is far off its image.
+    // Rounding may give a negative range if the principal point is far outside the image.
     const Vec step = hn::Max(hn::Min(hn::Mul(nearest_m, hn::Set(d, 1.0F / SkipWidths::kStepM)),
                                      hn::Set(d, static_cast<float>(SkipWidths::kSteps - 1))),
                              hn::Zero(d));
@@ -217,13 +215,13 @@ void FindSkipFrom(const SkipRule& rule, std::span<const BlockSamples> found,
   }
 }
 
-// What the surveys say of the tiles from one on, one a lane.
+// Survey results of consecutive tiles, one per lane.
 struct TileDepths {
   Vec near;     // no usable depth is smaller ...
   Vec most;     // ... and none greater
   Mask usable;  // all are usable
   Mask whole;   // no pixel is missing either
-  Mask told;    // what is not usable is missing: none is too near
+  Mask told;    // unusable pixels are missing, none is too near
 };
 
 TileDepths DepthsOf(const ImageBands& bands, const RowRange& rows, const GroupTiles& tiles,
@@ -270,11 +268,11 @@ void FindContents(const ImageBands& bands, const StripeVectors& vectors, const R
     const Mask is_mixed = hn::Or(below(bottom, limits.low_m), above(top, limits.high_m));
     const Mask is_plain = hn::And(is_shared, off_slice);
     const Mask is_far = hn::Gt(range_from, hn::Load(d, &vectors.skip_from[i]));
-    // A little less, for what DepthBetween rounds.
+    // Slightly reduced for the rounding of DepthBetween.
     constexpr float kSurfaceShare = 0.999F * kSameSurfaceShare;
     const Mask is_surface =
         hn::And(whole, hn::Le(hn::Sub(most, near), hn::Mul(hn::Set(d, kSurfaceShare), near)));
-    // The last that is true counts.
+    // The last true condition applies.
     auto content = hn::Set(di, static_cast<int>(Content::kAnything));
     const auto set = [&](Mask where, Content what) HWY_ATTR {
       content =

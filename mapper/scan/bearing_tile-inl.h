@@ -1,5 +1,5 @@
-// How the pixels of some bearings and rows become samples (bearing_block.h). Compiled once for each
-// instruction set by bearing_block.cc, so without an ordinary guard.
+// Converts the pixels of some bearings and rows to samples (bearing_block.h). Included once per
+// instruction set by bearing_block.cc, hence the special include guard.
 #if defined(DEPTHGRID_BEARING_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DEPTHGRID_BEARING_TILE_INL_H
 #undef DEPTHGRID_BEARING_TILE_INL_H
@@ -23,19 +23,19 @@ using Ints = hn::RebindToSigned<Floats>;
 using Vec = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 
-// The lanes of one vector and a group of rows.
+// A tile: the lanes of one vector in a group of rows.
 struct Tile {
   const ImageBands* bands;
   const BearingBlock* block;
   std::size_t lane;  // the first, in the block
   RowRange rows;
-  // First of the pixels that any sample is made of, and how many side by side; 0 when not known.
+  // First column used by any sample, and number of contiguous columns; 0 if unknown.
   int start = 0;
   int columns = 0;
-  bool inside = false;  // whether columns need not be kept in the image
+  bool inside = false;  // whether columns need no clamping to the image
 
   std::size_t RowCount() const { return static_cast<std::size_t>(rows.last - rows.first + 1); }
-  // Where samples and groups of the tile lie in the block.
+  // Pointers to the tile's samples and groups in the block.
   std::size_t AtRow() const {
     return static_cast<std::size_t>(rows.first - block->rows.first) * kBlockBearings + lane;
   }
@@ -45,7 +45,7 @@ struct Tile {
   }
 };
 
-// What a tile holds, and so what is found of it.
+// Content of a tile, which determines what is computed.
 enum class Content : std::uint8_t {
   kAnything,
   kInSlice,  // all usable and in the band, some of it in the slice
@@ -53,7 +53,7 @@ enum class Content : std::uint8_t {
   kUsable,   // ... and all usable
   kInBand,   // ... and in the band
   kSurface,  // ... and of one surface
-  // Only which samples are usable is found of the following, which have nothing in the slice.
+  // For the following, which have nothing in the slice, only usability is computed.
   kPassing,       // all usable and outside the band
   kPassingHoles,  // some are missing
   kFar,           // all usable and too far away to matter
@@ -64,10 +64,10 @@ constexpr bool IsFar(Content content) {
   return content == Content::kFar || content == Content::kFarHoles;
 }
 
-// How the two pixels around each lane's column are fetched.
+// How the two pixels around each lane's column are loaded.
 enum class Fetch : std::uint8_t {
   kTwoVectors,  // from two vectors of neighbouring pixels
-  kInside,      // the same, and columns are in the image already
+  kInside,      // the same, without clamping of columns
   kGather,      // from anywhere
 };
 
@@ -75,7 +75,7 @@ struct Pixels {
   Vec z0, z1;
 };
 
-// Of two vectors laid side by side, the lanes `index`.
+// Lanes `index` of two concatenated vectors.
 HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (hn::MaxLanes(Floats()) == 16) {
@@ -89,7 +89,7 @@ HWY_INLINE Vec LookUp(Floats d, Vec left, Vec right, hn::Vec<Ints> index) {
                         hn::TableLookupLanes(right, within));
 }
 
-// A column, not negative, as its whole part and what is left.
+// Integer part and fraction of a non-negative column.
 struct Column {
   hn::Vec<Ints> whole;
   Vec share;
@@ -102,7 +102,7 @@ HWY_INLINE Column ColumnOf(Floats d, Vec u) {
     return {hn::Vec<Ints>{whole}, hn::Sub(u, Vec{_mm512_maskz_cvtepi32_ps(kAll, whole)})};
   }
 #endif
-  // Of a whole number below 2^23 the bits after adding 2^23, less those of 2^23.
+  // An integer below 2^23 is the bits after adding 2^23, minus the bits of 2^23.
   constexpr float kTwoTo23 = 8388608.0F;
   constexpr int kBits = 0x4B000000;
   const Ints di;
@@ -125,7 +125,7 @@ HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, hn::Vec<I
   }
 }
 
-// DepthBetween of bearing_returns.h.
+// Vectorised DepthBetween() of bearing_returns.h.
 template <bool kOneSurface>
 HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
   const auto [z0, z1] = pixels;
@@ -150,7 +150,7 @@ HWY_INLINE void StoreNearest(const Tile& tile, Vec nearest, Vec slice_nearest, B
   hn::Store(hn::Min(hn::Load(d, slice_so_far), slice_nearest), d, slice_so_far);
 }
 
-// The samples of a tile that holds `kContent`.
+// Computes the samples of a tile of content `kContent`.
 template <Fetch kFetch, Content kContent>
 HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   constexpr bool kHoles = kContent == Content::kPassingHoles;  // or kFarHoles
@@ -171,7 +171,7 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   const Vec slice_low = hn::Set(d, tile.bands->slice.low_m),
             slice_high = hn::Set(d, tile.bands->slice.high_m);
   const Vec passing = hn::Set(d, kPassing), unusable = hn::Set(d, kUnusable);
-  // Here, as stores of vectors could change anything that is behind a pointer.
+  // Local copies, as vector stores may alias anything behind a pointer.
   const std::size_t rows = tile.RowCount();
   const std::ptrdiff_t width = tile.bands->image.width_px;
   const int first_column = kFetch == Fetch::kGather ? 0 : tile.start;
@@ -224,7 +224,7 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
   if constexpr (!kHoles) StoreNearest(tile, nearest, slice_nearest, out);
 }
 
-// Groups without a range.
+// Fills in groups without a range.
 HWY_INLINE void SampleNothing(const Tile& tile, float nearest, BlockSamples& out) {
   const Floats d;
   hn::Store(hn::Set(d, nearest), d, out.band.samples.nearest + tile.AtGroup());

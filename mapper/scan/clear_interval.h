@@ -1,4 +1,4 @@
-// Which part of a bearing the image shows to be free (docs/math.md, "Free space").
+// The part of a bearing that the image shows to be free (docs/math.md, "Free space").
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct SlopeRange {
   float high = 0.0F;
 };
 
-// What the rays of one bearing say, besides the hit.
+// Slopes of the rays of one bearing.
 struct BearingView {
   std::optional<SlopeRange> seen;  // lowest and highest ray with a usable depth
   // The largest unseen gaps between them below and above the horizon.

@@ -1,5 +1,5 @@
-// What a depth camera's reach cuts off a receding wall (docs/math.md, "Where a depth camera's reach
-// ends").
+// Removes hits where a depth camera's reach ends a receding wall (docs/math.md, "Where a depth
+// camera's reach ends").
 #pragma once
 
 #include "mapper/core/scan.h"
@@ -7,12 +7,12 @@
 
 namespace depthgrid {
 
-// Takes the hits from the end of each surface that recedes into bearings without any, as far away
-// as anything was seen: of the pixels there only those are left that noise made short, so the wall
-// seems to bend, and the bend goes where the camera goes. What lies within three sigmas of the
-// end's depth is taken, unless it is half of the surface or more. `scan` is a level slice,
-// `farthest_m` is NoiseWindow's of any image of the camera. Where the scan's own reach ends the
-// surface nothing is cut off.
+// Removes the hits at the end of each surface that recedes into bearings without hits near the
+// greatest depth ever seen. Only pixels that noise made short remain there, so the wall seems to
+// bend, and the bend moves with the camera. Hits within three sigmas of the end's depth are
+// removed, unless they are half of the surface or more. `scan` is a level slice, `farthest_m` the
+// largest NoiseWindow::farthest_m() so far. Surfaces that end at the scan's own max_range_m are
+// left as they are.
 void DropCutEnds(const NoiseWindow& window, double farthest_m, Scan& scan);
 
 }  // namespace depthgrid

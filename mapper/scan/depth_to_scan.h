@@ -15,8 +15,8 @@
 
 namespace depthgrid {
 
-// Of one image: what a robot must not run into, the level slice around the camera, and how noisy
-// the depths are.
+// Scans of one image: the obstacle band and the level slice around the camera, with the depth
+// noise.
 struct ScanPair {
   Scan obstacles;
   Scan slice;
@@ -42,12 +42,12 @@ class DepthToScan {
 
   // The scan in base axes.
   Scan Convert(const DepthImage& depth, const CameraStand& stand) const;
-  // Roll, pitch and height as the pose has them.
+  // With roll, pitch and height of the pose.
   Scan Convert(const DepthImage& depth, const Pose3& slam_from_camera) const {
     return Convert(depth, StandOf(slam_from_camera, options_.floor_z_m));
   }
-  // Convert, and the same for a band of this half height around the camera; the image is read once
-  // for both. `scans`: of an earlier result, to be used again.
+  // Convert(), and the same for a slice of this half height around the camera, reading the image
+  // once. `scans`: an earlier result whose memory is reused.
   ScanPair ConvertBoth(const DepthImage& depth, const CameraStand& stand,
                        double slice_half_height_m, ScanMemory& memory, ScanPair scans = {}) const;
 

@@ -1,4 +1,4 @@
-// How far the rays of a bearing reached: nothing is free that none of them came to.
+// The farthest point that rays of a bearing reached, which limits free space.
 #pragma once
 
 #include "mapper/core/depth_image.h"
@@ -8,15 +8,14 @@
 
 namespace depthgrid {
 
-// The largest horizontal range at which a row of the line has a usable depth, floor and ceiling
-// among them, or the first that is `enough_m`; 0 where no depth is usable.
+// Largest horizontal range of any usable depth on the line, floor and ceiling included; stops at
+// the first that reaches `enough_m`. 0 without usable depth.
 float FarthestSeen(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,
                    float enough_m);
 
-// Ends the free stretch of each beam without a hit where its farthest ray ended. Slopes alone do
-// not tell: of a wall that shows fewer than min_returns rows, in a corner of a rolled image or
-// between missing pixels, the rays count as seen and there is no hit to end them. Beam k is that of
-// line k.
+// Limits the free stretch of each beam without a hit to its farthest ray. Slopes alone do not
+// suffice: a wall with fewer than min_returns rows, in a corner of a rolled image or between
+// missing pixels, gives no hit although its rays were seen. Beam k belongs to line k.
 void EndWhereNothingWasSeen(const DepthImage& image, const BearingLineTable& lines,
                             const ReturnLimits& limits, Scan& scan);
 

@@ -1,5 +1,5 @@
-// How the camera stands over the floor, followed from frame to frame (docs/math.md, "Height and
-// tilt"): SLAM's poses drift in height, roll and pitch, the floor does not.
+// Tracks the camera's tilt and height over the floor (docs/math.md, "Height and tilt"): SLAM's
+// poses drift in height, roll and pitch, the floor does not.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,15 @@ namespace depthgrid {
 
 class FloorTracker {
  public:
-  // Where the floor was not seen yet, and only the pose says where it is, a surface this near to
-  // that is the floor.
+  // Before the floor was seen, a surface this near to where the pose puts the floor is taken for
+  // it.
   static constexpr double kNearPoseM = 0.35;
 
   FloorTracker(const PinholeCamera& camera, const ScanOptions& options)
       : camera_(camera), source_(options.floor), floor_z_m_(options.floor_z_m) {}
 
-  // The next frame. In a new epoch SLAM's poses have a new frame: only the camera's height is
-  // carried over.
+  // Processes the next frame. In a new epoch, whose poses have another frame, only the camera's
+  // height is kept.
   CameraStand Follow(const DepthImage& image, const Pose3& slam_from_camera, int epoch);
 
  private:
@@ -31,23 +31,23 @@ class FloorTracker {
     double offset_m = 0.0;
   };
   CameraStand StandOver(const Floor& floor, const Pose3& slam_from_camera) const;
-  // Corrects floor_ by what the image shows.
+  // Updates floor_ from the image.
   void LookAt(const DepthImage& image, const Pose3& slam_from_camera);
-  // Whether the floor may be this far below the camera, though it was expected elsewhere.
+  // Whether a surface at an unexpected height is accepted as the floor.
   bool Believes(double height_m, double expected_m);
 
   PinholeCamera camera_;
   FloorSource source_;
   double floor_z_m_;
   std::optional<int> epoch_;
-  Floor floor_;        // as last seen; before that, as the poses have it
+  Floor floor_;        // as last seen; before that, from the poses
   bool seen_ = false;  // in this epoch
-  // A surface where no floor was expected: how much higher, and in how many frames in a row.
+  // A surface at an unexpected height: how much higher, and for how many consecutive frames.
   double other_higher_m_ = 0.0;
   int other_frames_ = 0;
   int looks_ = 0;
-  std::optional<double> height_m_;        // of the last frame, once the floor was seen
-  std::optional<double> floor_height_m_;  // of the last frame that saw it
+  std::optional<double> height_m_;  // camera height of the last frame, once the floor was seen
+  std::optional<double> floor_height_m_;  // camera height of the last frame that saw the floor
   LevelPoints memory_;
 };
 

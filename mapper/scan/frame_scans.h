@@ -1,9 +1,8 @@
-// The two scans of a frame. What a robot must not run into is the nearest surface anywhere in the
-// obstacle band; but which surface that is changes with the camera's tilt and distance (a table top
-// leaves the image when the camera comes near), so such scans do not fit each other rigidly. A thin
-// level slice at the camera's own height is seen at any distance and is the paper's "horizontal
-// point cloud": that is what is matched. An image that looks below the horizon shows next to
-// nothing of it, and its obstacles are matched.
+// The two scans of a frame. Obstacles are the nearest surface in the whole obstacle band; but which
+// surface that is changes with the camera's tilt and distance (a table top leaves the image when
+// the camera comes near), so such scans are not rigid. A thin level slice at the camera's height,
+// the paper's "horizontal point cloud", is visible at any distance and is matched instead. If the
+// image looks below the horizon and shows next to nothing of the slice, the obstacles are matched.
 #pragma once
 
 #include <memory>
@@ -19,16 +18,16 @@ namespace depthgrid {
 
 struct FrameScans {
   std::shared_ptr<const Scan> obstacles;  // what the map is drawn from; null without an image
-  std::shared_ptr<const Scan> matched;  // what is matched; the same object where there is one scan
-  std::optional<CameraStand> stand = {};  // of depth images, and of scans made from such
-  // What of `matched` was seen to stand where that is not all (MovingObjects), else null.
+  std::shared_ptr<const Scan> matched;    // the scan to match; may be the same object
+  std::optional<CameraStand> stand = {};  // of depth images and scans made from them
+  // `matched` without what was not seen to stand (MovingObjects); null if all of it stands.
   std::shared_ptr<const Scan> standing = {};
 
-  // What becomes part of what later scans are matched against.
+  // The scan that enters the map.
   const std::shared_ptr<const Scan>& kept() const { return standing ? standing : matched; }
 };
 
-// Scans that are written again once nobody else holds them.
+// Reuses scans that nobody else holds any more.
 class ScanPool {
  public:
   std::shared_ptr<Scan> Take();
@@ -42,12 +41,12 @@ class FrameScanner {
   // The camera may be absent when every frame brings a ready scan.
   FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options);
 
-  // Of a ready scan both are a copy of it, so that the caller's may change: its beams in order of
-  // bearing, less those that say nothing, as they are not finite, start behind the sensor, or hit
-  // nearer than 1 mm or beyond the scan's reach, and clear no farther than that. Where it does not
-  // tell its reach that is 1 km, and a beam without a hit that clears farther says nothing either.
-  // The stand is the one that came with it. A depth image without a pose gives neither; a ready
-  // scan needs none. Frames come in order: the floor is followed from one to the next.
+  // A ready scan is copied, so that the caller may change it: beams sorted by bearing, without
+  // those that are not finite, start behind the sensor, or hit nearer than 1 mm or beyond
+  // max_range_m; free space is limited to that range. If max_range_m is 0, 1 km is used, and beams
+  // without a hit that clear farther are ignored. Its stand is the frame's. A depth image without a
+  // pose gives no scans; a ready scan needs no pose. Call in order of frames, as the floor is
+  // tracked.
   FrameScans ScansOf(const Frame& frame);
 
  private:
@@ -58,7 +57,7 @@ class FrameScanner {
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
   bool drop_cut_ends_ = false;
-  double farthest_m_ = 0.0;  // NoiseWindow's, of any image
+  double farthest_m_ = 0.0;  // largest NoiseWindow::farthest_m() so far
   ScanMemory memory_;
   ScanPool pool_;
 };

@@ -1,5 +1,5 @@
-// Who walks on before a camera as fast as it moves: each match finds them where they were, and says
-// that the camera stands. SLAM says that it does not (docs/math.md, "What moves").
+// Detects people who walk ahead of the camera at its own speed: matches find them where they were
+// and imply that the camera stands, which SLAM's motion contradicts (docs/math.md, "What moves").
 #pragma once
 
 #include <array>
@@ -13,58 +13,56 @@
 
 namespace depthgrid {
 
-// Follows what stands free in the view from scan to scan, and compares how it moves there with how
-// SLAM says that the camera does.
+// Tracks free-standing objects from scan to scan and compares their motion in the view with SLAM's
+// motion of the camera.
 class MovingObjects {
  public:
-  // An object is judged once SLAM has moved the camera so that it lies `after_m` elsewhere in the
-  // view if it stands; 0: nothing is followed.
+  // An object is judged once SLAM's motion would have shifted it by `after_m` in the view if it
+  // stood; 0: no tracking.
   explicit MovingObjects(double after_m) : after_m_(after_m) {}
 
-  // Where in the scan of a frame something was: the bearings of its first and its last beam.
+  // Where an object was in a frame's scan: bearings of its first and last beam.
   struct Sector {
     int frame = 0;
     float first_rad = 0.0F, last_rad = 0.0F;
   };
 
-  // The matched scans of frames that have one, in the order of time, with SLAM's pose; nothing is
-  // compared from one epoch to another (SlamEpochs). Frames are counted by the caller, upwards.
+  // Call in order of time with the matched scan, if any, and SLAM's pose; nothing is compared
+  // across epochs (SlamEpochs). `frame`: an increasing count of the caller's.
   void Follow(int frame, const Scan& scan, const Pose2& slam_from_base, int epoch);
-  // What moves, as the scan that was followed last shows, but was taken to stand before anything
-  // showed how it moves, and so was drawn: each object's way, of 300 frames at most. Told once.
+  // Objects now judged to move that were assumed to stand before and so were drawn: the sectors of
+  // each, over at most 300 frames. Each is returned once.
   std::vector<std::vector<Sector>> TakeMistaken();
-  // Whether there may be more to tell.
+  // Whether there may be more such objects.
   bool MayBeMistaken() const;
-  // The epoch of the last scan is called so from now on.
+  // Renumbers the epoch of the last scan.
   void RenameEpoch(int epoch) { epoch_ = epoch; }
-  // Of the scan that was followed last, as `matched`, what moves. What is not judged yet is not
-  // `standing`; where it stands free it is matched only if all such is half of what is seen. Of
-  // the first scan, and the first of an epoch, what is cut stands, and so does that half.
+  // Removes what moves from `matched`, the scan followed last. Objects not judged yet are removed
+  // from `standing`, and free-standing ones from `matched` too unless they are half of the scan. In
+  // the first scan of a run or epoch, cut objects, and such a half, are taken to stand.
   void TakeOut(FrameScans& scans);
 
  private:
   enum class Verdict { kNone, kStands, kMoves };
-  // How what is not judged yet is taken.
+  // How objects not judged yet are treated.
   enum class Unjudged { kStands, kStandsIfCut, kStandsIfAssumed, kMoves };
   struct Point {
     Eigen::Vector2d at_m;
-    // Since it is being judged.
+    // Where it was when its judging began.
     Eigen::Vector2d began_at_m;
-    Eigen::Vector2d would_be_m;  // by now, if it stood
+    Eigen::Vector2d would_be_m;  // where it would be now if it stood
   };
-  // The middle of what is seen of an object, and its two ends. Of what the edge of the view cuts
-  // the other end alone is followed: the middle goes along with the edge.
+  // The middle of an object and its two ends. If the edge of the view cuts it, only the other end
+  // is tracked, as the middle moves with the edge.
   using Points = std::array<std::optional<Point>, 3>;
   struct Object {
-    std::size_t begin = 0, end = 0;  // its beams of the last scan
+    std::size_t begin = 0, end = 0;  // its beams in the last scan
     Points points = {};
     Verdict verdict = Verdict::kNone;
-    int times_moved = 0;  // judged so, one after the other
-    Eigen::Vector2d step_m =
-        Eigen::Vector2d::Zero();  // of what moves, from scan to scan in the view
+    int times_moved = 0;                               // consecutive verdicts of moving
+    Eigen::Vector2d step_m = Eigen::Vector2d::Zero();  // motion in the view per scan, if it moves
     int unseen_scans = 0;
-    // Taken to stand while nothing showed how it moves: where it was since, until it surely stands
-    // or was told.
+    // Assumed to stand without evidence: its sectors since, until it surely stands or was returned.
     bool is_assumed = false;
     std::vector<Sector> assumed = {};
 
@@ -94,7 +92,7 @@ class MovingObjects {
   int epoch_ = 0;
   int frame_ = 0;
   std::vector<Object> objects_;  // of the last scan
-  std::vector<Object> before_;   // known before it, and not recognised in it
+  std::vector<Object> before_;   // known before, not recognised in the last scan
   std::vector<std::vector<Sector>> mistaken_;
   ScanPool pool_;
 };

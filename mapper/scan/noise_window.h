@@ -1,7 +1,7 @@
-// How far apart in range the returns of one surface can be, measured in the image itself. The
-// nearest of hundreds of noisy returns lies about three sigma before its surface, so the nearest
-// surface is the mean over a window of about six sigma; and sigma differs between sensors by a
-// factor of a hundred and grows with the square of the range.
+// Spread in range of the returns of one surface, measured in the image itself. The nearest of
+// hundreds of noisy returns lies about three sigma before its surface, so the nearest surface is
+// the mean over a window of about six sigma; and sigma differs between sensors by a factor of a
+// hundred and grows with the square of the range.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace depthgrid {
 
 class NoiseWindow {
  public:
-  // Of no image: a Kinect's.
+  // Without an image: a Kinect's noise.
   NoiseWindow();
   // From second differences of inverse depth along image rows, which vanish on planes: a high
   // quantile of them for each class of depth.
@@ -31,7 +31,7 @@ class NoiseWindow {
   static constexpr double kWindowSigmas = 6.0;
   // Wider than this, the window would join a chair with the wall behind it.
   static constexpr double kMaxWindowM = 0.4;
-  // A standard deviation as a share of the width.
+  // One standard deviation as a share of the window.
   static constexpr float kSigmaShare = static_cast<float>(1.0 / kWindowSigmas);
 
   // Width of the window at a range.
@@ -40,7 +40,7 @@ class NoiseWindow {
         std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
   }
 
-  // The same of many ranges.
+  // The same for many ranges.
   void At(std::span<const float> ranges_m, float* widths_m) const;
 
   // The mean over a window lies nearer to the surface than the window's centre: of one six sigma
@@ -51,8 +51,8 @@ class NoiseWindow {
   static bool IsCapped(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
   static int MeansOf(float width_m) { return IsCapped(width_m) ? kMeansOfCapped : 1; }
 
-  // Something was measured this far away or up to half a metre farther, and little beyond (but for
-  // what is 32 m away and more, which no depth camera measures); 0 if nothing was.
+  // Lower edge of the farthest half-metre class of depth with enough samples (without depths of 32
+  // m and more, which no depth camera measures); 0 if there is none.
   double farthest_m() const { return farthest_m_; }
 
   // Standard deviation of depth as estimated for a class of depth.

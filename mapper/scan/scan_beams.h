@@ -1,4 +1,4 @@
-// Beams of what an image says of each bearing: the hit and the stretch that is free.
+// Makes beams from an image's data for each bearing: the hit and the free stretch.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ struct Slopes {
   std::vector<float> low, high;
 };
 
-// What the rays of each bearing say, besides the hit; bearings without rays fill up the last block.
-// Memory is kept from frame to frame.
+// Slopes of the rays of each bearing; the last block is padded with bearings without rays. Memory
+// is kept from frame to frame.
 struct BearingViews {
   Slopes seen;  // where no ray was seen, low is infinite and high its negative
   // The largest unseen gaps between them below and above the horizon; nothing from 0 to 0.
@@ -28,7 +28,7 @@ struct BearingViews {
 void FindViews(const BearingLineTable& lines, const std::vector<BlockViews>& rows,
                BearingViews& views);
 
-// Memory for ScanOf, a number a beam and more to fill up the last block.
+// Memory for ScanOf, one number per beam, padded to whole blocks.
 struct BeamNumbers {
   std::vector<float> clear_from_m, clear_to_m;
 };
@@ -42,7 +42,7 @@ void FindClear(const BearingViews& views, const std::vector<BlockHits>& hits,
                double camera_height_m, const ScanOptions& options, BeamNumbers& beams);
 }  // namespace internal
 
-// `hits` may be others than those that were found with `views`. `scan` is used again.
+// `hits` need not be those found with `views`. `scan`: memory to reuse.
 Scan ScanOf(const std::vector<Bearing>& bearings, const BearingViews& views,
             const std::vector<BlockHits>& hits, double camera_height_m, const ScanOptions& options,
             BeamNumbers& memory, Scan scan);

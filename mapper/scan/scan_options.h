@@ -20,31 +20,31 @@ enum class FloorSource {
 
 struct ScanOptions {
   ScanMode mode = ScanMode::kFull;
-  // Over the camera's horizontal field of view, uniform in angle. More than the image has columns
-  // tell nothing more: those that share a column share its error.
+  // Beams over the camera's horizontal field of view, uniform in angle. More than the image's
+  // columns are useless, as beams that share a column share its error.
   int beams = 640;
   // The obstacle band above the floor. The lower edge is above the noise of the floor at 6 m
   // (Kinect: sigma 50 mm in depth at 10 degrees is 9 mm in height) and what wheels roll over; the
   // upper edge is above a person's shoulders and below door lintels.
   double band_low_m = 0.1;
   double band_high_m = 1.8;
-  double min_range_m = 0.4;  // depth nearer is not trusted (Kinect's and ICL-NUIM's limit)
+  double min_range_m = 0.4;  // nearer depths are ignored (Kinect's and ICL-NUIM's limit)
   double max_range_m = 6.0;  // horizontal; farther returns only clear
   int band_rows = 10;        // of mode row_band
-  // A return counts when this many of its bearing agree: 3 rows are 25 mm of height at 4 m, and no
-  // single wrong pixel makes an obstacle.
+  // Least number of agreeing rows for a hit: 3 rows are 25 mm of height at 4 m, and no single wrong
+  // pixel makes an obstacle.
   int min_returns = 3;
-  // Free space must be seen without a vertical gap larger than this: what could hide in a smaller
-  // one is as low as what lies below the band.
+  // Largest vertical gap in the rays of free space: an obstacle that fits in it is no taller than
+  // what lies below the band.
   double max_gap_m = 0.1;
-  // What is matched is a level slice of this half height around the camera (see frame_scans.h); 0
-  // matches the obstacle scan, as is done of images below the horizon. 0.1 m keeps three rows or
-  // more of the image up to 6 m with a tilted camera and is thin against furniture.
+  // Half height of the matched slice around the camera (see frame_scans.h); 0 matches the obstacle
+  // scan, as for images below the horizon. 0.1 m contains three rows or more up to 6 m with a
+  // tilted camera and is thin compared to furniture.
   double slice_half_height_m = 0.1;
-  // Beyond so many sigmas of noise, what lies above and below the slice's inner half is another
-  // surface (SteadyRange); 0 takes all for one. Of pure noise 2.5 drops one bearing in forty.
+  // Difference, in sigmas, beyond which the slice's outer parts are another surface than its inner
+  // half (SteadyRange); 0: never. With pure noise 2.5 rejects one bearing in forty.
   double slice_agree_sigmas = 2.5;
-  // Whether the slice leaves out what the camera's reach cut off (cut_ends.h).
+  // Whether the slice omits surface ends cut by the camera's reach (cut_ends.h).
   bool drop_cut_ends = true;
   // SLAM drifts in height, roll and pitch too: with its poses the floor turns into walls
   // (docs/results.md, "Heights and tilts").

@@ -1,6 +1,5 @@
-// Surfaces that are seen at a slant: the top of a kerb, of a bed, of a step. Neighbouring rows meet
-// them so far apart in range that no noise window holds enough, and what is low shows only a row or
-// two of its front.
+// Surfaces seen at a slant: the top of a kerb, a bed or a step. Neighbouring rows meet them too far
+// apart in range for one noise window, and low ones show only a row or two of their front.
 #pragma once
 
 #include <span>
@@ -12,16 +11,16 @@
 
 namespace depthgrid {
 
-// The smallest sample of min_returns rows or more, one after the other, that are all nearer than
-// `nearer_than_m` and lie on one surface: from row to row their ranges change no more than on the
-// steepest surface that anything comes back from, and a noise window. kPassing when there are none.
-// Rows that are not usable are passed over. `samples` are the line's, one a row from `first_row`
-// on. Wrong pixels and those between two surfaces hardly ever follow on each other like this.
+// The smallest sample of min_returns or more consecutive rows that are all nearer than
+// `nearer_than_m` and on one surface: from row to row the range changes by at most a noise window
+// plus the change on the steepest surface that gives returns (kSteepestTangent). kPassing if there
+// are none. Unusable rows are skipped. `samples`: the line's, one per row from `first_row` on.
+// Wrong pixels and pixels between two surfaces hardly ever form such a sequence.
 float NearestSlanting(std::span<const float> samples, int first_row, const BearingLine& line,
                       const ReturnLimits& limits, const NoiseWindow& window, float nearer_than_m);
 
-// FindNearest, or where there is such a surface before that, this one: at the mean over the noise
-// window above its smallest sample.
+// FindNearest(), or a slanting surface before its result: then the mean over the noise window from
+// that surface's smallest sample.
 float FindNearestOrSlanting(std::span<const float> samples, int first_row, const BearingLine& line,
                             const ReturnLimits& limits, const NoiseWindow& window,
                             std::vector<float>& sorted, BearingReturns& returns);

@@ -1,5 +1,5 @@
-// The camera's height and tilt in the map, from what SLAM's pose says of them and from the floor
-// that is followed in the images (docs/math.md, "Height and tilt").
+// Blends the camera's height and tilt from SLAM's pose with those over the tracked floor
+// (docs/math.md, "Height and tilt").
 #pragma once
 
 #include "mapper/core/camera_stand.h"
@@ -11,17 +11,17 @@ class StandBlend {
  public:
   explicit StandBlend(double floor_z_m) : floor_z_m_(floor_z_m) {}
 
-  // What both say of a frame.
+  // Adds a frame's pose and stand.
   void Add(const Pose3& slam_from_camera, const CameraStand& over_floor);
 
-  // The pose moved in height and turned in roll and pitch towards `over_floor`, as far as SLAM was
-  // seen to drift; its base stays. The pose itself where SLAM does not err by more than the floor.
+  // The pose with height, roll and pitch moved towards `over_floor` in proportion to SLAM's drift;
+  // its base does not change. The pose itself if SLAM's errors do not exceed the floor's.
   Pose3 Placed(const Pose3& map_from_camera, const CameraStand& over_floor) const;
 
  private:
   double floor_z_m_;
   int frames_ = 0;
-  double height_square_m2_ = 0.0;  // sums over the frames, of how far the two differ
+  double height_square_m2_ = 0.0;  // sums over the frames of squared differences
   double tilt_square_rad2_ = 0.0;
 };
 
