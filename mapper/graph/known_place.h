@@ -1,5 +1,5 @@
-// What is made of a place to lay it over others, each part made when it is first asked for: a
-// search asks the same of a place for each of the places it could be.
+// Representations of a place for matching it with others, each computed on first use and cached: a
+// search needs them again for every candidate.
 #pragma once
 
 #include <deque>
@@ -21,21 +21,21 @@ struct CutScan {
 };
 std::vector<CutScan> CutScans(SurfelMap& map, const std::vector<MappedFrame>& frames,
                               const std::vector<int>& members, int middle);
-// What the members saw, as surfels.
+// The members' scans as surfels.
 SurfelMap SurfelsOfPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
                          int middle);
 
-// Frames are those that the place was asked for with, for as long as the place lives.
+// Always pass the frames that the place was constructed with (more may have been appended).
 class KnownPlace {
  public:
   KnownPlace(const std::vector<MappedFrame>& frames, int middle, const PlaceOptions& place,
              const OverlapOptions& overlap)
       : KnownPlace(frames, middle, place, overlap, static_cast<int>(frames.size())) {}
-  // As it was before frame `end`.
+  // The place as of before frame `end`.
   KnownPlace(const std::vector<MappedFrame>& frames, int middle, const PlaceOptions& place,
              const OverlapOptions& overlap, int end);
 
-  // Whether it is made of other frames, or they lie otherwise.
+  // False if made of other frames, or if their poses differ.
   bool operator==(const KnownPlace& other) const {
     return middle_ == other.middle_ && members_ == other.members_ && seen_by_ == other.seen_by_ &&
            poses_ == other.poses_;
@@ -43,7 +43,7 @@ class KnownPlace {
   int middle() const { return middle_; }
   const std::vector<int>& members() const { return members_; }
 
-  // `frames` as given at first, or more of them.
+  // `frames` as given to the constructor, or more of them.
   const WallPyramid& Walls(const std::vector<MappedFrame>& frames);
   const std::vector<Eigen::Vector2d>& Points(const std::vector<MappedFrame>& frames);
   const SurfelMap& Surfels(const std::vector<MappedFrame>& frames);
@@ -55,15 +55,15 @@ class KnownPlace {
   OverlapOptions overlap_;
   int middle_;
   std::vector<int> members_, seen_by_;
-  std::vector<Pose2> poses_;  // of the middle, the members and those it was seen by
+  std::vector<Pose2> poses_;  // of the middle, the members and seen_by_
   std::optional<WallPyramid> walls_;
   std::optional<std::vector<Eigen::Vector2d>> points_;
   std::unique_ptr<SurfelMap> surfels_;
   std::optional<SeenPlace> seen_;
-  double with_itself_ = 0.0;  // agreement, once seen
+  double with_itself_ = 0.0;  // agreement, valid with seen_
 };
 
-// The places that were asked for last.
+// Cache of the places used last.
 class KnownPlaces {
  public:
   KnownPlace& Of(KnownPlace place);

@@ -12,7 +12,8 @@
 namespace depthgrid {
 namespace {
 
-// Nobody gets so far within the frames of a place, unless there are few a second.
+// Frames farther apart are not of one place; within window_frames nobody gets so far, except at low
+// frame rates.
 constexpr double kPlaceReachM = 10.0;
 
 GridOptions PlaceGrid(const OverlapOptions& options) {
@@ -28,8 +29,8 @@ void RaiseRow(const SeenPlace::Finding* findings, std::size_t count, SeenPlace::
   }
 }
 
-// Raised all around walls, so that one look at a cell tells of its neighbourhood: along rows, then
-// across.
+// Dilates walls by reach_cells, along rows and then along columns, so that looking up one cell
+// suffices.
 void RaiseAroundWalls(int reach_cells, SeenPlace& place) {
   const auto width = static_cast<std::size_t>(place.geometry.width_cells);
   const auto height = static_cast<std::size_t>(place.geometry.height_cells);
@@ -45,7 +46,7 @@ void RaiseAroundWalls(int reach_cells, SeenPlace& place) {
   }
 }
 
-// The border is so wide that no wall lies near it.
+// The margin is so wide that dilation stays inside.
 void SetFindings(const OccupancyMap& map, int reach_cells, SeenPlace& place) {
   place.geometry = Widened(map.geometry, reach_cells);
   place.findings.assign(place.geometry.size(), SeenPlace::kUnseen);
@@ -80,7 +81,7 @@ std::vector<Eigen::Vector2d> HitsOf(const Scan& scan, const Pose2& middle_from_b
   return hits;
 }
 
-// What some scans saw, one by one.
+// Accumulates a SeenPlace scan by scan.
 class SeenSoFar {
  public:
   explicit SeenSoFar(const OverlapOptions& options)

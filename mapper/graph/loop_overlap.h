@@ -1,5 +1,5 @@
-// Does what two places saw agree when a loop lays them over each other? A false loop puts walls
-// into rooms; a true one puts walls on walls.
+// Tests a loop by overlaying the scans of its two places: a true loop puts walls on walls, a false
+// one walls into free space.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@
 namespace depthgrid {
 
 struct OverlapOptions {
-  // Scans around a frame that stand for its place: up to this many frames away, every `stride`-th.
+  // The place of a frame consists of every `stride`-th scan up to this many frames away.
   int window_frames = 20;
   int stride = 5;
   double resolution_m = 0.05;
-  // A point this near to a wall agrees: loops err by 2 cm and 0.6 degrees (6 cm at 6 m).
+  // A point this near to a wall agrees: errors of loops are 2 cm and 0.6 degrees (6 cm at 6 m).
   double tolerance_m = 0.1;
-  // Points of one place that the other one saw, as walls or as free; with fewer nothing is known.
+  // Least number of points of one place in cells that the other one saw; with fewer there is no
+  // result.
   int min_points = 100;
-  // Of those, the share that must lie on walls.
+  // Least share of those that lies on walls.
   double min_agreement = 0.7;
 
   void Visit(OptionsVisitor& v);
@@ -34,23 +35,23 @@ struct Overlap {
   }
 };
 
-// What a place saw, in base axes of the frame in its middle.
+// What a place's scans saw, in base axes of its middle frame.
 struct SeenPlace {
   enum Finding : std::uint8_t { kUnseen, kFree, kWall };
   std::vector<Eigen::Vector2d> points;  // obstacles
   GridGeometry geometry;
-  std::vector<Finding> findings;  // of each cell: a wall is within the tolerance, or else free
+  std::vector<Finding> findings;  // per cell; kWall: a wall is within the tolerance
 };
 
-// The frames whose scans stand for the place of one of them, as if there were none from `end` on.
-// Those that lie elsewhere do not, as where SLAM jumped.
+// The frames before `end` that make up the place of frame `middle`, without those elsewhere, as
+// after a jump of SLAM.
 std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middle,
                                const OverlapOptions& options, int end);
 SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
                    int middle, const OverlapOptions& options);
 Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second, const Pose2& first_from_second);
 
-// The same of all members, of every other of them and of those between.
+// SeenPlace of all members, of the even ones and of the odd ones.
 struct SeenInHalves {
   SeenPlace all, even, odd;
 };
@@ -58,18 +59,18 @@ SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
                               const std::vector<int>& members, int middle,
                               const OverlapOptions& options);
 
-// Both ways: points of the second place in the grid of the first and the other way round. Places
-// are drawn from the frames' current poses, which are good over a second or two.
+// In both directions: points of the second place in the grid of the first and vice versa. Places
+// are drawn with the current poses, which are accurate over a second or two.
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,
                   const OverlapOptions& options);
 
-// The same with these frames for the places.
+// The same with given members of the places.
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const std::vector<int>& first_members,
                   const std::vector<int>& second_members, const PlanarLoop& loop,
                   const OverlapOptions& options);
 
-// What a place agrees with itself by: every other of its scans against those between. Less than 1
-// where ranges are noisy or people walk, and a true loop cannot agree by more.
+// Agreement of a place with itself: its even scans against its odd ones. Below 1 with noisy ranges
+// or moving people; an upper limit for a true loop.
 Overlap OverlapWithItself(const SeenInHalves& place);
 
 bool Agrees(const Overlap& overlap, const OverlapOptions& options);

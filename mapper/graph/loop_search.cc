@@ -7,11 +7,11 @@
 namespace depthgrid {
 namespace {
 
-// With a narrow view, places looked at from more different headings have little in common.
+// Largest difference in heading: with a narrow view, more differing views have little in common.
 constexpr double kMaxTurnDeg = 60.0;
-// Beyond the window, so that places beside a way count.
+// Added to the window, so that places beside the path count.
 constexpr double kBesideM = 1.0;
-// Where the newest scans already lie on what was seen long ago, the adjustment sees it too.
+// No search if this share of the scan lies on old surfels: the adjustment associates them anyway.
 constexpr double kKnownShare = 0.5;
 
 bool IsSmall(const Pose2& pose, double within_m, double within_deg) {
@@ -60,7 +60,8 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
   v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this, in heading");
 }
 
-// The way over which two frames' estimates drifted apart: along the poses, or by way of one loop.
+// Path length over which two frames' estimates drifted apart: along the poses, or via one known
+// loop.
 double LoopSearch::DriftingM(const std::vector<PlanarLoop>& known, int first, int second) const {
   const auto along = [&](int a, int b) {
     return std::abs(way_m_[static_cast<std::size_t>(a)] - way_m_[static_cast<std::size_t>(b)]);
@@ -98,7 +99,7 @@ void LoopSearch::Walk(const std::vector<MappedFrame>& frames) {
   }
 }
 
-// Places that the query may be at, the likeliest first.
+// Old places where the query may be, nearest first.
 std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames,
                                         const std::vector<PlanarLoop>& known, int query) const {
   struct Ranked {
@@ -129,7 +130,7 @@ std::vector<int> LoopSearch::Candidates(const std::vector<MappedFrame>& frames,
   return candidates;
 }
 
-// Whether both want the map's newer part moved the same way.
+// Whether both loops imply the same correction.
 bool LoopSearch::Consents(const std::vector<MappedFrame>& frames, const PlanarLoop& a,
                           const PlanarLoop& b) const {
   const Pose2 by_a = PoseAt(frames, a.first) * a.first_from_second;
@@ -138,7 +139,7 @@ bool LoopSearch::Consents(const std::vector<MappedFrame>& frames, const PlanarLo
   return IsSmall(Between(by_a, by_b), options_.consent_m, options_.consent_deg);
 }
 
-// Where old places are near, the right correction would have shown one of them.
+// An unsuccessful search: with the right correction, an old place nearby should have been found.
 void LoopSearch::Unanswered() {
   if (waiting_.empty() || ++unanswered_ <= options_.most_unanswered) return;
   waiting_.clear();
@@ -158,7 +159,7 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
   Walk(frames);
   if (way_m_.back() < next_search_m_) return {};
   next_search_m_ = way_m_.back() + options_.every_m;
-  // The query lies so far back that what was seen on either side of it belongs to its place.
+  // The query lies back by reach_m, so that its place has frames on both sides.
   const double query_way_m = way_m_.back() - options_.place.reach_m;
   const auto at = [&](double way_m) {
     return static_cast<int>(std::lower_bound(way_m_.begin(), way_m_.end(), way_m) - way_m_.begin());
@@ -195,7 +196,7 @@ LoopSearch::Answer LoopSearch::AnswerTo(const std::vector<MappedFrame>& frames,
   return {};
 }
 
-// Whether enough consent now.
+// Adds the answer; returns whether enough loops agree now.
 bool LoopSearch::Take(const std::vector<MappedFrame>& frames, const Answer& answer) {
   if (!answer.loop) {
     Unanswered();
@@ -205,7 +206,7 @@ bool LoopSearch::Take(const std::vector<MappedFrame>& frames, const Answer& answ
   const Pose2 correction = Between(Between(PoseAt(frames, loop.first), PoseAt(frames, loop.second)),
                                    loop.first_from_second);
   if (IsSmall(correction, options_.min_correction_m, options_.min_correction_deg)) {
-    waiting_.clear();  // what they wanted is not wanted here
+    waiting_.clear();  // this place contradicts their correction
     return false;
   }
   if (!waiting_.empty() && !Consents(frames, waiting_.back(), loop)) waiting_.clear();

@@ -1,5 +1,5 @@
-// Loops that the mapper finds itself: has this place been seen before, and where does the map have
-// it? (docs/math.md, "Loops found by the mapper")
+// Loop detection by the mapper itself: finds whether the current place was seen before, and where
+// (docs/math.md, "Loops found by the mapper")
 #pragma once
 
 #include <memory>
@@ -17,12 +17,12 @@ class LoopSearch {
   LoopSearch(const LoopSearchOptions& options, const OverlapOptions& overlap)
       : options_(options), overlap_(overlap), matcher_(options, overlap) {}
 
-  // To be asked after each frame that was mapped: loops that came to be believed. `known` are those
-  // between frames of `frames` that the poses were adjusted by.
+  // Call after each mapped frame; returns newly accepted loops. `known`: loops between `frames`
+  // that the poses were adjusted with.
   std::vector<PlanarLoop> Find(const std::vector<MappedFrame>& frames,
                                const std::shared_ptr<const Scan>& newest,
                                const std::vector<PlanarLoop>& known, ReferenceMap& reference);
-  // The frames were moved.
+  // Call after the frames' poses were changed.
   void Forget();
 
  private:
@@ -34,12 +34,12 @@ class LoopSearch {
   double WindowRad(double way_m) const;
   bool Consents(const std::vector<MappedFrame>& frames, const PlanarLoop& a,
                 const PlanarLoop& b) const;
-  // Of the likeliest candidate that passes every test of a single place.
+  // The likeliest candidate that passes all tests of a single place.
   struct Answer {
     std::optional<PlanarLoop> loop;
-    double way_m = 0.0;  // over which the two drifted apart
+    double way_m = 0.0;  // path between the two places, over which drift accumulated
   };
-  // Which frame's place is asked for, when there were none from `end` on.
+  // A search for the place of `frame`, using frames before `end` only.
   struct Query {
     int frame = 0;
     int end = 0;
@@ -54,12 +54,12 @@ class LoopSearch {
   OverlapOptions overlap_;
   PlaceMatcher matcher_;
   KnownPlaces places_;
-  std::vector<double> way_m_;   // to each mapped frame
+  std::vector<double> way_m_;   // path length to each mapped frame
   std::vector<int> keyframes_;  // kept frames `every_m` apart
   double next_search_m_ = 0.0;
-  std::vector<Query> put_off_;       // that were not searched for while none waits
-  std::vector<PlanarLoop> waiting_;  // for more that consent
-  int unanswered_ = 0;               // searches since the first of them that found nothing
+  std::vector<Query> put_off_;       // postponed while no loop is waiting
+  std::vector<PlanarLoop> waiting_;  // loops waiting for more consenting ones
+  int unanswered_ = 0;               // unsuccessful searches since the first waiting loop
 };
 
 }  // namespace depthgrid

@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// The last frame on one side that is still within reach, from `begin` to before `end`.
+// The last frame on one side (step -1 or 1) within reach and within [begin, end).
 int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
                   const PlaceOptions& options, int begin, int end) {
   double way_m = 0.0;
@@ -100,7 +100,7 @@ std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frame
       cells.push_back(CellOf(hits.back(), resolution_m));
     }
   }
-  // The first of each cell, so that near walls do not outweigh far ones; row by row.
+  // The first hit of each cell, so that near walls do not outweigh far ones; row by row.
   constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   const GridGeometry geometry = BoundsOf(cells, resolution_m);
   std::vector<std::uint32_t> first(geometry.size(), kNone);

@@ -10,39 +10,38 @@
 namespace depthgrid {
 
 struct PlaceOptions {
-  // Frames belong to the place of the frame in their middle when the way to them is this short.
-  // With a narrow view it takes a few metres of them to tell one place from another.
+  // Frames belong to a place up to this path length and turn from its middle frame. With a narrow
+  // view a few metres are needed to distinguish places.
   double reach_m = 1.5;
   double turn_deg = 120.0;
-  int max_scans = 16;  // of them, evenly spread
+  int max_scans = 16;  // most scans used, evenly spread
   double resolution_m = 0.05;
 
   void Visit(OptionsVisitor& v);
 };
 
-// A place is told by what is near: what is seen farther off, in halls and outdoors, would only make
-// its grids large.
+// Range limit for places: farther returns, in halls and outdoors, would only make the grids large.
 constexpr double kPlaceSightM = 80.0;
-// What a scan shows within it.
+// The scan limited to kPlaceSightM.
 Scan WithinSight(Scan scan);
 
-// Where the mapped frame of this position is, map from base.
+// map_from_base of the mapped frame at index i.
 inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return FrameAt(frames, i).map_from_base;
 }
 
-// Positions among the mapped frames, in order of time. Frames whose scan was not kept do not count.
+// Indices of the mapped frames of a place, in order of time; kept frames only.
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options);
-// Only those from `begin` to before `end`.
+// Only those in [begin, end).
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options, int begin, int end);
 
-// The map that these scans draw.
+// The map drawn from the members' scans.
 OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
                        int middle, double resolution_m);
 
-// Where they hit, one point a cell.
+// The members' hits, one point per cell.
 std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frames,
                                            const std::vector<int>& members, int middle,
                                            double resolution_m);

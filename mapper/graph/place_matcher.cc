@@ -13,17 +13,17 @@
 namespace depthgrid {
 namespace {
 
-// What the search leaves to the precise match.
+// Accuracy of the search, as prior of the precise match: m, m, rad.
 const Eigen::Vector3d kSearchSigma(0.05, 0.05, 0.02);
 constexpr std::size_t kIterations = 4;
-// After so many steps this share of the agreement that is asked for at last must be there. Of 729
-// places of rooms that look alike 247 agree in the end, none of which this refuses, and 328 of the
-// others (docs/tried.md, "What a search costs").
+// Share of the final agreement that is required after 1 and 2 steps. Of 729 places in rooms that
+// look alike, 247 agree in the end, none of which this rejects early; it does reject 328 others
+// (docs/tried.md, "What a search costs").
 constexpr std::array<double, 2> kShareAfterSteps = {0.9, 0.97};
-// The scans of a place are matched against the same noisy map: their information is worth so much
-// less (docs/math.md, "Fusion": 2-4).
+// Divisor of the matches' information, as the scans of a place are matched against the same noisy
+// map (docs/math.md, "Fusion": 2-4).
 constexpr double kOverconfidence = 4.0;
-// A loop is never believed beyond this.
+// Least sigma of a loop.
 constexpr double kLeastSigmaM = 0.02;
 constexpr double kLeastSigmaRad = 0.005;
 
@@ -33,7 +33,8 @@ struct JointMatch {
   double explained = 0.0;
 };
 
-// All scans of `second`'s place against the map of `first`'s, as one small motion of it.
+// Matches all scans of the second place against the first one's map and combines them to one small
+// motion.
 JointMatch MatchTogether(SurfelMap& first_map, const std::vector<CutScan>& scans,
                          const Pose2& first_from_second) {
   JointMatch joint;
@@ -64,7 +65,7 @@ std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFram
   return LoopBetween(frames, first_place, second_place, half_m, half_rad);
 }
 
-// Each test refuses by itself, so their order is that of what they cost for what they refuse.
+// The tests are independent; they are ordered by cost relative to how many places they reject.
 std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFrame>& frames,
                                                     KnownPlace& first, KnownPlace& second,
                                                     double half_m, double half_rad) const {
@@ -86,7 +87,7 @@ std::optional<PlanarLoop> PlaceMatcher::LoopBetween(const std::vector<MappedFram
   const auto may_agree = [&](const Pose2& first_from_second, std::size_t steps) {
     return steps > kShareAfterSteps.size() || agree(first_from_second, kShareAfterSteps[steps - 1]);
   };
-  SurfelMap surfels = first.Surfels(frames);  // cutting scans teaches it their noise
+  SurfelMap surfels = first.Surfels(frames);  // a copy, as CutScans() updates its noise model
   if (!Refine(frames, surfels, second.members(), may_agree, loop)) return std::nullopt;
   if (!agree(loop.first_from_second, 1.0)) return std::nullopt;
   const NotNear elsewhere{best.place_from_query};
@@ -101,7 +102,7 @@ bool PlaceMatcher::Agree(const std::vector<MappedFrame>& frames, KnownPlace& fir
   const Overlap overlap = OverlapOf(first.Seen(frames), second.Seen(frames), first_from_second);
   if (!Agrees(overlap, overlap_)) return false;
   if (overlap.agreement() >= share) return true;
-  for (KnownPlace* place : {&first, &second}) {  // the worse of them counts
+  for (KnownPlace* place : {&first, &second}) {  // relative to the lower of the two
     if (overlap.agreement() >= share * place->AgreementWithItself(frames)) return true;
   }
   return false;
@@ -132,8 +133,8 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
     if (!may_agree(loop.first_from_second, steps)) return false;
   }
   if (match.explained < options_.min_explained) return false;
-  // A direction that nothing is seen of has an infinite one, or of rounding alone a huge one: from
-  // the eigenvalues, since an inverse may then be negative.
+  // The covariance from eigenvalues: with an unobserved direction, a plain inverse may have
+  // negative variances from rounding.
   const SymmetricEigen known = EigenOf(match.information / kOverconfidence);
   if (!(known.values[0] > 0.0)) return false;
   const Eigen::Matrix3d covariance =

@@ -13,7 +13,7 @@ namespace depthgrid {
 namespace {
 
 constexpr float kWallProb = 0.5F;
-// The widest square is 32 cells, 1.6 m of a 5 cm grid: wider ones hold a wall nearly everywhere.
+// The largest square is 32 cells, 1.6 m at 5 cm: larger ones contain a wall nearly everywhere.
 constexpr int kMaxLevels = 6;
 constexpr int kTopLevel = kMaxLevels - 1;
 constexpr int kWithin = (1 << kTopLevel) - 1;
@@ -28,9 +28,9 @@ void RaiseRow(const std::uint8_t* scores, std::size_t count, std::uint8_t* into)
   for (std::size_t i = 0; i < count; ++i) into[i] = std::max(into[i], scores[i]);
 }
 
-static_assert(std::endian::native == std::endian::little);  // bytes of a word in their order
+static_assert(std::endian::native == std::endian::little);  // byte k of a word is column k
 
-// The points' cells at one rotation.
+// Cells of the points at one rotation.
 std::vector<Cell> CellsOf(const std::vector<float>& x_m, const std::vector<float>& y_m,
                           const PointCells& at) {
   std::vector<Cell> cells(x_m.size());
@@ -41,7 +41,7 @@ std::vector<Cell> CellsOf(const std::vector<float>& x_m, const std::vector<float
   return cells;
 }
 
-// A square of translations of one rotation, and more than what any of them can score.
+// A square of translations at one rotation, with an upper bound of their scores.
 struct Candidate {
   LatticeStep step;  // its lower-left corner
   int bound = -1;
@@ -124,7 +124,7 @@ class Search {
       best_ = candidate.step;
       return;
     }
-    // Corners outside the window stay below any score.
+    // Corners outside the window keep the bound -1.
     std::array<Candidate, 4> children{};
     for (int corner = 0; corner < 4; ++corner) {
       LatticeStep step = candidate.step;
@@ -141,7 +141,7 @@ class Search {
   std::optional<NotNear> except_;
   SearchLattice lattice_;
   std::vector<std::vector<Cell>> cells_;  // one entry a rotation
-  int best_score_ = 0;                    // only more than this is of interest
+  int best_score_ = 0;                    // scores must exceed this
   std::optional<LatticeStep> best_;
 };
 
@@ -170,9 +170,9 @@ WallPyramid::WallPyramid(const OccupancyMap& map) : resolution_m_(map.geometry.r
   FindSquares();
 }
 
-// The squares of a level are made of four of the level below: the larger of two side by side, then
-// of two such rows. A cell's lower-left square lies `half` cells to the left and below in the level
-// below, whose geometry begins that much later.
+// A square of this level is the maximum of four of the level below. Each score of the level below
+// enters the squares that start at its cell and `half` cells to the left of and below it, hence the
+// larger geometry.
 void WallPyramid::AddLevel() {
   const int half = 1 << (levels() - 1);
   const Level& below = levels_.back();
@@ -203,7 +203,7 @@ void WallPyramid::FindSquares() {
   const auto width = static_cast<std::size_t>(squares_.width);
   const std::size_t size = width * static_cast<std::size_t>(squares_.height);
   squares_.score.assign(size << (2 * kTopLevel), 0);
-  for (int within = 0; within <= kWithin; ++within) {  // so that what is written lies together
+  for (int within = 0; within <= kWithin; ++within) {  // for locality of writes
     for (int y = within; y < level.geometry.height_cells; y += kWithin + 1) {
       const auto row = static_cast<std::size_t>((y >> kTopLevel) + kSideBySide) * width;
       const std::uint8_t* from =
@@ -238,7 +238,7 @@ std::vector<int> WallPyramid::SumsOfSquares(const std::vector<Cell>& cells, cons
   return sums;
 }
 
-// Bytes are summed as long as they cannot overflow, four in a word.
+// Sums four bytes per word, over as few points that no byte overflows.
 WallPyramid::FourByFour WallPyramid::SumsOfFourByFour(const std::vector<Cell>& cells,
                                                       const Cell& first) const {
   constexpr std::size_t kTogether = 64;
@@ -246,7 +246,7 @@ WallPyramid::FourByFour WallPyramid::SumsOfFourByFour(const std::vector<Cell>& c
   const auto width = static_cast<std::size_t>(squares_.width);
   const int size = squares_.width * squares_.height;
   FourByFour sums{};
-  std::array<int, kTogether> at;  // found apart, as that vectorises
+  std::array<int, kTogether> at;  // separate loop, so that it vectorises
   for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, cells.size());
     for (std::size_t i = begin; i < end; ++i) {
@@ -288,7 +288,7 @@ int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int leve
   const auto width = static_cast<unsigned>(l.geometry.width_cells);
   const auto height = static_cast<unsigned>(l.geometry.height_cells);
   const auto outside = static_cast<unsigned>(l.geometry.size());
-  std::array<unsigned, kTogether> at;  // found apart, as that vectorises
+  std::array<unsigned, kTogether> at;  // separate loop, so that it vectorises
   int sum = 0;
   for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, cells.size());

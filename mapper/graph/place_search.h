@@ -1,5 +1,5 @@
-// Where do points lie in a place's map? Branch and bound over all poses of a window (Hess et al.
-// 2016; Olson 2009 for the pyramid), exact: the same pose as trying them all.
+// Finds the pose of points in a place's map by branch and bound over a window (Hess et al. 2016;
+// Olson 2009 for the pyramid). Exact: the same pose as an exhaustive search.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace depthgrid {
 
-// A place's walls as scores, 2 in a wall's cell, 1 beside one, and for each power of two the
-// largest score of the square of that many cells up and to the right.
+// Scores of a place's cells, 2 in a wall, 1 beside one, and for each level the largest score in the
+// square of 2^level cells up and to the right.
 class WallPyramid {
  public:
   explicit WallPyramid(const OccupancyMap& map);
@@ -22,27 +22,27 @@ class WallPyramid {
   double resolution_m() const { return resolution_m_; }
   // The largest score of cells x..x+2^level-1, y..y+2^level-1; 0 outside.
   int Best(const Cell& cell, int level) const;
-  // The sum over these cells, shifted; where it is no more than what is of interest, any number
-  // between the two.
+  // The sum over these cells, shifted. If it is at most `of_interest`, any number from the sum to
+  // `of_interest` may be returned.
   int Sum(const std::vector<Cell>& cells, const Cell& shift, int level, int of_interest) const;
 
-  // The same of squares of the highest level side by side, `count` in each direction from `shift`
-  // on: the sum of square (x, y) is at y * count + x.
+  // The sums for count x count adjacent squares of the highest level, from `shift` on: square (x,
+  // y) is at y * count + x.
   std::vector<int> SumsOfSquares(const std::vector<Cell>& cells, const Cell& shift,
                                  int count) const;
 
  private:
-  // The highest level's scores in another order: of cells that are whole squares apart together, so
-  // that four by four squares are four short rows.
+  // The highest level's scores reordered: cells that are multiples of a square apart are adjacent,
+  // so that four by four squares are four short rows.
   struct Squares {
-    int width = 0, height = 0;        // of such a grid, with what is outside around it
+    int width = 0, height = 0;        // of one such grid, including a border
     std::vector<std::uint8_t> score;  // [y within a square][x within a square][y][x]
   };
   struct Level {
     GridGeometry geometry;
-    std::vector<std::uint8_t> score;  // and one more, of all that is outside
+    std::vector<std::uint8_t> score;  // and one more, for cells outside
   };
-  static constexpr int kSideBySide = 4;  // squares that are summed together, in each direction
+  static constexpr int kSideBySide = 4;  // squares summed together in each direction
   using FourByFour = std::array<int, kSideBySide * kSideBySide>;
 
   void AddLevel();
@@ -58,12 +58,12 @@ class WallPyramid {
 constexpr int kBestWallScore = 2;
 
 struct PlaceWindow {
-  Pose2 place_from_query;  // its middle
+  Pose2 place_from_query;  // centre
   double half_m = 1.0;
   double half_rad = 0.2;
 };
 
-// Poses near to this one are not looked at.
+// Poses near this one are excluded.
 struct NotNear {
   Pose2 place_from_query;
   double within_m = 0.5;
@@ -71,7 +71,7 @@ struct NotNear {
 };
 
 struct PlaceMatch {
-  bool found = false;  // whether any pose scores as much as the least asked for
+  bool found = false;  // whether any pose reaches `least_score`
   Pose2 place_from_query;
   double score = 0.0;  // mean over the points, 0..1
 };

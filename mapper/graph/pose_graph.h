@@ -19,7 +19,7 @@ struct PoseConstraint {
 };
 
 struct PoseGraphOptions {
-  // Where Huber's cost turns from quadratic to linear, in standard deviations.
+  // Residual at which Huber's cost becomes linear, in standard deviations.
   double huber_sigmas = 3.0;
   int max_iterations = 50;
 
@@ -33,8 +33,8 @@ struct PoseGraphSolution {
   double cost = 0.0;
 };
 
-// Eq. 6 with the standard relative pose from^-1 * to: the measured one less the estimated one,
-// translation first, angle wrapped.
+// Eq. 6 with the standard relative pose from^-1 * to: measured minus estimated, translation first,
+// angle wrapped.
 Eigen::Vector3d ConstraintError(const Pose2& from, const Pose2& to, const Pose2& from_from_to);
 
 // Derivatives of ConstraintError by (x, y, yaw) of `from` and of `to`.

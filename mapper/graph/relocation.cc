@@ -10,15 +10,15 @@
 namespace depthgrid {
 namespace {
 
-// What is usual is the mean of so many frames. Of the last ten it would be what a new room, entered
-// just before SLAM was lost there, shows: nearly nothing, and then any guess is right.
+// Frames in the mean of usual_share_. With ten, a new room entered just before the loss would lower
+// it to nearly nothing, and any guess would pass.
 constexpr int kUsualFrames = 1000;
-// The mean over the last ten frames or so.
+// Rate of the running mean recent_share_: about ten frames.
 constexpr double kNewShare = 0.1;
 constexpr int kFramesToJudge = 15;
-// Beyond the window, what could be seen from within.
+// Added to the window: range at which surfaces are seen from within it.
 constexpr double kSightM = 6.0;
-// The search's points, at most: more say the same.
+// Most points of the search; more give the same result.
 constexpr std::size_t kMostPoints = 400;
 
 std::vector<Eigen::Vector2d> Thinned(const std::vector<Eigen::Vector2d>& points) {
@@ -28,8 +28,9 @@ std::vector<Eigen::Vector2d> Thinned(const std::vector<Eigen::Vector2d>& points)
   return thinned;
 }
 
-// Beyond what is walked and turned in the time of a loss. Chosen, of no measurement: SLAM comes
-// back into its own map to 0.1 m and 3 degrees (docs/results.md, "Short losses").
+// Steps larger than this, plus what can be walked and turned during the loss, mean that SLAM
+// restarted. Chosen, not measured: SLAM relocalises in its own map to 0.1 m and 3 degrees
+// (docs/results.md, "Short losses").
 constexpr double kStepM = 0.5;
 constexpr double kStepRad = 0.5;
 constexpr double kTurnRadps = 2.0;
@@ -75,7 +76,7 @@ void Relocation::Lost(double duration_s, const std::optional<Pose2>& step) {
       unjudged_ || duration_s >= (elsewhere ? options_.min_lost_epoch_s : options_.min_lost_s);
 }
 
-// SLAM that finds back into its own map does not come back there.
+// SLAM that relocalises in its own map makes no such step.
 bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
   return step.translation().norm() > kStepM + options_.speed_mps * duration_s ||
          std::abs(step.yaw_rad) > kStepRad + kTurnRadps * duration_s;
@@ -84,12 +85,12 @@ bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
 bool Relocation::Begins(double share, int next_frame) {
   const double lost_s = std::exchange(unjudged_s_, 0.0);
   if (!std::exchange(unjudged_, false) || !options_.use || next_frame == 0) return false;
-  // Lost again before the first loss was understood: all of it is one new part.
+  // Lost again during the search: both losses form one new part.
   if (active_) {
     lost_s_ += lost_s;
     return false;
   }
-  // A loop that came with the frame itself says where it is.
+  // A loop reported with this frame already determines its place.
   if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
   active_ = true;
   gave_up_ = false;
@@ -130,7 +131,7 @@ bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
   return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge && IsUsual(recent_share_);
 }
 
-// Whether both put a frame to the same place.
+// Whether both corrections move the frame to the same pose.
 bool Relocation::IsSame(const Pose2& a, const Pose2& b, const Pose2& map_from_base) const {
   const Pose2 off = Between(a * map_from_base, b * map_from_base);
   return off.translation().norm() < options_.consent_m &&

@@ -1,5 +1,5 @@
-// Where is the camera, when SLAM was lost for seconds and comes back elsewhere? What was seen since
-// is laid over all that was seen before (docs/math.md, "Wide search after a loss").
+// Finds the camera after SLAM was lost for seconds and came back elsewhere: matches what was seen
+// since with all that was seen before (docs/math.md, "Wide search after a loss").
 #pragma once
 
 #include <memory>
@@ -14,37 +14,36 @@ namespace depthgrid {
 
 struct RelocationOptions {
   bool use = true;
-  // Odometry slips and SLAM errs by a few degrees within a frame. When the map suddenly explains
-  // little of a scan, headings are tried up to this far from the prediction; 0: none.
+  // Slips of odometry or SLAM by a few degrees within a frame: when the map suddenly explains
+  // little of a scan, headings up to this far from the prediction are tried; 0: none.
   double slip_deg = 12.0;
-  // Without a pose for less than this, the last motion or SLAM's own relocalisation is near enough
-  // for matching.
+  // Least time without pose for a search. After less, the last motion or SLAM's own relocalisation
+  // is near enough for matching.
   double min_lost_s = 2.0;
-  // The same where SLAM's poses go on, in a new epoch or far beyond their usual motion, farther
-  // away than anybody went meanwhile, as SLAM that begins anew has its origin where it likes: so
-  // long the last motion is known.
+  // The same where SLAM's poses continue too far away to have been reached, in a new epoch or far
+  // beyond their usual motion, as SLAM that restarts may choose any origin. Up to this time the
+  // last motion can be extrapolated.
   double min_lost_epoch_s = 0.5;
-  // A guess is right when the map explains at least this share of what it usually did before the
+  // A guess is accepted when the map explains at least this share of what it usually did before the
   // loss.
   double min_share = 0.6;
-  // The search reaches so far around the last pose, and farther by what may have been walked since;
-  // every heading is tried.
+  // Radius of the search around the last pose, plus what may have been walked since at speed_mps;
+  // all headings are tried.
   double window_m = 2.0;
   double speed_mps = 1.0;
   double max_window_m = 12.0;
-  // A search every so often: the way or the turn brings something new into view.
+  // Path length or turn between searches, after which something new is in view.
   double every_m = 0.5;
   double every_deg = 30.0;
   int most_searches = 12;
-  // What was seen since, as far back as this, is searched for together.
+  // The scans since the loss, as far back as this, are matched together.
   PlaceOptions place = {.reach_m = 3.0, .turn_deg = 360.0, .max_scans = 24};
-  double min_score = 0.8;          // of the search, 0..1
-  double max_second_score = 0.85;  // share of it that a pose elsewhere may reach
-  // Of what was seen before and since, the share that must agree: right places to 0.997 and
-  // better, offices that are alike to 0.966, two rectangular rooms to 0.992 (docs/results.md, "Lost
-  // and found").
+  double min_score = 0.8;          // least score of the search, 0..1
+  double max_second_score = 0.85;  // greatest share of the score of any pose elsewhere
+  // Least agreement of what was seen before and since. Right places reach 0.997 and more, similar
+  // offices 0.966, two rectangular rooms 0.992 (docs/results.md, "Lost and found").
   double min_agreement = 0.995;
-  // So many searches in a row must find the same, to this.
+  // Number of consecutive searches that must agree, to consent_m and consent_deg.
   int consenting = 2;
   double consent_m = 0.2;
   double consent_deg = 2.0;
@@ -54,38 +53,37 @@ struct RelocationOptions {
 
 class Relocation {
  public:
-  // `gates` are those of loops: how well two places must fit.
+  // `gates`: the limits for loops, by which two places are tested.
   Relocation(const RelocationOptions& options, const LoopSearchOptions& gates,
              const OverlapOptions& overlap)
       : options_(options), matcher_(gates, overlap) {}
 
-  // A matched frame in ordinary times: what the map explains of it.
+  // Adds the explained share of a matched frame in normal operation.
   void Explained(double share);
-  // So long there was no pose before this frame's; where that may be of a SLAM that began anew, its
-  // poses differ by this.
+  // Reports a loss: time without pose before this frame and, if SLAM may have restarted, the
+  // difference between its poses.
   void Lost(double duration_s, const std::optional<Pose2>& step);
-  // Whether the guess since the last loss is to be doubted: the first scan after it, of which the
-  // map explains this share, tells. Begins the search then; the next mapped frame is the first of
-  // its part.
+  // Decides, from the map's explained share of the first scan after a loss, whether the guess is
+  // doubtful. If so, begins the search; `next_frame` is the first mapped frame of the new part.
   bool Begins(double share, int next_frame);
-  // Whether a match explains what a right place does.
+  // Whether a match's explained share is that of a right place.
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   double usual_share() const { return usual_share_; }
   bool active() const { return active_; }
-  // Whether where the last loss led to is a guess still, sought or given up.
+  // Whether the place after the last loss is still a guess, searched for or given up.
   bool unsettled() const { return active_ || gave_up_; }
   int first_frame() const { return first_frame_; }
 
-  // After an adjustment with these loops: one that joins frames before and after the loss says
-  // where the latter are (of two losses in a row, for all since the first).
+  // Call after an adjustment with these loops: one that joins frames before and after the loss ends
+  // the search (after two losses in a row, for all frames since the first).
   void Joined(const std::vector<PlanarLoop>& loops);
 
-  // All since first_frame() was moved to another guess.
+  // Call when all frames since first_frame() were moved to another guess.
   void GuessMoved();
 
-  // To be asked after each frame that was mapped while active: the motion (new map from map) of all
-  // frames from first_frame() on, once that is known. Ends the search when it is, when the guess
-  // turns out right, or when there is no hope left.
+  // Call after each frame mapped while active: returns the correction (new map from map) of all
+  // frames from first_frame() on, once found. The search ends then, when the guess proves right, or
+  // after too many searches.
   std::optional<Pose2> Find(const std::vector<MappedFrame>& frames,
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
 
@@ -100,22 +98,22 @@ class Relocation {
   RelocationOptions options_;
   PlaceMatcher matcher_;
   double usual_share_ = 0.0;
-  int explained_frames_ = 0;  // of which it is the mean, at most kUsualFrames
+  int explained_frames_ = 0;  // frames in that mean, at most kUsualFrames
   double unjudged_s_ = 0.0;   // the longest loss since the last scan
-  bool unjudged_ = false;     // such that a guess is to be doubted
+  bool unjudged_ = false;     // whether that loss makes the guess doubtful
   bool active_ = false;
   bool gave_up_ = false;
   int first_frame_ = 0;
-  std::vector<PlanarLoop> held_;  // of the last adjustment with loops
+  std::vector<PlanarLoop> held_;  // loops of the last adjustment with loops
   double lost_s_ = 0.0;
   double way_m_ = 0.0;   // since first_frame_
-  double next_m_ = 0.0;  // when to search again: way, or turn
+  double next_m_ = 0.0;  // path length and turn of the next search
   double turn_rad_ = 0.0;
   double next_rad_ = 0.0;
   int searches_ = 0;
-  double recent_share_ = 0.0;     // of the newest frames on what was seen before the loss
-  std::optional<Pose2> waiting_;  // what the last search found
-  int agreed_ = 0;                // searches in a row that found it
+  double recent_share_ = 0.0;  // running mean share of new scans on surfaces seen before the loss
+  std::optional<Pose2> waiting_;  // result of the last search
+  int agreed_ = 0;                // consecutive searches that found it
 };
 
 }  // namespace depthgrid

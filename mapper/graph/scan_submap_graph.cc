@@ -136,7 +136,7 @@ Adjustment AdjustScansAndSubmaps(const std::vector<MappedFrame>& frames,
       std::copy_n(solution.poses.begin(), frames.size(), adjustment.map_from_base.begin());
       return adjustment;
     }
-    // The worst ones together, so that many false loops do not cost as many rounds.
+    // Rejects the worst ones together, so that many false loops do not need as many rounds.
     for (std::size_t i = 0; i < loops.size(); ++i) {
       const double chi2 = ConstraintChi2(solution.poses, AsConstraint(loops[i]));
       if (chi2 > max_chi2 && chi2 >= 0.5 * worst) adjustment.loop_accepted[i] = false;

@@ -18,7 +18,7 @@ struct GraphOptions {
   double submap_link_rad = 0.03;     //
   double scan_step_m = 0.004;        // between one scan and the next
   double scan_step_rad = 0.003;      //
-  double epoch_speed_m_per_s = 0.3;  // across epochs: what is known without SLAM, per second
+  double epoch_speed_m_per_s = 0.3;  // across epochs: uncertainty without SLAM, per second
   double epoch_speed_rad_per_s = 0.5;
   // A loop farther than this from the optimised poses, in standard deviations, is taken out and the
   // rest optimised again.
@@ -27,19 +27,20 @@ struct GraphOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// What was measured of a scan when it was inserted: its pose relative to the scan before it and to
-// the submaps it went into. Corrections of the map do not change measurements.
+// A scan's poses relative to the previous scan and to its submaps, as measured at insertion.
+// Corrections of the map do not change them.
 struct ScanMeasurement {
   Pose2 previous_from_scan;               // identity for the first scan
   std::array<Pose2, 2> submap_from_scan;  // the newest submap, and the one before it
 };
 
-// Of scan `scan`, given the poses of all up to it. A submap's pose is that of its first scan.
+// The measurement of scan `scan`, given the poses of all scans up to it. A submap's pose is that of
+// its first scan.
 ScanMeasurement MeasurementOf(const std::vector<Pose2>& map_from_base, int scan,
                               int scans_per_submap);
 
-// The poses (of `frames`, as the map has them now) that agree best with measurements and loops. One
-// measurement a frame. Frames are not moved when there are no loops.
+// The poses of `frames` (initially as in the map) that agree best with measurements, one per frame,
+// and loops. Without loops the frames are not moved.
 Adjustment AdjustScansAndSubmaps(const std::vector<MappedFrame>& frames,
                                  const std::vector<ScanMeasurement>& measurements,
                                  const std::vector<PlanarLoop>& loops, int scans_per_submap,
