@@ -1,5 +1,5 @@
-// The first frames of a run and what they saw, to be gone through again (docs/math.md, "The
-// first frames again" and "What moves").
+// The first frames of a run with their scans, stored to be mapped again (docs/math.md, "The first
+// frames again" and "What moves").
 #pragma once
 
 #include <vector>
@@ -12,18 +12,19 @@ namespace depthgrid {
 class Beginning {
  public:
   struct Seen {
-    Frame frame;  // without what its sensor gave
+    Frame frame;  // without image and scans
     FrameScans scans;
   };
 
-  // `wanted`: whether anybody will go through them.
+  // `wanted`: whether to store frames at all.
   explicit Beginning(bool wanted) : lasts_(wanted) {}
 
-  // The next frame, while it lasts: with more than 300 frames it is over. Going through more would
-  // hold up a frame for too long.
+  // Stores the next frame. With more than 300 frames all are dropped, as mapping more again would
+  // delay a frame too long.
   void Add(const Frame& frame, const FrameScans& scans);
-  // Something that moved: where it was seen, and in frames between two such all that lies from the
-  // one place to the other. Frames are counted from the first one added. False if none is here.
+  // Removes a moving object from the stored scans: in its sectors and, in frames between two of
+  // them, in their common range of bearings. Sector::frame counts from the first frame added. False
+  // if no stored frame is affected.
   bool TakeOut(const std::vector<MovingObjects::Sector>& object);
   void End();
   bool lasts() const { return lasts_; }

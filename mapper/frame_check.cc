@@ -11,7 +11,7 @@
 namespace depthgrid {
 namespace {
 
-// What rounding to floats, or to four digits, leaves of a unit quaternion's norm.
+// Deviation of a unit quaternion's norm after rounding to floats or to four digits.
 constexpr double kNormSlack = 1e-3;
 
 std::string NameOf(const Frame& frame) { return "frame " + std::to_string(frame.index); }
@@ -73,11 +73,11 @@ void RequirePriorFrame(const std::string& place, const MappedFrame& frame) {
   for (const auto& scan : {frame.scan, frame.obstacles}) RequireKept(place, *scan);
 }
 
-// Depths in millimetres would be a map in which all is free. No depth camera measures to 100 m; one
-// value all over is a renderer's far plane.
+// Depths in millimetres would map everything as free. No depth camera measures to 100 m; a constant
+// value is a renderer's far plane.
 void RequireMetres(const Frame& frame, const DepthImage& depth) {
   constexpr float kBeyondAnyM = 100.0F;
-  // Not one that goes into the width: one column would be looked at over and over.
+  // Not a divisor of the width, which would sample the same columns again and again.
   constexpr std::size_t kPrime = 251;
   const std::size_t stride = kPrime + (depth.width_px % static_cast<int>(kPrime) == 0 ? 1 : 0);
   float least = INFINITY, most = 0.0F;
@@ -113,8 +113,8 @@ void RequireDepth(const Frame& frame, const std::optional<PinholeCamera>& camera
   RequireMetres(frame, depth);
 }
 
-// What is taken for a camera's pose, but is the base's own: about z, so that it looks up. A scan
-// that was made from an image comes with a stand.
+// Detects a base pose given as camera pose: its rotation is about z only, so the camera would look
+// up. Scans made from images are exempt; they come with a stand.
 void RequireHeading(const Frame& frame) {
   if (!frame.scan || frame.stand || !frame.slam_from_camera) return;
   if (!LooksUpOrDown(*frame.slam_from_camera)) return;

@@ -1,4 +1,4 @@
-// What a frame must hold to be mapped, and what else a mapper is given.
+// Validation of frames and other inputs of the mapper.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace depthgrid {
 
-// Throws InputError, "frame 40: ...", for a frame that the mapper cannot use (IncrementalMapper::
-// AddFrame says what that is). `camera`: of the depth images, if there are any.
+// Throws InputError, "frame 40: ...", for a frame that the mapper cannot use (see
+// IncrementalMapper::AddFrame). `camera`: of the depth images, if any.
 void RequireSound(const Frame& frame, const std::optional<PinholeCamera>& camera);
 // Throws InputError, "slam_final: ..." or "prior map: ...", as Finish() and StartFrom() say.
 void RequireSoundFinal(const std::vector<std::optional<Pose3>>& slam_final, std::size_t frames);

@@ -13,28 +13,29 @@
 namespace depthgrid {
 namespace {
 
-// The last motion goes on for this long at most; after a longer gap it says nothing.
+// Longest gap over which the last motion is extrapolated.
 constexpr double kNearS = 0.5;
-// From one frame to the next, at 10 Hz.
+// Longest gap that counts as one frame: 10 Hz.
 constexpr double kNextS = 0.1;
-// Speeds change: after so long it is off by all of kEpochSigma, before with the square of the time.
+// Gap at which the extrapolation's uncertainty reaches kEpochSigma; it grows with the square of the
+// time.
 constexpr double kSurpriseS = 0.3;
-// And over no more of its steps: it took no time then, but for a stamp's rounding.
+// Longest extrapolation in steps: a shorter step took no time but for a stamp's rounding.
 constexpr double kMostExtrapolatedSteps = 100.0;
 
 bool IsNear(const FrameHistory& history, const FrameRecord& record) {
   return history.newest().stamp_s - record.stamp_s <= kNearS;
 }
 
-// Of SLAM's poses, both of which are there.
+// SLAM's motion; both records must have poses.
 Pose2 MotionOf(const FrameRecord& from, const FrameRecord& to) {
   return Between(BaseOf(*from.slam_from_camera), BaseOf(*to.slam_from_camera));
 }
 
-// A second at 30 Hz: SLAM's own motion over it is good to millimetres.
+// A second at 30 Hz, over which SLAM's motion is accurate to millimetres.
 constexpr int kLoopReachFrames = 30;
 
-// Ten seconds: farther away no correction is better than the one known at the time.
+// Ten seconds: a more distant correction is no better than the online one.
 constexpr int kFinalReachFrames = 300;
 
 }  // namespace
@@ -80,7 +81,7 @@ bool FrameHistory::WasLost() const {
 }
 
 bool FrameHistory::OutranUsualMotion() const {
-  constexpr double kFar = 3.0;  // chosen, of no measurement
+  constexpr double kFar = 3.0;  // chosen, not measured
   const FrameRecord* last = PosedBefore(newest());
   if (last == nullptr || !newest().slam_from_camera) return false;
   const auto frames = static_cast<double>(&newest() - last);
@@ -99,11 +100,11 @@ int FrameHistory::FramesToNewest() const {
   const FrameRecord& before = records_[records_.size() - 2];
   const int steps =
       StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
-  if (steps <= kFewSteps) return steps;  // what was usual is asked for where it counts alone
+  if (steps <= kFewSteps) return steps;  // UsualMotionSoFar() is costly and only needed below
   return MovingStepsIn(steps, MotionOf(before, newest()), UsualMotionSoFar());
 }
 
-// Of the last thousand frames before the newest: a pause is rare, and asks for it.
+// Over the last thousand frames before the newest; computed on demand, as pauses are rare.
 UsualMotion FrameHistory::UsualMotionSoFar() const {
   constexpr std::size_t kMostFrames = 1000;
   UsualMotion usual;
@@ -131,7 +132,7 @@ const FrameRecord* FrameHistory::NearestMapped(const FrameRecord& record, int re
 
 namespace {
 
-// A mapped frame that stands for one of the loop's, and how they lie to each other.
+// A mapped frame that stands in for a frame of the loop, and their relative pose.
 struct Anchor {
   int mapped = 0;
   Pose2 anchor_from_frame;
@@ -158,7 +159,7 @@ Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_sl
                         gap_s <= kNextS, std::min(1.0, std::pow(gap_s / kSurpriseS, 2))};
   const FrameRecord* later = last;
   const FrameRecord* before = history.PosedBefore(*later);
-  // An epoch of one frame has no motion: that before it is the newest known.
+  // An epoch of one frame has no motion: use the last motion before it.
   while (before != nullptr && before->epoch != later->epoch && IsNear(history, *before)) {
     later = before;
     before = history.PosedBefore(*later);
@@ -212,7 +213,7 @@ std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
     if (const FrameRecord* mapped = history.NearestMapped(record, kFinalReachFrames)) {
       const Pose2& base = map_from_base_of_mapped[static_cast<std::size_t>(mapped->mapped)];
       const Pose2 slam_from_base = BaseOf(*mapped->slam_from_camera);
-      // Left as it was, bit for bit, where nothing moved.
+      // Unchanged bit for bit where nothing moved.
       if (!(mapped->map_from_slam * slam_from_base == base)) {
         map_from_slam = base * Inverse(slam_from_base);
       } else {

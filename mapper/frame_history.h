@@ -1,5 +1,4 @@
-// What the mapper remembers of its input frames, and how it finds their poses again after the map
-// was corrected.
+// Records of the input frames, from which their poses are recomputed after corrections of the map.
 #pragma once
 
 #include <optional>
@@ -18,10 +17,11 @@ struct FrameRecord {
   int index = 0;  // Frame::index
   double stamp_s = 0.0;
   std::optional<Pose3> slam_from_camera;
-  int epoch = 0;        // as SlamEpochs counts
-  int mapped = -1;      // position among the mapped frames, -1 if not inserted
-  Pose2 map_from_slam;  // the correction as it was known at the time
-  // Over the floor that is followed in the images; empty where it is not, and the pose's counts.
+  int epoch = 0;        // as counted by SlamEpochs
+  int mapped = -1;      // index among the mapped frames, -1 if not mapped
+  Pose2 map_from_slam;  // the correction at that time
+  // Tilt and height over the floor tracked in the images; empty without tracking: the pose's are
+  // used.
   std::optional<CameraStand> stand;
 };
 
@@ -29,7 +29,7 @@ class FrameHistory {
  public:
   // Starts the record of a frame. Throws InputError for an index that came before.
   void Start(const Frame& frame);
-  // The newest frame's pose is not reached from the one before by the motion between them.
+  // Makes the newest frame begin an epoch: its pose minus the previous one is no motion.
   void BeginEpoch() { records_.back().epoch = epochs_.BeginAtLast(); }
 
   const std::vector<FrameRecord>& records() const { return records_; }
@@ -37,28 +37,26 @@ class FrameHistory {
   FrameRecord& newest() { return records_.back(); }
   // Null for an index that was never given.
   const FrameRecord* Find(int frame_index) const;
-  // The last frame before one that has a pose; null if there is none.
+  // The last frame with a pose before `record`; null if there is none.
   const FrameRecord* PosedBefore(const FrameRecord& record) const;
-  // Whether SLAM comes back with the newest frame: to poses of another epoch, or after frames
-  // without any. A recording that paused lost nothing.
+  // Whether SLAM returns with the newest frame after frames without pose or in a new epoch. A pause
+  // of the recording is no loss.
   bool WasLost() const;
-  // Whether SLAM's newest pose lies far beyond where its usual motion leads in the frames since the
-  // last one.
+  // Whether SLAM's newest motion is far larger than usual for the number of frames since the last
+  // pose.
   bool OutranUsualMotion() const;
-  // From the record before to the newest, in usual steps of time: more than one where the recording
-  // paused and SLAM moved on meanwhile (MovingStepsIn); one where SLAM was lost or began another
-  // epoch.
+  // Frames that the newest motion counts as: more than one after a pause in which SLAM moved
+  // (MovingStepsIn); 1 after a loss or in a new epoch.
   int FramesToNewest() const;
-  // The mapped frame closest in order to a frame, itself if it is mapped, of the same epoch and at
-  // most `reach` input frames away; null if there is none.
+  // The mapped frame of the same epoch nearest in input order (possibly itself), at most `reach`
+  // frames away; null if there is none.
   const FrameRecord* NearestMapped(const FrameRecord& record, int reach) const;
 
  private:
   std::vector<FrameRecord> records_;
-  // Frame::index and position in records_, ordered by index, which mostly is the order they come
-  // in.
+  // Frame::index and position in records_, sorted by index, mostly also the order of arrival.
   using Positions = std::vector<std::pair<int, std::size_t>>;
-  // The first entry that is not before this index.
+  // The first entry whose index is not less.
   Positions::const_iterator PlaceOf(int frame_index) const;
   UsualMotion UsualMotionSoFar() const;
 
@@ -66,28 +64,28 @@ class FrameHistory {
   SlamEpochs epochs_;
 };
 
-// Where the newest frame is if the last motion goes on; `map_from_slam` is the correction of the
-// frame before it.
+// The newest frame's pose if the last motion continues; `map_from_slam` is the previous frame's
+// correction.
 struct Extrapolation {
   Pose2 map_from_base;
-  bool near = false;         // the last pose was so short ago that this is near it
-  bool next = false;         // and that no camera goes elsewhere
-  double sigma_share = 1.0;  // of kEpochSigma, how well it is known
+  bool near = false;         // the last pose is recent enough for this to be near the truth
+  bool next = false;         // the last pose is one frame ago (0.1 s at most)
+  double sigma_share = 1.0;  // uncertainty as a multiple of kEpochSigma
 };
 Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
 
-// A loop between two frames as one between two mapped frames, by SLAM's own motion within an epoch.
-// Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped` is the
-// position the newest frame will have, or -1.
+// Converts a loop between two frames to one between mapped frames, using SLAM's motion within an
+// epoch. Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped`:
+// index that the newest frame will have, or -1.
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
                                       int newest_mapped);
 
-// A frame's camera in the map: SLAM's pose corrected in the plane, its height and tilt blended
-// with those over the floor where that is followed.
+// A frame's camera pose in the map: SLAM's pose with the planar correction, height and tilt blended
+// with those over the tracked floor, if any.
 Pose3 CameraPose(const FrameRecord& record, const Pose2& map_from_slam, const StandBlend& stands);
 
 // Each frame's camera pose in the map, given those of the mapped frames: a frame that was not
-// mapped takes the correction of the nearest mapped one of its epoch, else the one it had online.
+// mapped uses the correction of the nearest mapped one of its epoch, else its online correction.
 std::vector<std::optional<Pose3>> FinalPoses(const FrameHistory& history,
                                              const std::vector<Pose2>& map_from_base_of_mapped,
                                              const StandBlend& stands);

@@ -1,4 +1,4 @@
-// Measures a frame and its stages with clocks given from outside.
+// Measures the time of a frame and its stages with injected clocks.
 #pragma once
 
 #include <functional>
@@ -7,18 +7,18 @@
 
 namespace depthgrid {
 
-// Only FrameReport::times depends on them; without either all times stay zero.
+// Used for FrameReport::times only; unless both are set, all times stay zero.
 struct FrameClocks {
-  // Processor time of the calling thread, microseconds. Mostly a system call (2 us on a virtual
-  // machine: docs/bench.md), so a frame asks for it twice.
+  // CPU time of the calling thread, microseconds. Usually a system call (2 us on a virtual machine:
+  // docs/bench.md), so it is read only twice per frame.
   std::function<double()> cpu_us;
-  // Time that passes, microseconds: a few hundredths of a microsecond. It tells a frame's stages.
+  // Wall time, microseconds. A call costs a few hundredths of a microsecond; used for the stages.
   std::function<double()> steady_us;
 
   explicit operator bool() const { return cpu_us && steady_us; }
 };
 
-// Adds the time that passes from construction to destruction to a sum.
+// Adds the wall time from construction to destruction to a sum.
 class StageTimer {
  public:
   StageTimer(const FrameClocks& clocks, double& sum_us)
@@ -35,8 +35,8 @@ class StageTimer {
   double start_us_;
 };
 
-// A whole frame's processor time at its end, and what the stages took of it: their shares of the
-// time that passed. Stages are measured within its life.
+// On destruction, sets a frame's CPU time and scales its stages' wall times to shares of it. Stage
+// timers must live within its lifetime.
 class FrameTimer {
  public:
   FrameTimer(const FrameClocks& clocks, StageTimes& times)

@@ -16,7 +16,7 @@ int HitCount(const Scan& scan) {
                                         [](const Beam& beam) { return beam.hit; }));
 }
 
-// How well a run's start in a prior map is known; SLAM's own frame may be off by more.
+// Accuracy of the start in a prior map: m, m, rad. SLAM's own frame may be off by more.
 const Eigen::Vector3d kStartSigma(0.05, 0.05, 0.03);
 
 }  // namespace
@@ -48,7 +48,7 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
   RequireSound(prior);
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     MappedFrame& frame = prior.frames[i];
-    // Its poses are all that is known of how it moved: no more of SLAM's errors is in them.
+    // SLAM's motion is replaced by that of the final poses, without SLAM's errors.
     if (i > 0) {
       frame.slam_motion = Between(prior.frames[i - 1].map_from_base, frame.map_from_base);
     }
@@ -57,21 +57,21 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
                                 Eigen::Matrix3d::Zero());
     }
   }
-  // How its last frame and the first to come lie to each other is for the match to say.
+  // Only the match determines the pose of the first new frame relative to the last prior one.
   if (state_->reference) state_->reference->BeginPart(PartPlace::kKnown);
   state_->has_prior = true;
   state_->prior_frames = static_cast<int>(prior.frames.size());
   state_->mapped.StartFrom(std::move(prior.frames));
   state_->fixed_map = prior.fixed;
   state_->prior_start = prior.map_from_slam;
-  state_->beginning.End();  // a finished map makes up for what SLAM errs by
+  state_->beginning.End();  // in a finished map, SLAM's errors are corrected from the start
 }
 
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   RequireSound(frame, state_->camera);
   FrameReport report;
   {
-    const FrameTimer total(state_->clocks, report.times);  // tells when it ends
+    const FrameTimer total(state_->clocks, report.times);  // writes the times on destruction
     state_->Map(frame, report);
   }
   return report;
@@ -90,7 +90,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
                                         FrameReport& report) {
   if (scans.matched) report.beams = HitCount(*scans.matched);
   CloseLoops(frame, scans, report);
-  if (!frame.slam_from_camera) return;  // SLAM is lost: nothing is known of this frame
+  if (!frame.slam_from_camera) return;  // SLAM is lost: no estimate
   Prediction prediction = Predict(scans.matched, report);
   Match(scans.matched, prediction, report);
   prediction = AfterSlip(scans.matched, prediction, report);
@@ -122,7 +122,7 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   }
   report.stand = scans.stand;
   const bool follows_floor = options.scan.floor == FloorSource::kImage;
-  // Of SLAM trusted alone the poses stay as they are.
+  // With SLAM trusted alone its poses are not changed.
   if (follows_floor && scans.stand && frame.slam_from_camera && !options.fusion.TrustsSlamAlone()) {
     history.newest().stand = scans.stand;
     stands.Add(*frame.slam_from_camera, *scans.stand);
@@ -130,9 +130,9 @@ FrameScans IncrementalMapper::State::ScansOf(const Frame& frame, FrameReport& re
   return scans;
 }
 
-// Loop events come before the frame's pose is used. How SLAM corrected itself (a new epoch) is not
-// followed: the loops correct the map, and the frame is placed in it by its own loop or, failing
-// that, stays where the motion before leads.
+// Handles loops before the frame's pose is used. SLAM's own correction (a new epoch) is not
+// adopted: the loops correct the map, and the frame is placed by its own loop or else by the
+// previous motion.
 void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& scans,
                                           FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
@@ -166,7 +166,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   if (provisional) Anchor({newest, 0.0});
 }
 
-// Poses and map corrected together while the run goes on: how SLAM errs, where that is seen.
+// Adjusts poses and map during the run; returns SLAM's noise if it could be estimated.
 std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
   const Adjustment adjustment =
       loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kRefine, errors.Mapped());
@@ -185,7 +185,7 @@ std::vector<PlanarLoop> IncrementalMapper::State::FoundLoops(const FrameScans& s
   return loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
 }
 
-// Those that the mapper finds itself. The frame's online estimate stays as it was given.
+// Loops found by the mapper itself. The frame's reported estimate is not changed.
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
   if (!(report.inserted || report.well_seen)) return;
@@ -200,7 +200,7 @@ void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& r
   if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
 }
 
-// The first scan after a loss says whether the guess was near enough.
+// The first scan after a loss decides whether the guess is doubted.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
   if (history.WasLost()) {
@@ -211,7 +211,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
     }
     relocation.Lost(report.stamp_s - before.stamp_s, step);
   }
-  if (report.beams == 0) return;  // nothing seen, nothing told
+  if (report.beams == 0) return;  // without returns there is nothing to judge by
   const double share = report.match.found ? report.match.score : 0.0;
   if (relocation.Begins(share, mapped.size())) {
     reference->BeginPart(PartPlace::kGuessed);
@@ -220,7 +220,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   }
 }
 
-// All that was mapped from a frame on, as one.
+// Moves all frames mapped from index `first` on, rigidly.
 void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
   std::vector<Pose2> map_from_base;
   for (int i = 0; i < mapped.size(); ++i) {
@@ -231,7 +231,7 @@ void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
   MoveTo(map_from_base, {}, first);
 }
 
-// All that was mapped since the loss moves to where it belongs.
+// Moves all frames mapped since the loss once the search has found their place.
 void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
   if (!relocation.active() || !(report.inserted || report.well_seen)) return;
@@ -243,7 +243,7 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   report.relocated = true;
 }
 
-// The newest pose is the newest mapped frame's.
+// Sets corrected poses; the filter's correction follows the newest mapped frame.
 void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
                                       const Eigen::MatrixXd& covariance,
                                       const std::optional<int>& moved_apart) {
@@ -258,7 +258,7 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
   const Pose2& after = mapped.back().map_from_base;
   if (filter_epoch == record.epoch) {
     filter.SetCorrection(after * Inverse(BaseOf(*record.slam_from_camera)));
-  } else {  // frames without a scan came since, in a newer epoch: they move along
+  } else {  // a newer epoch began with frames without a scan: move along
     filter.SetCorrection(after * Inverse(before) * filter.map_from_slam());
   }
   errors.Break();
@@ -344,13 +344,13 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   MappedFrame frame = AsMapped(fused.map_from_base);
   frame.match = report.match;
   history.newest().mapped = mapped.size();
-  // Where nothing is matched nothing can speak against a place.
+  // Without matching (SLAM trusted alone) scans count as explained.
   std::optional<double> explained = 1.0;
   if (reference) explained = report.match.found ? report.match.score : 0.0;
-  // Loops that came with a frame end at it.
+  // Frames that loops refer to are always kept.
   const bool ends_loops = report.loops_accepted + report.loops_rejected > 0;
   if (ends_loops) explained.reset();
-  // Where it lies to what was seen before a loss that is not understood is a guess.
+  // During the search after a loss, do not tie to frames from before it.
   const int from = relocation.active() ? relocation.first_frame() : 0;
   const bool matches = reference && report.match.found;
   const auto matched = matches ? reference->MatchedParts() : std::span<const MapPart>();
@@ -359,7 +359,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   report.well_seen = !added.kept();
   if (!reference) return;
   if (added.kept()) {
-    // What a jittering SLAM is off by in this frame alone corrects nothing.
+    // SLAM's jitter in this frame is no correction of the state.
     const Pose2 corrected =
         prediction.map_from_base *
         Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
@@ -376,7 +376,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
   frame.frame = record.index;
   frame.stamp_s = record.stamp_s;
   frame.map_from_base = map_from_base;
-  // Where the guess after a loss is doubted, so is SLAM's motion over it.
+  // If the guess after a loss is doubted, SLAM's motion over it is not used.
   const bool doubted = relocation.active() && mapped.size() == relocation.first_frame();
   if (!doubted && !mapped.empty() && !mapped.back().of_prior_map()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);

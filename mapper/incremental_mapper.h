@@ -42,7 +42,7 @@ struct PriorMap {
   // drives: later drives count more (GridOptions::earlier_scans). WriteMapped() saves
   // MapperResult::mapped or CurrentMapped(), and ReadMapped() returns it numbered like this
   // (mapper/io/mapped_files.h, docs/examples/second_drive.cc); without a file, PriorNumbers() gives
-  // the numbers (mapper/core/drives.h). Only number, stamp, pose and scans of a frame are used.
+  // the numbers (mapper/core/drives.h). Number, stamp, pose and scans of a frame suffice.
   std::vector<MappedFrame> frames;
   // Pose of the new SLAM frame in the map, accurate to a few centimetres and degrees; FindStart()
   // in mapper/map_start.h finds it. A larger error is not corrected later.

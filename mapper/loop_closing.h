@@ -1,5 +1,4 @@
-// From SLAM's loop events to corrected poses: project to the plane, test against what was seen,
-// adjust.
+// From SLAM's loop closures to corrected poses: projection to the plane, overlap test, adjustment.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +15,12 @@ namespace depthgrid {
 
 struct LoopOptions {
   bool use = true;
-  // Whether a loop must lay what its two places saw over each other.
+  // Whether a loop must pass the overlap test.
   bool verify = true;
   OverlapOptions overlap;
-  // With more mapped frames than this a loop only bends the chain of poses while the run goes on,
-  // and what was seen is laid over each other at the end. Adjusting all of it holds up a frame: for
-  // 0.3 s at 4,300 frames, 0.4 s at 17,700 (docs/tried.md, "Loops that hold up a frame").
+  // With more mapped frames than this, loops only bend the chain of poses during the run, and
+  // surfels are adjusted at the end. A full adjustment delays a frame by 0.3 s at 4,300 frames, 0.4
+  // s at 17,700 (docs/tried.md, "Loops that hold up a frame").
   int bend_frames = 4000;
   LoopSearchOptions search;
   SlideSearchOptions slide;
@@ -30,29 +29,29 @@ struct LoopOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// The loops known so far that passed the test, and the adjustments they led to.
+// Collects the loops that passed the test and adjusts poses with them.
 class LoopCloser {
  public:
   explicit LoopCloser(const LoopOptions& options) : options_(options) {}
 
   struct Outcome {
     bool adjusted = false;
-    std::vector<Pose2> map_from_base;  // of all frames given, when adjusted
-    Eigen::MatrixXd covariance;        // as of Adjustment, of the frames asked for
-    int accepted = 0;                  // of the new events
+    std::vector<Pose2> map_from_base;  // of all frames given; only if adjusted
+    Eigen::MatrixXd covariance;        // as Adjustment::covariance, for `asked`
+    int accepted = 0;                  // among the new loops
     int rejected = 0;
-    std::vector<PlanarLoop> held;  // all that the adjustment was made with, old ones included
+    std::vector<PlanarLoop> held;  // all loops accepted by the adjustment, old ones included
   };
-  // `frames` are the mapped frames; the newest input frame may be the last of them, provisionally,
-  // to be placed by its loops.
+  // `frames`: the mapped frames; the newest input frame may be the last of them, provisionally, to
+  // be placed by its loops (`newest_is_last`).
   Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
                 ReferenceMap& reference, std::span<const int> asked);
-  // Loops that the mapper found itself. They are kept when the adjustment with all loops takes them
-  // in and still lays what their places saw over each other.
+  // Adds loops that the mapper found itself. They are kept only if the adjustment with all loops
+  // accepts them and their places then still pass the overlap test.
   Outcome Add(const std::vector<PlanarLoop>& found, const std::vector<MappedFrame>& frames,
               ReferenceMap& reference, std::span<const int> asked);
-  // Everything once more, with the loops known so far.
+  // Adjusts everything again with the loops known so far.
   Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference,
                        AdjustEffort effort, std::span<const int> asked) const {
     return reference.Adjust(frames, loops_, effort, asked);

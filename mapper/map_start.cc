@@ -16,48 +16,48 @@
 namespace depthgrid {
 namespace {
 
-// Scans that say where a run begins: so many, each of another view, so that a camera with a narrow
-// one has looked around a little.
+// Number and spacing of the first views: different enough that a narrow camera has looked around a
+// little.
 constexpr int kStartScans = 8;
 constexpr double kNextViewM = 0.3;
 constexpr double kNextViewRad = RadFromDeg(12.0);
-// SLAM's drift over the scans that are laid over the map together.
+// Longest distance of the first views, which limits SLAM's drift within them.
 constexpr double kStartPathM = 3.0;
-// And over those that say it more exactly; how far SLAM may have drifted in between.
+// The same for the refinement by fewer views, and the largest shift by it, due to that drift.
 constexpr double kFirstPathM = 1.0;
 constexpr double kMostShiftM = 0.7;
 
-// Of the best place's fit or agreement: what reaches it may be the place as well.
+// Share of the best fit or agreement that makes another place ambiguous.
 constexpr double kUncertainShare = 0.9;
-// The trial is over then.
+// Length of the trial.
 constexpr std::size_t kTrialFrames = 400;
 constexpr double kTrialPathM = 6.0;
-// The place that fitted first is taken when it agrees so well beside the best: SLAM's frame is
-// mostly the map's, and of alike offices one that the robot is not in may agree better where it
-// leaves the map. A right place had 0.89 of the best, a wrong one 0.71 at most (docs/results.md,
-// "Going on in a finished map").
+// Share of the best agreement at which the first place is preferred: SLAM's frame is mostly the
+// map's, and among similar offices a wrong one may agree better where the robot leaves the map. A
+// right place had 0.89 of the best, wrong ones at most 0.71 (docs/results.md, "Going on in a
+// finished map").
 constexpr double kFirstShare = 0.8;
-// The way back must agree as well as the way there, but for chance: with 1 some starts before one
-// wall stayed up to 0.2 m off that are right with this.
+// Share of the forward agreement that the way back must reach. Below 1 to allow for chance: with 1
+// some starts before a single wall stayed up to 0.2 m off.
 constexpr double kRetracedShare = 0.98;
-// Places that led this near to each other are one.
+// Candidates that end this near to each other are one place.
 constexpr double kSamePlaceM = 0.3;
 constexpr double kSamePlaceRad = RadFromDeg(5.0);
 
-// Of 68 right starts over two laser logs, drawn rooms and a rendered one, some among moved
-// furniture, none had less than 0.72, of 81 in another room or outside of the map 68
+// Least agreement. Of 68 right starts over two laser logs, drawn rooms and a rendered one, some
+// with moved furniture, none had less than 0.72; of 81 in another room or outside the map 68 had
 // (docs/formats.md, "Going on in a finished map").
 constexpr double kLeastAgreement = 0.7;
-// A fit that is nearly as good elsewhere tells of eight more of them where the agreement is less
-// than this, as it was of 15 right ones: two of these had such a fit.
+// Agreement below which a nearly equal fit elsewhere makes the place uncertain. This finds eight
+// more wrong starts; of the 15 right ones below it, two had such a fit.
 constexpr double kSureAgreement = 0.85;
-// Whoever went less has looked from one place only: more is asked for.
+// After a shorter path only one viewpoint was seen and limits are stricter.
 constexpr double kShortReachM = 1.0;
 constexpr double kShortUncertainShare = 0.8;
 
 double Way(const Pose2& motion) { return motion.translation().norm(); }
 
-// Frames that are there already.
+// A source of frames already collected.
 class CollectedFrames final : public FrameSource {
  public:
   CollectedFrames(const std::vector<Frame>& frames, const std::optional<PinholeCamera>& camera)
@@ -77,7 +77,7 @@ class CollectedFrames final : public FrameSource {
   std::size_t next_ = 0;
 };
 
-// The first frames with a pose and a scan, of one epoch of SLAM's, read as far as is asked for.
+// The first frames with a pose and a scan in one SLAM epoch, read on demand.
 class FirstFrames {
  public:
   FirstFrames(FrameSource& source, const ScanOptions& options)
@@ -94,7 +94,7 @@ class FirstFrames {
       const FrameScans scans = scanner_.ScansOf(*frame);
       if (!scans.obstacles) continue;
       frame->depth.reset();
-      // The scanner writes its scans again once nobody holds them.
+      // Holding the scans keeps the scanner from reusing them.
       frame->scan = scans.obstacles;
       frame->matched_scan = scans.matched;
       frame->stand = scans.stand;
@@ -130,7 +130,7 @@ std::vector<PlacedScan> FirstViews(FirstFrames& frames) {
   return views;
 }
 
-// Over which SLAM has hardly drifted.
+// The scans of the first metre, over which SLAM has hardly drifted.
 std::vector<PlacedScan> FirstMetre(const std::vector<PlacedScan>& scans) {
   std::vector<PlacedScan> first;
   for (const PlacedScan& scan : scans) {
@@ -140,8 +140,8 @@ std::vector<PlacedScan> FirstMetre(const std::vector<PlacedScan>& scans) {
   return first;
 }
 
-// The same place by the first views alone. Few views fit in more places than many: one that is not
-// near the place found says nothing.
+// Refines the place with the first views alone. Few views fit at more places than many, so a result
+// that is not near is ignored.
 FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
                   const std::vector<PlacedScan>& scans) {
   const std::vector<PlacedScan> first = FirstMetre(scans);
@@ -157,8 +157,8 @@ FoundPlace Nearer(const FoundPlace& found, const OccupancyMap& map,
 }
 
 struct Tried {
-  Pose2 map_from_slam;       // where it began
-  Pose2 last_map_from_slam;  // where it led
+  Pose2 map_from_slam;       // at the first frame
+  Pose2 last_map_from_slam;  // after the last frame
   Pose2 map_from_base;       // of the last frame
   double agreement = 0.0;
   double against = 0.0;
@@ -189,8 +189,8 @@ bool LedElsewhere(const Tried& a, const Tried& b) {
   return AreApart(a.map_from_base, b.map_from_base, kSamePlaceM, kSamePlaceRad);
 }
 
-// The first views may say little of where they are: one wall. Later ones have told, and the way
-// back from there leads to where it began.
+// The first views may determine their place poorly, as before one wall, while later ones do:
+// localises backwards from the end to the start.
 Pose2 Retraced(const Tried& best, const PriorMap& prior, const DistanceField& walls,
                const std::vector<Frame>& frames, const MapperOptions& options) {
   std::vector<Frame> back(frames.rbegin(), frames.rend());
@@ -203,7 +203,7 @@ Pose2 Retraced(const Tried& best, const PriorMap& prior, const DistanceField& wa
   return as_good ? retraced.last_map_from_slam : best.map_from_slam;
 }
 
-// SLAM's noise adds up along the way of a robot that stands.
+// Not the path length, to which SLAM's noise adds even if the robot stands.
 double ReachOf(const std::vector<Frame>& frames) {
   double reach_m = 0.0;
   for (const Frame& frame : frames) {
@@ -214,15 +214,15 @@ double ReachOf(const std::vector<Frame>& frames) {
   return reach_m;
 }
 
-// Where the way back ends, the first views may fit plainly worse: among furniture that was moved it
-// goes astray.
+// Whether the first views fit at the retraced start; among moved furniture the way back may go
+// astray.
 bool FitsThere(const OccupancyMap& map, const std::vector<PlacedScan>& views,
                const Pose2& map_from_slam, const Pose2& map_from_other) {
   const std::vector<PlacedScan> first = FirstMetre(views);
   return FitsAsWell(FitAt(map, first, map_from_slam), FitAt(map, first, map_from_other));
 }
 
-// The first metres mapped from each place. One that is taken as it is given stays.
+// Localises the first metres from each candidate place and chooses the best.
 void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
             const std::vector<PlacedScan>& views, const MapperOptions& options, MapStart& start) {
   double way_m = 0.0;
@@ -278,7 +278,8 @@ bool MapStart::contradicted() const { return trial && trial->against > kMuchAgai
 
 namespace {
 
-// `place_of` finds it, with the map and the first views; what is seen then may move it so far.
+// `place_of` finds the place from map and first views; the trial may move it by at most
+// `most_moved_m`.
 template <typename PlaceOf>
 std::optional<MapStart> StartAt(const PriorMap& prior, FrameSource& source,
                                 const MapperOptions& options, double most_moved_m,

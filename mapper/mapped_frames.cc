@@ -76,7 +76,7 @@ void MappedFrames::ForgetMotionTo(int position) {
 std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
                                     const std::vector<Pose2>& map_from_base) {
   std::vector<MappedFrame> kept;
-  std::optional<Pose2> skipped = Pose2{};  // SLAM's motion since the last kept one
+  std::optional<Pose2> skipped = Pose2{};  // SLAM's motion since the last kept frame
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::optional<Pose2>& step = frames[i].slam_motion;
     if (!frames[i].kept()) {

@@ -1,4 +1,4 @@
-// The frames that were mapped, and their scans: kept for the final map, or for a while only.
+// The mapped frames with their scans, kept for the final map or only for a while.
 #pragma once
 
 #include <optional>
@@ -13,30 +13,30 @@ namespace depthgrid {
 
 class MappedFrames {
  public:
-  // The newest frames have their scans whether these are kept or not: what is being mapped may be
-  // drawn again, and where it lies may be searched for.
+  // The newest `recent_frames` have their scans even if tied, as active submaps may be redrawn and
+  // places searched.
   MappedFrames(const KeepOptions& options, int recent_frames);
 
   const std::vector<MappedFrame>& all() const { return frames_; }
   bool empty() const { return frames_.empty(); }
   int size() const { return static_cast<int>(frames_.size()); }
   const MappedFrame& back() const { return frames_.back(); }
-  // Of these, those to which SLAM's pose stood.
+  // Number of these at which SLAM stood.
   int standing() const { return standing_frames_; }
 
-  // Those of a prior map.
+  // Begins with the frames of a prior map.
   void StartFrom(std::vector<MappedFrame> prior);
-  // The frame with its scans, for now.
+  // The frame with its scans, without adding it.
   MappedFrame WithScans(MappedFrame frame, const FrameScans& scans);
-  // The frame and its scans, kept unless its place is well seen already. `explained` is the share
-  // of the scan that the map explains; empty: it is kept wherever it is. `matched`: what it was
-  // matched against. What was seen before the frame at `from` does not count.
+  // Adds the frame, whose scans are kept unless its place is well seen already. `explained`: share
+  // of the scan that the map explains; empty: always keep. `matched`: the parts it was matched
+  // against. Frames before index `from` are not considered.
   const MappedFrame& Add(MappedFrame frame, const FrameScans& scans,
                          const std::optional<double>& explained,
                          std::span<const MapPart> matched = {}, int from = 0);
-  // Corrected poses, one a frame. Matches of frames that are tied move with them.
+  // Sets corrected poses, one per frame. Matches of tied frames move with them.
   void MoveTo(const std::vector<Pose2>& map_from_base);
-  // What SLAM says of the motion to this frame is wrong.
+  // Drops SLAM's motion to this frame, which is wrong.
   void ForgetMotionTo(int position);
 
  private:
@@ -56,17 +56,17 @@ class MappedFrames {
   Archive recent_;
 };
 
-// The kept ones alone at these poses (one a frame of `frames`), each with SLAM's motion from the
-// kept one before it.
+// The kept frames at the given poses (one per frame of `frames`), each with SLAM's motion from the
+// previous kept one.
 std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
                                     const std::vector<Pose2>& map_from_base);
 
-// A loop between frames whose scans are kept: ends that are tied move to what they are tied to.
-// Empty where that is one frame: both move with it, and no loop can change how they lie.
+// Moves tied ends of a loop to the kept frames they are tied to. Empty if that is the same frame,
+// as no loop can then change their relative pose.
 std::optional<PlanarLoop> BetweenKept(const PlanarLoop& loop,
                                       const std::vector<MappedFrame>& frames);
 
-// The same loops between positions among the kept frames. Their ends are kept.
+// The loops with indices among the kept frames. Their ends must be kept.
 std::vector<PlanarLoop> AmongKept(std::vector<PlanarLoop> loops,
                                   const std::vector<MappedFrame>& frames);
 

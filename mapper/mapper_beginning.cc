@@ -7,7 +7,7 @@
 
 namespace depthgrid {
 
-// `newest` has begun, but is not placed yet.
+// Maps the first frames again. `newest` has been started but not placed yet.
 void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
                                               const std::optional<MotionSpread>& spread) {
   State again(options, camera, clocks, oracle);
@@ -27,10 +27,10 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
   begin(newest, report);
   if ((spread || rounds.any_was_due()) && !again.mapped.empty()) again.AdjustBetweenFrames();
   again.errors.Break();
-  // These know nothing of poses in the map.
+  // These do not depend on poses in the map.
   again.scanner = std::move(scanner);
   again.moving = std::move(moving);
-  again.moving.RenameEpoch(again.history.newest().epoch);  // slips may have been found elsewhere
+  again.moving.RenameEpoch(again.history.newest().epoch);  // slips may differ this time
   again.stands = std::move(stands);
   again.rounds = rounds;
   again.first_spread = spread;
@@ -38,8 +38,8 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
   *this = std::move(again);
 }
 
-// What was drawn though it moves carries the map along until it is left out: of the first frames it
-// is taken out once that shows.
+// Moving objects that were drawn distort the map: once detected, they are removed from the first
+// frames, which are mapped again.
 void IncrementalMapper::State::TakeOutMistaken(const Frame& newest, FrameReport& report) {
   bool any = false;
   for (const std::vector<MovingObjects::Sector>& object : moving.TakeMistaken()) {

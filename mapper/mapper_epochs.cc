@@ -7,14 +7,15 @@
 namespace depthgrid {
 namespace {
 
-// Of kEpochSigma: how well the place after a slip is known before it is matched once more.
+// Uncertainty of the pose after a slip, before matching it again, as a multiple of kEpochSigma.
 constexpr double kSlipSigmaShare = 0.3;
 
-// SLAM comes back into its own map to a centimetre. Where the map explains little of what is seen
-// then, a match is made against what only looks alike and is surer than it is right.
+// Uncertainty of SLAM's own pose (multiple of kEpochSigma) where the map explains little of the
+// scan: SLAM relocalises to a centimetre, while a match would be to what only looks alike, and
+// overconfident.
 constexpr double kWordSigmaShare = 0.1;
-// Unless a pose within kEpochSigma of it explains the scan as well as scans usually are
-// (docs/tried.md, "Lost and found").
+// Not so if a pose within kEpochSigma explains this share of what is usual (docs/tried.md, "Lost
+// and found").
 constexpr double kWhollyUsual = 0.9;
 
 Eigen::Matrix3d AddedBy(double sigma_share) { return Squared(sigma_share * kEpochSigma); }
@@ -29,14 +30,14 @@ bool IncrementalMapper::State::SameEpoch() const {
   return !filter_epoch || *filter_epoch == history.newest().epoch;
 }
 
-// SLAM's pose with the correction that stood before it.
+// SLAM's newest pose with the previous correction.
 Pose2 IncrementalMapper::State::CarriedOn() const {
   return filter.Predict(BaseOf(*history.newest().slam_from_camera), history.newest().stamp_s)
       .map_from_base;
 }
 
-// Two guesses: the camera went on as it did, or SLAM's new pose means the same place of the map as
-// its old poses did (a relocalisation).
+// Chooses between two guesses: the last motion continued, or the old correction still holds (SLAM
+// relocalised in its own map).
 IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
     const std::shared_ptr<const Scan>& scan) {
   const Extrapolation went_on = Extrapolated(history, filter.map_from_slam());
@@ -55,17 +56,17 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
     carried.sigma_share = kWordSigmaShare;
   }
   const bool explained = relocation.IsUsual(share_going_on);
-  // Along a lone wall both may be. From one frame to the next the camera went on, whatever SLAM
-  // says; after a longer gap the last motion says nothing, and SLAM is believed unless it is
-  // plainly wrong.
+  // Beside a single wall both may be explained. From one frame to the next the motion continues,
+  // whatever SLAM says; after a long gap the extrapolation is useless, and SLAM is trusted unless
+  // the map clearly contradicts it.
   const bool goes_on = went_on.near ? share_going_on >= share_carried || (went_on.next && explained)
                                     : explained && !relocation.IsUsual(share_carried);
   return goes_on ? going_on : carried;
 }
 
-// Where SLAM says that the camera is, after a loss that is not understood yet. SLAM finds its way
-// back into its own map, so what stood there in the map when it was there before is what counts,
-// not the correction just before the loss, when SLAM may have drifted away from its map.
+// The camera's pose according to SLAM during the search after a loss. SLAM relocalises in its own
+// map, so the correction of the mapped frame nearest to the new SLAM pose is used, not the one just
+// before the loss, when SLAM may have drifted from its map.
 std::optional<Pose2> IncrementalMapper::State::SlamsWord() const {
   if (!relocation.active()) return std::nullopt;
   const Pose2 slam_from_newest = BaseOf(*history.newest().slam_from_camera);
@@ -94,14 +95,14 @@ void IncrementalMapper::State::BeginEpoch(const std::shared_ptr<const Scan>& sca
     Anchor(start);
     return;
   }
-  // SLAM, back from a loss, has corrected where it came back to. What was seen since moves along.
+  // SLAM corrected itself after the loss: the frames mapped since move along.
   if (mapped.size() > first) MovePart(first, *word * Inverse(start.map_from_base));
   relocation.GuessMoved();
   Anchor({*word, 1.0});
 }
 
-// The correction is chosen so that SLAM's newest pose lies there; `sigma_share` of kEpochSigma is
-// how well it is known to.
+// Sets the correction so that SLAM's newest pose is at `start`, with `sigma_share` times
+// kEpochSigma added uncertainty.
 void IncrementalMapper::State::Anchor(const EpochStart& start) {
   const FrameRecord& record = history.newest();
   const Eigen::Matrix3d added = AddedBy(start.sigma_share);
@@ -125,7 +126,7 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
   return slips.Find(scan, prediction, map_from_last, mapped.size(), *reference);
 }
 
-// Where wheels slipped, or SLAM turned by less than shows in its poses, an epoch begins.
+// Searches for a slip and, if there was one, begins an epoch at the corrected heading.
 Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>& scan,
                                                const Prediction& prediction, FrameReport& report) {
   if (!reference || !scan || mapped.empty() || match_oracle) return prediction;

@@ -1,4 +1,4 @@
-// The end of a run: the last correction, and the map from the stored scans.
+// The end of a run: final adjustment and drawing of the map.
 #include <utility>
 
 #include "mapper/core/level.h"
@@ -22,11 +22,11 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::Final(
     const std::vector<std::optional<Pose3>>& slam_final) const {
-  // Of SLAM trusted alone in a prior map: its own final poses are not in the map's frame.
+  // With SLAM trusted alone in a prior map, its final poses are not in the map's frame.
   const bool stays = fixed_map || (has_prior && !reference);
   if (stays) return FinalAsItIs();
   if (!reference) return FinalOfSlam(slam_final);
-  // Empty when it ended before the first image that came with a pose.
+  // mapped is empty if no image came with a pose.
   return mapped.empty() ? FinalAsItIs() : FinalByAdjusting();
 }
 

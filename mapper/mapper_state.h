@@ -1,4 +1,4 @@
-// What the mapper is made of, and its steps. Only for its own files.
+// State and steps of the mapper, for its own .cc files only.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@
 
 namespace depthgrid {
 
-// Their scans are there whether kept or not: where the newest ones lie is searched for (3 m of
-// way), and loops are tested by them.
+// Number of newest frames whose scans are stored even if tied: the relocation search (3 m of path)
+// and loop tests need them.
 constexpr int kRecentFrames = 400;
 
 struct IncrementalMapper::State {
@@ -40,7 +40,7 @@ struct IncrementalMapper::State {
   CorrectionFilter filter;
   PoseErrors errors;
   MatchNoise match_noise;
-  std::optional<int> filter_epoch;  // of SLAM's poses that the correction is for
+  std::optional<int> filter_epoch;  // SLAM epoch of the correction
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
   SlideSearch slides;
@@ -48,12 +48,12 @@ struct IncrementalMapper::State {
   SlipSearch slips;
   AdjustmentRounds rounds;
   MappedFrames mapped;
-  std::optional<MotionSpread> first_spread;  // that the beginning was gone through with
+  std::optional<MotionSpread> first_spread;  // that the first frames were mapped again with
   Beginning beginning;
-  bool has_prior = false;            // a map or but its frame, which SLAM's poses are moved into
-  int prior_frames = 0;              // of `mapped`, the first ones: those of a prior map
-  bool fixed_map = false;            // of a prior map that is only localised in
-  std::optional<Pose2> prior_start;  // map_from_slam where a run in a prior map begins
+  bool has_prior = false;            // a prior map, or only its frame
+  int prior_frames = 0;              // the first of `mapped`, from a prior map
+  bool fixed_map = false;            // only localise in the prior map
+  std::optional<Pose2> prior_start;  // map_from_slam at the start in a prior map, until used
 
   State(const MapperOptions& opts, const std::optional<PinholeCamera>& cam, FrameClocks clks,
         GainOracle orc)
@@ -93,8 +93,8 @@ struct IncrementalMapper::State {
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
   void MovePart(int first, const Pose2& motion);
-  // `covariance` as of Adjustment, of errors.Mapped(). Only the frames from `moved_apart` on were
-  // moved, as one, if it is given.
+  // `covariance`: Adjustment::covariance for errors.Mapped(). `moved_apart`: if given, only the
+  // frames from this index on were moved, rigidly.
   void MoveTo(const std::vector<Pose2>& map_from_base, const Eigen::MatrixXd& covariance,
               const std::optional<int>& moved_apart = {});
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
@@ -109,7 +109,7 @@ struct IncrementalMapper::State {
   void Insert(const FrameScans& scans, const Prediction& prediction, const FusedPose& fused,
               FrameReport& report);
 
-  // Whether the first frames are to be gone through again for what an adjustment tells.
+  // Whether the first frames are to be mapped again once an adjustment gives SLAM's noise.
   bool AwaitsSpread() const {
     return options.rounds.again && options.rounds.first_frames > 0 && filter.Learns() &&
            !first_spread;
@@ -132,7 +132,7 @@ struct IncrementalMapper::State {
   struct FinalEstimate {
     std::vector<Pose2> map_from_base;                   // of the mapped frames
     std::vector<std::optional<Pose3>> map_from_camera;  // of all frames
-    std::vector<PlanarLoop> loops;                      // those taken, among the kept frames
+    std::vector<PlanarLoop> loops;                      // accepted, among the kept frames
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
   std::vector<Pose2> MappedPoses() const;

@@ -7,8 +7,8 @@
 namespace depthgrid {
 namespace {
 
-// Of a match's variance, what stays the same while the submap's walls are in view; measured
-// (docs/tried.md, "Laser logs").
+// Share of a match's variance that is the submap's own noise; measured (docs/tried.md, "Laser
+// logs").
 constexpr double kNoiseShare = 0.3;
 
 }  // namespace
@@ -25,7 +25,7 @@ MatchResult PaperReference::Match(const std::shared_ptr<const Scan>& scan,
                                   const Prediction& prediction) {
   Submap* submap = submaps_.matching();
   if (submap == nullptr) return {};
-  // All scans of the submap alike.
+  // All scans of the submap count alike.
   const int count = static_cast<int>(map_from_base_.size());
   const int first = std::max((count - 1) / scans_per_submap_ - 1, 0) * scans_per_submap_;
   if (first < part_begin_) return {};
@@ -51,7 +51,7 @@ Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,
   std::vector<ScanMeasurement> measurements = measurements_;
   std::vector<Pose2> poses;
   for (const MappedFrame& frame : frames) poses.push_back(frame.map_from_base);
-  // A provisional frame at the end was not inserted; its pose is all that is known of it.
+  // A provisional last frame was not inserted; its measurement follows from its pose.
   while (measurements.size() < frames.size()) {
     measurements.push_back(
         MeasurementOf(poses, static_cast<int>(measurements.size()), scans_per_submap_));
@@ -65,7 +65,7 @@ void PaperReference::Rebuild(const std::vector<MappedFrame>& frames) {
   for (int i = 0; i < count; ++i) {
     map_from_base_[static_cast<std::size_t>(i)] = frames[static_cast<std::size_t>(i)].map_from_base;
   }
-  // Only the active submaps are ever read again: the last one and the one before it.
+  // Only the two active submaps are read again.
   const int last_submap = std::max(count - 1, 0) / scans_per_submap_;
   const int first_frame = std::max(last_submap - 1, 0) * scans_per_submap_;
   submaps_.RestartAt(first_frame);
@@ -75,7 +75,7 @@ void PaperReference::Rebuild(const std::vector<MappedFrame>& frames) {
   }
 }
 
-// What was measured between the frames before and those moved was of the old guess.
+// Measurements between earlier and moved frames were made at the old guess and are replaced.
 void PaperReference::RebuildMoved(const std::vector<MappedFrame>& frames, int first_moved) {
   Rebuild(frames);
   part_begin_ = 0;

@@ -23,7 +23,7 @@ class PaperReference : public ReferenceMap {
   std::span<const MapPart> MatchedParts() const override { return {&part_, 1}; }
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
-  // Submaps hold the newest scans, wherever these are.
+  // Submaps hold the newest scans, tied or not.
   void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
                   int) override {
     Insert(scan, map_from_base, Eigen::Matrix3d::Zero());
@@ -34,8 +34,8 @@ class PaperReference : public ReferenceMap {
   Adjustment Adjust(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& loops,
                     AdjustEffort effort, std::span<const int> asked) override;
   void Rebuild(const std::vector<MappedFrame>& frames) override;
-  // Matches at a place that is only guessed would pull its scans apart: there are none until a
-  // submap holds nothing from before.
+  // Matches at a guessed place would distort the new part: none are made until a submap holds only
+  // new scans.
   void BeginPart(PartPlace place) override {
     if (place == PartPlace::kGuessed) part_begin_ = static_cast<int>(map_from_base_.size());
   }
@@ -50,9 +50,9 @@ class PaperReference : public ReferenceMap {
   ScanMatcher matcher_;
   ScanRasterizer rasterizer_;
   ActiveSubmaps submaps_;
-  int part_begin_ = 0;                // no submap with scans before this one is matched
+  int part_begin_ = 0;                // submaps with scans before this index are not matched
   MapPart part_;                      // all of the submap
-  std::vector<Pose2> map_from_base_;  // of all scans inserted, as the map has them now
+  std::vector<Pose2> map_from_base_;  // current poses of all scans inserted
   std::vector<ScanMeasurement> measurements_;
 };
 

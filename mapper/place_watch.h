@@ -1,5 +1,4 @@
-// Whether a robot that is localised in a finished map (PriorMap::fixed) is still on it, frame by
-// frame, for a live system.
+// Monitors whether a robot localised in a finished map (PriorMap::fixed) is still on it.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +8,27 @@
 
 namespace depthgrid {
 
-// Whether hardly anything that the frame shows lies on the map (less than a fifth). Empty for a
-// frame without a pose or without a return, which says nothing. Where the map is extended, it is by
-// then of these frames as well and explains them wherever they are: only of localised ones.
+// Whether less than a fifth of the frame's scan lies on the map. Empty for a frame without a pose
+// or a return. Only meaningful with PriorMap::fixed: an extended map contains these frames and
+// explains them wherever they are.
 std::optional<bool> IsOffMap(const FrameReport& report);
 
-// Counts the last frames that say something. One frame off the map is nobody's loss: a person
-// stands before the sensor. While it is lost, poses are SLAM's motion alone; when the map explains
-// again what is seen, SLAM has brought it back there, or it was carried on to a place that looks
-// alike. Put it right by FindStart() or FindStartNear() (mapper/map_start.h) and another mapper.
+// Statistics over the last frames, since a single one may be off the map because a person stands
+// before the sensor. While lost, poses follow SLAM's motion alone; if the map explains the scans
+// again, SLAM has led back, or to a place that looks alike. To recover, use FindStart() or
+// FindStartNear() (mapper/map_start.h) and a new mapper.
 class PlaceWatch {
  public:
-  // Once a frame, in the order of time.
+  // Call once per frame, in order of time.
   void Add(const FrameReport& report);
-  // Of the last 30 frames that say something nine in ten were off the map. False while there are
-  // fewer.
+  // Whether nine in ten of the last 30 usable frames were off the map. False while there are fewer.
   bool lost() const;
-  // A share of the last 30, 0 to 1: how far off that is.
+  // Share of the last 30 usable frames that were off the map, 0 to 1.
   double off_map() const;
 
  private:
-  std::uint32_t last_ = 0;  // a bit a frame, the newest the lowest
-  int count_ = 0;           // of those that are there, 30 at most
+  std::uint32_t last_ = 0;  // one bit per frame, the newest lowest
+  int count_ = 0;           // number of valid bits, at most 30
 };
 
 }  // namespace depthgrid

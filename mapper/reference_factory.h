@@ -1,4 +1,4 @@
-// The reference map a method stands for.
+// The reference map of the chosen method.
 #pragma once
 
 #include <memory>

@@ -11,10 +11,10 @@
 namespace depthgrid {
 namespace {
 
-// A place's heading is the last part of its key.
+// Bits of heading and coordinates in a place's key.
 constexpr int kHeadingBits = 12;
 constexpr int kCoordinateBits = 26;
-// Where the map does not explain what is seen, as many scans once more.
+// Factor on the scans of a place for those that the map does not explain.
 constexpr double kRoomForChange = 2.0;
 
 std::uint64_t LowBits(int value, int bits) {
@@ -85,11 +85,11 @@ std::optional<int> ScanKeeping::TieOf(const std::vector<MappedFrame>& frames,
   return drawn_by && *drawn_by >= from ? drawn_by : nearest;
 }
 
-// Where the map was bent, what is drawn at one place lies by frames that an adjustment will move
-// apart: a frame lies by those that it was matched to, not by those that were nearest.
+// Where the map was bent, the frames that drew one place may be moved apart by an adjustment: a
+// frame must move with those it was matched to, not with the nearest ones.
 std::optional<int> ScanKeeping::DrawnBy(std::span<const MapPart> matched) const {
   std::vector<Weighed> parts;
-  parts.reserve(matched.size());  // for every frame: once, not as it grows
+  parts.reserve(matched.size());  // called for every frame: allocate once
   for (const MapPart& part : matched) {
     parts.push_back({part.mapped, part.information.topLeftCorner<2, 2>().trace()});
   }

@@ -12,40 +12,40 @@
 namespace depthgrid {
 namespace {
 
-// A slip is sudden (docs/tried.md, "Slips"): the last scan was so short ago, it was explained as
-// usual, and this one by less than this share of it.
+// A slip is sudden (docs/tried.md, "Slips"): longest time since the last, well explained scan, and
+// share of its explained share below which a slip is suspected.
 constexpr double kLongestSlipS = 0.5;
 constexpr double kSlippedShare = 0.5;
-// Of a laser's scans nearly all is explained. Of depth images it is half, and goes up and down.
+// Least usual share for slips to be detectable: of a laser's scans nearly all is explained, of
+// depth images half, with variations.
 constexpr double kWhollyExplained = 0.8;
-// What a heading must explain of what the last scan's did, as a share of the scan and as a number
-// of surfels: a wall that ends may take a quarter of them out of reach.
+// What a heading must explain relative to the last scan, as share and as number of surfels: the end
+// of a wall may remove a quarter of them.
 constexpr double kMendedShare = 0.8;
 constexpr double kMendedNumber = 0.5;
-// Few surfels fit at some heading whatever they are of. Of slips that were none 12 and fewer were
-// explained, of true ones 23 and more, by a laser of 180 beams (docs/tried.md, "Slips").
+// Few surfels always fit at some heading. False slips had at most 12 explained surfels, true ones
+// at least 23, with a laser of 180 beams (docs/tried.md, "Slips").
 constexpr int kFewestSurfels = 15;
-// A heading is found where what is seen tells it: to the step of the search.
+// Least accuracy of the heading: the step of the search.
 constexpr double kKnownRad = RadFromDeg(1.0);
-// What SLAM's motion may well be off by, as far as its noise is learnt, is no slip: four sigmas,
-// none of which is taken for less than this.
+// A slip must exceed SLAM's learnt noise by four sigmas, each at least kLeastSigma.
 constexpr double kLeastChi2 = 16.0;
 const Eigen::Vector3d kLeastSigma(1e-3, 1e-3, 1e-3);
-// Somebody who fills the view was drawn lately and is found where they are now, so what has stood
-// for longer must want that heading as well.
+// A person filling the view was drawn recently and matches anywhere, so surfaces older than this
+// must support the heading as well.
 constexpr int kDrawnLatelyFrames = 30;
-// While the camera turns, less of what it sees has stood for so long from frame to frame. So half
-// is enough for a slip that turned in place, if that is more than at the prediction: who walks by
-// is found some centimetres aside (docs/tried.md, "Slips").
+// While the camera turns, it sees fewer old surfaces in each frame. So this share suffices for a
+// slip in place (within kInPlaceM), if it exceeds that at the prediction: a passer-by would shift
+// the pose by some centimetres (docs/tried.md, "Slips").
 constexpr double kTurnedShare = 0.5;
 constexpr double kInPlaceM = 0.015;
-// Less, a match finds by itself.
+// Smaller slips are corrected by the match itself.
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
-// Of a log without slips, up to six were found with fixed gains of 0, 0.02, 0.05 and 0.1 along one
-// axis or all, none with 0.2 and 0.5 (two rooms of simulated logs).
+// In logs without slips, up to six were found with fixed gains of 0, 0.02, 0.05 and 0.1 along one
+// axis or all, none with 0.2 and 0.5 (two rooms, simulated).
 constexpr double kLeastFixedGain = 0.2;
-// Headings tried, and how far a match may go from one.
+// Spacing of the headings tried, and sigma of a match around each: m, m, rad.
 constexpr double kHeadingStepDeg = 1.0;
 const Eigen::Vector3d kHeadingSigma(0.03, 0.03, 0.01);
 
@@ -58,15 +58,15 @@ bool IsSlip(const Pose2& motion, const Eigen::Matrix3d& covariance) {
   return off.dot(usual.ldlt().solve(off)) >= kLeastChi2;
 }
 
-// Where the scan and what bounds the match along a lone wall's direction tell the heading.
+// Whether the match, with the prediction's position, determines the heading to kKnownRad.
 bool KnowsHeading(const MatchResult& match, const Eigen::Matrix3d& covariance) {
   Eigen::Matrix3d known = match.information;
   known.topLeftCorner<2, 2>() += covariance.topLeftCorner<2, 2>().inverse();
   return std::sqrt(known.inverse()(2, 2)) <= kKnownRad;
 }
 
-// The scan's hits at whose bearing the other one has a hit as well: what comes into view or leaves
-// it between both says nothing of the motion.
+// The scan without hits at bearings where the other scan has none: what enters or leaves the view
+// tells nothing about the motion.
 std::shared_ptr<const Scan> SeenByBoth(const Scan& scan, const Scan& other,
                                        const Pose2& other_from_scan) {
   constexpr int kBins = 180;
@@ -136,7 +136,7 @@ std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
   const auto lasting = SeenByBoth(*scan, *last_scan_, last_from_found);
   const double last = reference.ShareSeenBefore(last_lasting, map_from_last, before);
   const double there = reference.ShareSeenBefore(lasting, found, before);
-  // Of few surfels by chance more or fewer lie nearer to old ones than to new ones.
+  // Standard deviation of the share with so few surfels.
   const double scatter = std::sqrt(last * (1.0 - last) / best->explained);
   if (there >= kMendedShare * last - scatter) return found;
   const Pose2 slip = Between(prediction.map_from_base, found);

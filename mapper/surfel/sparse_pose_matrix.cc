@@ -13,7 +13,8 @@ struct SparsePoseMatrix::Factored {
 };
 
 // Share of non-zero blocks above which a dense factor is used (a wide view couples most poses). At
-// twice this share the sparse factor is 56 % full and the dense one four times as fast.
+// this share the sparse factor is half full (56 % at twice the share) and the dense one four times
+// as fast.
 constexpr double kDenseShare = 0.125;
 // Unknowns of the largest dense matrix: 430 MB.
 constexpr int kMostDense = 7500;
