@@ -11,8 +11,8 @@
 namespace depthgrid {
 
 // Result of mapping the next frames from several candidate places. Agreement is
-// MapAgreement::share(), a / (a + c + rest / 10), with a beams that end on a wall of the map and c
-// in free space or behind a wall.
+// MapAgreement::share(), a / (a + c + b / 10), where of b beams a end on a wall of the map and c in
+// free space or behind a wall.
 struct StartTrial {
   int places = 0;
   int frames = 0;

@@ -46,9 +46,8 @@ enum class AdjustEffort {
 // A part of the map that a scan was matched against.
 struct MapPart {
   double mapped = 0.0;  // mean index of the mapped frames that drew it
-  Eigen::Matrix3d information =
-      Eigen::Matrix3d::Zero();  // its contribution to the match, base axes
-  double noise_share = 0.0;     // share of the variance that is the part's own noise
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // its share of the match, base axes
+  double noise_share = 0.0;  // share of the variance that is the part's own noise
 };
 
 // Standard deviation of the guess where a new SLAM epoch begins (SLAM's own pose, or the previous

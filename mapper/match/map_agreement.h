@@ -13,14 +13,14 @@ struct MapAgreement {
   int on_wall = 0;  // of these, ends on a wall
   int against = 0;  // of these, ends in free space or behind a wall
 
-  // on_wall / (on_wall + against + rest / 10): unknown space counts little, as a robot may leave
+  // on_wall / (on_wall + against + beams / 10): unknown space counts little, as a robot may leave
   // the map.
   double share() const;
   // against / (on_wall + against).
   double share_against() const;
 };
 
-// Distance from a return within which a wall of the map is searched.
+// A return in free space farther than this from any wall contradicts the map.
 constexpr double kOffWallM = 0.3;
 
 // `walls` must reach farther than kOffWallM.
