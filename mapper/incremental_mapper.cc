@@ -265,7 +265,7 @@ void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
   errors.Adjusted(covariance, filter.step().new_bias);
 }
 
-// Within an epoch SLAM's motion carries the correction on.
+// Predicts with SLAM's motion; first places a new epoch or the start in a prior map.
 Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& scan,
                                              FrameReport& report) {
   const StageTimer timer(clocks, report.times.match_us);

@@ -22,7 +22,7 @@ struct MapperResult {
   std::vector<std::optional<Pose3>> map_from_camera;
   // The frames whose scans are kept, at final poses: the map is drawn from these.
   std::vector<MappedFrame> mapped;
-  std::vector<PlanarLoop> loops;  // those that entered the graph
+  std::vector<PlanarLoop> loops;  // those that the final adjustment accepted
   OccupancyMap map;
 };
 
@@ -35,7 +35,7 @@ using GainOracle = std::function<Eigen::Vector3d(int frame, const Pose2& predict
 // match's information matrix is kept.
 using MatchOracle = std::function<Pose2(int frame)>;
 
-// A map to go on from.
+// A finished map to continue in.
 struct PriorMap {
   // In order of time, at final poses, each with both its scans (`scan` and `obstacles`, possibly
   // the same). `frame` is negative and increasing, by one within a drive and by more between

@@ -1,6 +1,5 @@
-// Once the first adjustment tells how SLAM errs, and when somebody who was drawn is seen to move,
-// the first frames are mapped anew with that in mind (docs/math.md, "The first frames again" and
-// "What moves").
+// Maps the first frames again once the first adjustment gives SLAM's noise, and when an object that
+// was drawn turns out to move (docs/math.md, "The first frames again" and "What moves").
 #include <utility>
 
 #include "mapper/mapper_state.h"

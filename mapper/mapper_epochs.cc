@@ -1,4 +1,4 @@
-// Where the map goes on when SLAM's poses begin a new epoch (docs/math.md, "Epochs").
+// Places the camera in the map when SLAM's poses begin a new epoch (docs/math.md, "Epochs").
 #include <limits>
 
 #include "mapper/core/level.h"

@@ -9,8 +9,8 @@
 
 namespace depthgrid {
 
-// SLAM's pose in the map, without its jitter, and the bias of its motion. Covariance of (pose,
-// bias), pose in base axes.
+// SLAM's newest pose, jitter included, placed in the map, and the bias of its motion. Covariance of
+// (pose, bias), pose in base axes, without the jitter.
 struct DriftState {
   Pose2 map_from_base;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();

@@ -8,9 +8,9 @@
 
 namespace depthgrid {
 
-// The state: SLAM's pose in the map without its jitter (forward m, left m, yaw rad in base axes of
-// `predicted`), and the bias of SLAM's motion (the same per frame). Filters without bias and jitter
-// leave them zero. Noises are standard deviations.
+// The state: SLAM's pose in the map, whose error does not include SLAM's jitter (forward m, left m,
+// yaw rad in base axes of `predicted`), and the bias of SLAM's motion (the same per frame). Filters
+// without bias and jitter leave them zero. Noises are standard deviations.
 struct FilterStep {
   using Gain = Eigen::Matrix<double, 6, 3>;
 

@@ -3,7 +3,7 @@
 namespace depthgrid {
 
 void SlamNoiseOptions::Visit(OptionsVisitor& v) {
-  // A profile whose drift is scaled up says so.
+  // Large, for simulated profiles with scaled-up drift.
   constexpr double kMost = 1e6;
   v.Choice("source", source,
            {{SlamNoiseSource::kSetting, "setting"}, {SlamNoiseSource::kProfile, "profile"}},

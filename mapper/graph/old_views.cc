@@ -9,11 +9,11 @@
 namespace depthgrid {
 namespace {
 
-// Old frames are drawn when they are so far from the one drawn before, and no more than so many.
+// Spacing of the old frames drawn, and their largest number.
 constexpr double kDrawnEveryM = 0.2;
 constexpr double kDrawnEveryRad = RadFromDeg(15.0);
 constexpr int kMostDrawn = 500;
-// Old frames that a new one is compared with.
+// Old frames that each new one is compared with.
 constexpr std::size_t kOldForEach = 2;
 
 }  // namespace

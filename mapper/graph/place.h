@@ -30,7 +30,7 @@ inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return FrameAt(frames, i).map_from_base;
 }
 
-// Indices of the mapped frames of a place, in order of time; kept frames only.
+// Indices of the mapped frames of a place, in order of time; only those whose scans are stored.
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options);
 // Only those in [begin, end).

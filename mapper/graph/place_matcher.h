@@ -38,7 +38,8 @@ class PlaceMatcher {
   bool Refine(const std::vector<MappedFrame>& frames, SurfelMap& first_map,
               const std::vector<int>& second_members, const MayStill& may_agree,
               PlanarLoop& loop) const;
-  // Whether both places agree by this share of their agreement with themselves.
+  // Whether both places agree by `share`, relative to the lower of their agreements with
+  // themselves.
   bool Agree(const std::vector<MappedFrame>& frames, KnownPlace& first, KnownPlace& second,
              const Pose2& first_from_second, double share) const;
 

@@ -251,7 +251,7 @@ WallPyramid::FourByFour WallPyramid::SumsOfFourByFour(const std::vector<Cell>& c
     const std::size_t end = std::min(begin + kTogether, cells.size());
     for (std::size_t i = begin; i < end; ++i) {
       const int x = cells[i].x - first.x, y = cells[i].y - first.y;
-      // Four squares beyond the border are as good as any further ones.
+      // Clamped: farther outside all squares are empty as well.
       const int column =
           std::clamp((x >> kTopLevel) + kSideBySide, 0, squares_.width - kSideBySide);
       const int row = std::clamp((y >> kTopLevel) + kSideBySide, 0, squares_.height - kSideBySide);
@@ -293,14 +293,14 @@ int WallPyramid::Sum(const std::vector<Cell>& cells, const Cell& shift, int leve
   for (std::size_t begin = 0; begin < cells.size(); begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, cells.size());
     for (std::size_t i = begin; i < end; ++i) {
-      // Cells before the first are large without a sign.
+      // Negative differences become large unsigned numbers.
       const auto x = static_cast<unsigned>(cells[i].x - first.x);
       const auto y = static_cast<unsigned>(cells[i].y - first.y);
       at[i - begin] = x < width && y < height ? y * width + x : outside;
     }
     const std::uint8_t* const score = l.score.data();
     const std::size_t count = end - begin, fours = count / 4 * 4;
-    std::array<int, 4> sums{};  // which do not wait for each other
+    std::array<int, 4> sums{};  // independent accumulators
     for (std::size_t i = 0; i < fours; i += 4) {
       for (std::size_t k = 0; k < 4; ++k) sums[k] += score[at[i + k]];
     }

@@ -13,16 +13,16 @@ namespace {
 constexpr int kIterations = 2;
 // Unknowns of a frame: small motion of SLAM's pose in the map (forward, left, yaw), its bias.
 constexpr int kUnknowns = 6;
-// Where neither match nor motion says anything, a frame stays: far below any real information.
+// Holds frames without match and motion in place; far below any real information.
 constexpr double kStayInformation = 1e-3;
-// Radians for a metre of `stay_m`.
+// Standard deviation of yaw per metre of `stay_m`, rad.
 constexpr double kStayTurn = 0.1;
-// No prior is better, a frame; also keeps weights finite for perfect ones.
+// Least noise of SLAM per frame; keeps weights finite for perfect SLAM.
 const Eigen::Vector3d kLeastWalk(1e-5, 1e-5, 2e-6);
 const Eigen::Vector3d kLeastBias(1e-6, 1e-6, 2e-7);
 
 struct State {
-  std::vector<Pose2> map_from_base;  // where SLAM's pose lies, jitter included
+  std::vector<Pose2> map_from_base;  // SLAM's poses, jitter included, in the map
   std::vector<Eigen::Vector3d> bias;
 };
 
@@ -48,8 +48,8 @@ class Equations {
     g_.segment<3>(kUnknowns * frame) += weight.cwiseProduct(InnovationOf(map_from_base, stay));
   }
 
-  // error = relative pose against motion * bias; weight is diagonal. Where SLAM stands no bias is
-  // in its motion.
+  // error = relative pose against motion * bias; weight is diagonal. Where SLAM stands, its motion
+  // has no bias.
   void AddMotion(int frame, const State& state, const Pose2& motion, bool stands,
                  const Eigen::Vector3d& weight) {
     const auto k = static_cast<std::size_t>(frame);
@@ -74,7 +74,7 @@ class Equations {
     g_.segment<3>(bias) += weight.cwiseProduct(error);
   }
 
-  // bias = kept * bias before + renewed. It stays as long as SLAM stands.
+  // bias = kept * previous bias + renewed; constant while SLAM stands.
   void AddBias(int frame, const State& state, const MotionNoise& noise, bool stands) {
     const auto k = static_cast<std::size_t>(frame);
     const Eigen::Vector3d sigma = noise.bias.cwiseMax(kLeastBias);
@@ -170,7 +170,7 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
       const MatchResult& match = frames[k].match;
       const Pose2& pose = state.map_from_base[k];
       if (match.found) {
-        // The match sees the camera, SLAM's pose is off by its jitter.
+        // The match measures the camera, from which SLAM's pose differs by its jitter.
         equations.AddMatch(frame, pose, match,
                            WithAddedCovariance(InformationIn(pose, match), jitter));
       }
@@ -183,7 +183,7 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
     }
     if (!equations.SolveInto(state)) break;
   }
-  // The camera: between where SLAM's jittering pose lies and what its own scan says.
+  // The camera's pose: fuses SLAM's pose, uncertain by its jitter, with the frame's own match.
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (!frames[k].match.found) continue;
     Prediction prediction;

@@ -147,9 +147,9 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
   }
 }
 
-// The prior's error is mostly a slowly varying bias: over n frames it grows like n, not like its
-// root. `sigma` is that of one frame. A prior map's motions are left out, as they carry no SLAM
-// error.
+// SLAM's motion links. The error is mostly a slowly varying bias: over n frames it grows like n,
+// not like its root. `sigma` is that of one frame. A prior map's motions are left out, as they
+// carry no SLAM error.
 std::vector<GroupLink> MotionLinks(const Problem& problem, const Eigen::Vector3d& sigma) {
   std::vector<GroupLink> links;
   for (std::size_t g = 1; g < problem.groups.size(); ++g) {

@@ -58,7 +58,7 @@ class ErrorSpread {
     squares_ += weight * weight;
     seen_ += weight * share;
   }
-  // How many errors of equal weight would tell as much (Kish 1965, "Survey Sampling").
+  // Effective number of errors (Kish 1965, "Survey Sampling").
   double Count() const { return squares_ > 0.0 ? weights_ * weights_ / squares_ : 0.0; }
   double Sigma(double least_share) && {
     const double share = std::max(weights_ > 0.0 ? seen_ / weights_ : 0.0, least_share);

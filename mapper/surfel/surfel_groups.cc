@@ -9,7 +9,8 @@
 namespace depthgrid {
 namespace {
 
-// Within a group poses agree to millimetres; a piece belongs to a surfel by its own noise.
+// Gate for merging pieces into a group's surfels: its poses agree to millimetres, so the pieces'
+// noise decides.
 constexpr double kGateM = 0.02;
 constexpr double kGateSigmas = 3.0;
 constexpr double kMaxAngleDeg = 40.0;
