@@ -10,7 +10,7 @@ namespace depthgrid {
 struct MotionSpread {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   double frames = 1.0;
-  int stretches = 0;  // number of motions that were observed
+  int stretches = 0;  // number of groups of frames with surfels
   // `sigma` over the root of the share of the motion that was observed; infinite where none was.
   Eigen::Vector3d seen_sigma = Eigen::Vector3d::Zero();
 
