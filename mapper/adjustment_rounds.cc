@@ -12,7 +12,8 @@ constexpr double kNeverAgain = 2e9;  // frames
 
 void RoundOptions::Visit(OptionsVisitor& v) {
   v.Number("first_frames", first_frames, {0, 1e9}, "mapped frames before the first round; 0: none");
-  v.Number("growth", growth, {1.1, 1e3}, "so many times as many frames before the next");
+  v.Number("growth", growth, {1.1, 1e3},
+           "each next round comes at this many times as many mapped frames");
   v.Number("last_frames", last_frames, {0, 1e9}, "mapped frames after which there are no rounds");
   v.Flag("again", again,
          "whether the first frames are gone through again once SLAM's errors are known");

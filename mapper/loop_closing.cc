@@ -20,10 +20,10 @@ std::vector<PlanarLoop> Held(const std::vector<PlanarLoop>& loops, const Adjustm
 
 void LoopOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether SLAM's loops correct the map");
-  v.Flag("verify", verify, "whether a loop must lay what its two places saw over each other");
+  v.Flag("verify", verify, "whether a loop must make what its two places saw agree");
   v.Group("overlap", overlap, "how that is tested");
   v.Number("bend_frames", bend_frames, {0, 1e9},
-           "mapped frames beyond which loops only bend the poses until the end");
+           "with more mapped frames, loops only bend the path until all is adjusted at the end");
   v.Group("search", search, "loops that the mapper finds itself");
   v.Group("slide", slide, "where the estimate is after a stretch that told little of it");
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");

@@ -27,13 +27,15 @@ std::uint64_t LowBits(int value, int bits) {
 void KeepOptions::Visit(OptionsVisitor& v) {
   v.Number("first_frames", first_frames, {0, 1e9},
            "mapped frames whose scans are all kept for the final map; 0: always all");
-  v.Number("scans_per_place", scans_per_place, {1, 1e6}, "that a place keeps after that");
+  v.Number("scans_per_place", scans_per_place, {1, 1e6},
+           "scans that a place keeps after those first frames");
   v.Number("place_m", place_m, {0.05, 100.0}, "width of a place, metres");
-  v.Number("place_deg", place_deg, {1.0, 360.0}, "and of the headings it is seen under");
+  v.Number("place_deg", place_deg, {1.0, 360.0},
+           "range of the headings that a place is seen under, degrees");
   v.Number("more_each_doubling", more_each_doubling, {0.0, 10.0},
            "share of scans_per_place kept in addition each time the run is twice as long");
   v.Number("min_explained", min_explained, {0.0, 1.0},
-           "of scans that the map explains less of twice as many are kept");
+           "twice as many are kept of scans of which the map explains less than this");
 }
 
 ScanKeeping::ScanKeeping(const KeepOptions& options) : options_(options) {}

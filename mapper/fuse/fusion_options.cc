@@ -25,20 +25,21 @@ void FusionOptions::Visit(OptionsVisitor& v) {
             {FusionMode::kLearned, "learned"},
             {FusionMode::kAdaptive, "adaptive"},
             {FusionMode::kOracle, "oracle"}},
-           "who sets the gain");
+           "what sets the gain");
   v.PerAxis("gain", gain, {0.0, 1.0}, "K of Eq. 3: 0 takes SLAM's poses, 1 the matched ones");
   v.Group("slam_noise", slam_noise,
-          "how the error of SLAM's motion grows: kalman's gain, and what all but learned tell of "
-          "errors");
-  v.Number(
-      "match_overconfidence", match_overconfidence, {0.01, 1e4},
-      "the match's information is divided by this: kalman's and learned's gain, and what is told");
+          "how the error of SLAM's motion grows: for kalman's gain, and for the errors that all "
+          "modes but learned state");
+  v.Number("match_overconfidence", match_overconfidence, {0.01, 1e4},
+           "the match's information is divided by this, for kalman's and learned's gain and for "
+           "the stated errors");
   v.Flag("judge_innovations", judge_innovations,
-         "learned: errors are told as if matches were as noisy as innovations show");
-  v.Number("tilt_rad", tilt_rad, {0.0, 1.0},
-           "how uncertain it is which way a wall runs to what the prediction knows least; 0: not");
+         "learned: whether stated errors take matches to be as noisy as innovations show");
+  v.Number(
+      "tilt_rad", tilt_rad, {0.0, 1.0},
+      "uncertainty of a wall's direction against the one that the prediction knows least; 0: none");
   v.Number("gate_chi2", gate_chi2, {0.0, 1e6},
-           "innovations with a larger chi-square are not taken; 0 takes all");
+           "innovations with a larger chi-square are rejected; 0 takes all");
   v.Number("adaptive_rate", adaptive_rate, {1e-4, 0.5}, "adaptive: how fast the gain follows");
 }
 

@@ -116,12 +116,14 @@ void Compare(const SeenPlace& place, const SeenPlace& other, const Pose2& place_
 }  // namespace
 
 void OverlapOptions::Visit(OptionsVisitor& v) {
-  v.Number("window_frames", window_frames, {0, 1000}, "frames around one that stand for its place");
-  v.Number("stride", stride, {1, 1000}, "every so many of them");
-  v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cells of the places' grids, metres");
+  v.Number("window_frames", window_frames, {0, 1000},
+           "a frame's place is what the frames up to this many before and after it saw");
+  v.Number("stride", stride, {1, 1000}, "only every so many of them are used");
+  v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cell size of the places' grids, metres");
   v.Number("tolerance_m", tolerance_m, {0.0, 1.0}, "a point this near to a wall agrees, metres");
-  v.Number("min_points", min_points, {1, 1e9}, "points that both saw, at least");
-  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of them that must lie on walls");
+  v.Number("min_points", min_points, {1, 1e9}, "points that both places saw, at least");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0},
+           "share of these points that must lie on walls");
 }
 
 std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middle,

@@ -25,39 +25,48 @@ void LoopSearchOptions::Visit(OptionsVisitor& v) {
       "use", use,
       {{LoopSearchUse::kAuto, "auto"}, {LoopSearchUse::kOn, "on"}, {LoopSearchUse::kOff, "off"}},
       "whether the mapper looks for loops itself; auto: with method surfel");
-  v.Number("every_m", every_m, {0.05, 1000.0}, "way between two searches");
-  v.Number("min_way_m", min_way_m, {0.1, 1e6}, "how far back along the way a loop begins");
-  v.Number("drift_share", drift_share, {0.0, 1.0}, "what the estimate may drift by, of the way");
-  v.Number("turn_deg_per_m", turn_deg_per_m, {0.0, 90.0}, "and turn by");
+  v.Number("every_m", every_m, {0.05, 1000.0}, "distance travelled between two searches");
+  v.Number("min_way_m", min_way_m, {0.1, 1e6},
+           "shortest distance travelled from a place to its revisit");
+  v.Number("drift_share", drift_share, {0.0, 1.0},
+           "drift that the search allows for, share of the distance travelled");
+  v.Number("turn_deg_per_m", turn_deg_per_m, {0.0, 90.0},
+           "drift of the heading that it allows for, per metre travelled");
   v.Number("min_window_m", min_window_m, {0.0, 100.0}, "half width of the search, at least");
-  v.Number("max_window_m", max_window_m, {0.0, 100.0}, "at most");
+  v.Number("max_window_m", max_window_m, {0.0, 100.0}, "half width of the search, at most");
   v.Number("min_window_deg", min_window_deg, {0.0, 180.0}, "half angle of the search, at least");
-  v.Number("max_window_deg", max_window_deg, {0.0, 180.0}, "at most");
+  v.Number("max_window_deg", max_window_deg, {0.0, 180.0}, "half angle of the search, at most");
   v.NotMore("min_window_m", min_window_m, "max_window_m", max_window_m);
   v.NotMore("min_window_deg", min_window_deg, "max_window_deg", max_window_deg);
-  v.Number("candidates", candidates, {1, 1000}, "places that are searched, at most");
+  v.Number("candidates", candidates, {1, 1000}, "places that one search tries, at most");
   v.Group("place", place, "which scans are searched together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
   v.Number("max_second_score", max_second_score, {0.01, 1.0},
            "a pose elsewhere with more than this share of the score makes it ambiguous");
-  v.Number("min_explained", min_explained, {0.0, 1.0}, "of the scans, once matched precisely");
-  v.Number("max_sigma_m", max_sigma_m, {0.0, 10.0}, "of the match in its worst direction");
-  v.Number("max_sigma_deg", max_sigma_deg, {0.0, 90.0}, "of the match's heading");
-  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
-  v.Number("min_correction_m", min_correction_m, {0.0, 10.0}, "nearer places need no loop");
-  v.Number("min_correction_deg", min_correction_deg, {0.0, 90.0}, "nor better aligned ones");
+  v.Number("min_explained", min_explained, {0.0, 1.0},
+           "share of the scans that must be explained once matched precisely");
+  v.Number("max_sigma_m", max_sigma_m, {0.0, 10.0},
+           "sigma of that match in its worst direction, at most");
+  v.Number("max_sigma_deg", max_sigma_deg, {0.0, 90.0}, "sigma of that match's heading, at most");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0},
+           "share of what both places saw that must agree");
+  v.Number("min_correction_m", min_correction_m, {0.0, 10.0},
+           "no loop is made of a correction below this and below min_correction_deg");
+  v.Number("min_correction_deg", min_correction_deg, {0.0, 90.0}, "see min_correction_m");
   v.Number("consenting", consenting, {1, 1000},
-           "loops in a row that must want the same correction");
+           "loops in a row that must ask for the same correction");
   v.Number("consent_ways", consent_ways, {0.0, 1000.0},
-           "and over a way of so many times the correction and the likely drift");
-  v.Number("likely_drift_share", likely_drift_share, {0.0, 1.0}, "the latter, of the way");
-  v.Number(
-      "idle_searches", idle_searches, {1, 1000},
-      "while none waits for consent, one of so many is made; the others once it finds a place");
+           "they must span this many times the sum of the correction and the likely drift");
+  v.Number("likely_drift_share", likely_drift_share, {0.0, 1.0},
+           "the likely drift, share of the distance travelled");
+  v.Number("idle_searches", idle_searches, {1, 1000},
+           "while no loop awaits consent, only one of this many searches is made; if it finds a "
+           "place, the others follow");
   v.Number("most_unanswered", most_unanswered, {0, 1000},
-           "searches that may find nothing meanwhile");
-  v.Number("consent_m", consent_m, {0.0, 10.0}, "the same correction, to this");
-  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this, in heading");
+           "searches that may find nothing while loops await consent");
+  v.Number("consent_m", consent_m, {0.0, 10.0},
+           "corrections within this of each other are the same");
+  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and within this in heading");
 }
 
 // Path length over which two frames' estimates drifted apart: along the poses, or via one known

@@ -29,10 +29,12 @@ int FarthestFrame(const std::vector<MappedFrame>& frames, int middle, int step,
 }  // namespace
 
 void PlaceOptions::Visit(OptionsVisitor& v) {
-  v.Number("reach_m", reach_m, {0.0, 100.0}, "way to a place's outermost frames, metres");
-  v.Number("turn_deg", turn_deg, {0.0, 1e4}, "turning on that way, at most");
-  v.Number("max_scans", max_scans, {1, 1000}, "scans of a place, evenly spread");
-  v.Number("resolution_m", resolution_m, {0.01, 1.0}, "cells that are searched, metres");
+  v.Number("reach_m", reach_m, {0.0, 100.0},
+           "distance travelled to a place's outermost frames, metres");
+  v.Number("turn_deg", turn_deg, {0.0, 1e4}, "turning over that distance, at most");
+  v.Number("max_scans", max_scans, {1, 1000}, "scans of a place, at most, evenly spread");
+  v.Number("resolution_m", resolution_m, {0.01, 1.0},
+           "size of the cells that are searched, metres");
 }
 
 Scan WithinSight(Scan scan) {

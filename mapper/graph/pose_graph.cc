@@ -54,7 +54,7 @@ ceres::Solver::Options SolverOptions(const PoseGraphOptions& options) {
 void PoseGraphOptions::Visit(OptionsVisitor& v) {
   v.Number("huber_sigmas", huber_sigmas, {0.1, 1e3},
            "where a loop's cost turns from quadratic to linear, in standard deviations");
-  v.Number("max_iterations", max_iterations, {1, 1000}, "of the solver");
+  v.Number("max_iterations", max_iterations, {1, 1000}, "iterations of the solver, at most");
 }
 
 Eigen::Vector3d ConstraintError(const Pose2& from, const Pose2& to, const Pose2& from_from_to) {

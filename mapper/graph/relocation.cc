@@ -38,29 +38,32 @@ constexpr double kTurnRadps = 2.0;
 }  // namespace
 
 void RelocationOptions::Visit(OptionsVisitor& v) {
-  v.Flag("use", use, "whether the camera is searched for after SLAM was lost");
+  v.Flag("use", use, "whether the camera's pose is searched for after SLAM was lost");
   v.Number("slip_deg", slip_deg, {0.0, 180.0},
-           "headings tried when the map suddenly explains little of a scan, degrees; 0: none");
-  v.Number("min_lost_s", min_lost_s, {0.0, 1e6}, "without a pose for so long, at least");
+           "when the map suddenly explains little of a scan, headings up to this far off are "
+           "tried; 0: none");
+  v.Number("min_lost_s", min_lost_s, {0.0, 1e6},
+           "shortest time without a pose after which it is searched for");
   v.Number("min_lost_epoch_s", min_lost_epoch_s, {0.0, 1e6},
-           "and where SLAM's poses go on elsewhere");
+           "the same where SLAM's poses go on elsewhere");
   v.Number("min_share", min_share, {0.0, 1.0},
-           "of what the map explained before: guesses that reach it are right");
+           "a guess is right if the map explains this share of what it explained before the loss");
   v.Number("window_m", window_m, {0.1, 1e3}, "half width of the search, metres");
-  v.Number("speed_mps", speed_mps, {0.0, 100.0}, "and so much more for each second lost");
-  v.Number("max_window_m", max_window_m, {0.1, 1e3}, "at most");
+  v.Number("speed_mps", speed_mps, {0.0, 100.0}, "window_m grows by this for each second lost");
+  v.Number("max_window_m", max_window_m, {0.1, 1e3}, "half width of the search, at most, metres");
   v.NotMore("window_m", window_m, "max_window_m", max_window_m);
-  v.Number("every_m", every_m, {0.01, 100.0}, "way between two searches");
-  v.Number("every_deg", every_deg, {1.0, 360.0}, "or turn between them");
-  v.Number("most_searches", most_searches, {1, 1e6}, "before the guess is left as it is");
+  v.Number("every_m", every_m, {0.01, 100.0}, "distance travelled between two searches");
+  v.Number("every_deg", every_deg, {1.0, 360.0}, "or turn between two searches");
+  v.Number("most_searches", most_searches, {1, 1e6}, "searches before the guess is left as it is");
   v.Group("place", place, "what is searched for together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
   v.Number("max_second_score", max_second_score, {0.01, 1.0},
            "a pose elsewhere with more than this share of the score makes it ambiguous");
-  v.Number("min_agreement", min_agreement, {0.0, 1.0}, "share of what both saw that must agree");
-  v.Number("consenting", consenting, {1, 1000}, "searches in a row that must find the same");
-  v.Number("consent_m", consent_m, {0.0, 10.0}, "to this");
-  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and to this");
+  v.Number("min_agreement", min_agreement, {0.0, 1.0},
+           "share of what was seen both before and since that must agree");
+  v.Number("consenting", consenting, {1, 1000}, "searches in a row that must find the same pose");
+  v.Number("consent_m", consent_m, {0.0, 10.0}, "poses within this of each other are the same");
+  v.Number("consent_deg", consent_deg, {0.0, 90.0}, "and within this in heading");
 }
 
 void Relocation::Explained(double share) {

@@ -19,10 +19,10 @@ std::size_t MostCellsWith(const ScanCells& cells) {
 }  // namespace
 
 void SubmapOptions::Visit(OptionsVisitor& v) {
-  v.Number("scans", scans, {1, 1e6}, "a submap starts every so many scans");
-  v.Choice("walls", walls,
-           {{SubmapWalls::kCounted, "counted"}, {SubmapWalls::kAveraged, "averaged"}},
-           "cells near a wall: by hits and misses, or by their mean distance to the hits");
+  v.Number("scans", scans, {1, 1e6}, "scans from the start of one submap to the next");
+  v.Choice(
+      "walls", walls, {{SubmapWalls::kCounted, "counted"}, {SubmapWalls::kAveraged, "averaged"}},
+      "how cells near a wall are drawn: by hits and misses, or by their mean distance to the hits");
 }
 
 Submap::Submap(const SubmapOptions& submap, const GridOptions& grid) : grid_(grid) {

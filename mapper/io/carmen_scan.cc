@@ -101,19 +101,21 @@ Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options) {
 
 void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Number("max_range_m", max_range_m, {0.0, 1000.0},
-           "readings from here on are no return; 0 takes the log's own maximum, or 80");
+           "readings of this or more are no return; 0 takes the log's own maximum, or 80");
   v.Number("fov_deg", fov_deg, {0.0, 360.0},
            "degrees from the first to the last reading of a FLASER line; 0: a half circle");
   v.Group("mount", mount, "where the laser is on the robot whose poses the log states");
-  v.Flag("upside_down", upside_down, "whether the readings are written from left to right");
+  v.Flag("upside_down", upside_down,
+         "whether the readings go from left to right, as of a laser mounted upside down");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");
   v.Less("min_range_m", min_range_m, "max_range_m", MostRangeM(*this));
   v.Flag("drop_body", drop_body,
          "leave out what stays nearer than 1 m while the robot turns: its own body");
   v.Number("no_return_clear_m", no_return_clear_m, {0.0, 1000.0},
-           "how far a reading without return is free space");
-  v.Number("no_return_gap_m", no_return_gap_m, {0.0, 100.0},
-           "readings without return in a gap narrower than this clear up to the nearer hit beside");
+           "how far a reading without return clears");
+  v.Number(
+      "no_return_gap_m", no_return_gap_m, {0.0, 100.0},
+      "readings without return in a gap narrower than this clear up to the nearer hit beside it");
 }
 
 }  // namespace depthgrid

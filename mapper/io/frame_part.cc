@@ -42,7 +42,8 @@ void PartOptions::Visit(OptionsVisitor& v) {
   v.Number("from_s", from_s, {0.0, kLongestS},
            "where the part that is read begins, seconds since the recording's first frame");
   v.Number("to_s", to_s, {0.0, kLongestS},
-           "before where it ends, seconds since the recording's first frame; 0: at its end");
+           "where the part that is read ends, exclusive, seconds since the recording's first "
+           "frame; 0: at its end");
   if (to_s > 0.0) v.Less("from_s", from_s, "to_s", to_s);
 }
 

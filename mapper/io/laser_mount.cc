@@ -15,8 +15,10 @@ Pose2 LaserMount::base_from_laser() const { return {x_m, y_m, WrapAngle(RadFromD
 void LaserMount::Visit(OptionsVisitor& v) {
   v.Number("x_m", x_m, {-kFarthestMountM, kFarthestMountM},
            "how far the laser is ahead of the point whose poses the log states, metres");
-  v.Number("y_m", y_m, {-kFarthestMountM, kFarthestMountM}, "how far it is to the left of it");
-  v.Number("yaw_deg", yaw_deg, {-360.0, 360.0}, "how far to the left of those poses it looks");
+  v.Number("y_m", y_m, {-kFarthestMountM, kFarthestMountM},
+           "how far the laser is to the left of that point, metres");
+  v.Number("yaw_deg", yaw_deg, {-360.0, 360.0},
+           "how far to the left of those poses' headings the laser looks");
 }
 
 }  // namespace depthgrid

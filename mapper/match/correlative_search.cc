@@ -49,9 +49,9 @@ void CorrelativeOptions::Visit(OptionsVisitor& v) {
   v.Number("window_m", window_m, {0.0, 10.0}, "half width of the searched square");
   v.Number("window_deg", window_deg, {0.0, 180.0}, "half width of the searched angles");
   v.Number("translation_cost_per_m", translation_cost_per_m, {0.0, 1e3},
-           "pull of the predicted position; 0 is prior-free");
+           "pull towards the predicted position; 0 is prior-free");
   v.Number("rotation_cost_per_rad", rotation_cost_per_rad, {0.0, 1e3},
-           "pull of the predicted yaw; 0 is prior-free");
+           "pull towards the predicted yaw; 0 is prior-free");
 }
 
 CorrelativeSearch::CorrelativeSearch(const CorrelativeOptions& options) : options_(options) {}

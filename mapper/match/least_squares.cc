@@ -76,9 +76,9 @@ void LeastSquaresOptions::Visit(OptionsVisitor& v) {
            "the solver; both find the same minimum");
   v.Number("max_iterations", max_iterations, {1, 1000}, "iterations before giving up");
   v.Number("prior_translation_weight_per_m", prior_translation_weight_per_m, {0.0, 1e4},
-           "pull of the predicted position; 0 is prior-free, Cartographer has 10");
+           "pull towards the predicted position; 0 is prior-free, Cartographer has 10");
   v.Number("prior_rotation_weight_per_rad", prior_rotation_weight_per_rad, {0.0, 1e4},
-           "pull of the predicted yaw; 0 is prior-free, Cartographer has 40");
+           "pull towards the predicted yaw; 0 is prior-free, Cartographer has 40");
 }
 
 LeastSquaresMatch SolveLeastSquares(const LeastSquaresOptions& options, FastMatchCost& cost,

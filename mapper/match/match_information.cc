@@ -50,15 +50,15 @@ void MatchInformationOptions::Visit(OptionsVisitor& v) {
            "where the covariance of a match comes from");
   v.Number("patch_m", patch_m, {0.0, 10.0}, "length of wall whose beams share their error");
   v.Number("map_sigma_m", map_sigma_m, {0.0, 1.0},
-           "standard deviation of where the map has such a length of wall");
+           "standard deviation of where the map has that length of wall");
   v.Number("wall_direction_sigma_rad", wall_direction_sigma_rad, {0.0, 1.0},
-           "uncertainty of wall directions; takes away what they seem to tell along themselves");
+           "uncertainty of wall directions; removes what walls seem to tell along themselves");
   v.Number("surface_window_m", surface_window_m, {0.0, 2.0}, "half width of the scored square");
   v.Number("surface_window_deg", surface_window_deg, {0.0, 45.0},
            "half width of the scored angles");
   v.Number("surface_sharpness", surface_sharpness, {1e-3, 1e3},
-           "weight of a pose per unit of summed probability, exponent");
-  v.Number("covariance_scale", covariance_scale, {1e-6, 1e6}, "factor of a match's covariance");
+           "exponent of a pose's weight, per unit of summed probability");
+  v.Number("covariance_scale", covariance_scale, {1e-6, 1e6}, "factor on a match's covariance");
 }
 
 void AddPatch(const Eigen::Vector3d& gradient, const Eigen::Matrix<double, 3, 2>& shift_curvature,

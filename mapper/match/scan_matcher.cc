@@ -8,12 +8,12 @@ void ScanMatcherOptions::Visit(OptionsVisitor& v) {
            {{MatchStages::kBoth, "both"},
             {MatchStages::kSearch, "search"},
             {MatchStages::kLeastSquares, "least_squares"}},
-           "correlative search, least squares, or the one after the other");
-  v.Number("unknown_prob", unknown_prob, {0.0, 1.0}, "what never-seen cells count");
+           "correlative search, least squares, or both, one after the other");
+  v.Number("unknown_prob", unknown_prob, {0.0, 1.0}, "probability that unseen cells count as");
   v.Number("min_points", min_points, {3, 100000}, "fewest hits that are matched");
   v.Number("min_score", min_score, {0.0, 1.0}, "least share of explained hits of a match");
   v.Number("max_sigma_m", max_sigma_m, {1e-4, 1e3},
-           "a direction known worse than this is not determined");
+           "a direction with a larger standard deviation counts as not determined");
   v.Group("search", search, "correlative search");
   v.Group("least_squares", least_squares, "bicubic least squares, Eq. 4");
   v.Group("information", information, "covariance of a match");

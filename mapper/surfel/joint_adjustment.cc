@@ -272,19 +272,23 @@ void JointOptions::Visit(OptionsVisitor& v) {
   v.Group("groups", groups, "frames that move as one");
   v.Number("rounds", rounds, {0, 1000}, "how often landmarks are found and all poses solved");
   v.Number("most_rounds", most_rounds, {0, 1000},
-           "rounds go on to so many while the prior turns out better with each");
-  v.Number("refine_rounds", refine_rounds, {0, 1000}, "the same during the run, without new loops");
-  v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first gate then");
-  v.Number("little_m", little_m, {0.0, 10.0},
-           "loops that bend poses, or what lies 3 m away, by no more are adjusted like none");
+           "rounds go on up to this many while each finds the prior more accurate");
+  v.Number("refine_rounds", refine_rounds, {0, 1000},
+           "rounds of an adjustment during the run, without new loops");
+  v.Number("refine_gate_m", refine_gate_m, {0.01, 10.0}, "first_gate_m of such an adjustment");
+  v.Number(
+      "little_m", little_m, {0.0, 10.0},
+      "loops that move no pose, and nothing 3 m from it, by more than this count as no new loops");
   v.Number("refine_groups", refine_groups, {1, 1000000},
-           "of more groups than this two neighbours are adjusted as one during the run");
+           "with more groups than this, pairs of neighbours are adjusted as one during the run");
   v.Number("first_gate_m", first_gate_m, {0.01, 10.0},
-           "how far apart one landmark may be seen, first");
-  v.Number("last_gate_m", last_gate_m, {0.01, 10.0}, "and in the last round");
+           "how far apart one landmark may be seen in the first round");
+  v.Number("last_gate_m", last_gate_m, {0.01, 10.0},
+           "how far apart it may be seen in the last round");
   v.Number("landmark_m", landmark_m, {0.005, 1.0}, "length of a landmark");
-  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0}, "between normals of one landmark, at most");
-  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+  v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0},
+           "angle between normals of one landmark, at most");
+  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "residuals of more sigmas count linearly");
   v.Flag("judge_misfit", judge_misfit,
          "whether landmarks that groups see at different places are believed less");
   v.Flag("judge_sharing", judge_sharing,
@@ -292,14 +296,16 @@ void JointOptions::Visit(OptionsVisitor& v) {
   v.Flag("judge_landmarks", judge_landmarks,
          "whether a landmark whose sightings fit worse than most is believed less");
   v.Flag("judge_motions", judge_motions,
-         "whether a motion tells as much of SLAM's errors as it was seen");
+         "whether each motion tells of SLAM's errors only as far as it was seen");
   v.Flag("judge_stretches", judge_stretches,
          "whether SLAM is believed less where its motions err by far more than most");
-  v.Flag("learn_persistence", learn_persistence,
-         "whether SLAM's errors go on from group to group as much as they are seen to");
-  v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0}, "the same for loops");
+  v.Flag(
+      "learn_persistence", learn_persistence,
+      "whether SLAM's errors are taken to go on from group to group as much as they are seen to");
+  v.Number("loop_huber_sigmas", loop_huber_sigmas, {0.1, 100.0},
+           "residuals of loops of more sigmas count linearly");
   v.Number("max_loop_sigmas", max_loop_sigmas, {0.1, 1000.0},
-           "a loop farther from the adjusted poses is taken out");
+           "a loop farther than this from the adjusted poses is taken out");
 }
 
 JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,

@@ -24,16 +24,17 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("beams", beams, {1, 1000}, "beams of a surfel, at most");
   v.Number("max_length_m", max_length_m, {0.01, 10.0}, "length of a surfel, at most");
   v.Number("jump_sigmas", jump_sigmas, {1.0, 100.0},
-           "a difference of neighbouring ranges this unlikely is an edge");
-  v.Number("split_chi2", split_chi2, {1.0, 1e6}, "a gain of fit this large makes two lines of one");
-  v.Number("min_line_beams", min_line_beams, {3, 1000}, "shorter pieces are left out");
+           "neighbouring ranges that differ by more sigmas are an edge");
+  v.Number("split_chi2", split_chi2, {1.0, 1e6},
+           "a line is split where two lines fit better by this chi-square");
+  v.Number("min_line_beams", min_line_beams, {3, 1000}, "lines of fewer beams are left out");
   v.Flag("judge_fit", judge_fit,
          "whether a line that fits its beams worse than their noise explains is believed less");
   v.Flag("skip_alike", skip_alike,
-         "whether beams are left out that err as their neighbours do, as far as scans show");
-  v.Flag(
-      "correct_cutoff", correct_cutoff,
-      "whether returns near the sensor's reach are corrected for those that noise pushed beyond");
+         "whether beams that err as their neighbours do, as far as scans show, are left out");
+  v.Flag("correct_cutoff", correct_cutoff,
+         "whether returns near the sensor's reach are corrected for those that noise pushed beyond "
+         "it");
 }
 
 std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& noise, int stride,

@@ -31,9 +31,10 @@ int PriorGroups(const std::vector<GroupStart>& starts) {
 
 void SurfelGroupOptions::Visit(OptionsVisitor& v) {
   v.Number("length_m", length_m, {0.0, 10.0}, "a group ends this far from where it began");
-  v.Number("turn_deg", turn_deg, {0.0, 180.0}, "or when it has turned so far");
-  v.Number("spacing_m", spacing_m, {0.005, 1.0}, "between a group's surfels along a wall");
-  v.Number("most", most, {1, 1e9}, "with more groups neighbouring ones are adjusted as one");
+  v.Number("turn_deg", turn_deg, {0.0, 180.0}, "a group ends when it has turned this far");
+  v.Number("spacing_m", spacing_m, {0.005, 1.0}, "distance between a group's surfels along a wall");
+  v.Number("most", most, {1, 1e9},
+           "with more groups than this, neighbouring ones are adjusted as one");
 }
 
 bool SurfelGroups::Ends(const Pose2& group_from_base, int times) const {

@@ -97,17 +97,19 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
   v.Group("scan", scan, "how a scan is cut into surfels");
   v.Group("match", match, "how they are matched against the map's");
   v.Group("joint", joint, "how poses and surfels are corrected together");
-  v.Number("spacing_m", spacing_m, {0.005, 1.0}, "between the map's surfels along a wall");
+  v.Number("spacing_m", spacing_m, {0.005, 1.0}, "distance between the map's surfels along a wall");
   v.Number("merge_gate_m", merge_gate_m, {0.0, 1.0},
-           "a surfel is changed by what lies this near along its normal");
-  v.Number("merge_gate_sigmas", merge_gate_sigmas, {0.0, 100.0}, "and so many sigmas of noise");
+           "a surfel is changed by what lies this near to it along its normal");
+  v.Number("merge_gate_sigmas", merge_gate_sigmas, {0.0, 100.0},
+           "merge_gate_m is widened by this many sigmas of noise");
   v.Number("jump_m", jump_m, {0.0, 1000.0},
-           "a match that moves the estimate, or what lies 3 m away, so far moves its group along");
+           "a match that moves the estimate, or what lies 3 m away, by more than this moves its "
+           "group along");
   v.Number("stay_m", stay_m, {0.0, 1000.0},
-           "at the end frames stay this near to where the joint adjustment has them; 0: anywhere");
+           "at the end, frames stay this near to where the joint adjustment put them; 0: no limit");
   v.Number("moving_m", moving_m, {0.0, 10.0},
-           "what stands free is matched once SLAM moved the camera so far past it and it stood; 0: "
-           "from the start");
+           "a free-standing object is matched once it stood still while SLAM moved the camera this "
+           "far; 0: from the start");
 }
 
 SurfelMap::SurfelMap(const SurfelOptions& options)

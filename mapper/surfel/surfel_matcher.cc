@@ -60,24 +60,26 @@ Eigen::Vector3d SeenStep(const NormalEquations& equations) {
 
 void SurfelMatchOptions::Visit(OptionsVisitor& v) {
   v.Number("gate_m", gate_m, {0.01, 10.0},
-           "farther along the normal than this and 2 sigmas nothing is associated");
-  v.Number("along_m", along_m, {0.01, 10.0}, "farther along the wall nothing is associated");
+           "nothing farther along the normal than this plus 2 sigmas is associated");
+  v.Number("along_m", along_m, {0.01, 10.0}, "nothing farther along the wall is associated");
   v.Number("max_angle_deg", max_angle_deg, {1.0, 90.0},
-           "between associated normals, at most; in the map's surfels none farther apart mix");
-  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "larger residuals count linearly");
+           "angle between associated normals, at most; the map merges none farther apart either");
+  v.Number("huber_sigmas", huber_sigmas, {0.1, 100.0}, "residuals of more sigmas count linearly");
   v.Flag("judge_misfit", judge_misfit,
          "whether a match whose surfels fit worse than their noise explains is believed less");
-  v.Flag("judge_sharing", judge_sharing,
-         "whether it is when neighbours err alike, as the joint adjustment found");
+  v.Flag(
+      "judge_sharing", judge_sharing,
+      "whether a match is believed less where neighbours err alike, as the joint adjustment found");
   v.Flag("judge_moving", judge_moving,
-         "whether what was just drawn is left out where it moves against all else");
-  v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0}, "no normal is known better");
+         "whether newly mapped surfels are left out where they move against all others");
+  v.Number("normal_floor_rad", normal_floor_rad, {0.0, 1.0},
+           "no normal is taken to be known better than this");
   v.Number("normal_floor_share", normal_floor_share, {0.0, 1.0},
-           "nor than this share of the variance that one scan's line has");
+           "no normal's variance is taken to be below this share of that of one scan's line");
   v.Number("debias", debias, {0.0, 100.0},
-           "a direction with less than this times the information that noisy normals feign is "
-           "not seen; 0 believes all");
-  v.Number("max_iterations", max_iterations, {1, 1000}, "of the least squares");
+           "a direction with less than this times the information that noisy normals feign counts "
+           "as not seen; 0 believes all");
+  v.Number("max_iterations", max_iterations, {1, 1000}, "iterations of the least squares, at most");
 }
 
 AssociationGate GateOf(const SurfelMatchOptions& options) {
