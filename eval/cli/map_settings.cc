@@ -151,9 +151,9 @@ void MapSettings::Visit(OptionsVisitor& v) {
   v.Text("final_poses", final_poses, "SLAM's poses after all corrections");
   v.Text("loops", loops, "SLAM's events");
   v.Text("map", map, "the finished run it went on from");
-  v.Text("start", start, "where in that map it began, X,Y,YAW_DEG; empty: that was found");
+  v.Text("start", start, "where in that map it began, X,Y,YAW_DEG; empty: it was searched for");
   v.Number("start_within_m", start_within_m, {0.0, kMostWithinM},
-           "how far off that may be, metres; 0: it is taken as it is");
+           "how far off start may be, metres; 0: it is taken as it is");
   v.Flag("localise", localise, "whether that map was left as it is");
   v.Group("sequence", sequence, "how the recorded sequence is read");
   v.Group("mapper", mapper, "the mapper");

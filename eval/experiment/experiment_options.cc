@@ -23,13 +23,15 @@ void ResolveFile(std::string& name, const std::string& base_folder) {
 void ExperimentOptions::Visit(OptionsVisitor& v) {
   constexpr double kMaxFrames = 1e6;
   v.Text("scene", scene, "a shipped scene, a scene file or a mesh file");
-  v.Text("trajectory", trajectory, "one the scene names, or a TUM file; empty is the first");
-  v.Text("movers", movers, "which of the scene's are there: none, all, or names joined by +");
-  v.Number("frames", frames, {0, kMaxFrames}, "0 is as many as the path needs");
-  v.Seed("seed", seed, "of the depth noise and SLAM's errors");
-  v.Seed("depth_seed", depth_seed, "of the depth noise alone; 0 is seed");
-  v.Seed("slam_seed", slam_seed, "of SLAM's errors alone; 0 is seed");
-  v.Seed("trajectory_seed", trajectory_seed, "of the hand's shake");
+  v.Text("trajectory", trajectory,
+         "a trajectory that the scene names, or a TUM file; empty: the scene's first");
+  v.Text("movers", movers,
+         "which of the scene's movers are there: none, all, or names joined by +");
+  v.Number("frames", frames, {0, kMaxFrames}, "number of frames; 0: as many as the path needs");
+  v.Seed("seed", seed, "seed of the depth noise and of SLAM's errors");
+  v.Seed("depth_seed", depth_seed, "seed of the depth noise alone; 0: that of key seed");
+  v.Seed("slam_seed", slam_seed, "seed of SLAM's errors alone; 0: that of key seed");
+  v.Seed("trajectory_seed", trajectory_seed, "seed of the shake of a hand-held camera");
   v.Group("sensor", sensor, "the depth camera");
   v.Group("slam", slam, "the SLAM system");
   v.Group("mapper", mapper, "the mapper");

@@ -9,9 +9,11 @@
 namespace depthgrid {
 
 void MetricsOptions::Visit(OptionsVisitor& v) {
-  v.Flag("registration", registration, "scores after laying the map over the true one");
-  v.Flag("ssim", ssim, "structural similarity");
-  v.Flag("navigation", navigation, "plans on the map, judged in the true one");
+  v.Flag("registration", registration,
+         "whether to score also after laying the map over the true one");
+  v.Flag("ssim", ssim, "whether to score structural similarity");
+  v.Flag("navigation", navigation,
+         "whether to plan on the map and judge the plans in the true one");
   v.Group("navigability", navigability, "the robot and its plans");
 }
 

@@ -92,12 +92,15 @@ void Run(const Errand& errand, const CellSet& true_plan, const CellSet& judge, c
 }  // namespace
 
 void NavigabilityOptions::Visit(OptionsVisitor& v) {
-  v.Number("robot_radius_m", robot_radius_m, {0.0, 10.0}, "the robot that plans are made for");
-  v.Number("margin_m", margin_m, {0.0, 10.0}, "what the planner keeps from walls beyond that");
+  v.Number("robot_radius_m", robot_radius_m, {0.0, 10.0},
+           "radius of the robot that plans are made for");
+  v.Number("margin_m", margin_m, {0.0, 10.0},
+           "distance that the planner keeps from walls beyond the radius");
   v.Number("starts", starts, {1, 10000}, "places from which plans are made");
-  v.Number("goals_per_start", goals_per_start, {1, 10000}, "plans from each");
-  v.Number("least_distance_m", least_distance_m, {0.0, 1e4}, "between start and goal");
-  v.Seed("seed", seed, "of starts and goals");
+  v.Number("goals_per_start", goals_per_start, {1, 10000}, "plans made from each of them");
+  v.Number("least_distance_m", least_distance_m, {0.0, 1e4},
+           "distance between start and goal, at least");
+  v.Seed("seed", seed, "seed of the choice of starts and goals");
 }
 
 std::optional<Navigability> Navigate(const StateMap& truth, const StateMap& estimate,

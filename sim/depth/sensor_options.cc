@@ -84,7 +84,7 @@ void SensorOptions::Visit(OptionsVisitor& v) {
   v.Choice("noise", noise, kDepthNoiseModels, "depth noise model");
   v.Number("noise_scale", noise_scale, {0, 100}, "factor on the model's standard deviations");
   v.Number("noise_correlation_px", noise_correlation_px, {0, 100},
-           "pixels over which errors along the rays are alike, 0: each errs by itself");
+           "pixels over which errors along the rays are alike, 0: each pixel errs by itself");
   v.Number("min_range_m", min_range_m, {0, 1000},
            "nearer depths are invalid, 0: the model's limit");
   v.Number("max_range_m", max_range_m, {0, 1000},
@@ -92,15 +92,16 @@ void SensorOptions::Visit(OptionsVisitor& v) {
   const DepthRange range = RangeOf(*this);
   v.Less("min_range_m", range.min_m, "max_range_m", range.max_m);
   v.Number("grazing_limit_deg", grazing_limit_deg, {0, 90},
-           "incidence beyond which noisy models lose the pixel, 90: never");
+           "angle of incidence beyond which noisy models lose the pixel, 90: never");
   v.Number("grazing_softness_deg", grazing_softness_deg, {0, 30},
            "standard deviation of that limit from pixel to pixel");
   v.Number("flying_pixels", flying_pixels, {0, 1},
            "share of the pixels at depth edges that mix both sides");
   v.Number("shadow_baseline_m", shadow_baseline_m, {-1, 1},
-           "pattern projector's distance to the camera's right, its shadow is invalid; 0: none");
+           "how far to the camera's right its pattern projector is: what it does not light is "
+           "invalid; 0: none");
   v.Choice("isa", isa, {{RayIsa::kAvx2, "avx2"}, {RayIsa::kAvx512, "avx512"}},
-           "instruction set of the ray kernels: they differ by up to a micrometre");
+           "instruction set of the ray kernels; results differ by up to a micrometre");
 }
 
 PinholeCamera SensorCamera(const SensorOptions& options, const std::string& place) {
