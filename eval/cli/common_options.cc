@@ -57,7 +57,7 @@ void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning
 }
 
 void AddThreads(CLI::App& app, CommonArguments& common) {
-  app.add_option("--threads", common.threads, "Threads; 0 is one a core. Never changes a result")
+  app.add_option("--threads", common.threads, "Threads; 0: one per core. Never changes a result")
       ->type_name("N")
       ->check(CLI::Range(0, 1024).description(""));
 }
@@ -75,15 +75,16 @@ void AddMapMode(CLI::App& app, MapMode& mode) {
       {"trinary", MapMode::kTrinary}, {"scale", MapMode::kScale}, {"raw", MapMode::kRaw}};
   app.add_option_function<std::string>(
          "--map-mode", [&mode, modes](const std::string& name) { mode = modes.at(name); },
-         "What the map's shades mean, as Nav2's modes: trinary, scale or raw")
+         "What the map's shades mean, as in Nav2: trinary, scale or raw")
       ->check(CLI::IsMember({"trinary", "scale", "raw"}))
       ->type_name("MODE");
 }
 
 void AddOutputForms(CLI::App& app, OutputArguments& output) {
   AddMapMode(app, output.map_mode);
-  app.add_option("--video", output.video,
-                 "Write a video of the map growing (MP4, by ffmpeg); --force replaces one")
+  app.add_option(
+         "--video", output.video,
+         "Write a video of the map growing (MP4, by ffmpeg); --force replaces an existing one")
       ->type_name("FILE");
 }
 

@@ -18,8 +18,8 @@ void AddSet(CLI::App& app, CommonArguments& common, const char* meaning = kSetMe
 // Of an option that names a folder to make: x/../out is out, also where there is no x.
 CLI::Option* MeantFolder(CLI::Option* option);
 constexpr const char* kForceMeaning =
-    "Write into a folder that is not empty: what an earlier such command wrote there goes, all "
-    "other names stay; never over a file that this one reads";
+    "Write into a folder that is not empty: what an earlier such command wrote there is removed, "
+    "all other files stay; never overwrites a file that this command reads";
 // `force_meaning`: what --force does, in --help.
 void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning = kForceMeaning);
 void AddThreads(CLI::App& app, CommonArguments& common);

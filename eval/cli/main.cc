@@ -48,7 +48,7 @@ struct Program {
 
 void AddScenes(Program& program) {
   const auto [app, arguments] = program.Add<ScenesArguments>(
-      program.app, "scenes", "List what is shipped; or say what a scene holds, and draw its plan",
+      program.app, "scenes", "List what is shipped; or describe one scene and draw its plan",
       "depthgrid scenes\n"
       "  depthgrid scenes ./mine.yaml --plan plan.png   # its floor, its paths, what is wrong",
       &ListScenes);
@@ -62,7 +62,7 @@ void AddScenes(Program& program) {
 void AddRender(Program& program) {
   const auto [app, arguments] = program.Add<RenderArguments>(
       program.app, "render",
-      "Render a scene to a TUM RGB-D folder, with the true map and what of it can be seen",
+      "Render a scene to a TUM RGB-D folder, with the true map and which of its cells can be seen",
       "depthgrid render living_room -o /tmp/living_room", &Render);
   app->add_option("scene", arguments->scene, "Shipped scene or experiment, or a file")->required();
   app->add_flag("--no-colour", arguments->no_colour, "Depth images only: several times as fast");
@@ -74,10 +74,10 @@ void AddRender(Program& program) {
 
 void AddSlamFiles(CLI::App& app, MapArguments& arguments) {
   app.add_option("--poses", arguments.poses,
-                 "SLAM's live poses, TUM format or a matrix a frame; default: the folder's own")
+                 "SLAM's live poses, TUM format or one matrix per frame; default: the folder's own")
       ->type_name("FILE");
   app.add_option("--final-poses", arguments.final_poses,
-                 "SLAM's poses after all corrections; without --loops, loops are read off them")
+                 "SLAM's poses after all corrections; without --loops, loops are derived from them")
       ->type_name("FILE");
   app.add_option("--loops", arguments.loops,
                  "SLAM's events: loops.csv of `depthgrid slam`, ORB-SLAM2's, or stamped loops")
@@ -99,7 +99,7 @@ void AddMap(Program& program) {
       ->required();
   AddSlamFiles(*app, *arguments);
   app->add_option("--format", arguments->format,
-                  "Kind of the input, in place of what it looks like: tum, icl, frames, carmen")
+                  "Kind of the input, which is otherwise detected: tum, icl, frames, carmen")
       ->type_name("KIND");
   app->add_option("--camera", arguments->camera, "A camera file in place of the folder's own")
       ->type_name("FILE");
@@ -108,15 +108,15 @@ void AddMap(Program& program) {
       ->type_name("AXIS");
   app->add_option(
          "--map", arguments->map,
-         "Go on in the finished map of this run's folder: its scans stay, new ones are added")
+         "Continue the finished map of this run's folder: its scans stay, new ones are added")
       ->type_name("DIR");
   app->add_option("--start", arguments->start,
-                  "With --map: where in that map it begins, m and degrees, to 12 degrees; without "
-                  "it the place is looked for")
+                  "With --map: where in that map the sequence begins, m and degrees, within 12 "
+                  "degrees; default: it is searched for")
       ->type_name("X,Y,YAW_DEG")
       ->check(RefusalUnlessPlace);
   app->add_option("--start-within", arguments->start_within,
-                  "How far off --start may be (1.5); 0 takes it as it is")
+                  "How far off --start may be, m (default 1.5); 0 takes it as it is")
       ->type_name("M");
   app->add_flag("--localise", arguments->localise,
                 "With --map: find the poses in that map and leave it as it is")
@@ -149,13 +149,14 @@ void AddRun(Program& program) {
 void AddSweep(Program& program) {
   const auto [app, arguments] = program.Add<SweepArguments>(
       program.app, "sweep",
-      "Run an experiment many times over; started again, it goes on where it stopped",
+      "Run an experiment for many settings and seeds; started again, it continues where it stopped",
       "depthgrid sweep kalman_gain -o /tmp/gains", &Sweep);
   app->add_option("sweep", arguments->sweep, "Shipped sweep or a YAML file");
-  app->add_option("-j,--jobs", arguments->jobs, "Runs at a time; 0 is one a core")
+  app->add_option("-j,--jobs", arguments->jobs, "Runs at a time; 0: one per core")
       ->type_name("N")
       ->check(CLI::Range(0, 1024).description(""));
-  app->add_option("--shard", arguments->shard, "Do part I of N only, from 1")->type_name("I/N");
+  app->add_option("--shard", arguments->shard, "Do only part I of N, counted from 1")
+      ->type_name("I/N");
   app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
       ->type_name("DIR");
   app->add_option("--executor", arguments->executor, "Where runs are done")
@@ -164,13 +165,12 @@ void AddSweep(Program& program) {
   app->add_option("--slurm-options", arguments->slurm_options,
                   "More options for sbatch, such as '--partition=long --time=1:00:00'");
   app->add_option("--slurm-tasks", arguments->slurm_tasks,
-                  "Parts to make; 0 gives each at least 30 s of work")
+                  "Number of parts; 0 gives each at least 30 s of work")
       ->check(CLI::Range(0, 1000));
   app->add_flag("--dry-run", arguments->dry_run, "Say how many runs and how long, then stop");
-  AddOutput(
-      *app, arguments->common,
-      "Begin in a folder that holds other files, which stay; never one with another result or "
-      "a file of a sweep's names in it");
+  AddOutput(*app, arguments->common,
+            "Begin in a folder that holds other files, which stay; never in one that holds another "
+            "result or files named as a sweep's are");
   AddSet(*app, arguments->common);
   AddCache(*app, arguments->common);
   AddKeys(*app, &ExperimentKeys);
@@ -185,7 +185,7 @@ void AddSlam(Program& program) {
       ->required();
   app->add_option("--profile", arguments->profile, "Which system, as slam.profile of an experiment")
       ->capture_default_str();
-  AddSeed(*app, "--seed", arguments->seed, "Of the errors");
+  AddSeed(*app, "--seed", arguments->seed, "Seed of the errors");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common,
          "Override a key, slam.NAME=value (repeat for more); `depthgrid run --keys` lists them");
@@ -194,7 +194,7 @@ void AddSlam(Program& program) {
 void AddSlamCalibrate(Program& program) {
   const auto [app, arguments] = program.Add<SlamCalibrateArguments>(
       program.app, "slam-calibrate",
-      "Find the slam.drift_scale that gives a mean error of the live poses",
+      "Find the slam.drift_scale that gives a wanted mean error of the live poses",
       "depthgrid slam-calibrate living_room --set slam.profile=orb_slam2 --target 0.407",
       &SlamCalibrate);
   app->add_option("experiment", arguments->experiment, "Shipped experiment or scene, or a file")
@@ -205,7 +205,7 @@ void AddSlamCalibrate(Program& program) {
   app->add_option("--seeds", arguments->seeds, "How many runs to average")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
+  AddSeed(*app, "--first-seed", arguments->first_seed, "Seed of the first run");
   AddSet(*app, arguments->common, kSetOfExperimentMeaning);
   AddThreads(*app, arguments->common);
 }
@@ -229,17 +229,17 @@ void AddEvalTrajectory(Program& program, CLI::App& eval) {
                   "Stamps nearer than this belong together, seconds (evo 0.01, tum 0.02)")
       ->check(RefusalIfNegative);
   app->add_option("--time-offset", arguments->time_offset_s,
-                  "Added to the estimate's stamps, seconds, where its clock is another")
+                  "Added to the estimate's stamps, seconds, where its clock differs")
       ->check(RefusalUnlessFinite);
   app->add_option("--convention", arguments->convention,
-                  "How poses find each other: evo (nearest) or tum (its scripts: each pose once)")
+                  "How poses are paired: evo (nearest) or tum (as its scripts do: each pose once)")
       ->check(CLI::IsMember({"evo", "tum"}))
       ->capture_default_str();
   app->add_option("--errors", arguments->errors,
                   "Write the errors over time to this CSV, not aligned")
       ->type_name("FILE");
   app->add_flag("--force", arguments->force,
-                "Replace that file if it is there already, but neither trajectory");
+                "Replace that file if it exists, but never one of the trajectories");
   app->add_flag("--json", arguments->json, "Print JSON instead of a table");
 }
 
@@ -249,9 +249,9 @@ void AddEvalMap(Program& program, CLI::App& eval) {
       "depthgrid eval map OUT/truth_map.yaml OUT/map.yaml", &EvalMap);
   app->add_option("reference", arguments->reference, "True map")->required();
   app->add_option("estimate", arguments->estimate, "Estimated map")->required();
-  app->add_option(
-         "--observable", arguments->observable,
-         "Map whose free cells could be seen; default: observable.yaml beside the true map")
+  app->add_option("--observable", arguments->observable,
+                  "Map whose free cells are those that could be seen; default: observable.yaml "
+                  "beside the true map")
       ->type_name("FILE");
   app->add_flag("--json", arguments->json, "Print JSON instead of a table");
 }
@@ -277,28 +277,28 @@ void AddCompare(Program& program) {
     app->add_option(name, values, meaning)->type_name("KEY=VALUE")->allow_extra_args(false);
   };
   app->add_option("a", arguments->a, "A sweep's folder, a run's, or a folder of runs")->required();
-  app->add_option("b", arguments->b, "Likewise; the runs of the same seeds make pairs")->required();
+  app->add_option("b", arguments->b, "Likewise; runs of the same seeds are paired")->required();
   app->add_option("--metric", arguments->metrics,
                   "A score by its path in metrics.json (repeat for more), or all")
       ->type_name("NAME")
       ->allow_extra_args(false);
   add_where("--where", arguments->where, "Only runs with this value of an axis");
-  add_where("--where-a", arguments->where_a, "The same for A alone");
-  add_where("--where-b", arguments->where_b, "The same for B alone");
+  add_where("--where-a", arguments->where_a, "Likewise, for A alone");
+  add_where("--where-b", arguments->where_b, "Likewise, for B alone");
   app->add_flag("--json", arguments->json, "Print JSON instead of a table");
 }
 
 void AddAblate(Program& program) {
   const auto [app, arguments] = program.Add<AblateArguments>(
       program.app, "ablate",
-      "Put the truth in for each stage in turn: how much of the error each owns",
+      "Replace each stage in turn by the truth: how much of the error is due to each",
       "depthgrid ablate living_room --seeds 10 -o /tmp/ablation", &Ablate);
   app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
       ->required();
-  app->add_option("--seeds", arguments->seeds, "How many; fewer than 6 prove nothing")
+  app->add_option("--seeds", arguments->seeds, "Number of seeds; fewer than 6 prove nothing")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  AddSeed(*app, "--first-seed", arguments->first_seed, "The first of them");
+  AddSeed(*app, "--first-seed", arguments->first_seed, "The first seed");
   app->add_flag("--json", arguments->json, "Print JSON instead of tables");
   AddOutput(*app, arguments->common);
   AddSet(*app, arguments->common, kSetOfExperimentMeaning);
