@@ -34,7 +34,7 @@ void PrintShares(const ErrorShares& score) {
 }
 
 void PrintLegend(std::size_t seeds) {
-  fmt::print("{}; owned: what the error falls by when the truth is put in, paired by seed\n",
+  fmt::print("{}; owned: how much the error falls when the truth is put in, paired by seed\n",
              Counted(seeds, "seed"));
   constexpr int kNameWidth = 10;
   for (const AblationVariant& variant : AblationVariants()) {
@@ -46,10 +46,9 @@ void PrintLegend(std::size_t seeds) {
 
 void WarnOfRepeatedSeeds(std::size_t counted, std::size_t seeds) {
   if (counted == seeds) return;
-  Warn(
-      {fmt::format("{} of {} give what another gave and do not count: nothing here "
-                   "depends on the seed",
-                   seeds - counted, Counted(seeds, "seed"))});
+  Warn({fmt::format(
+      "{} of {} give the same scores as another and do not count: nothing here depends on the seed",
+      seeds - counted, Counted(seeds, "seed"))});
 }
 
 AblationPlan PlanOf(const AblateArguments& arguments) {

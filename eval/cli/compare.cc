@@ -93,7 +93,7 @@ void PrintFewerPairs(const Comparison& comparison) {
             : ""));
   }
   if (rows.empty()) return;
-  fmt::print("\nOf fewer pairs, as the score is not defined on both sides in the others: {}\n",
+  fmt::print("\nOn fewer pairs, as the score is not defined on both sides in the others: {}\n",
              fmt::join(rows, ", "));
 }
 
@@ -103,7 +103,7 @@ void PrintLeftOut(const Comparison& comparison) {
     fmt::print("\n{} left out, {}: {}\n", Counted(names.size(), "score"), why,
                fmt::join(names, ", "));
   };
-  print(comparison.undefined, "defined on both sides in no pair");
+  print(comparison.undefined, "not defined on both sides in any pair");
   print(comparison.all_equal, "the same on both sides in every pair");
   print(comparison.without_direction, "of which neither more nor less is better");
 }
@@ -115,10 +115,10 @@ void PrintTooFew(const Comparison& comparison) {
   if (most >= rows) return;
   const char* unit = comparison.units < comparison.pairs ? "seed" : "pair";
   const std::string all = rows == 1 ? ""
-                                    : fmt::format(", all {} rows take {}", rows,
+                                    : fmt::format(", all {} rows need {}", rows,
                                                   Counted(comparison.pairs_for_all, unit));
   if (most == 0) {
-    fmt::print("\nToo few {}s for any verdict: one row takes {}{}.\n", unit,
+    fmt::print("\nToo few {}s for any verdict: one row needs {}{}.\n", unit,
                Counted(comparison.pairs_for_one, unit), all);
     return;
   }
@@ -126,7 +126,8 @@ void PrintTooFew(const Comparison& comparison) {
       std::any_of(comparison.metrics.begin(), comparison.metrics.end(),
                   [](const MetricComparison& c) { return c.verdict == Verdict::kNotTested; });
   fmt::print(
-      "\n{} can tell apart {} at once{}{}. Choose with --metric what is asked, before looking.\n",
+      "\n{} are enough to test {} at once{}{}. Choose the scores with --metric, before looking at "
+      "any.\n",
       Counted(comparison.units, unit), Counted(most, "row"), all,
       some_are_not ? "; the others are not tested" : "");
 }
@@ -147,7 +148,7 @@ void PrintTable(const Comparison& comparison, const CompareArguments& arguments)
     fmt::print("; {}, whose pairs are averaged", Counted(comparison.units, "seed"));
   }
   if (comparison.repeated_seeds > 0) {
-    fmt::print("; not counted, as it gave in every score what another did: {}",
+    fmt::print("; not counted, as every score equals that of another: {}",
                Counted(comparison.repeated_seeds, "seed"));
   }
   if (comparison.unpaired_a > 0 || comparison.unpaired_b > 0) {

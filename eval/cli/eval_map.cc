@@ -104,8 +104,8 @@ std::string RedrawnNote(const MapFile& estimate, const EvalMapArguments& paths) 
   const std::string turned =
       off.yaw_rad == 0.0 ? "" : fmt::format(", turned by {:.3f} deg", DegFromRad(off.yaw_rad));
   return fmt::format(
-      "{}: its cells lie off those of {} (by x {:.4f} m, y {:.4f} m{}): each of these takes what "
-      "its centre falls into",
+      "{}: its cells lie off those of {} (by x {:.4f} m, y {:.4f} m{}): each of the latter takes "
+      "what its centre falls into",
       paths.estimate, paths.reference, off.x_m, off.y_m, turned);
 }
 
@@ -230,10 +230,9 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   constexpr int kFewWallCells = 20;
   std::vector<std::string> doubts;
   if (KnownToBoth(score.all) == 0) {
-    doubts.push_back(
-        fmt::format("{}: shares no known cell with {}: maps of other places, or in other "
-                    "frames",
-                    arguments.estimate, arguments.reference));
+    doubts.push_back(fmt::format(
+        "{}: shares no known cell with {}: maps of different places, or in different frames",
+        arguments.estimate, arguments.reference));
   }
   const StateScore& walls = score.all.occupied.back();
   if (walls.estimated_cells >= kFewWallCells && walls.precision &&
@@ -293,8 +292,9 @@ std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments
       what += fmt::format("{}turned by {} degrees", turn->mirrored ? " and " : "",
                           90 * (turn->quarters < 3 ? turn->quarters : -1));
     }
-    return fmt::format("{}: {}, it lies over {}: are its axes others, or its image's rows?",
-                       arguments.estimate, what, arguments.reference);
+    return fmt::format(
+        "{}: {}, it would lie over {}: are its axes or the order of its image's rows different?",
+        arguments.estimate, what, arguments.reference);
   }
   if (is_doubted) return std::nullopt;
   return fmt::format(

@@ -85,8 +85,8 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
   } else if (!score.by_row &&
              (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
     doubts.push_back(
-        fmt::format("{}: only {} of its {} poses have a stamp of {}'s {}; the errors are "
-                    "of those alone",
+        fmt::format("{}: only {} of its {} poses have a stamp in common with {}'s {}; the errors "
+                    "are of those alone",
                     of.estimate, score.matched_poses, score.estimate_poses, of.reference,
                     score.reference_poses));
   } else if (score.time_coverage < 1.0 - kMostMissing) {

@@ -63,7 +63,7 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
   const std::vector<std::string> kept = KeptBesideProfile(
       ExperimentFile(ResolveName(name, ShippedKind::kExperiment)), given, {profile});
   if (kept.empty()) return {};
-  return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
+  return fmt::format("{}: its own values of {} are kept with slam.profile={}", name,
                      fmt::join(kept, ", "), profile);
 }
 

@@ -21,10 +21,12 @@ namespace fs = std::filesystem;
 // Why a place that was found is a guess.
 std::string WhyUncertain(const MapStart& start) {
   if (start.fits_badly()) {
-    return "little of what is seen lies on it: it may be of another place or begin outside of the "
-           "map";
+    return "little of what is seen lies on it: the sequence may be of another place or begin "
+           "outside of the map";
   }
-  if (start.hardly_moved()) return "it was seen from one place only: another one may fit as well";
+  if (start.hardly_moved()) {
+    return "the first views are from one place only: another place may fit as well";
+  }
   return "another place fits nearly as well";
 }
 
@@ -48,10 +50,9 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
                                         const Pose2& base_from_laser) {
   if (start.contradicted()) {
     return fmt::format(
-        "{}: {}, {:.0f} % of what the sequence's first metres show there is free "
-        "or behind a wall in it: it is of another place, begins {}, or much has "
-        "changed",
-        map, start.known ? "where it is said to begin" : "where it fits it best",
+        "{}: {}, {:.0f} % of what the sequence's first metres show there is free or behind a wall "
+        "in it: the sequence is of another place, begins {}, or much has changed",
+        map, start.known ? "at the given start" : "where it fits it best",
         100.0 * start.trial->against,
         start.known ? Elsewhere(start, base_from_laser) : "outside of the map");
   }
@@ -60,8 +61,8 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
     const char* why = start.fits_badly()
                           ? "little of what the sequence's first metres show lies on it"
                           : "the sequence's first views fit worse than at another place";
-    return fmt::format("{}: where it is said to begin, {}: it begins {}, or much has changed", map,
-                       why, Elsewhere(start, base_from_laser));
+    return fmt::format("{}: at the given start, {}: the sequence begins {}, or much has changed",
+                       map, why, Elsewhere(start, base_from_laser));
   }
   return fmt::format("{}: where in it the sequence begins is uncertain, {} (--start says where)",
                      map, WhyUncertain(start));
@@ -75,8 +76,8 @@ std::optional<std::string> DoubtOfMove(const Pose2& given, const Pose2& taken) {
   const Pose2 move = Between(given, taken);
   if (move.translation().norm() <= kLittleM && std::abs(move.yaw_rad) <= kLittleRad) return {};
   return fmt::format(
-      "start {}: it begins {:.2f} m and {:.1f} degrees from there, at {}, where what is seen first "
-      "fits better (--start-within 0 takes the place as it is given)",
+      "start {}: the sequence begins {:.2f} m and {:.1f} degrees from there, at {}, where what is "
+      "seen first fits better (--start-within 0 takes the place as it is given)",
       Numbers(given), move.translation().norm(), std::abs(DegFromRad(move.yaw_rad)),
       Numbers(taken));
 }
@@ -86,7 +87,7 @@ void SayStart(const std::string& map, const PriorMap& prior, const MapStart& sta
   fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}{}, ", map,
              Counted(prior.frames.size(), "scan"), camera ? "SLAM's" : "odometry's",
              Number(at.x_m, 2), Number(at.y_m, 2), Number(DegFromRad(at.yaw_rad), 1),
-             start.place.score, start.known ? " where it is said to begin" : "");
+             start.place.score, start.known ? " at the given start" : "");
   fmt::print("elsewhere {:.2f}\n", start.place.second_score);
   if (!start.trial || start.trial->places < 2) return;
   fmt::print(
@@ -176,16 +177,16 @@ std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart
   if (contradiction && !start.contradicted()) {
     return {
         fmt::format("{}: of what the sequence shows of the map as it was, {:.0f} % is free or "
-                    "behind a wall in it: it was laid onto another place of it, went astray on "
-                    "the way, or much has changed",
+                    "behind a wall in it: the sequence was laid onto another place of it, went "
+                    "astray on the way, or much has changed",
                     map, 100.0 * contradiction->share_against())};
   }
   const auto& unsure = start.place.unsure;
   if (!unsure || SeesAlong(run, *unsure)) return {};
-  return {fmt::format(
-      "{}: where in it the sequence begins is not known along {:.0f} degrees, it may be {:.1f} m "
-      "off: nothing that was seen ends there",
-      map, DegFromRad(unsure->direction_rad), unsure->reach_m)};
+  return {
+      fmt::format("{}: where in it the sequence begins is not known along a direction of {:.0f} "
+                  "degrees, it may be {:.1f} m off: nothing that was seen ends along it",
+                  map, DegFromRad(unsure->direction_rad), unsure->reach_m)};
 }
 
 std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run) {
@@ -204,7 +205,8 @@ std::optional<std::string> DoubtOfHeight(const MapRequest& request, const Mappin
   if (slice_m == 0.0 || std::abs(height_m - *of_map_m) <= slice_m) return {};
   return fmt::format(
       "{}: made with the camera {:.2f} m above the floor, which is {:.2f} m here: what is matched "
-      "is what stands at the camera's height, of furniture something else, so poses are less sure",
+      "is what stands at the camera's height, and furniture differs there, so poses are less "
+      "certain",
       map, *of_map_m, height_m);
 }
 
@@ -222,7 +224,7 @@ void KeepMap(const std::string& map, const OutputFolder& folder) {
 std::vector<std::string> DoubtsOfKeptMap(const MapRequest& request, const OccupancyMap& drawn) {
   const std::string& map = request.arguments.map;
   if (const auto why = WhyNotKept(map)) {
-    return {*why + ": the map handed on is drawn of its scans"};
+    return {*why + ": the map handed on is drawn from its scans"};
   }
   // Of other settings' cells that is no surprise, and is said.
   if (DoubtOfPrior(map, request.settings.mapper, false)) return {};
@@ -238,7 +240,7 @@ std::optional<std::string> DoubtOfMapRecord(const MapArguments& given, const Map
   const std::string recorded = request.provenance.Text("map_hash", hash);
   if (recorded == hash) return {};
   return fmt::format(
-      "{}: map_hash is {}, but that of the map in {} is {} now: this run is another "
+      "{}: map_hash is {}, but that of the map in {} is {} now: this run differs from the recorded "
       "one",
       given.input, recorded, request.arguments.map, hash);
 }

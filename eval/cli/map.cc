@@ -155,7 +155,7 @@ void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const S
   const auto& seen_z_m = sequence.seen_floor_z_m;
   if (!seen_z_m || !MapsFloor(run, *seen_z_m, scan)) return;
   warnings.push_back(
-      fmt::format("{}: the floor seen in the images lies at z = {:.2f}, {:g} is taken for it, and "
+      fmt::format("{}: the floor seen in the images lies at z = {:.2f}, but {:g} is taken for it, "
                   "so it is drawn as walls: --set mapper.scan.floor_z_m={:.2f} says where it is",
                   arguments.poses.empty() ? arguments.input : arguments.poses, *seen_z_m,
                   scan.floor_z_m, *seen_z_m));
@@ -168,7 +168,7 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
   if (!ways) return;
   constexpr double kStandingM = 1e-3;  // of rounding
   if (ways->slam_m < kStandingM) {
-    warnings.push_back(fmt::format("{}: the given poses do not move, the map's go {:.1f} m",
+    warnings.push_back(fmt::format("{}: the given poses do not move, but the map's go {:.1f} m",
                                    arguments.input, ways->map_m));
     return;
   }

@@ -53,7 +53,7 @@ std::string OffsetRemedyOf(const PoseDoubt& doubt) {
   const std::string setting = fmt::format(
       "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
   if (doubt.time_unsure_s < kSureOfTimeS) return setting;
-  return fmt::format("{}, {:.2f} s more or less fit alike", setting, doubt.time_unsure_s);
+  return fmt::format("{}, {:.2f} s more or less fit as well", setting, doubt.time_unsure_s);
 }
 
 std::string RemedyOf(const PoseDoubt& doubt) {
@@ -134,7 +134,7 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
   if (doubt.reading == PoseReading::kNone) {
     return apart + ", and no reading of them fits: are they of these images, in this order?";
   }
-  return fmt::format("{}; they would, at {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
+  return fmt::format("{}; they would fit, to {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
                      RemedyOf(doubt));
 }
 

@@ -41,7 +41,8 @@ constexpr std::string_view kEndOfTitle = " - depthgrid</title>";
 void RequireNoneButAPage(const std::string& path) {
   if (!fs::exists(path)) return;
   if (ReadFile(path).find(kEndOfTitle) == std::string::npos) {
-    throw InputError(path, "is no page of depthgrid's, and stays; -o names another folder for it");
+    throw InputError(
+        path, "is not a page of depthgrid's, so it is kept; -o names another folder for the page");
   }
 }
 
@@ -54,7 +55,7 @@ void RequireNoneButItsFiles(const std::string& folder, const fs::path& written) 
     const std::string path = folder + "/" + name;
     if (name == "report.html" || !fs::exists(path)) continue;
     if (text.find(name) == std::string::npos) {
-      throw InputError(path, "is of no page there, and stays; choose another folder");
+      throw InputError(path, "belongs to no page there, so it is kept; choose another folder");
     }
   }
 }
@@ -66,7 +67,7 @@ void RequireNoLinks(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder, missing)) {
     if (!entry.is_symlink() || !is_of_page(entry.path().filename())) continue;
     throw InputError(folder + "/" + entry.path().filename().string(),
-                     "is a link, and stays; -o names another folder for the page");
+                     "is a link, so it is kept; -o names another folder for the page");
   }
 }
 

@@ -38,7 +38,7 @@ void PrintLost(const MappingRun& run) {
       std::count_if(run.result.map_from_camera.begin(), run.result.map_from_camera.end(),
                     [](const auto& pose) { return pose.has_value(); });
   fmt::print(
-      "SLAM was lost in {} of {}, the estimate has a pose of {}: errors are of those only\n\n",
+      "SLAM was lost in {} of {}, the estimate has a pose for {}: errors are of those only\n\n",
       lost, Counted(run.reports.size(), "frame"), poses);
 }
 

@@ -59,7 +59,7 @@ class SweepFolder {
       throw InputError(path, "is a file, the output must be a folder");
     }
     if (!force && fs::exists(path) && !fs::is_empty(path) && !IsSweep()) {
-      throw InputError(path, "is not empty and no sweep; choose another folder, or --force");
+      throw InputError(path, "is not empty and holds no sweep; choose another folder, or --force");
     }
     if (!SweepDatabase::Exists(path)) RequireSweepNamesFree(path);
     std::error_code error;

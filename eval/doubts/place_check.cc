@@ -74,11 +74,12 @@ std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
 
 std::string TextOf(const LostFrames& lost) {
   if (!lost.localised) {
-    return "lost: of what the first frame sees, which was placed by this map alone, hardly "
-           "anything lies on it; the sequence is of another place or begins elsewhere in it";
+    return "lost: hardly anything that the first frame sees lies on this map, by which alone it "
+           "was placed; the sequence is of another place or begins elsewhere in the map";
   }
-  const std::string leaves = lost.left_at ? fmt::format("from frame {} on it leaves", *lost.left_at)
-                                          : "in between it leaves";
+  const std::string leaves =
+      lost.left_at ? fmt::format("from frame {} on the sequence leaves", *lost.left_at)
+                   : "in between the sequence leaves";
   std::string why = "the sequence is of another place, begins elsewhere in it or leaves it";
   if (lost.left_at || lost.comes_back) {
     why = leaves +
@@ -86,7 +87,7 @@ std::string TextOf(const LostFrames& lost) {
     why += lost.comes_back ? "and comes back" : "or it is of another place";
   }
   return fmt::format(
-      "lost: in {} of the {} that were placed and see something hardly anything that is seen lies "
+      "lost: in {} of the {} that were placed and see something, hardly anything that is seen lies "
       "on the map; {}",
       lost.lost, Counted(lost.frames, "frame"), why);
 }

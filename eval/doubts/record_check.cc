@@ -20,8 +20,9 @@ std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& r
                            const std::string& what) {
     const std::string recorded = record.Text(key, hash);
     if (recorded == hash) return;
-    doubts.push_back(fmt::format("{}: {} is {}, but that of {} is {} now: this run is another one",
-                                 path, key, recorded, what, hash));
+    doubts.push_back(fmt::format(
+        "{}: {} is {}, but that of {} is {} now: this run differs from the recorded one", path, key,
+        recorded, what, hash));
   };
   if (!anew.scene) compare("scene_hash", now.scene, options.scene);
   if (is_same_path) {

@@ -52,8 +52,8 @@ std::optional<std::string> DoubtOfStorey(const Trajectory& trajectory, const Sce
   const double z_m = InMillimetres(level_m[level_m.size() / 2]);
   if (z_m < scene.floor_z_m + kLeastStoreyM || !HasFloorAt(scene.mesh, z_m)) return {};
   return fmt::format(
-      "{} of {} are above level surface at z = {:g} m, but maps are of the storey whose floor is "
-      "at {:g} m; floor_z_m: {:g} in the scene's file takes that one",
+      "{} of {} are above a level surface at z = {:g} m, but maps are of the storey whose floor is "
+      "at {:g} m; floor_z_m: {:g} in the scene's file takes the upper one",
       level_m.size(), Counted(trajectory.size(), "pose"), z_m, InMillimetres(scene.floor_z_m), z_m);
 }
 

@@ -36,7 +36,7 @@ Doubt DoubtOfScale(const std::vector<PosePair>& pairs, const TrajectoryNames& na
   const auto fit = Align(pairs, Alignment::kSim3);
   if (!fit || (fit->scale <= kOtherScale && fit->scale * kOtherScale >= 1.0)) return {};
   return fmt::format(
-      "{}: fits {} best {:.4g} times as large: is it in other units, or without scale?",
+      "{}: fits {} best if made {:.4g} times as large: is it in other units, or without scale?",
       names.estimate, names.reference, fit->scale);
 }
 

@@ -251,7 +251,7 @@ void RequireOwnFiles(const std::string& folder, ResultKind kind,
   }
   if (others.empty()) return;
   throw InputError(others.begin()->string(),
-                   "is of no result of depthgrid there, and --force would overwrite it; choose "
+                   "belongs to no depthgrid result there, and --force would overwrite it; choose "
                    "another folder");
 }
 

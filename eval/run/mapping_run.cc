@@ -148,17 +148,17 @@ std::optional<int> GuessedFrom(const MappingRun& run) {
 std::vector<std::string> FrameRecorder::Warnings() const {
   std::vector<std::string> lines = MendedPoses(run_.reports);
   if (const auto cut = saturation_.Found(); cut && cut->z_m < max_range_m_) {
-    lines.push_back(fmt::format(
-        "depth images: {} hold {:.3f} m, the largest depth, all over whatever is behind: if all "
-        "that is farther is cut to it, it is drawn as walls; --set "
-        "mapper.scan.max_range_m={:.2f} takes it for free",
-        Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
+    lines.push_back(
+        fmt::format("depth images: {} hold {:.3f} m, the largest depth, all over whatever is "
+                    "behind: if all that is farther is cut to it, it is drawn as walls; --set "
+                    "mapper.scan.max_range_m={:.2f} takes it for free space",
+                    Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
   }
   if (const std::optional<int> frame = GuessedFrom(run_)) {
-    lines.push_back(fmt::format(
-        "poses: SLAM was lost before frame {}; where the map goes on from there is a guess, that "
-        "nothing seen since confirms",
-        *frame));
+    lines.push_back(
+        fmt::format("poses: SLAM was lost before frame {}; where the map goes on from there is a "
+                    "guess that nothing seen since confirms",
+                    *frame));
   }
   return lines;
 }

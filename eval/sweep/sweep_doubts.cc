@@ -220,7 +220,7 @@ std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config
   }
   const std::vector<std::string> kept = KeptBesideProfile(experiment, changes, profiles);
   if (kept.empty()) return {};
-  return fmt::format("{}: its own values of {} stay with slam.profile={}", name,
+  return fmt::format("{}: its own values of {} are kept with slam.profile={}", name,
                      fmt::join(kept, ", "), fmt::join(profiles, ", "));
 }
 

@@ -201,8 +201,9 @@ void RequireSweepNamesFree(const std::string& folder) {
   for (const std::string& name : names) {
     const fs::path file = fs::path(folder) / name;
     if (!fs::exists(fs::symlink_status(file))) continue;
-    throw InputError(file.string(),
-                     "is there already and no sweep's; choose another folder for the sweep");
+    throw InputError(
+        file.string(),
+        "is there already and belongs to no sweep; choose another folder for the sweep");
   }
 }
 
@@ -232,7 +233,7 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
     return database;
   }
   if (!force && !IsEmptyFolder(folder)) {
-    throw InputError(folder, "is not empty and no sweep; choose another folder, or --force");
+    throw InputError(folder, "is not empty and holds no sweep; choose another folder, or --force");
   }
   return SweepDatabase::Create(folder, here, plan.parameter_keys, RunsOf(plan, shard));
 }

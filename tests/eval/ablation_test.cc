@@ -110,8 +110,8 @@ TEST_F(ProgramAblate, SeedsThatChangeNothingAreOneMeasurement) {
       "ablate ./small.yaml --seeds 3 --set slam_seed=1 --set depth_seed=1 -o out --threads 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err,
-            "depthgrid: warning: 2 of 3 seeds give what another gave and do not count: nothing "
-            "here depends on the seed\n");
+            "depthgrid: warning: 2 of 3 seeds give the same scores as another and do not count: "
+            "nothing here depends on the seed\n");
   EXPECT_THAT(outcome.out, HasSubstr("1 seed;"));
   EXPECT_EQ(nlohmann::json::parse(ReadFile(Path("out/ablation.json")))["seeds"], 1);
   const std::string csv = ReadFile(Path("out/ablation.csv"));

@@ -55,7 +55,7 @@ TEST_F(ProgramCompare, FoldersOfRuns) {
   const Outcome single = Program("compare a/0 b/0");
   EXPECT_EQ(single.exit_code, 0) << single.err;
   EXPECT_THAT(single.out, HasSubstr("too few pairs"));
-  EXPECT_THAT(single.out, HasSubstr("Too few pairs for any verdict: one row takes 6 pairs.\n"));
+  EXPECT_THAT(single.out, HasSubstr("Too few pairs for any verdict: one row needs 6 pairs.\n"));
 }
 
 TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
@@ -91,7 +91,7 @@ TEST_F(ProgramCompare, SaysWhichRowsRestOnFewerPairs) {
   const Outcome outcome = Program("compare a b");
   EXPECT_THAT(outcome.out, HasSubstr("10 pairs"));
   EXPECT_THAT(outcome.out,
-              HasSubstr("\nOf fewer pairs, as the score is not defined on both sides in the "
+              HasSubstr("\nOn fewer pairs, as the score is not defined on both sides in the "
                         "others: trajectory.est.mean_euclidean_m (7 of 10 pairs)\n"));
   const auto json = nlohmann::json::parse(Program("compare a b --json").out);
   EXPECT_EQ(json["metrics"][kComparedScore]["undefined_pairs"], 3);
@@ -112,8 +112,9 @@ TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {
   EXPECT_THAT(outcome.out, HasSubstr("A better"));
   EXPECT_THAT(
       outcome.out,
-      HasSubstr("\n6 pairs can tell apart 1 row at once, all 2 rows take 7 pairs; the others "
-                "are not tested. Choose with --metric what is asked, before looking.\n"));
+      HasSubstr(
+          "\n6 pairs are enough to test 1 row at once, all 2 rows need 7 pairs; the others are not "
+          "tested. Choose the scores with --metric, before looking at any.\n"));
   const auto json = nlohmann::json::parse(Program("compare a b --json").out);
   EXPECT_EQ(json["metrics"]["map.ssim"]["verdict"], "not_tested");
   EXPECT_TRUE(json["metrics"]["map.ssim"]["p_holm"].is_null());

@@ -139,7 +139,7 @@ TEST_F(EvalMap, AMapThatIsTurnedIsSaid) {
   write_at("truth.yaml", "0, 0, 0");
   write_at("turned.yaml", "2, -1, 1.5707963267948966");
   EXPECT_THAT(Program("eval map truth.yaml turned.yaml").err,
-              HasSubstr("turned.yaml: turned by -90 degrees, it lies over truth.yaml"));
+              HasSubstr("turned.yaml: turned by -90 degrees, it would lie over truth.yaml"));
 }
 
 // A room of 10 x 10 cells with walls around.

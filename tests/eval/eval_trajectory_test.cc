@@ -75,7 +75,9 @@ TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
   Write("one.txt", "3 3 0 0 0 0 0 1\n500 3 0 0 0 0 0 1\n501 3 0 0 0 0 0 1\n");
   const Outcome one = Program("eval trajectory truth.txt one.txt");
   EXPECT_EQ(one.exit_code, 0);
-  EXPECT_THAT(one.err, HasSubstr("one.txt: only 1 of its 3 poses have a stamp of truth.txt's 13"));
+  EXPECT_THAT(
+      one.err,
+      HasSubstr("one.txt: only 1 of its 3 poses have a stamp in common with truth.txt's 13"));
   std::string metres;
   std::string millimetres;
   for (int i = 0; i <= 12; ++i) {
@@ -86,7 +88,7 @@ TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
   Write("mm.txt", millimetres);
   EXPECT_EQ(Program("eval trajectory m.txt m.txt").err, "");
   EXPECT_THAT(Program("eval trajectory m.txt mm.txt").err,
-              HasSubstr("mm.txt: fits m.txt best 0.001 times as large"));
+              HasSubstr("mm.txt: fits m.txt best if made 0.001 times as large"));
   Write("single.txt", "3 3 0 0 0 0 0 1\n");
   EXPECT_THAT(Program("eval trajectory truth.txt single.txt").err,
               HasSubstr("single.txt: one pose is matched, aligned and relative errors need more"));

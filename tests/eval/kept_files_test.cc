@@ -46,7 +46,7 @@ class KeptFiles : public ProgramTest {
 };
 
 constexpr const char* kIsOfNoResult =
-    ": is of no result of depthgrid there, and --force would overwrite it; choose another folder";
+    ": belongs to no depthgrid result there, and --force would overwrite it; choose another folder";
 constexpr const char* kIsRead = ": is read by this command, and ";
 
 TEST_F(KeptFiles, AMapInTheFolderOfItsInputsKeepsThem) {
@@ -320,8 +320,9 @@ TEST_F(KeptFiles, ASweepTakesNoNameThatIsTaken) {
   for (const std::string name : {"results.csv", "report.html", "experiment.yaml",
                                  "sweep_again.yaml", "progress.txt", "cache", "slurm"}) {
     MakeFolder(name + "_", {name});
-    ExpectRefusal("sweep ./s.yaml -o " + name + "_ --force",
-                  name + "_/" + name + ": is there already and no sweep's; choose another folder");
+    ExpectRefusal(
+        "sweep ./s.yaml -o " + name + "_ --force",
+        name + "_/" + name + ": is there already and belongs to no sweep; choose another folder");
   }
   MakeFolder("mine", {"notes.txt"});
   Succeed("sweep ./s.yaml -o mine --force");
@@ -381,11 +382,11 @@ TEST_F(KeptFiles, ReportReplacesNothingButAPage) {
   Succeed("map one.log -o m");
   Succeed("report m");
   Write("m/report.html", "<title>my notes on depthgrid</title>");
-  ExpectRefusal("report m", "m/report.html: is no page of depthgrid's");
+  ExpectRefusal("report m", "m/report.html: is not a page of depthgrid's");
   EXPECT_EQ(ReadFile(Path("m/report.html")), "<title>my notes on depthgrid</title>");
   fs::remove(Path("m/report.html"));
   fs::create_symlink("../elsewhere.html", Path("m/report.html"));
-  ExpectRefusal("report m", "m/report.html: is a link, and stays");
+  ExpectRefusal("report m", "m/report.html: is a link, so it is kept");
   EXPECT_TRUE(fs::is_symlink(Path("m/report.html")));
 }
 

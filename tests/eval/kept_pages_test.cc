@@ -30,20 +30,20 @@ TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
   Succeed("sweep ./sweep.yaml -o s");
   fs::create_directory(Path("mine"));
   Write("mine/report.html", "my notes");
-  ExpectRefusal("report m -o mine --force", "mine/report.html: is no page of depthgrid's");
+  ExpectRefusal("report m -o mine --force", "mine/report.html: is not a page of depthgrid's");
   fs::remove(Path("mine/report.html"));
   for (const char* name : {"timing.js", "experiment.yaml", "sweep_again.yaml"}) {
     const std::string file = std::string("mine/") + name;
     Write(file, "mine");
     const std::string of = file.ends_with(".js") ? "m" : "s";
-    ExpectRefusal("report " + of + " -o mine --force", file + ": is of no page");
+    ExpectRefusal("report " + of + " -o mine --force", file + ": belongs to no page");
     EXPECT_EQ(ReadFile(Path(file)), "mine");
     fs::remove(Path(file));
   }
   // A run's page brings no experiment.yaml, so that this one is somebody's own.
   Succeed("report m -o mine --force");
   Write("mine/experiment.yaml", "mine");
-  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: is of no page");
+  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: belongs to no page");
   fs::remove(Path("mine/experiment.yaml"));
   // What a page came with goes with it.
   for (int i = 0; i < 2; ++i) Succeed("report s -o mine --force");
@@ -51,7 +51,7 @@ TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
               ElementsAre("experiment.yaml", "report.html", "sweep_again.yaml", "timing.js"));
   fs::remove(Path("mine/experiment.yaml"));
   fs::create_symlink("../elsewhere.yaml", Path("mine/experiment.yaml"));
-  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: is a link, and stays");
+  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: is a link, so it is kept");
 }
 
 // Somebody's picture among those of a run is none of its frames.

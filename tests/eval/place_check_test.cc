@@ -42,12 +42,14 @@ TEST(FramesLost, AreThoseOfWhichTheMapExplainsNextToNothing) {
 
 TEST(FramesLost, SayWhichFramesTheyWereCountedAmong) {
   const MappingRun run = RunOf(20, 0.05);
-  EXPECT_THAT(TextOf(*FramesLost(run, true)),
-              testing::StartsWith("lost: in 20 of the 20 frames that were placed and see something "
-                                  "hardly anything that is seen lies on the map; "));
-  EXPECT_EQ(TextOf(*FramesLost(run, false)),
-            "lost: of what the first frame sees, which was placed by this map alone, hardly "
-            "anything lies on it; the sequence is of another place or begins elsewhere in it");
+  EXPECT_THAT(
+      TextOf(*FramesLost(run, true)),
+      testing::StartsWith("lost: in 20 of the 20 frames that were placed and see something, "
+                          "hardly anything that is seen lies on the map; "));
+  EXPECT_EQ(
+      TextOf(*FramesLost(run, false)),
+      "lost: hardly anything that the first frame sees lies on this map, by which alone it was "
+      "placed; the sequence is of another place or begins elsewhere in the map");
 }
 
 // From frame 60 on; a few lost ones before that were an accident.
@@ -67,13 +69,14 @@ TEST(FramesLost, SaysThatItComesBack) {
   const auto lost = FramesLost(run, true);
   ASSERT_TRUE(lost);
   EXPECT_TRUE(lost->comes_back);
-  EXPECT_THAT(TextOf(*lost),
-              testing::EndsWith("; from frame 60 on it leaves the map, where poses are SLAM's "
-                                "motion alone (without --localise they extend it), and comes "
-                                "back"));
+  EXPECT_THAT(
+      TextOf(*lost),
+      testing::EndsWith("; from frame 60 on the sequence leaves the map, where poses are SLAM's "
+                        "motion alone (without --localise they extend it), and comes back"));
   run = RunOf(200, 0.6);
   for (std::size_t i = 60; i < 120; i += 2) run.reports[i].match.score = 0.0;
-  EXPECT_THAT(TextOf(*FramesLost(run, true)), testing::HasSubstr("; in between it leaves the map"));
+  EXPECT_THAT(TextOf(*FramesLost(run, true)),
+              testing::HasSubstr("; in between the sequence leaves the map"));
   run = RunOf(200, 0.6);
   for (std::size_t i = 150; i < 200; ++i) run.reports[i].match.score = 0.0;
   EXPECT_FALSE(FramesLost(run, true)->comes_back);

@@ -106,7 +106,7 @@ TEST_F(ProgramLogs, OdometryThatStandsIsSaid) {
   Write("robot.log", log);
   EXPECT_THAT(Program("map robot.log -o out --set mapper.fusion.mode=kalman").err,
               testing::ContainsRegex(
-                  "robot.log: the given poses do not move, the map's go [23]\\.[0-9] m"));
+                  "robot.log: the given poses do not move, but the map's go [23]\\.[0-9] m"));
 }
 
 TEST_F(ProgramLogs, ALaserMountedUpsideDownIsSaidAndSettled) {
@@ -274,9 +274,9 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   const Outcome outcome =
       Program("map robot.log --map first --localise --start 3.1,2.9,176 -o out");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("start 3.10,2.90,176.0: it begins 0.1"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("start 3.10,2.90,176.0: the sequence begins 0.1"),
                                  HasSubstr(" degrees from there, at 3.0")));
-  EXPECT_THAT(outcome.out, HasSubstr(" where it is said to begin, elsewhere "));
+  EXPECT_THAT(outcome.out, HasSubstr(" at the given start, elsewhere "));
   EXPECT_LT((begin_of("out") - Eigen::Vector3d(3.0, 3.0, 0.0)).norm(), 0.1);
   Succeed("map out/run.yaml -o again");
   ExpectSameBytes("out", "again");
@@ -287,9 +287,9 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   Succeed("map robot.log --map first --localise --start 3,1,0 -o near");
   EXPECT_LT((begin_of("near") - Eigen::Vector3d(3.0, 1.0, 0.0)).norm(), 0.1);
   const std::string wrong = Program("map robot.log --map first --start 3,2,90 -o wrong").err;
-  EXPECT_THAT(wrong, HasSubstr("first: where it is said to begin, "));
+  EXPECT_THAT(wrong, HasSubstr("first: at the given start, "));
   // That it fits better elsewhere is said so that it can be typed.
-  const std::size_t at = wrong.find("it begins elsewhere (--start ");
+  const std::size_t at = wrong.find("the sequence begins elsewhere (--start ");
   ASSERT_NE(at, std::string::npos) << wrong;
   const std::size_t begin = wrong.find("--start ", at);
   const std::string option = wrong.substr(begin, wrong.find(" has fit ", begin) - begin);
@@ -330,7 +330,7 @@ TEST_F(ProgramLogs, AMapThatIsNoLongerWhatItsScansGive) {
   std::filesystem::rename(Path("first/map.pgm"), Path("first/floor.pgm"));
   EXPECT_THAT(Program(localise).err,
               HasSubstr("first/map.yaml: image is floor.pgm, must be map.pgm or map.scale.png to "
-                        "be kept: the map handed on is drawn of its scans\n"));
+                        "be kept: the map handed on is drawn from its scans\n"));
   EXPECT_TRUE(ReadFile(Path("out/map.yaml")) == drawn);
   EXPECT_TRUE(SameFile("out/map.pgm", "first/floor.pgm"));
   std::filesystem::remove(Path("first/map.yaml"));
@@ -346,7 +346,7 @@ TEST_F(ProgramLogs, ARunIsAnotherOneInAMapThatWasMadeAgain) {
   Succeed("map robot.log -o first --force --set sequence.to_s=30");
   EXPECT_THAT(Program("map out/run.yaml -o other").err,
               AllOf(HasSubstr("warning: out/run.yaml: map_hash is "), HasSubstr("first is "),
-                    HasSubstr(" now: this run is another one\n")));
+                    HasSubstr(" now: this run differs from the recorded one\n")));
   EXPECT_EQ(Program("map out/run.yaml --map first -o chosen").err, "");
 }
 

@@ -140,7 +140,7 @@ TEST_F(ProgramOutput, AChangedSceneOrPathIsSaidWhenARunIsMadeAgain) {
   const auto warning = [&](const std::string& key, const std::string& of) {
     return "depthgrid: warning: out/run.yaml: " + key + " is " + hash("out", key) +
            ", but that of " + of + Path("room.yaml") + " is " + hash("again", key) +
-           " now: this run is another one\n";
+           " now: this run differs from the recorded one\n";
   };
   const std::string room = ReadFile(Path("room.yaml"));
   const auto again = [&](const std::string& from, const std::string& to) {

@@ -274,7 +274,7 @@ TEST_F(ProgramRun, WhatStaysBesideAnotherProfileIsSaid) {
     return Program("run ./drifts.yaml -o out --force" + set).err;
   };
   EXPECT_EQ(said(" --set slam.profile=planar_slam --set slam.pivot_m=1.5"),
-            "depthgrid: warning: ./drifts.yaml: its own values of slam.drift_scale stay with "
+            "depthgrid: warning: ./drifts.yaml: its own values of slam.drift_scale are kept with "
             "slam.profile=planar_slam\n");
   EXPECT_EQ(said(" --set slam.profile=orb_slam2"), "");
   EXPECT_EQ(said(" --set slam.profile=ground_truth"), "");

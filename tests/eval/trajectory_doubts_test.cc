@@ -152,7 +152,8 @@ TEST(TrajectoryDoubts, StandingStillOrBackwardsOrOfAnotherScale) {
   for (StampedPose& pose : frozen) pose.world_from_camera = frozen.front().world_from_camera;
   for (StampedPose& pose : small) pose.world_from_camera.translation *= 0.5;
   EXPECT_THAT(DoubtsOf(Eight(), frozen), ElementsAre(HasSubstr("estimate: does not move")));
-  EXPECT_THAT(DoubtsOf(Eight(), small), ElementsAre(HasSubstr("fits truth best 2 times as large")));
+  EXPECT_THAT(DoubtsOf(Eight(), small),
+              ElementsAre(HasSubstr("fits truth best if made 2 times as large")));
   EXPECT_THAT(DoubtsOf(Eight(), Backwards(Eight(0.02))),
               ElementsAre(HasSubstr("estimate: runs backwards in time against truth: in reverse "
                                     "order its poses fit")));

@@ -124,8 +124,9 @@ TEST_F(TruthPaths, APathInAnotherStoreyIsWarnedOf) {
   Write("house.yaml", kHouse);
   Write("upper.yaml", "floor_z_m: 2.6\n" + std::string(kHouse));
   const std::string said =
-      "house.yaml:11: trajectory 'up': 2 of 2 poses are above level surface at z = 2.6 m, but maps "
-      "are of the storey whose floor is at 0 m; floor_z_m: 2.6 in the scene's file takes that one";
+      "house.yaml:11: trajectory 'up': 2 of 2 poses are above a level surface at z = 2.6 m, but "
+      "maps are of the storey whose floor is at 0 m; floor_z_m: 2.6 in the scene's file takes the "
+      "upper one";
   const std::string with = " ./small.yaml --force --set scene=./house.yaml --set frames=2 ";
   for (const char* command : {"run", "render --no-colour", "ablate --seeds 1"}) {
     const std::string to = std::string(command) + with + "-o out_" + std::string(command, 3);
@@ -143,7 +144,7 @@ TEST_F(TruthPaths, APathInAnotherStoreyIsWarnedOf) {
   const std::string look = " -0.7071068 0 0 0.7071068\n";
   Write("path.txt", "0 1.5 1.5 3.7" + look + "0.1 1.5 1.6 3.7" + look);
   EXPECT_THAT(Program("run" + with + "-o file --set trajectory=./path.txt").err,
-              HasSubstr("path.txt: 2 of 2 poses are above level surface at z = 2.6 m"));
+              HasSubstr("path.txt: 2 of 2 poses are above a level surface at z = 2.6 m"));
   const std::string facts = Program("scenes ./house.yaml").out;
   EXPECT_THAT(facts, ContainsRegex("warning: .*house.yaml:11: trajectory 'up': [0-9]+ of"));
   EXPECT_THAT(facts, Not(HasSubstr("'down'")));

@@ -352,7 +352,7 @@ TEST_F(SweepPlanTest, WhatStaysBesideAnotherProfileIsSaid) {
     Write("drifts_sweep.yaml", "experiment: ./drifts.yaml\n" + text);
     return ReadSweepPlan(Path("drifts_sweep.yaml"), set).warnings;
   };
-  const std::string kept = "./drifts.yaml: its own values of slam.drift_scale stay with ";
+  const std::string kept = "./drifts.yaml: its own values of slam.drift_scale are kept with ";
   EXPECT_THAT(doubts("axes: {slam.profile: [orb_slam2, planar_slam]}\n"),
               ElementsAre(kept + "slam.profile=orb_slam2, planar_slam"));
   const std::string gains = "axes: {mapper.fusion.gain: [0, 1]}\n";
