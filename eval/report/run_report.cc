@@ -260,8 +260,8 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   const std::vector<std::size_t> worst = WorstRows(BadnessOf(run, final_errors_m));
   const auto [grid, submap] = GridSettingsOf(settings, run.prior_scans > 0);
   json["worst"] = WorstFramesJson(run, worst, BasesOf(truth), grid, submap);
-  json["worst_by"] = run.truth ? "By the distance of the final estimate from the truth."
-                               : "By the match score, the lowest first.";
+  json["worst_by"] = run.truth ? "Chosen by the distance of the final estimate from the truth."
+                               : "Chosen by the match score, the lowest first.";
   json["scans"] = ScansJson(run, BaseFromLaserOf(settings), worst);
   json["samples"] = SamplesJson(run.folder);
   return json;

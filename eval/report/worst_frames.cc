@@ -127,7 +127,7 @@ ReportJson WorstFramesJson(const RunFiles& run, const std::vector<std::size_t>& 
         json["no_match"] = WhyNoScan(run);
       }
     } else {
-      json["no_match"] = "Nothing knew a pose of this frame.";
+      json["no_match"] = "No pose of this frame is known.";
     }
     list.push_back(json);
   }

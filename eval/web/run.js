@@ -38,7 +38,7 @@ function headline() {
     add(fixed(seen.occupied.f1, 3), `F1 of ${m.map.observable ? "observable " : ""}walls, 1-cell tolerance`);
     add(percent(m.map.coverage), "of the observable cells mapped");
     add(metres(m.map.chamfer_m), "chamfer distance of the walls");
-    if (isNumber(m.map.navigability?.success_rate)) add(percent(m.map.navigability.success_rate), "of sampled ways are planned on the map and free in truth");
+    if (isNumber(m.map.navigability?.success_rate)) add(percent(m.map.navigability.success_rate), "of sampled routes are planned on the map and free in truth");
     add(metres(m.trajectory.slam?.mean_euclidean_m), `SLAM's mean error, not aligned${others}`);
     add(metres(m.trajectory.est?.mean_euclidean_m), "mean error of the estimate, not aligned");
     add(metres(m.trajectory.est?.ate_rmse_se2_m), "ATE of the estimate, aligned in the plane");
@@ -54,8 +54,8 @@ function headline() {
       const kept = RUN.own_scans === posed ? "frames mapped" : "scans kept, which the map is drawn from";
       add(String(RUN.own_scans), RUN.prior_scans ? `scans added to the finished map's ${RUN.prior_scans}` : kept);
     }
-    add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `way of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
-    add(metres(largestCorrection()), `farthest that ${RUN.input_poses}'s poses were moved${RUN.prior_scans ? " from there on" : ""}`);
+    add(`${fixed(wayOf(RUN.paths.est), 1)} m`, `path length of the estimate; ${RUN.input_poses}'s: ${fixed(wayOf(RUN.paths.slam), 1)} m`);
+    add(metres(largestCorrection()), `largest correction of ${RUN.input_poses}'s poses${RUN.prior_scans ? " after the start in that map" : ""}`);
     add(fixed(median(frames.match_score), 2), "share of the beams that the map explains, median");
     add(`${fixed(RUN.map.width * RUN.map.resolution, 1)} x ${fixed(RUN.map.height * RUN.map.resolution, 1)} m`, "extent");
   }
@@ -96,12 +96,12 @@ function furtherMapNumbers(map) {
   add("estimated walls to true ones, mean", walls?.estimate_to_truth_m, metres);
   add("true walls to estimated ones, mean", walls?.truth_to_estimate_m, metres);
   if (registered) rows.push(["registration to the truth", `${metres(registered.x_m)}, ${metres(registered.y_m)}, ${fixed(registered.yaw_rad * 180 / Math.PI, 2)}°`]);
-  add("it moves a wall by, mean", registered?.mean_shift_m, metres);
+  add("shift of walls by this registration, mean", registered?.mean_shift_m, metres);
   add("chamfer distance once registered", registered?.chamfer_m, metres);
   add("Hausdorff 95 % once registered", registered?.hausdorff95_m, metres);
   add("F1 within 5 cm once registered", registered?.f1_5cm, plain);
   if (map.wall_thickness) rows.push(["thickness of walls, mean (truth)", `${metres(map.wall_thickness.mean_m)} (${metres(map.true_wall_thickness?.mean_m)})`]);
-  if (map.wall_thickness) rows.push(["their 95 % (truth)", `${metres(map.wall_thickness.p95_m)} (${metres(map.true_wall_thickness?.p95_m)})`]);
+  if (map.wall_thickness) rows.push(["thickness of walls, 95 % (truth)", `${metres(map.wall_thickness.p95_m)} (${metres(map.true_wall_thickness?.p95_m)})`]);
   add("double walls", map.double_wall_rate, percent);
   add("probabilities: Brier score", calibration?.brier, plain);
   add("probabilities: log loss", calibration?.log_loss, plain);
@@ -110,10 +110,10 @@ function furtherMapNumbers(map) {
   add("correlation (MCC) of free cells, observable cells", map.observable?.free_mcc, plain);
   add("structural similarity (SSIM)", map.ssim, plain);
   if (truthless) rows.push(["occupied share, corners, enclosed areas (truth)", `${percent(truthless.occupied_share)}, ${truthless.corners}, ${truthless.enclosed_areas} (${percent(trueTruthless?.occupied_share)}, ${trueTruthless?.corners}, ${trueTruthless?.enclosed_areas})`]);
-  add("ways planned on the map and free in truth", ways?.success_rate, percent);
-  add("ways wrongly thought blocked", ways?.falsely_blocked_rate, percent);
-  add("planned ways that collide", ways?.collision_rate, percent);
-  add("length of planned ways against the shortest", ways?.length_ratio, plain);
+  add("routes planned on the map and free in truth", ways?.success_rate, percent);
+  add("routes wrongly thought blocked", ways?.falsely_blocked_rate, percent);
+  add("planned routes that collide", ways?.collision_rate, percent);
+  add("length of planned routes against the shortest", ways?.length_ratio, plain);
   return rows;
 }
 
@@ -125,13 +125,13 @@ const FURTHER_OF_PATHS = [
   ["heading, rmse, SE(2) aligned", (s) => degrees(s.heading_rmse_se2_rad)],
   ["rotation with tilt, mean, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.mean)],
   ["rotation with tilt, rmse, not aligned", (s) => degrees(s.rotation_rad?.unaligned?.rmse)],
-  ["relative turn a frame, rmse", (s) => degrees(s.rpe_frame_rmse_rad)],
-  ["relative turn a metre, rmse", (s) => degrees(s.rpe_metre_rmse_rad)],
-  ["drift a second, over 10 s", (s) => (isNumber(s.drift_m_per_s) ? `${metres(s.drift_m_per_s)}/s` : "–")],
-  ["drift a metre", (s) => percent(s.drift_m_per_m)],
+  ["relative turn per frame, rmse", (s) => degrees(s.rpe_frame_rmse_rad)],
+  ["relative turn per metre, rmse", (s) => degrees(s.rpe_metre_rmse_rad)],
+  ["drift per second, over 10 s", (s) => (isNumber(s.drift_m_per_s) ? `${metres(s.drift_m_per_s)}/s` : "–")],
+  ["drift per metre", (s) => percent(s.drift_m_per_m)],
   ["ATE rmse in xyz, Sim(3) aligned", (s) => metres(s.ate_rmse_sim3_m)],
   ["scale of that alignment", (s) => fixed(s.sim3_scale, 4)],
-  ["share of the true poses that it covers", (s) => percent(s.time_coverage)],
+  ["share of the true poses that the estimate covers", (s) => percent(s.time_coverage)],
 ];
 
 function initNumbers() {
@@ -147,15 +147,15 @@ function initNumbers() {
     row("ATE rmse in xy, SE(2) aligned", (s) => s.ate_rmse_se2_m),
     row("mean distance in xyz, not aligned", (s) => s.mean_euclidean_xyz_m),
     row("ATE rmse in xyz, SE(3) aligned", (s) => s.ate_rmse_se3_m),
-    row("relative error a frame, rmse", (s) => s.rpe_frame_rmse_m),
-    row("relative error a metre, rmse", (s) => s.rpe_metre_rmse_m),
+    row("relative error per frame, rmse", (s) => s.rpe_frame_rmse_m),
+    row("relative error per metre, rmse", (s) => s.rpe_metre_rmse_m),
   ])));
   const told = FURTHER_OF_PATHS.map(([label, say]) => [label, ...names.map(([n]) => say(t[n]))]).filter(([, ...cells]) => cells.some((cell) => cell !== "–"));
-  byId("numbers").append(make("h3", {}, "Trajectory, further"), make("div", { class: "scroll" }, tableOf(["", ...names.map(([, label]) => label)], told)));
+  byId("numbers").append(make("h3", {}, "Trajectory, further scores"), make("div", { class: "scroll" }, tableOf(["", ...names.map(([, label]) => label)], told)));
   const sure = [["each match against the prediction (NIS)", "nis"], ["each motion over a submap's frames (NEES)", "nees"]]
     .map(([label, name]) => [label, m.consistency?.[name]]).filter(([, c]) => c && c.mean !== null);
   if (sure.length) {
-    byId("numbers").append(make("h3", {}, "Errors over what the mapper expected, squared: 1 is right, more is too sure"),
+    byId("numbers").append(make("h3", {}, "Squared errors relative to what the mapper expected: 1 is right, more is overconfident"),
       make("div", { class: "scroll" }, tableOf(["", "mean", "95 % band of the mean", "below their 95 % limit", "values"],
         sure.map(([label, c]) => [label, fixed(c.mean, 2), `${fixed(c.low, 2)} to ${fixed(c.high, 2)}`, percent(c.within_95), `${c.samples}`]))));
   }
@@ -173,7 +173,7 @@ function initNumbers() {
   byId("numbers").append(make("div", { class: "scroll" }, tableOf(["", "chamfer", "Hausdorff 95 %", "coverage"],
     cells.map(([label, s]) => [label, metres(s.chamfer_m), metres(s.hausdorff95_m), percent(s.coverage)]))));
   const further = furtherMapNumbers(m.map);
-  if (further.length) byId("numbers").append(make("h3", {}, "Map, further"), make("div", { class: "scroll" }, tableOf(["", "value"], further)));
+  if (further.length) byId("numbers").append(make("h3", {}, "Map, further scores"), make("div", { class: "scroll" }, tableOf(["", "value"], further)));
   const bins = (m.map.calibration?.reliability ?? []).filter((bin) => bin.cells > 0);
   if (bins.length > 1) {
     drawPlot(byId("numbers"), {

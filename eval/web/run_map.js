@@ -269,7 +269,7 @@ function initMap() {
     make("button", { type: "button", onclick: () => zoomAt(canvas.width / 2, mapHeight() / 2, 1 / 1.4) }, "Zoom out"), " ",
     make("button", { type: "button", onclick: resetView }, "Whole map"), saveButtons("map", pictureKinds(mapSvg)), make("span", { id: "map-position", class: "muted" }));
   byId("map-note").before(zoomButtons);
-  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm a cell, x to the right, y up. ${RUN.scans.length ? "Red dots: the scan of the chosen frame at its final pose; arrowheads" : "Arrowheads"}: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
+  byId("map-note").textContent = `${fixed(RUN.map.resolution * 100, 1)} cm per cell, x to the right, y up. ${RUN.scans.length ? "Red dots: the scan of the chosen frame at its final pose; arrowheads" : "Arrowheads"}: the poses of that frame. Drag to move, Ctrl + wheel or + and - to zoom.`;
   selectLayer(currentLayer);
   resizeMap();
 }

@@ -13,7 +13,7 @@ function addPlot(container, title, yLabel, series, more = {}) {
 
 function initPlots() {
   if (frameCount < 2) {
-    byId("plots").append(make("p", {}, "There is one frame: the values at the map are all there is."));
+    byId("plots").append(make("p", {}, "There is only one frame: the values beside the map are all there is."));
     byId("plots-how").remove();
     return;
   }
@@ -33,7 +33,7 @@ function initPlots() {
       column("left", "innovation_left_m", "slam", 100, 2, "cm"),
     ]);
     add("Innovation in heading", "degrees", [column("yaw", "innovation_yaw_rad", "truth", degree, 3, "°")]);
-    add("Gain: diagonal of K, of the innovation taken in each axis by itself", "share", [
+    add("Gain: diagonal of K, the share of each axis's own innovation that is taken", "share", [
       column("forward", "gain_forward", "est", 1, 3),
       column("left", "gain_left", "slam", 1, 3),
       column("yaw", "gain_yaw", "truth", 1, 3),
@@ -76,7 +76,7 @@ function initTimes() {
   const lost = times.filter((t, i) => !hasPose(i)).length;
   if (lost) byId("times").append(make("p", { class: "muted" }, `Without the ${lost} ${lost === 1 ? "frame" : "frames"} that have no pose and are not mapped; the sums are of all.`));
   byId("times").append(make("div", { class: "scroll" }, tableOf(
-    ["CPU time a frame", "mean µs", "median µs", "95 % µs", "longest µs", "sum s"],
+    ["CPU time per frame", "mean µs", "median µs", "95 % µs", "longest µs", "sum s"],
     [...shown.map(([name, label]) => row(label, measured[`${name}_us`])), row("whole frame", measured.total_us)])));
   // The last stages are those that often have nothing to do and then lie at the bottom: the others over them.
   const lines = [...shown].reverse().map(([name, label, tone]) => ({ label, values: whereMapped(measured[`${name}_us`]), colour: tone, digits: 1, unit: "µs" }));

@@ -36,7 +36,7 @@ function scanPicture(worst, size) {
   const map = worst.map;
   const image = new Image();
   const strip = 20;  // below the map, so that the scale bar hides no wall
-  const canvas = paintedCanvas(size, size + strip, `Frame ${frames.frame[worst.row]}: its scan in the map of the time`, (context) => {
+  const canvas = paintedCanvas(size, size + strip, `Frame ${frames.frame[worst.row]}: its scan in the map at that time`, (context) => {
     context.clearRect(0, 0, size, size + strip);
     const cell = Math.min(size / map.width, size / map.height);
     const left = (size - cell * map.width) / 2;
@@ -167,7 +167,7 @@ function worstCard(worst) {
     const scale = `Residual ${fixed(low, 2)} (yellow, best) to ${fixed(high, 2)}`;
     const caption = make("figcaption", {}, scale);
     pictures.append(
-      make("figure", {}, scanPicture(worst, 250), make("figcaption", {}, "Scan in the map of the time")),
+      make("figure", {}, scanPicture(worst, 250), make("figcaption", {}, "Scan in the map at that time")),
       make("figure", {}, surfacePicture(worst, 250, (text) => { caption.textContent = text || scale; }), caption),
       make("figure", {}, yawPicture(worst, Math.max(250, Math.min(508, byId("worst-cards").clientWidth - 32)), 96), make("figcaption", {}, "Residual over heading")));
   } else {
@@ -181,7 +181,7 @@ function initWorst() {
   if (!RUN.worst.length) { byId("worst-section").remove(); return; }
   byId("worst-note").textContent = RUN.worst_by;
   if (RUN.method === "surfel") {
-    byId("worst-how").append(" This map was matched as surfels, which know walls finer than these cells: bright spots may lie half a cell from where they matched.");
+    byId("worst-how").append(" Scans were matched against surfels, which resolve walls finer than these cells: bright spots may lie half a cell from where scans matched.");
   }
   const errors = [["SLAM's error", "slam_error_m"], ["error at the time", "map_error_m"], ["error at the end", "est_error_m"]].filter(([, name]) => frames[name]);
   const head = ["frame", "time", ...errors.map(([label]) => label), "match score", "innovation", ""];

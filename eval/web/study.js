@@ -65,7 +65,7 @@ function initMaps() {
     const f1 = (map) => `F1 ${fixed(seen(map)?.occupied.f1, 3)}`;
     const row = (first, figures) => make("div", { class: "figure-row" }, first, ...figures);
     const rows = [
-      row(figure(room.truth, `${room.scene}: true map`, "Truth, in the scale of all", barPicture(room)),
+      row(figure(room.truth, `${room.scene}: true map`, "Truth, at the scale of all maps", barPicture(room)),
         cases.map((c) => figure(c.input_map, `${c.name}: map at input poses`, `${sourceOf(c)}, input: ${f1(c.metrics.input_map)}`))),
       row(make("figure", { class: "blank" }), cases.map((c) => figure(c.output_map, `${c.name}: output map`, make("span", {}, linkTo(c, `${sourceOf(c)}, output`), `: ${f1(c.metrics.map)}`))))];
     byId("maps").append(headWithSave("maps", room, rows), ...rows);
@@ -166,11 +166,11 @@ function initNotes() {
 // "seed: 3 (orb), 1 (truth, moved)", of each setting that is not the same in all cases.
 function initDifferences() {
   const seeds = STUDY.differences.some(({ key }) => key.endsWith("seed"));
-  byId("seeds").textContent = seeds ? "One seed a case, not the same in all." : "One seed.";
+  byId("seeds").textContent = seeds ? "One seed per case, not the same in all." : "One seed.";
   if (STUDY.differences.length === 0) { byId("differences").remove(); return; }
   const text = ({ key, values }) => [...new Set(values)].map((value) =>
     `${value} (${STUDY.cases.filter((_, i) => values[i] === value).map((c) => c.name).join(", ")})`).join(", ");
-  byId("differences").append("Beside scene and SLAM, cases differ in ", ...STUDY.differences.flatMap((one, i) =>
+  byId("differences").append("Besides scene and SLAM, cases differ in ", ...STUDY.differences.flatMap((one, i) =>
     [i > 0 ? "; " : "", make("code", {}, one.key), `: ${text(one)}`]), ".");
 }
 

@@ -29,7 +29,7 @@ function headline() {
     const held = heldText(line);
     cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
     if (line.seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
-    if (line.seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss to ${oracleOf(line)}`));
+    if (line.seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss against ${oracleOf(line)}`));
   }
   byId("headline").replaceChildren(...cards);
   byId("direction").textContent = aimText();
@@ -67,7 +67,7 @@ function someOf(items) {
 }
 
 function initEnvironment() {
-  const meaning = { experiment: "every effective key", given: "the keys among them that a file or --set gives", sweep: "with its axes written out", again: "sweep_again.yaml, beside experiment.yaml the file of this very sweep" };
+  const meaning = { experiment: "every effective key", given: "those of these keys that a file or --set gives", sweep: "with its axes written out", again: "sweep_again.yaml, which beside experiment.yaml repeats this sweep" };
   for (const [key, text] of Object.entries(SWEEP.environment)) {
     if (key === "sweep" && SWEEP.environment.again) continue;  // the same, less readable
     byId("environment").append(text.includes("\n") ? make("details", {}, make("summary", {}, meaning[key] ? `${key}: ${meaning[key]}` : key), make("pre", {}, text)) : make("p", {}, `${key}: ${text}`));

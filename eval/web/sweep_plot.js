@@ -88,8 +88,8 @@ function drawAlong() {
   const repeats = sum((p) => p.runs - p.counting);
   byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}. ` +
     (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples). ` : "") +
-    (repeats ? `A seed that gave in every score what another one gave, as where nothing is random, counts once: ${repeats} of ${sum((p) => p.runs)} runs are such repeats. ` : "") +
-    (SWEEP.crossed_seeds ? `${SWEEP.seed_keys.join(" and ")} are crossed: it is as sure as ${SWEEP.crossed_seeds} seeds. ` : "") +
+    (repeats ? `A seed with the same scores as another one, as where nothing is random, counts once: ${repeats} of ${sum((p) => p.runs)} runs are such repeats. ` : "") +
+    (SWEEP.crossed_seeds ? `${SWEEP.seed_keys.join(" and ")} are crossed: a mean is as sure as one of ${SWEEP.crossed_seeds} seeds. ` : "") +
     (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
   drawBest();
 }
@@ -137,7 +137,7 @@ const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs))
 
 // What regret is measured against.
 const oracleOf = (line) => (line.to_oracle ? "the oracle's run (mapper.fusion.mode) of the same seed and other settings" : `the best value of each ${EACH}`);
-const oraclesOf = (lines) => [...new Set(lines.filter((line) => line.best !== undefined).map(oracleOf))].join(", or where a run of the oracle is missing to ");
+const oraclesOf = (lines) => [...new Set(lines.filter((line) => line.best !== undefined).map(oracleOf))].join(", or, where a run of the oracle is missing, against ");
 
 // What the table says as numbers, a row a value, for who goes on with them.
 function csvOfBest(lines, axis) {
@@ -160,8 +160,8 @@ function drawBest() {
   byId("regret").replaceChildren();
   if (!lines.length) return;
   byId("best-note").textContent = `Of ${axis.key}, for ${metric.label} (${aimText()}). The interval is that of the best value over resampled seeds; ` +
-    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses to " + oraclesOf(lines) + "." +
-    (lines.some(hasUnlikeSeeds) ? " Where points of a line have different seeds (stopped early, or with a failed run) only those that all have are compared, so that the best need not be that of the means above." : "");
+    "“as good” are the values that a Wilcoxon signed-rank test (Holm's correction, 5 %) does not tell from the best. Regret of one value for all seeds: what it loses against " + oraclesOf(lines) + "." +
+    (lines.some(hasUnlikeSeeds) ? " Where points of a line have different seeds (stopped early, or with a failed run) only the seeds that all have are compared, so that the best may be another than that of the means above." : "");
   // The surest that so many pairs can be, all of one sign, is 2^(1 - n); Holm takes it times the number of tests.
   const canTell = (line, seeds) => 2 ** (1 - seeds) * (line.points.length - 1) < 0.05;
   const at = (line, k) => axis.labels[POINTS[line.points[k]].values[along.axis]];
@@ -189,7 +189,7 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss to ${oraclesOf(some)}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss against ${oraclesOf(some)}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
     series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0

@@ -80,7 +80,7 @@ TEST_F(SweepPage, OfASweep) {
             "1");
   // Of the seeds of the failed run the other values of its line are left out too.
   EXPECT_EQ(browser_->Evaluate("document.getElementById('best-note').textContent.includes('only "
-                               "those that all have are compared')"),
+                               "the seeds that all have are compared')"),
             true);
 
   // Values in centimetres are of no name that ends in metres.
@@ -276,9 +276,10 @@ TEST_F(SweepPage, SeedsThatRepeatOneAnotherCountOnce) {
   browser_->Open(Path("sweep/report.html"));
   EXPECT_THAT(browser_->problems(), IsEmpty());
   EXPECT_EQ(browser_->Evaluate("metric.low.concat(metric.high).filter(isNumber).length"), 0);
-  EXPECT_EQ(browser_->Evaluate("document.getElementById('plot-note').textContent.trim()"),
-            "Dots: mean over one seed. A seed that gave in every score what another one gave, as "
-            "where nothing is random, counts once: 6 of 8 runs are such repeats.");
+  EXPECT_EQ(
+      browser_->Evaluate("document.getElementById('plot-note').textContent.trim()"),
+      "Dots: mean over one seed. A seed with the same scores as another one, as where nothing is "
+      "random, counts once: 6 of 8 runs are such repeats.");
   EXPECT_EQ(browser_->Evaluate("document.querySelector('#best tbody').textContent"),
             "all0––10one seed tells nothing–1");
 }
