@@ -188,7 +188,7 @@ std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
       (clock ? clock->offset_s : files.reference.front().stamp_s - files.estimate.front().stamp_s);
   return fmt::format("{}; --max-difference S takes stamps further apart, --time-offset {:.3f} {}",
                      apart, offset_s,
-                     clock ? "is where they fit best" : "lays the first of both together");
+                     clock ? "is where they fit best" : "makes the first of both coincide");
 }
 
 double LimitOf(const EvalTrajectoryArguments& arguments) {

@@ -264,7 +264,8 @@ CameraDescription ReadCameraDescription(const std::string& path,
 
 std::string NoDepthScale(const std::string& path, double scale_per_m) {
   return fmt::format(
-      "{}: states no depth_scale; it is {} a metre unless sequence.recording.depth_scale is set",
+      "{}: states no depth_scale; {} units per metre are taken unless "
+      "sequence.recording.depth_scale is set",
       path, scale_per_m);
 }
 

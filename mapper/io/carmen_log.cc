@@ -265,7 +265,7 @@ class CarmenLogSource : public FrameSource {
   bool BreaksOff(const CarmenScan& scan) {
     if (!odom_from_last_) return false;
     if (IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
-      Note("the pose jumps by more than 10 m: no motion is taken there");
+      Note("the pose jumps by more than 10 m: its motion there is not used");
       return true;
     }
     if (!clock_.IsSetBack()) return false;
@@ -273,7 +273,7 @@ class CarmenLogSource : public FrameSource {
     if (step.translation().norm() <= kUntimedStepM && std::abs(step.yaw_rad) <= kUntimedStepRad) {
       return false;
     }
-    Note("the pose jumps where the clock was set back: no motion is taken there");
+    Note("the pose jumps where the clock was set back: its motion there is not used");
     return true;
   }
 

@@ -85,7 +85,7 @@ Config Config::FromText(const std::string& text, const std::string& place) {
   tree->root = ParseYaml(text, place);
   if (tree->root.IsNull()) throw InputError(place, "is empty");
   if (!tree->root.IsMap()) {
-    throw InputError(place, "is no YAML of keys, must be 'key: value' lines");
+    throw InputError(place, "is not YAML with keys, must be 'key: value' lines");
   }
   return Config(std::move(tree));
 }

@@ -26,12 +26,12 @@ std::string OtherTextThanKeys(std::string_view text) {
   constexpr std::array<std::string_view, 6> kMessages = {"FLASER",    "RLASER", "ROBOTLASER1",
                                                          "RAWLASER1", "PARAM",  "ODOM"};
   if (first.fields.size() > 2 && std::ranges::find(kMessages, first.fields[0]) != kMessages.end()) {
-    return "is a laser log, no YAML of keys; `depthgrid map` takes it";
+    return "is a laser log, not YAML with keys; `depthgrid map` takes it";
   }
   constexpr std::size_t kColumns = 8;
   const auto is_number = [](std::string_view field) { return ParseNumber(field).has_value(); };
   if (first.fields.size() != kColumns || !std::ranges::all_of(first.fields, is_number)) return "";
-  return "is a trajectory (rows of stamp x y z qx qy qz qw), no YAML of keys; `depthgrid eval "
+  return "is a trajectory (rows of stamp x y z qx qy qz qw), not YAML with keys; `depthgrid eval "
          "trajectory` takes it, and --poses of `depthgrid map`";
 }
 

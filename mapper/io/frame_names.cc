@@ -83,17 +83,17 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
   };
   if (!overlap(first_s, last_s)) {
     return fmt::format(
-        "--set sequence.recording.time_offset_s={:.3f} lays the first of both together",
+        "--set sequence.recording.time_offset_s={:.3f} makes the first of both coincide",
         names.time_offset_s + first_pose_s - first_s);
   }
   if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
   if (names.interpolated_gap_s) {
     return fmt::format(
-        "between poses more than {:g} s apart none is taken, --set "
-        "sequence.recording.max_interpolation_gap_s=S goes between those up to S",
+        "poses more than {:g} s apart are not interpolated, --set "
+        "sequence.recording.max_interpolation_gap_s=S interpolates those up to S apart",
         *names.interpolated_gap_s);
   }
-  return "--set sequence.recording.interpolate_poses=true goes between poses, those up to "
+  return "--set sequence.recording.interpolate_poses=true interpolates poses up to "
          "max_interpolation_gap_s apart";
 }
 

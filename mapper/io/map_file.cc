@@ -71,9 +71,9 @@ MapYaml ReadYaml(const std::string& path) {
   }
   const double origin_cells = std::hypot(yaml.origin[0], yaml.origin[1]) / yaml.resolution_m;
   if (origin_cells > kMaxOriginCells) {
-    throw InputError(path, fmt::format("origin is {:.3g} cells of {} m from zero, at most {:.3g} "
-                                       "can be counted",
-                                       origin_cells, yaml.resolution_m, kMaxOriginCells));
+    throw InputError(path,
+                     fmt::format("origin is {:.3g} cells of {} m from zero, must be at most {:.3g}",
+                                 origin_cells, yaml.resolution_m, kMaxOriginCells));
   }
   return yaml;
 }
@@ -123,9 +123,11 @@ void PutInto(const Pose2& world_from_frame, const std::string& yaml_path, MapFil
   const Eigen::Vector2d corner_m = geometry.OriginM();
   const double away_cells = (pose * corner_m).norm() / r;
   if (away_cells > kMaxOriginCells) {
-    throw InputError(yaml_path, fmt::format("lies {:.3g} cells from where the other map has its "
-                                            "zero, at most {:.3g} can be counted",
-                                            away_cells, kMaxOriginCells));
+    throw InputError(
+        yaml_path,
+        fmt::format(
+            "lies {:.3g} cells from where the other map has its zero, must be at most {:.3g}",
+            away_cells, kMaxOriginCells));
   }
   const double reach_m =
       corner_m.norm() + r * std::hypot(geometry.width_cells, geometry.height_cells);

@@ -66,8 +66,9 @@ std::vector<MappedFrame> ReadMapped(const std::string& folder) {
       fs::exists(matched_path) ? ReadScans(matched_path) : drawn;
   if (drawn.empty()) throw InputError(DrawnPath(folder), "holds no scan");
   if (!AreOfOneMap(drawn, matched)) {
-    throw InputError(matched_path,
-                     "does not belong to scans.bin, which does without it: move it away");
+    throw InputError(
+        matched_path,
+        "does not belong to the scans.bin beside it, which can be read without it: move it away");
   }
   std::vector<int> numbers;
   for (const StoredScan& scan : drawn) numbers.push_back(scan.frame);

@@ -176,7 +176,7 @@ class RecordingSource final : public FrameSource {
     const PinholeCamera& camera = recording_.camera.camera;
     if (depth.width_px == camera.width_px && depth.height_px == camera.height_px) return;
     throw SizeError(image.depth_path,
-                    fmt::format("is {}x{} pixels, the camera {}x{}", depth.width_px,
+                    fmt::format("is {}x{} pixels, must be {}x{} as the camera's", depth.width_px,
                                 depth.height_px, camera.width_px, camera.height_px));
   }
 

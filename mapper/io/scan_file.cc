@@ -164,7 +164,7 @@ std::vector<StoredScan> ReadScans(const std::string& path) {
   std::vector<StoredScan> scans;
   ScanTaker taker;
   for (std::uint32_t i = 0; i < count; ++i) scans.push_back(taker.Take(reader));
-  if (!reader.empty()) reader.Fail("goes on behind its last scan");
+  if (!reader.empty()) reader.Fail("has more bytes after its last scan");
   return scans;
 }
 

@@ -53,8 +53,8 @@ void FindCorrections(const std::string& path, const RecordingOptions& options,
     return;  // these are no corrections
   }
   if (const std::size_t count = JumpsOfPart(jumps, sequence, options); count > 0) {
-    notes.push_back(
-        fmt::format("the poses jump at {}: no motion is taken there", Counted(count, "frame")));
+    notes.push_back(fmt::format("the poses jump at {}: their motion there is not used",
+                                Counted(count, "frame")));
   }
   StartEpochs(jumps, slam.live);
 }
@@ -122,10 +122,9 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
         "z is right");
   }
   if (gravity->floor_is_late) {
-    sequence.recording.warnings.push_back(
-        path +
-        ": SLAM's height drifts, and the first images see no floor: every z may be off by "
-        "what it drifted before one does");
+    sequence.recording.warnings.push_back(path +
+                                          ": SLAM's height drifts, and the first images see no "
+                                          "floor: every z may be off by its drift until one does");
   }
   return up;
 }

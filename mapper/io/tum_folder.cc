@@ -77,7 +77,7 @@ void StampByColour(const std::string& folder, const RecordingOptions& options,
   }
   if (unpaired > 0) {
     recording.warnings.push_back(
-        fmt::format("{}: {} without a colour image within {} s, with a stamp of its own", folder,
+        fmt::format("{}: {} without a colour image within {} s, used with its own stamp", folder,
                     Counted(unpaired, "depth image"), options.max_stamp_difference_s));
   }
 }

@@ -39,7 +39,8 @@ void RequireReadableFile(const std::string& path) {
   if (error) throw InputError(path, "cannot be read");
   if (bytes == 0) throw InputError(path, "is empty");
   if (bytes > kMaxMeshFileBytes) {
-    throw InputError(path, fmt::format("is {} bytes, at most {}", bytes, kMaxMeshFileBytes));
+    throw InputError(path,
+                     fmt::format("is {} bytes, must be at most {}", bytes, kMaxMeshFileBytes));
   }
 }
 

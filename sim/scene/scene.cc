@@ -24,17 +24,18 @@ void RequireSaneMesh(const TriangleMesh& mesh, const std::string& what, const st
   const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
   const double extent_m = bounds.sizes().maxCoeff();
   if (extent_m > kMaxSceneExtentM) {
-    throw InputError(path, fmt::format("the {} is {:.6g} m across, at most {} m; in other units "
-                                       "than metres? A shape's scale changes them",
+    throw InputError(path, fmt::format("the {} is {:.6g} m across, must be at most {} m; is it in "
+                                       "other units than metres? A shape's scale changes them",
                                        what, extent_m, kMaxSceneExtentM));
   }
   const double away_m =
       std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
   if (away_m > kMaxSceneCoordinateM) {
-    throw InputError(path, fmt::format("the {} has a coordinate of {:.0f} m, at most {} m: "
-                                       "single precision is coarser than a millimetre beyond; move "
-                                       "the mesh to the origin",
-                                       what, away_m, kMaxSceneCoordinateM));
+    throw InputError(
+        path,
+        fmt::format("the {} has a coordinate of {:.0f} m, must be at most {} m: beyond, single "
+                    "precision is coarser than a millimetre; move the mesh to the origin",
+                    what, away_m, kMaxSceneCoordinateM));
   }
 }
 

@@ -152,7 +152,7 @@ TEST_F(EvalTrajectory, TheOffsetThatIsAdvisedIsAllOfIt) {
   Write("late.txt", late);
   const Outcome outcome = Program("eval trajectory truth.txt late.txt --time-offset -400");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--time-offset -1000.000 lays the first of both together"));
+  EXPECT_THAT(outcome.err, HasSubstr("--time-offset -1000.000 makes the first of both coincide"));
   Succeed("eval trajectory truth.txt late.txt --time-offset -1000");
 }
 

@@ -322,7 +322,7 @@ TEST_F(TrajectoryCommands, ATimeOffsetTakesAnotherClockAway) {
                                   "s; --max-difference S takes stamps further apart, --time-offset "
                                   "-1.05"));
   const Outcome apart = Program("eval trajectory truth.txt afternoon.txt");
-  EXPECT_THAT(apart.err, HasSubstr("--time-offset -50000.000 lays the first of both together\n"));
+  EXPECT_THAT(apart.err, HasSubstr("--time-offset -50000.000 makes the first of both coincide\n"));
   EXPECT_EQ(Program("eval trajectory truth.txt afternoon.txt --time-offset -50000").err, "");
 }
 

@@ -256,17 +256,17 @@ TEST(Config, ErrorsOfACopyDoNotInventALine) {
 
 // Where an experiment or a camera was asked for.
 TEST(Config, LaserLogsAndTrajectoriesAreToldByTheirFirstRow) {
-  const std::string log = "run.yaml: is a laser log, no YAML of keys; `depthgrid map` takes it";
+  const std::string log = "run.yaml: is a laser log, not YAML with keys; `depthgrid map` takes it";
   EXPECT_EQ(ConfigRefusal("# message_name ...: x\nPARAM robot_length 0.9 nohost 0\n"), log);
   EXPECT_EQ(ConfigRefusal("FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1.5 host 1.5\n"), log);
   EXPECT_THAT(ConfigRefusal("# t x y z\n1.5 0 0 0 0 0 0 1\n"),
-              HasSubstr("run.yaml: is a trajectory (rows of stamp x y z qx qy qz qw), no YAML"));
-  EXPECT_THAT(ConfigRefusal("1 2 3\n4 5 6\n"), HasSubstr("is no YAML of keys"));
+              HasSubstr("run.yaml: is a trajectory (rows of stamp x y z qx qy qz qw), not YAML"));
+  EXPECT_THAT(ConfigRefusal("1 2 3\n4 5 6\n"), HasSubstr("is not YAML with keys"));
 }
 
 TEST(Config, ErrorsNameFileLineValueAndRule) {
   EXPECT_EQ(ConfigRefusal(""), "run.yaml: is empty");
-  EXPECT_EQ(ConfigRefusal("- 1"), "run.yaml: is no YAML of keys, must be 'key: value' lines");
+  EXPECT_EQ(ConfigRefusal("- 1"), "run.yaml: is not YAML with keys, must be 'key: value' lines");
   EXPECT_EQ(ConfigRefusal("seed: 1\nframs: 3"),
             "run.yaml:2: unknown key 'frams', did you mean 'frames'?");
   EXPECT_EQ(ConfigRefusal("frams:\n  - 3"),

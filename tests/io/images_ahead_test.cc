@@ -143,7 +143,7 @@ TEST_F(RecordingAheadTest, DamageIsToldInTheImagesOrder) {
               ::testing::ElementsAre(
                   "rec: 2 depth images missing or damaged (first: 4: is damaged)",
                   "rec: 1 depth image of another size than the camera (first: 7: is 5x3 pixels, "
-                  "the camera 4x3)"));
+                  "must be 4x3 as the camera's)"));
 }
 
 TEST_F(RecordingAheadTest, TheNextImagesAreReadWhileAFrameIsAtWork) {

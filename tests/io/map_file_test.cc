@@ -229,7 +229,7 @@ TEST_F(MapFileTest, OneClearLineForEachFault) {
             "m.yaml:2: resolution is '0', must be from 1e-06 to 10000");
   EXPECT_EQ(ErrorOf(image, "resolution: 0.05\norigin: [400000, 5300000, 0]\n"), "no error");  // UTM
   EXPECT_EQ(ErrorOf(image, "resolution: 0.001\norigin: [0, 5300000, 0]\n"),
-            "m.yaml: origin is 5.3e+09 cells of 0.001 m from zero, at most 2.1e+09 can be counted");
+            "m.yaml: origin is 5.3e+09 cells of 0.001 m from zero, must be at most 2.1e+09");
   EXPECT_EQ(ErrorOf(image, "resolution: 1\norigin: [0]\n"),
             "m.yaml: origin has 1 number, must be [x, y, yaw]");
   EXPECT_EQ(ErrorOf(image, std::string(kYaml) + "mode: tertiary\n"),

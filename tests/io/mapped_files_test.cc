@@ -91,7 +91,8 @@ TEST_F(MappedFilesTest, FilesOfTwoMapsAreRefused) {
     WriteScans(File("matched.bin"), other);
     EXPECT_EQ(RefusalOf([&] { ReadMapped(folder_); }),
               File("matched.bin") +
-                  ": does not belong to scans.bin, which does without it: move it away");
+                  ": does not belong to the scans.bin beside it, which can be read without it: "
+                  "move it away");
   }
   std::filesystem::remove(File("matched.bin"));
   WriteMapped(folder_, {});

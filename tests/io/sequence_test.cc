@@ -234,7 +234,7 @@ TEST_F(SequenceTest, AGivenCameraWithoutDepthScaleIsWarnedOf) {
   };
   for (const char* camera : {"own.yaml", "matrix.txt"}) {
     EXPECT_THAT(warnings_with(camera),
-                Contains(HasSubstr(std::string(camera) + ": states no depth_scale; it is 5000")));
+                Contains(HasSubstr(std::string(camera) + ": states no depth_scale; 5000 units")));
   }
   EXPECT_THAT(warnings_with("whole.yaml"),
               testing::Not(Contains(HasSubstr("states no depth_scale"))));

@@ -190,7 +190,7 @@ TEST_F(TumFolderTest, DamagedFramesAreCountedAndSurvived) {
               ElementsAre("~: 2 depth images missing or damaged (first: ~/depth/0.125000.png: no "
                           "such file)",
                           "~: 1 depth image of another size than the camera (first: "
-                          "~/depth/0.375000.png: is 5x3 pixels, the camera 4x3)"));
+                          "~/depth/0.375000.png: is 5x3 pixels, must be 4x3 as the camera's)"));
 }
 
 TEST_F(TumFolderTest, UnsortedAndRepeatedRowsAreCounted) {
@@ -262,7 +262,7 @@ TEST_F(TumFolderTest, AScaleThatIsTakenForGrantedIsSaid) {
   Write("camera.yaml", "width: 4\nheight: 3\nfx: 4\nfy: 4\ncx: 1.5\ncy: 1\n");
   const Sequence sequence = OpenSequence(folder_);
   EXPECT_THAT(sequence.source->Warnings(),
-              Contains(HasSubstr("camera.yaml: states no depth_scale; it is 5000 a metre unless")));
+              Contains(HasSubstr("camera.yaml: states no depth_scale; 5000 units per metre are")));
 }
 
 // As of --camera.
@@ -289,17 +289,17 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)}),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
                                     "poses from 0.000 to 0.300 s; --set "
-                                    "sequence.recording.interpolate_poses=true goes between poses, "
-                                    "those up to max_interpolation_gap_s apart"));
+                                    "sequence.recording.interpolate_poses=true interpolates poses "
+                                    "up to max_interpolation_gap_s apart"));
   RecordingOptions interpolate;
   interpolate.interpolate_poses = true;
   const Trajectory sparse = {PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)};
   EXPECT_THAT(Open(SlamOutputOf(sparse), interpolate)->Warnings(),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
-                                    "poses from 0.000 to 0.300 s; between poses more than 0.2 s "
-                                    "apart none is taken, --set "
-                                    "sequence.recording.max_interpolation_gap_s=S goes between "
-                                    "those up to S"));
+                                    "poses from 0.000 to 0.300 s; poses more than 0.2 s apart "
+                                    "are not interpolated, --set "
+                                    "sequence.recording.max_interpolation_gap_s=S interpolates "
+                                    "those up to S apart"));
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
 }
@@ -339,8 +339,8 @@ TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
               Open(SlamOutputOf({PoseAt(0.0, 0.0), PoseAt(0.375, 1.0)}), options);
             }),
             "~: no pose within 0.02 s of any image: images from 2.500 to 2.875 s (2.5 s added), "
-            "poses from 0.000 to 0.375 s; --set sequence.recording.time_offset_s=0.000 lays the "
-            "first of both together");
+            "poses from 0.000 to 0.375 s; --set sequence.recording.time_offset_s=0.000 makes the "
+            "first of both coincide");
 }
 
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
@@ -348,11 +348,11 @@ TEST_F(TumFolderTest, OneClearLineForEachFault) {
   const Trajectory truth = WriteSequence();
   EXPECT_EQ(OpenError({PoseAt(7, 0)}),
             "~: no pose within 0.02 s of any image: images from 0.000 to 0.375 s, poses from 7.000 "
-            "to 7.000 s; --set sequence.recording.time_offset_s=7.000 lays the first of both "
-            "together");
+            "to 7.000 s; --set sequence.recording.time_offset_s=7.000 makes the first of both "
+            "coincide");
   EXPECT_EQ(OpenError({}), "~: the trajectory for it holds no pose");
   WriteCameraFile(Path("camera.yaml"), {{8, 3, 4.0, 4.0, 1.5, 1.0, {}}, 5000.0});
-  EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: is 4x3 pixels, the camera 8x3");
+  EXPECT_EQ(OpenError(truth), "~/depth/0.000000.png: is 4x3 pixels, must be 8x3 as the camera's");
   std::filesystem::remove(Path("camera.yaml"));
   EXPECT_EQ(OpenError(truth),
             "~/camera.yaml: no such file; it states the camera's intrinsics (--camera FILE names "

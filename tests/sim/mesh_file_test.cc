@@ -356,7 +356,7 @@ TEST_F(MeshFiles, AMeshFileIsASceneWhenItHasAFloor) {
   };
   EXPECT_THAT(error_of("v 0 0 0\nv 4 0 0\nv 4 0 3\nv 0 0 3\nf 1 2 3 4\n"), HasSubstr("no floor"));
   EXPECT_THAT(error_of("v 0 0 0\nv 4000 0 0\nv 4000 3000 0\nf 1 2 3\n"),
-              HasSubstr("4000 m across, at most 2000"));
+              HasSubstr("4000 m across, must be at most 2000"));
 }
 
 // Assimp quotes all that is left of the file.

@@ -99,8 +99,9 @@ TEST_F(MoverFiles, ErrorsNameLineMoverAndRule) {
             "~/s.yaml:8: mover 'tom': ahead_m is '0', must be from 0.1 to 100");
   EXPECT_EQ(ErrorOf(kShapes + "    waypoints: [{at: [0, 0]}, {at: [0, 0]}]\n"),
             "~/s.yaml:7: mover 'tom': two waypoints in a row are the same, at (0.00, 0.00, 0.00)");
-  EXPECT_THAT(ErrorOf("    shapes: [{shape: box, size: [1500, 1, 1], scale: 2}]\n" + kWay),
-              HasSubstr("~/s.yaml:7: mover 'tom': the mover is 3000 m across, at most 2000 m"));
+  EXPECT_THAT(
+      ErrorOf("    shapes: [{shape: box, size: [1500, 1, 1], scale: 2}]\n" + kWay),
+      HasSubstr("~/s.yaml:7: mover 'tom': the mover is 3000 m across, must be at most 2000 m"));
   for (const char* name : {"all", "none", "a+b"}) {
     EXPECT_THAT(RefusalOf([&] { Load(std::string("  ") + name + ":\n" + kShapes + kWay); }),
                 HasSubstr(std::string("mover '") + name + "': must be called otherwise"));

@@ -252,9 +252,10 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
 }
 
 TEST_F(SceneFiles, ScenesOfInsaneSizeAreRefused) {
-  EXPECT_EQ(ErrorOf("shapes:\n" + kFloor + "  - {shape: box, at: [2000, 0, 0], scale: 10}\n"),
-            "~/s.yaml: the scene is 2007 m across, at most 2000 m; in other units than metres? A "
-            "shape's scale changes them");
+  EXPECT_EQ(
+      ErrorOf("shapes:\n" + kFloor + "  - {shape: box, at: [2000, 0, 0], scale: 10}\n"),
+      "~/s.yaml: the scene is 2007 m across, must be at most 2000 m; is it in other units than "
+      "metres? A shape's scale changes them");
   EXPECT_EQ(ErrorOf("shapes:\n  - {shape: sphere, segments: 512, count: 10000}\n"),
             "~/s.yaml:2: more than 20000000 triangles");
   // Ten levels of ten: ten thousand million boxes.
@@ -304,8 +305,8 @@ TEST_F(SceneFiles, FarFromTheOriginAreRefused) {
   EXPECT_EQ(plate_at("9990", "9995"), "no error");
   EXPECT_EQ(
       plate_at("500000", "500005"),
-      "~/s.yaml: the scene has a coordinate of 500005 m, at most 10000 m: single precision is "
-      "coarser than a millimetre beyond; move the mesh to the origin");
+      "~/s.yaml: the scene has a coordinate of 500005 m, must be at most 10000 m: beyond, single "
+      "precision is coarser than a millimetre; move the mesh to the origin");
 }
 
 TEST(Files, OfOtherKindsAreNotScenes) {
