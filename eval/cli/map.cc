@@ -60,7 +60,8 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
   }
   if (arguments.poses.empty()) {
     for (const std::string& file : {arguments.final_poses, arguments.loops}) {
-      if (!file.empty()) throw InputError("--poses", "is missing: the poses " + file + " is about");
+      if (file.empty()) continue;
+      throw InputError("--poses", "is missing: the poses that " + file + " refers to");
     }
     return {};
   }

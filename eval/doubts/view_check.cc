@@ -83,14 +83,14 @@ std::string ImagesOf(const MappingRun& run) {
 std::string WhyFewMatched(const MatchedFrames& count, const MapperOptions& options) {
   if (count.beams < kFewBeams * options.scan.beams) {
     return fmt::format(
-        "of theirs on average {:.0f} of {} beams see what is matched (in mapper.scan: mode, "
+        "in the others, on average {:.0f} of {} beams see what is matched (in mapper.scan: mode, "
         "slice_half_height_m, min_range_m, max_range_m)",
         count.beams, options.scan.beams);
   }
   const bool is_surfel = options.method == MapperMethod::kSurfel;
   return fmt::format(
-      "of theirs on average {:.0f} of {} beams see what is matched, but it does not fit what was "
-      "mapped: limits of {} are too narrow, or the poses err by more than these",
+      "in the others, on average {:.0f} of {} beams see what is matched, but it does not fit what "
+      "was mapped: limits of {} are too narrow, or the poses err by more than these",
       count.beams, options.scan.beams, is_surfel ? "mapper.surfel.match" : "mapper.match");
 }
 
@@ -111,8 +111,8 @@ std::optional<std::string> DoubtOfScans(const MappingRun& run) {
   const MatchedFrames count = CountMatched(run);
   if (count.matched == 0 || !count.AreFew()) return {};
   return fmt::format(
-      "{} of {} scans could be matched, the poses of the others are those given: those have {:.0f} "
-      "beams with a hit in the mean",
+      "{} of {} scans could be matched, the poses of the others are those given: the others have "
+      "{:.0f} beams with a hit on average",
       count.matched, count.frames, count.beams);
 }
 

@@ -122,8 +122,9 @@ class RecordingSource final : public FrameSource {
     loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);
     std::erase_if(loops_, [&](const LoopClosure& loop) { return !recording_.part.Has(loop); });
     if (lost_loops > 0) {
-      recording_.warnings.push_back(fmt::format(
-          "{}: {} loop closures join frames that have no image", recording_.name, lost_loops));
+      recording_.warnings.push_back(
+          fmt::format("{}: loop closures left out, as they join frames that have no image: {}",
+                      recording_.name, lost_loops));
     }
   }
 

@@ -145,7 +145,7 @@ TEST_F(ProgramLogs, ThatFewWereMatchedIsSaid) {
   Write("half.log", log);
   EXPECT_THAT(Program("map half.log -o out").err,
               HasSubstr("half.log: 40 of 50 scans could be matched, the poses of the others are "
-                        "those given: those have 0 beams with a hit in the mean\n"));
+                        "those given: the others have 0 beams with a hit on average\n"));
 }
 
 // Its odometry is right; then told loops.

@@ -144,7 +144,7 @@ TEST_F(ProgramView, ThatFewFramesCouldBeMatchedIsSaid) {
   EXPECT_LT(matched, 50);
   EXPECT_THAT(said, AllOf(HasSubstr("warning: " + std::to_string(matched) +
                                     " of 59 frames could be matched, the poses of the others are "
-                                    "those given: of theirs on average "),
+                                    "those given: in the others, on average "),
                           HasSubstr("(in mapper.scan: mode, slice_half_height_m"),
                           HasSubstr("80x60 pixels"), Not(HasSubstr("path"))));
 }
