@@ -66,8 +66,8 @@ struct ComparedMaps {
 std::string NoteOf(const std::string& fine, int times, double fine_m, const std::string& coarse,
                    double coarse_m) {
   return fmt::format(
-      "{}: {} x {} of its cells of {} m count as one of {} m, those of {}: occupied "
-      "if any is, else free if any is",
+      "{}: {} x {} of its cells of {} m count as one of {} m, as {} has them: occupied if any is, "
+      "else free if any is",
       fine, times, times, fine_m, coarse_m, coarse);
 }
 
@@ -161,7 +161,7 @@ void PrintWalls(const MapQuality& quality) {
                quality.registration->mean_shift_m);
   }
   if (FitsBetterAsItLies(quality)) {
-    fmt::print("the walls fit better as they lie: that motion is no error of the map\n");
+    fmt::print("the walls fit better without that motion: it is no error of the map\n");
   }
 }
 
@@ -245,7 +245,8 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   }
   if (!score.observable) return doubts;
   if (score.observable->scored_cells == 0) {
-    doubts.push_back(observable_path + ": has no free cell, which are those that could be seen");
+    doubts.push_back(observable_path +
+                     ": has no free cell; free cells are those that could be seen");
   } else if (const double share = UnknownShare(*score.observable); share > kMostUnknown) {
     doubts.push_back(
         fmt::format("{}: of the cells that could be seen, {} does not know {:.0f} %: of "

@@ -87,7 +87,7 @@ std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& wor
   const std::vector<std::string> commands = Commands(app);
   if (commands.empty()) {
     return fmt::format("'{}' is one argument too many{}", word,
-                       ended ? ": behind -- nothing is an option" : "");
+                       ended ? ": after -- nothing is an option" : "");
   }
   return fmt::format("no command '{}'{}", word, DidYouMean(word, commands));
 }

@@ -42,7 +42,7 @@ std::optional<std::string> DoubtOfTruth(const TruthRecord& truth,
   }
   return fmt::format(
       "{}: {}: surfaces are {:g} to {:g} m (mapper.scan.band_low_m, band_high_m) above a floor at "
-      "{:g} m there; the mesh's faces may point away from the room, or floor_z_m be wrong",
+      "{:g} m there; the mesh's faces may point away from the room, or floor_z_m may be wrong",
       options.scene, what, scan.band_low_m, scan.band_high_m, scan.floor_z_m);
 }
 

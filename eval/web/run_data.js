@@ -15,7 +15,7 @@ const LAYERS = [
   ["estimate", "Estimate"], ["truth", "Truth"], ["difference", "Difference"],
   ["observable", "Observable"],
 ].filter(([name]) => RUN.map.layers[name]);
-const INPUT_LABEL = `${RUN.input_poses[0].toUpperCase()}${RUN.input_poses.slice(1)}, ${RUN.prior_scans ? "laid where it begins" : "as it came in"}`;
+const INPUT_LABEL = `${RUN.input_poses[0].toUpperCase()}${RUN.input_poses.slice(1)}, ${RUN.prior_scans ? "placed where the run begins" : "as it came in"}`;
 const PATHS = [
   ["truth", "Truth", "truth"], ["slam", INPUT_LABEL, "slam"],
   ["online", "Estimate at the time", "online"], ["est", "Estimate at the end", "est"],

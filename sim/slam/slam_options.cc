@@ -50,7 +50,8 @@ SlamLoopOptions WithScenario(SlamLoopOptions options, LoopScenario scenario) {
 
 void SlamOptions::Visit(OptionsVisitor& v) {
   const SlamProfile before = profile;
-  v.Choice("profile", profile, kSlamProfiles, "sets all keys below; those given override it");
+  v.Choice("profile", profile, kSlamProfiles,
+           "sets all keys below; keys that are given override it");
   if (profile != before) *this = ProfileOptions(profile);
   v.Number("drift_scale", drift_scale, {0.0, 1000.0}, "multiplies walk and drift");
   v.Number("pivot_m", pivot_m, {0.0, kMostPivotM},

@@ -46,8 +46,8 @@ TEST_F(EvalMap, SmallerCellsCountAsTheLargerOnesTheyMakeUp) {
     scores.erase("compared_cell_m");
     EXPECT_EQ(scores, same) << maps;
     EXPECT_THAT(Program(std::string("eval map ") + maps).out,
-                HasSubstr("fine.yaml: 2 x 2 of its cells of 0.05 m count as one of 0.1 m, those of "
-                          "coarse.yaml: occupied if any is, else free if any is\n"));
+                HasSubstr("fine.yaml: 2 x 2 of its cells of 0.05 m count as one of 0.1 m, as "
+                          "coarse.yaml has them: occupied if any is, else free if any is\n"));
   }
   EXPECT_THAT(Program("eval map fine.yaml fine.yaml").out, Not(HasSubstr("count as one")));
 }
@@ -84,8 +84,8 @@ TEST_F(EvalMap, WallsThatLieElsewhereAreSaid) {
 TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
   WriteCells("nothing", 0.1, "P2 3 2 255\n205 205 205\n205 205 205\n");
   EXPECT_EQ(Program("eval map coarse.yaml coarse.yaml --observable nothing.yaml").err,
-            "depthgrid: warning: nothing.yaml: has no free cell, which are those that could be "
-            "seen\n");
+            "depthgrid: warning: nothing.yaml: has no free cell; free cells are those that could "
+            "be seen\n");
 }
 
 // A room's walls in cells of 0.05 m, 60 x 20, with a wall across.

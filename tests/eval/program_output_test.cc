@@ -277,7 +277,7 @@ TEST_F(ProgramOutput, AFileMayBeginWithADash) {
   Succeed("run --set frames=2 -o one -- -small.yaml");
   Succeed("compare --metric all -- one one");
   ExpectRefusal("run -- -small.yaml -o out",
-                {"'-o' is one argument too many: behind -- nothing is an option (see depthgrid run "
+                {"'-o' is one argument too many: after -- nothing is an option (see depthgrid run "
                  "--help)"});
   ExpectRefusal("run -small.yaml -o out", {"no option '-s"});
 }
