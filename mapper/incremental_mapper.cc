@@ -1,6 +1,7 @@
 #include "mapper/incremental_mapper.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "mapper/core/error.h"
@@ -46,6 +47,13 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
     throw InputError("prior map", "must be given before the first frame, once");
   }
   RequireSound(prior);
+  const int scans = state_->options.submap.scans;
+  if (state_->options.method == MapperMethod::kPaper &&
+      prior.frames.size() > static_cast<std::size_t>(scans)) {
+    throw InputError("prior map", "has " + std::to_string(prior.frames.size()) +
+                                      " frames, mapper.submap.scans is " + std::to_string(scans) +
+                                      ", must be at least as many with mapper.method paper");
+  }
   for (std::size_t i = 0; i < prior.frames.size(); ++i) {
     MappedFrame& frame = prior.frames[i];
     // SLAM's motion is replaced by that of the final poses, without SLAM's errors.

@@ -71,8 +71,8 @@ class IncrementalMapper {
   // Call once, before the first frame. The result's `mapped` then begins with the prior frames.
   // Throws InputError, and changes nothing, when called later or twice, when a frame's number,
   // pose, stamp or scans break PriorMap's rules, when a beam fails CanBeKept(), or when
-  // `map_from_slam` is not finite or beyond 10,000 km. Method paper matches against the last two
-  // submaps only, so there `submap.scans` must be at least the number of prior frames.
+  // `map_from_slam` is not finite or beyond 10,000 km; and with method paper, which matches against
+  // the last two submaps only, when `submap.scans` is less than the number of prior frames.
   void StartFrom(PriorMap prior);
 
   // Call once per frame, in order of time. Throws InputError, and leaves the mapper unchanged, when

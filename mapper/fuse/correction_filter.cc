@@ -14,11 +14,6 @@ Eigen::Vector3d AsVector(const std::array<double, 3>& values) {
 
 }  // namespace
 
-// SLAM's noise is learnt from changes of the correction, so the prior must be relative.
-bool CorrectionFilter::Learns() const {
-  return options_.mode == FusionMode::kLearned && options_.prior == PriorMode::kRelative;
-}
-
 Pose2 CorrectionFilter::PredictedPose(const Pose2& slam_from_base) const {
   const bool relative = options_.prior == PriorMode::kRelative;
   return relative ? map_from_slam_ * slam_from_base : slam_from_base;

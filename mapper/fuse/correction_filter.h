@@ -43,7 +43,7 @@ class CorrectionFilter {
   void SetCorrection(const Pose2& map_from_slam);
 
   // Whether mode is `learned` with a relative prior.
-  bool Learns() const;
+  bool Learns() const { return options_.LearnsNoise(); }
   // Mode `learned` (see DriftTracker): SLAM's motion noise from an adjustment, and the last
   // innovation with its weight from the covariance of pose and map.
   void BoundMotion(const MotionSpread& spread) { tracker_.BoundMotion(spread); }

@@ -67,7 +67,9 @@ struct FusionOptions {
   double adaptive_rate = 0.02;
 
   // Only if SLAM's noise is learnt: otherwise wrong settings of it could explain the innovations.
-  bool JudgesInnovations() const { return mode == FusionMode::kLearned && judge_innovations; }
+  bool JudgesInnovations() const { return LearnsNoise() && judge_innovations; }
+  // Noise is learnt from changes of the correction, so the prior must be relative.
+  bool LearnsNoise() const { return mode == FusionMode::kLearned && prior == PriorMode::kRelative; }
   bool TrustsSlamAlone() const {
     return mode == FusionMode::kFixed && gain == std::array<double, 3>{};
   }

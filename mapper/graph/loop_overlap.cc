@@ -32,6 +32,7 @@ void RaiseRow(const SeenPlace::Finding* findings, std::size_t count, SeenPlace::
 // Dilates walls by reach_cells, along rows and then along columns, so that looking up one cell
 // suffices.
 void RaiseAroundWalls(int reach_cells, SeenPlace& place) {
+  if (place.findings.empty()) return;
   const auto width = static_cast<std::size_t>(place.geometry.width_cells);
   const auto height = static_cast<std::size_t>(place.geometry.height_cells);
   for (std::size_t step = 1; step <= 2; ++step) {

@@ -87,6 +87,14 @@ TEST(SeenPlace, EndsWhereSlamJumpedFarAway) {
   EXPECT_EQ(FramesOfPlace(frames, 24, {}, 40), (std::vector<int>{24, 29}));
 }
 
+// As every other scan of a place that has one; with a reach below a cell this once went on for
+// ever.
+TEST(SeenPlace, OfNoScansIsEmpty) {
+  OverlapOptions options;
+  options.tolerance_m = 0.0;
+  EXPECT_TRUE(SeenFrom(StraightOn(1), {}, 0, options).points.empty());
+}
+
 // A wall counts for every cell within the tolerance and for none beyond.
 TEST(SeenPlace, WallsReachAsFarAsTheTolerance) {
   const std::vector<MappedFrame> frames = StraightOn(1);

@@ -244,6 +244,25 @@ TEST(FindStart, TakesFramesThatWereCollected) {
   EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.5, 0.05));
 }
 
+// Half a minute at 30 Hz before it leaves its charger: no more is kept than of one that leaves.
+TEST(FindStart, TakesARobotThatStandsForLong) {
+  const Pose2 begin{24.0, 0.0, kPi};
+  WalkThroughHall walk(begin, 12.0);
+  std::vector<Frame> frames;
+  while (auto frame = walk.Next()) frames.push_back(std::move(*frame));
+  constexpr int kStanding = 900;
+  frames.insert(frames.begin(), kStanding, frames.front());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i].index = static_cast<int>(i);
+    frames[i].stamp_s = 0.1 * static_cast<double>(i);
+  }
+  const auto start = FindStart(MapOfHall(), frames, {}, MapperOptions{});
+  ASSERT_TRUE(start && start->trial);
+  EXPECT_FALSE(AreApart(begin, start->place.map_from_slam, 0.1, 0.05));
+  EXPECT_LT(start->trial->frames, 400 + 40);  // 3 m of the way on top, one each 0.1 m
+  EXPECT_GT(start->trial->reach_m, 1.5);
+}
+
 // As a mapper refuses them, with the same words.
 TEST(FindStart, RefusesWhatIsNotSound) {
   const auto error_of = [](const PriorMap& prior, const Frame& frame,

@@ -165,6 +165,20 @@ KeptScan WithABeamOf(float range_m) {
   return ScanArchive().Keep(scan);
 }
 
+// Of its submaps only the last two are matched against.
+TEST(PriorMap, MethodPaperNeedsItInOneSubmap) {
+  MapperOptions options;
+  options.method = MapperMethod::kPaper;
+  options.submap.scans = kPriorRound - 1;
+  IncrementalMapper mapper(options, std::nullopt);
+  EXPECT_THAT([&] { mapper.StartFrom(FinishedRound()); },
+              testing::ThrowsMessage<InputError>(
+                  testing::HasSubstr("must be at least as many with mapper.method paper")));
+  options.submap.scans = kPriorRound;
+  IncrementalMapper enough(options, std::nullopt);
+  enough.StartFrom(FinishedRound());
+}
+
 std::string WhyNotBegun(const PriorMap& prior) {
   IncrementalMapper mapper({}, std::nullopt);
   try {
