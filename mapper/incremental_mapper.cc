@@ -184,30 +184,6 @@ std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
   return spread;
 }
 
-std::vector<PlanarLoop> IncrementalMapper::State::FoundLoops(const FrameScans& scans,
-                                                             const FrameReport& report) {
-  if (SearchesSlides()) {
-    if (const auto slide = slides.Mapped(mapped.all(), report.covariance)) return {*slide};
-  }
-  if (!loop_search) return {};
-  return loop_search->Find(mapped.all(), scans.matched, loop_closer.loops(), *reference);
-}
-
-// Loops found by the mapper itself. The frame's reported estimate is not changed.
-void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
-  const StageTimer timer(clocks, report.times.loops_us);
-  if (!(report.inserted || report.well_seen)) return;
-  const std::vector<PlanarLoop> found = FoundLoops(scans, report);
-  if (found.empty()) return;
-  const LoopCloser::Outcome outcome =
-      loop_closer.Add(found, mapped.all(), *reference, errors.Mapped());
-  report.loops_accepted += outcome.accepted;
-  report.loops_rejected += outcome.rejected;
-  if (loop_search) loop_search->Forget();
-  relocation.Joined(outcome.held);
-  if (outcome.adjusted) MoveTo(outcome.map_from_base, outcome.covariance);
-}
-
 // The first scan after a loss decides whether the guess is doubted.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;

@@ -29,9 +29,9 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }
 
-AdjustEffort LoopCloser::EffortFor(const std::vector<MappedFrame>& frames) const {
-  return static_cast<int>(frames.size()) > options_.bend_frames ? AdjustEffort::kBend
-                                                                : AdjustEffort::kCloseLoops;
+AdjustEffort LoopCloser::EffortFor(const std::vector<MappedFrame>& frames,
+                                   AdjustEffort wanted) const {
+  return static_cast<int>(frames.size()) > options_.bend_frames ? AdjustEffort::kBend : wanted;
 }
 
 LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
@@ -53,7 +53,8 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
     loops_.push_back(*loop);
   }
   if (loops_.size() > known) {
-    Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames), asked);
+    const AdjustEffort effort = EffortFor(frames, AdjustEffort::kCloseLoops);
+    Adjustment adjustment = reference.Adjust(frames, loops_, effort, asked);
     outcome.adjusted = true;
     outcome.map_from_base = std::move(adjustment.map_from_base);
     outcome.covariance = std::move(adjustment.covariance);
@@ -67,8 +68,8 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
 }
 
 LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
-                                    const std::vector<MappedFrame>& frames, ReferenceMap& reference,
-                                    std::span<const int> asked) {
+                                    const std::vector<MappedFrame>& frames, AdjustEffort wanted,
+                                    ReferenceMap& reference, std::span<const int> asked) {
   const std::vector<PlanarLoop> known = loops_;
   for (const PlanarLoop& loop : found) {
     const std::optional<PlanarLoop> kept = BetweenKept(loop, frames);
@@ -79,7 +80,7 @@ LoopCloser::Outcome LoopCloser::Add(const std::vector<PlanarLoop>& found,
   Outcome outcome;
   outcome.rejected = static_cast<int>(found.size());
   if (loops_.size() == known.size()) return outcome;
-  const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames), asked);
+  const Adjustment adjustment = reference.Adjust(frames, loops_, EffortFor(frames, wanted), asked);
   const auto pose = [&](int frame) {
     return adjustment.map_from_base[static_cast<std::size_t>(frame)];
   };

@@ -48,9 +48,10 @@ class LoopCloser {
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
                 ReferenceMap& reference, std::span<const int> asked);
   // Adds loops that the mapper found itself. They are kept only if the adjustment with all loops
-  // accepts them and their places then still pass the overlap test.
+  // accepts them and their places then still pass the overlap test. With more than `bend_frames`
+  // frames it costs less than `wanted`.
   Outcome Add(const std::vector<PlanarLoop>& found, const std::vector<MappedFrame>& frames,
-              ReferenceMap& reference, std::span<const int> asked);
+              AdjustEffort wanted, ReferenceMap& reference, std::span<const int> asked);
   // Adjusts everything again with the loops known so far.
   Adjustment AdjustAll(const std::vector<MappedFrame>& frames, ReferenceMap& reference,
                        AdjustEffort effort, std::span<const int> asked) const {
@@ -59,7 +60,7 @@ class LoopCloser {
   const std::vector<PlanarLoop>& loops() const { return loops_; }
 
  private:
-  AdjustEffort EffortFor(const std::vector<MappedFrame>& frames) const;
+  AdjustEffort EffortFor(const std::vector<MappedFrame>& frames, AdjustEffort wanted) const;
 
   LoopOptions options_;
   std::vector<PlanarLoop> loops_;

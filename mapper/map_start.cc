@@ -32,8 +32,9 @@ constexpr double kUncertainShare = 0.9;
 // Length of the trial.
 constexpr std::size_t kTrialFrames = 400;
 constexpr double kTrialPathM = 6.0;
-// With more frames than the trial's, as of a robot that stands at its charger, those nearer to the
-// last stored one than this are skipped: they show the same, and memory and time stay bounded.
+// Where the first views take more frames than the trial, as of a robot that stands at its charger,
+// those nearer than this to the one before are left out: they show the same, would decide the trial
+// by their number, and cost memory and time.
 constexpr double kStoredEveryM = 0.05;
 constexpr double kStoredEveryRad = RadFromDeg(2.0);
 // Share of the best agreement at which the first place is preferred: SLAM's frame is mostly the
@@ -94,7 +95,8 @@ class FirstFrames {
     while (auto frame = source_.Next()) {
       if (!frame->slam_from_camera) continue;
       if (!frames_.empty() && frame->slam_epoch != frames_.front().slam_epoch) return false;
-      if (frames_.size() >= kTrialFrames && IsNearLast(*frame)) continue;
+      if (frames_.size() >= kTrialFrames) LeaveOutThoseNear();
+      if (leaves_out_ && AreNear(frames_.back(), *frame)) continue;
       RequireSound(*frame, camera_);
       const FrameScans scans = scanner_.ScansOf(*frame);
       if (!scans.obstacles) continue;
@@ -111,15 +113,20 @@ class FirstFrames {
   }
 
  private:
-  bool IsNearLast(const Frame& frame) const {
-    return !AreApart(BaseOf(*frames_.back().slam_from_camera), BaseOf(*frame.slam_from_camera),
-                     kStoredEveryM, kStoredEveryRad);
+  static bool AreNear(const Frame& a, const Frame& b) {
+    return !AreApart(BaseOf(*a.slam_from_camera), BaseOf(*b.slam_from_camera), kStoredEveryM,
+                     kStoredEveryRad);
+  }
+  void LeaveOutThoseNear() {
+    leaves_out_ = true;
+    frames_.erase(std::unique(frames_.begin(), frames_.end(), AreNear), frames_.end());
   }
 
   FrameSource& source_;
   std::optional<PinholeCamera> camera_;
   FrameScanner scanner_;
   std::vector<Frame> frames_;
+  bool leaves_out_ = false;  // frames nearer than kStoredEveryM to the one before
 };
 
 PlacedScan PlacedScanOf(const Frame& frame) {

@@ -144,22 +144,4 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
   return mended;
 }
 
-bool IncrementalMapper::State::SearchesSlides() const {
-  return options.loops.slide.use && options.method == MapperMethod::kSurfel && reference &&
-         !fixed_map && !match_oracle && !relocation.active();
-}
-
-// Where it seems to have been matched beside walls that it slid along.
-void IncrementalMapper::State::LookForSlide(const std::shared_ptr<const Scan>& scan,
-                                            const Prediction& prediction, FrameReport& report) {
-  if (!SearchesSlides() || !scan || !report.match.found) return;
-  const Pose2 matched = report.match.map_from_base;
-  if (!slides.Wants(matched)) return;
-  {
-    const StageTimer timer(clocks, report.times.loops_us);
-    slides.Look(scan, matched, relocation.usual_share(), *reference);
-  }
-  Match(scan, prediction, report);
-}
-
 }  // namespace depthgrid

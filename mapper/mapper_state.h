@@ -89,7 +89,11 @@ struct IncrementalMapper::State {
   void GoThroughAgain(const Frame& newest, const std::optional<MotionSpread>& spread);
   void TakeOutMistaken(const Frame& newest, FrameReport& report);
   void FindLoops(const FrameScans& scans, FrameReport& report);
-  std::vector<PlanarLoop> FoundLoops(const FrameScans& scans, const FrameReport& report);
+  struct FoundLoops {
+    std::vector<PlanarLoop> loops;
+    AdjustEffort effort = AdjustEffort::kCloseLoops;  // that they are worth
+  };
+  FoundLoops LoopsFound(const FrameScans& scans, const FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
   void MovePart(int first, const Pose2& motion);

@@ -119,14 +119,16 @@ TEST(FoundLoops, AreKeptWhenTheMapHoldsTogetherWithThem) {
   TwoWalks walks = WalksOf(LongCorridor());
   LoopCloser closer{LoopOptions()};
   const LoopCloser::Outcome right =
-      closer.Add({LoopOff(walks, 10, {}), LoopOff(walks, 20, {})}, walks.frames, walks.map, {});
+      closer.Add({LoopOff(walks, 10, {}), LoopOff(walks, 20, {})}, walks.frames,
+                 AdjustEffort::kCloseLoops, walks.map, {});
   EXPECT_TRUE(right.adjusted);
   EXPECT_EQ(right.accepted, 2);
   EXPECT_EQ(right.rejected, 0);
   ASSERT_EQ(closer.loops().size(), 2U);
   for (const PlanarLoop& loop : closer.loops()) EXPECT_FALSE(loop.on_trial);
-  const LoopCloser::Outcome wrong = closer.Add(
-      {LoopOff(walks, 15, {}), LoopOff(walks, 25, {0.0, 0.6, 0.3})}, walks.frames, walks.map, {});
+  const LoopCloser::Outcome wrong =
+      closer.Add({LoopOff(walks, 15, {}), LoopOff(walks, 25, {0.0, 0.6, 0.3})}, walks.frames,
+                 AdjustEffort::kCloseLoops, walks.map, {});
   EXPECT_FALSE(wrong.adjusted);
   EXPECT_EQ(wrong.accepted, 0);
   EXPECT_EQ(wrong.rejected, 2);

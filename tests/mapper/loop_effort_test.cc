@@ -101,11 +101,12 @@ void ExpectLoopsOfTiedFramesLeftOut(DriftingRound& round, Map& map) {
   asks_nothing.second = kTied;
   asks_nothing.first_from_second = Between(round.truth[kTiedTo], round.truth[kTied]);
   LoopCloser closer({});
-  const LoopCloser::Outcome none = closer.Add({asks_nothing}, round.frames, map, {});
+  const LoopCloser::Outcome none =
+      closer.Add({asks_nothing}, round.frames, AdjustEffort::kCloseLoops, map, {});
   EXPECT_FALSE(none.adjusted);
   EXPECT_EQ(none.rejected, 1);
-  const LoopCloser::Outcome one =
-      closer.Add({asks_nothing, round.TrueLoop()}, round.frames, map, {});
+  const LoopCloser::Outcome one = closer.Add({asks_nothing, round.TrueLoop()}, round.frames,
+                                             AdjustEffort::kCloseLoops, map, {});
   EXPECT_TRUE(one.adjusted);
   EXPECT_EQ(one.accepted, 1);
   EXPECT_EQ(one.rejected, 1);
@@ -128,7 +129,8 @@ TEST(LoopEffort, ALongRunIsBent) {
     LoopOptions options;
     options.bend_frames = bend_frames;
     LoopCloser closer(options);
-    const LoopCloser::Outcome outcome = closer.Add({round.TrueLoop()}, round.frames, round.map, {});
+    const LoopCloser::Outcome outcome =
+        closer.Add({round.TrueLoop()}, round.frames, AdjustEffort::kCloseLoops, round.map, {});
     EXPECT_TRUE(outcome.adjusted);
     return outcome.map_from_base;
   };
