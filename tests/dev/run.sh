@@ -36,7 +36,7 @@ calls build
 expect yes '^apt-get install .* libceres-dev '
 expect no '^apt-get install .*(chromium|clang|slurm)'
 calls test
-expect yes '^apt-get install .* libceres-dev .* chromium .* python3-numpy$'
+expect yes '^apt-get install .* libceres-dev .* chromium .* python3-numpy python3-zstandard$'
 expect yes '^cmake --preset release .*-DDEPTHGRID_WERROR=ON$'
 calls test --with-slurm
 expect yes '^apt-get install .* libceres-dev .* chromium .* slurm-wlm$'
