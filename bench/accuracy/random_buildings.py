@@ -9,6 +9,7 @@ drift, reach and number of beams that are drawn as well (--hard: narrow views, s
 worlds (wI.world.txt, wI.truth.txt) and lines of results; the arguments behind -- go to laser_accuracy. The same number
 gives the same building and settings. docs/results.md, "Random buildings".
 """
+import contextlib
 import heapq
 import math
 import os
@@ -200,16 +201,24 @@ def way_through(building):
     return poses
 
 
+@contextlib.contextmanager
+def written(path):
+    """A file that is there when it is whole: two runs may share a folder."""
+    with open(f"{path}.{os.getpid()}", "w", encoding="ascii") as file:
+        yield file
+    os.replace(file.name, path)
+
+
 def write_world(number, name):
     building = Building(number)
     poses = way_through(building)
     if poses is None:
         return False
     c, s, turned = math.cos(building.turned_rad), math.sin(building.turned_rad), building.turned_rad
-    with open(name + ".world.txt", "w", encoding="ascii") as file:
+    with written(name + ".world.txt") as file:
         for x1, y1, x2, y2 in building.walls:
             file.write("%.5f %.5f %.5f %.5f\n" % (c * x1 - s * y1, s * x1 + c * y1, c * x2 - s * y2, s * x2 + c * y2))
-    with open(name + ".truth.txt", "w", encoding="ascii") as file:
+    with written(name + ".truth.txt") as file:
         for k, (x, y, yaw) in enumerate(poses):
             file.write("%.6f %.6f %.6f 0 0 0 %.12f %.12f\n" % (
                 k / RATE_HZ, c * x - s * y, s * x + c * y, math.sin((yaw + turned) / 2), math.cos((yaw + turned) / 2)))
