@@ -61,9 +61,11 @@ class Tokens {
 };
 
 bool IsMessageName(std::string_view word) {
-  return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
+  // Not of a number alone, such as the whole stamp of a trajectory.
+  const auto is_letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+  return std::any_of(word.begin(), word.end(), is_letter) &&
+         std::all_of(word.begin(), word.end(),
+                     [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 CarmenDamage Damage(std::string_view message, std::string_view what, std::string fault = {}) {

@@ -174,6 +174,14 @@ TEST(CarmenLog, CountsDamagedLinesAndGoesOn) {
   EXPECT_THAT(warnings, Contains(HasSubstr(":9: a line longer than")));
 }
 
+TEST(CarmenLog, PosesAreNoLogWhateverTheirStamps) {
+  for (const char* stamp : {"1", "1.5"}) {
+    const TextFile file(std::string(stamp) + " 0 0 0 0 0 0 1\n");
+    EXPECT_THAT([&] { OpenCarmenLog(file.path()); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("and poses by --poses")));
+  }
+}
+
 TEST(CarmenLog, AByteOrderMarkHidesNoScan) {
   const TextFile file("\xEF\xBB\xBF" + std::string(kRobotLaser));
   const auto source = OpenCarmenLog(file.path());
