@@ -19,10 +19,10 @@ namespace depthgrid {
 namespace {
 
 constexpr float kNearM = 0.01F;
-constexpr int kSamples = 4;  // all that llvmpipe has
+constexpr int kSamples = 4;  // the maximum of llvmpipe
 static_assert(kMaxImageSidePx <= 16384, "llvmpipe's limit");
 
-// Uniform and storage locations of sim/colour/colour_shaders.cc, which states sizes as numbers.
+// Uniform and storage locations of sim/colour/colour_shaders.cc, where array sizes are literals.
 static_assert(kMaxLights == 32);
 constexpr GLint kCameraFromWorld = 0;
 constexpr GLint kClipFromCamera = 1;
@@ -41,8 +41,8 @@ struct GpuMaterial {
   std::array<float, 4> other;          // glow, grain axis
 };
 
-// Pixel (u, v) to the centre of GL's pixel (u, v): the image's row 0 is GL's row 0, so what is read
-// back is the image. Depth is near / z: reversed and without a far plane.
+// Projection of pixel (u, v) to the centre of GL's pixel (u, v). Row 0 of the image is GL's row 0,
+// so it is read back without flipping. Depth is near / z: reversed and without a far plane.
 Eigen::Matrix4f ClipFromCamera(const PinholeCamera& camera) {
   const double width = camera.width_px;
   const double height = camera.height_px;
@@ -65,8 +65,8 @@ Eigen::Matrix4f MatrixOf(const Pose3& a_from_b) {
 
 }  // namespace
 
-// A framebuffer with one colour target and a depth buffer of 32 bits. Named for all, as a member of
-// a type that others know of must be.
+// A framebuffer with one colour target and a 32-bit depth buffer. Not in an unnamed namespace, as
+// it is a member of a type with external linkage.
 class RenderTarget {
  public:
   RenderTarget(const PinholeCamera& camera, GLenum format, int samples) {
@@ -88,7 +88,7 @@ class RenderTarget {
   }
   GLuint framebuffer() const { return framebuffer_; }
 
-  // Ready to draw, all pixels of this colour and infinitely far.
+  // Binds it for drawing; all pixels get this colour and infinite depth.
   void BindAndClear(const std::array<float, 4>& colour) const {
     constexpr float kInfinitelyFar = 0.0F;
     Gl().BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -101,15 +101,15 @@ class RenderTarget {
   std::array<GLuint, 2> buffers_{};
 };
 
-// Triangles on GL's side, with a program for each texture among them. Named for all, as above.
+// Triangles in GL buffers, with a program for each of their textures. External linkage as above.
 struct DrawnMesh {
   GLuint array = 0;
   GLsizei corner_count = 0;
   std::vector<TextureBatch> batches;
-  std::vector<GLuint> colour_programs;  // one a batch
+  std::vector<GLuint> colour_programs;  // one per batch
 };
 
-// GL's objects die with the context, which is the first member and goes last.
+// GL objects are released with the context, which is the first member and so destroyed last.
 struct ColourCamera::Renderer {
   Renderer(const Scene& scene, const PinholeCamera& pinhole)
       : camera(pinhole),
@@ -134,7 +134,7 @@ struct ColourCamera::Renderer {
     RequireNoGlError("setting up the colour camera");
   }
 
-  // With the camera's projection.
+  // Compiles a program and sets the camera's projection.
   GLuint NewProgram(const std::string& fragment_shader, Drawn drawn) {
     const GLuint program = CompileProgram(VertexShader(drawn), fragment_shader);
     const Eigen::Matrix4f clip = ClipFromCamera(camera);

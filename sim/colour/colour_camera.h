@@ -13,22 +13,22 @@
 namespace depthgrid {
 
 struct ColourFrame {
-  RgbImage rgb;      // sRGB, edges smoothed by four samples a pixel
+  RgbImage rgb;      // sRGB, antialiased with four samples per pixel
   DepthImage depth;  // z through each pixel's centre; kInvalidDepth where there is no surface
 };
 
 // Draws with OSMesa, Mesa's software renderer: no display or graphics card needed. Each camera owns
-// its context; use one camera a thread. Surfaces nearer than 1 cm are not drawn.
+// its context; use one camera per thread. Surfaces nearer than 1 cm are not drawn.
 class ColourCamera {
  public:
-  // Keeps a copy of what it draws; the scene may go. Throws InputError for a camera with distortion
-  // (rendering is pinhole) or of a size that cannot be drawn.
+  // Keeps a copy of what it draws; the scene need not outlive it. Throws InputError for a camera
+  // with distortion (rendering is pinhole) or of a size that cannot be drawn.
   ColourCamera(const Scene& scene, const PinholeCamera& camera);
   ColourCamera(ColourCamera&&) noexcept;
   ColourCamera& operator=(ColourCamera&&) noexcept;
   ~ColourCamera();
 
-  // The room, with those of the scene's movers that are there.
+  // Draws the static scene and the given movers.
   ColourFrame Render(const Pose3& world_from_camera, const std::vector<MoverPlace>& movers = {});
 
  private:

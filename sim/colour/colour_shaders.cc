@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kVersion = "#version 450 core\n";
 
-// Between a mesh's own axes and the world's: points, and normals.
+// Transforms of points and normals from the mesh's axes to the world's.
 constexpr const char* kStandingAxes = R"glsl(
 vec3 ToWorld(vec3 p) { return p; }
 vec3 TurnToWorld(vec3 n) { return n; }
@@ -68,7 +68,7 @@ layout(location = 0) out vec4 rgba;
 )glsl";
 
 // Hashed lattice noise (integer hash of Wang's kind), 0..1, and sums of octaves of it. Octaves
-// finer than a pixel are left at their mean, so that nothing shimmers.
+// finer than a pixel are replaced by their mean to avoid aliasing.
 constexpr const char* kNoise = R"glsl(
 uint Mix(uint h) {
   h = (h ^ 61u) ^ (h >> 16);
@@ -114,7 +114,7 @@ vec3 AlongGrain(vec3 p, float axis) {
 }
 )glsl";
 
-// Every texture: the surface's colour at a world point.
+// One function per texture: the surface's colour at a world point.
 constexpr const char* kPlain = R"glsl(
 vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) { return m.colour.rgb; }
 )glsl";
@@ -251,8 +251,8 @@ vec3 Albedo(Material m, vec3 p, vec3 n, float footprint) {
 }
 )glsl";
 
-// Matt surfaces under point lights and light from all sides (more of it from above), a highlight,
-// then a soft shoulder towards white and the sRGB curve.
+// Diffuse shading by point lights and ambient light (more from above), a specular highlight, then a
+// tone curve with a soft shoulder towards white and the sRGB curve.
 constexpr const char* kMain = R"glsl(
 vec3 Display(vec3 light) {
   const float white = 2.2;  // the brightness that becomes full white
@@ -322,7 +322,7 @@ std::string VertexShader(Drawn drawn) { return std::string(kVersion) + AxesOf(dr
 
 std::string DepthFragmentShader() {
   std::string shader = kVersion;
-  shader += kDepthFragment;  // a sum of the two is a false alarm of GCC 12
+  shader += kDepthFragment;  // adding the two in one expression triggers a false warning of GCC 12
   return shader;
 }
 

@@ -7,15 +7,16 @@
 
 namespace depthgrid {
 
-// What stands is drawn in world axes, what moves in its own, which a matrix takes there. The
-// programs of the two differ, so that movers cost a scene without any nothing.
+// The static scene is stored in world axes, a mover in its own axes with a matrix to the world.
+// Each has its own programs, so a scene without movers does not pay for them.
 enum class Drawn { kStanding, kMoving };
 
-// Corners to clip space; shared by all programs.
+// Transforms vertices to clip space; shared by all programs.
 std::string VertexShader(Drawn drawn);
-// Linear z, nothing else.
+// Writes linear z only.
 std::string DepthFragmentShader();
-// Lit and textured. One program a texture: a software renderer runs every branch for every pixel.
+// Lit and textured. One program per texture, as a software renderer runs every branch for every
+// pixel.
 std::string ColourFragmentShader(TextureKind texture, Drawn drawn);
 
 }  // namespace depthgrid

@@ -27,7 +27,7 @@ GLuint CompileShader(GLenum kind, const std::string& source) {
 
 struct GlContext::Handle {
   OSMesaContext context = nullptr;
-  std::array<unsigned char, 4> window{};  // OSMesa wants a window; drawing goes to framebuffers
+  std::array<unsigned char, 4> window{};  // required by OSMesa; drawing goes to framebuffers
 };
 
 GlContext::GlContext() : handle_(std::make_unique<Handle>()) {

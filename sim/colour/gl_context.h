@@ -13,7 +13,7 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  // Directs this thread's GL calls here.
+  // Makes this the current context of the calling thread.
   void MakeCurrent();
 
   // Depth of 0..1 in clip space instead of -1..1 (GL 4.5's glClipControl, which the library does

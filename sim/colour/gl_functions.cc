@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
-// Open until the program ends: its threads may be at work until then.
+// Never closed: the library's threads may run until the program ends.
 void* Library() {
   static void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {

@@ -1,5 +1,5 @@
-// OpenGL as OSMesa draws it. The library is loaded when colour is first asked for: it brings LLVM,
-// and the two take four times as long to load as all the rest of the program.
+// OpenGL functions of OSMesa. The library is loaded at the first use of colour: it depends on LLVM,
+// and loading both takes four times as long as loading the rest of the program.
 #pragma once
 
 #define GL_GLEXT_PROTOTYPES
@@ -8,7 +8,7 @@
 
 namespace depthgrid {
 
-// What is used of it: glAttachShader() is Gl().AttachShader(), OSMesaMakeCurrent() is
+// The functions in use: glAttachShader() is Gl().AttachShader(), OSMesaMakeCurrent() is
 // OsMesa().MakeCurrent().
 // clang-format off
 #define DEPTHGRID_GL_FUNCTIONS(_) \
@@ -39,7 +39,7 @@ struct OsMesaFunctions {
 #undef DEPTHGRID_OSMESA_POINTER
 };
 
-// Both throw std::runtime_error where the library, or a function, is not there.
+// Both throw std::runtime_error if the library or a function is missing.
 const GlFunctions& Gl();
 const OsMesaFunctions& OsMesa();
 

@@ -27,7 +27,8 @@ struct ShadingMesh {
   std::vector<TextureBatch> batches;  // in the order of TextureKind
 };
 
-// Triangles that share a vertex and meet at less than this are one curved surface.
+// Triangles that share a vertex and whose normals differ by less than this are shaded as one curved
+// surface.
 constexpr double kCreaseDeg = 40.0;
 
 ShadingMesh MakeShadingMesh(const TriangleMesh& mesh, const std::vector<Material>& materials);

@@ -10,20 +10,20 @@
 namespace depthgrid {
 namespace {
 
-// A Gaussian as wide as makes white noise correlated over this length; from the middle outwards.
+// Half of a Gaussian kernel, from the centre outwards, that gives white noise this correlation
+// length.
 std::vector<float> Weights(double length_px) {
   const double sigma_px = length_px / std::numbers::sqrt2;
-  constexpr double kReachSigmas = 3.5;  // what lies farther out is .002 of the middle
+  constexpr double kReachSigmas = 3.5;  // beyond, weights are below 0.002 of the centre's
   std::vector<float> weights;
   for (int d = 0; d <= static_cast<int>(kReachSigmas * sigma_px); ++d) {
-    const double sigmas = d / sigma_px;  // a tiny sigma's square would be 0
+    const double sigmas = d / sigma_px;  // first: the square of a tiny sigma underflows
     weights.push_back(static_cast<float>(std::exp(-0.5 * sigmas * sigmas)));
   }
   return weights;
 }
 
-// At a place of so many: the weights outside are left out, the sum of the squares of the others is
-// made 1.
+// The factor that gives variance 1 at index `at` of `count`, where weights outside are left out.
 float ScaleAt(const std::vector<float>& weights, std::size_t at, std::size_t count) {
   double squares = 0.0;
   for (std::size_t d = 0; d < weights.size(); ++d) {

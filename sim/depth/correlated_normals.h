@@ -1,5 +1,5 @@
-// Standard normals that are alike in neighbouring pixels, as the errors of sensors are that compare
-// blocks of pixels or smooth.
+// Spatially correlated standard normals: the errors of sensors that match blocks of pixels or
+// smooth are correlated between neighbouring pixels.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace depthgrid {
 
-// White normals of an image, row by row, become such whose correlation at a distance of d pixels is
-// exp(-(d / length_px)^2 / 2), up to the image's edges. Their variance stays 1. Lengths below half
-// a pixel or so change next to nothing.
+// Filters the white normals of an image (row-major) so that their correlation at a distance of d
+// pixels is exp(-(d / length_px)^2 / 2). The variance is 1 everywhere, also at the image's edges.
+// Lengths below about half a pixel have next to no effect.
 std::vector<float> Correlated(const std::vector<float>& white, std::size_t width_px,
                               double length_px, int threads);
 

@@ -10,8 +10,8 @@
 namespace depthgrid {
 namespace {
 
-// Tiles rather than rows of pixels: a packet's rays stay together in the tree. 4x2 with packets of
-// 8, 4x4 with packets of 16.
+// A packet is a tile of pixels rather than part of a row, so that its rays traverse the same nodes:
+// 4x2 for packets of 8, 4x4 for packets of 16.
 constexpr int kTileWidth = 4;
 constexpr int kMaxTileHeight = 4;
 
@@ -25,7 +25,7 @@ struct View {
 
 struct Output {
   float* z_m;
-  float* incidence_cos;  // null when nobody asks
+  float* incidence_cos;  // null when not wanted
 };
 
 // Directions have z = 1 in camera axes, so the hit parameter is the z-depth.
@@ -55,7 +55,6 @@ void CosinesOf(const typename RayPacket<kWidth>::RayHits& packet, float* cosines
   }
 }
 
-// One row of tiles.
 template <int kWidth>
 void RenderTileRow(RTCScene scene, const View& view, int v0, const Output& output) {
   constexpr int kTileHeight = kWidth / kTileWidth;

@@ -23,7 +23,7 @@ using noise::SampleSource;
 using noise::Sampling;
 using noise::Values;
 
-// Of the four normals of a pixel, the one along its ray.
+// Index of the axial one among a pixel's four normals.
 constexpr std::size_t kAxial = 2;
 
 DepthSamples Sample(const NoiseTraits& traits, const SampleSource& source, std::size_t first,
@@ -39,7 +39,8 @@ DepthSamples Sample(const NoiseTraits& traits, const SampleSource& source, std::
   Broken("a pixel is sampled in one of the ways");
 }
 
-// Incidences beyond it are lost; at a right angle none, however soft the limit is.
+// Pixels beyond this incidence are lost; infinite for kNoGrazingLimitDeg, so that softness has no
+// effect there.
 float GrazingLimitRad(const SensorOptions& options) {
   if (options.grazing_limit_deg >= kNoGrazingLimitDeg) {
     return std::numeric_limits<float>::infinity();

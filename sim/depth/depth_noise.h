@@ -13,19 +13,19 @@ namespace depthgrid {
 class DepthNoise {
  public:
   // Noise for images of SensorCamera(options). `threads` only changes the speed. Throws InputError
-  // for a range limit that leaves nothing.
+  // if the range limits leave no depth.
   explicit DepthNoise(const SensorOptions& options, int threads = 1);
 
-  // The measured image. Draws depend on (seed, frame, pixel) alone: neither threads nor the order
-  // of frames changes them.
+  // The measured image. The noise depends on (seed, frame, pixel) alone, not on threads or the
+  // order of frames.
   DepthImage Apply(const DepthFrame& clean, std::uint64_t seed, std::uint32_t frame) const;
 
-  // Whether Apply reads the frame's cosines; if not, they may be left out.
+  // Whether Apply reads incidence_cos; if not, it may be empty.
   bool NeedsIncidence() const;
 
  private:
   void ClampRange(DepthImage& depth) const;
-  // The draws along the rays, alike over noise_correlation_px.
+  // Standard normals for the axial noise, correlated over noise_correlation_px.
   std::vector<float> CorrelatedAxial(std::uint64_t seed, std::uint32_t frame) const;
   DepthImage AddNoise(const DepthImage& lit, const float* incidence_cos, std::uint64_t seed,
                       std::uint32_t frame) const;

@@ -1,6 +1,6 @@
 // The noise models' formulas as published; z in metres, angles in radians, lengths in pixels where
-// said. docs/sensors.md has them in print. Single precision and plain arithmetic only: loops over
-// them vectorise and give the same bits everywhere.
+// said. docs/sensors.md lists them. Single precision and plain arithmetic only, so that loops over
+// them vectorise and give the same bits on every machine.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace depthgrid::noise {
 
-// condition ? yes : no with both computed beforehand, which loops need to vectorise.
+// condition ? yes : no without a branch, so that loops vectorise; both values are computed.
 inline float Select(bool condition, float yes, float no) {
   const std::uint32_t mask = 0U - static_cast<std::uint32_t>(condition);
   return std::bit_cast<float>((std::bit_cast<std::uint32_t>(yes) & mask) |
                               (std::bit_cast<std::uint32_t>(no) & ~mask));
 }
 
-// The floor of 0 <= x < 2^31, vectorised without asking for the machine's rounding modes.
+// floor(x) for 0 <= x < 2^31; vectorises without instructions that set the rounding mode.
 inline float Whole(float x) { return static_cast<float>(static_cast<std::int32_t>(x)); }
 
 constexpr float kRightAngle = 1.57079632679F;
@@ -35,7 +35,7 @@ inline float Acos(float x) {
   return std::sqrt(1.0F - x) * p;
 }
 
-// pi/2 - theta is bounded by this: no model means anything in the last half degree.
+// Lower bound of pi/2 - theta (rad): no model is meaningful in the last half degree.
 constexpr float kLeastRest = 0.01F;
 
 // theta / (pi/2 - theta), bounded.
@@ -55,8 +55,8 @@ inline float NguyenLateralSigmaPx(float theta) { return 0.8F + 0.035F * ObliqueR
 
 // Handa et al., "A benchmark for RGB-D visual odometry, 3D reconstruction and SLAM", ICRA 2014,
 // after Barron and Malik, CVPR 2013. Z in cm: 35130 / floor(35130 / Z + N(0, 1/6^2) + 0.5), steps
-// of an eighth of a pixel of disparity, 35130 = 8 f b. A widely copied port rounds where this takes
-// the floor, and so measures short by 1.4 mm at 1 m and 22.6 mm at 4 m.
+// of an eighth of a pixel of disparity, 35130 = 8 f b. A widely copied port rounds instead of
+// taking the floor and so measures too short, by 1.4 mm at 1 m and 22.6 mm at 4 m.
 constexpr float kHandaStepsM = 351.30F;
 constexpr float kHandaShiftPx = 0.5F;
 constexpr float kHandaDisparitySigmaSteps = 1.0F / 6.0F;
@@ -86,13 +86,14 @@ inline float KinectV2Sigma(float z, float theta) {
 
 // An Azure Kinect-like time-of-flight camera.
 constexpr float kAzureShiftPx = 0.25F;
-constexpr float kAzureEdgeStepM = 0.8F;  // pixels whose 3x3 neighbours differ by more are lost
+constexpr float kAzureEdgeStepM = 0.8F;  // pixels whose 3x3 neighbours differ by more are invalid
 
 inline float AzureSigma(float z) { return 0.0005F + 0.001F * std::max(z - 0.5F, 0.0F); }
 
-// Whether a depth `z_other`, `pixels` away in the image, cannot lie on the plane through a pixel of
-// depth z met at the given incidence. On a plane 1/z is linear in the pixel, with a relative slope
-// of at most 1 / (f cos) a pixel; 1 % on top leaves curved surfaces whole.
+// Whether there is a depth edge between a pixel of depth z and one of depth `z_other`, `pixels`
+// away: z_other cannot lie on the plane through the first at the given incidence. On a plane 1/z is
+// linear in pixel coordinates, with a relative slope of at most 1 / (f cos) per pixel; another 1 %
+// allows for curved surfaces.
 inline bool IsBreak(float z, float z_other, float pixels, float cosine, float focal_px) {
   constexpr float kSlack = 0.01F;
   const float bound = pixels / (focal_px * std::max(cosine, 0.02F)) + kSlack;

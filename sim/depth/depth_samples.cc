@@ -16,7 +16,8 @@ struct Pixels {
   float v[kItems];
 };
 
-// Pixel coordinates of a block. Past the image's end they run on below it and are clamped later.
+// Pixel coordinates of a block. Beyond the last pixel they continue in rows below the image and are
+// clamped later.
 Pixels PixelsOf(std::size_t first, int width_px) {
   Pixels pixels;
   const auto width = static_cast<std::size_t>(width_px);
@@ -50,8 +51,8 @@ DepthSamples SampleInPlace(const SampleSource& source, std::size_t first, std::s
 DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, std::size_t count,
                                const NormalBlock& random, float scale) {
   DepthSamples samples = SampleInPlace(source, first, count);
-  // A ray that meets nothing has a cosine of 0, but no angle for the silhouette beside it to be
-  // blurred by: it is blurred as one met squarely.
+  // A ray without a hit has a cosine of 0 but no incidence; the silhouette beside it gets the
+  // lateral noise of normal incidence.
   for (float& cosine : samples.cosine) cosine = Select(cosine > 0.0F, cosine, 1.0F);
   const Pixels pixels = PixelsOf(first, source.depth.width_px);
   const auto width = static_cast<std::int32_t>(source.depth.width_px);
@@ -76,7 +77,7 @@ DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, st
     other_cosine[i] = source.incidence_cos[other[i]];
   }
   for (std::size_t i = 0; i < kItems; ++i) {
-    // A depth of 0, invalid, is a break from any other.
+    // An invalid depth (0) differs from any other surface.
     const bool moves =
         IsBreak(samples.z[i], other_z[i], shift_px[i], samples.cosine[i], source.focal_px);
     samples.z[i] = Select(moves, other_z[i], samples.z[i]);
@@ -93,7 +94,7 @@ DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, 
   const auto last_v = static_cast<float>(source.depth.height_px - 1);
   const float* const normal_u = random.normals[0].data();
   const float* const normal_v = random.normals[1].data();
-  // The four pixels around: at the image's last column and row they coincide.
+  // The four surrounding pixels, which coincide at the image's last column and row.
   alignas(64) Indices corner, right_of, below, nearest;
   alignas(64) Values right, down;
   for (std::size_t i = 0; i < kItems; ++i) {
@@ -128,7 +129,7 @@ DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, 
     const float low = std::min(std::min(p, q), std::min(r, s));
     const float high = std::max(std::max(p, q), std::max(r, s));
     constexpr float kDiagonalPx = 1.41421356F;
-    // 0, invalid, is a break from any other.
+    // An invalid depth (0) differs from any other surface.
     const bool breaks = IsBreak(high, low, kDiagonalPx, samples.cosine[i], source.focal_px);
     const float top = p + right[i] * (q - p), bottom = r + right[i] * (s - r);
     const float between = top + down[i] * (bottom - top);

@@ -1,5 +1,5 @@
-// Where in the clean image a noisy pixel takes its depth from: in place, or shifted by a draw.
-// Works on blocks of pixels so that the arithmetic vectorises; only for sim's own noise.
+// The clean depth that a noisy pixel measures: its own, or that at a random shift in the image.
+// Works on blocks of pixels so that the arithmetic vectorises. Internal to sim's noise.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace depthgrid::noise {
 
 using Values = std::array<float, kNormalBlockItems>;
 
-// A clean frame, prepared for looking around in it.
+// A clean frame with the inverse depths that sampling needs.
 struct SampleSource {
   const DepthImage& depth;
   const float* incidence_cos;
@@ -24,21 +24,22 @@ struct SampleSource {
 // The clean depth behind kNormalBlockItems pixels in row-major order; z = 0 is invalid.
 struct DepthSamples {
   alignas(64) Values z;
-  alignas(64) Values cosine;  // of the incidence where z was taken
+  alignas(64) Values cosine;  // of the incidence at the point z was taken from
 };
 
-// `count` pixels from pixel `first` on; the rest of the block is invalid.
+// The depths of `count` pixels from pixel `first` on; the rest of the block is invalid.
 DepthSamples SampleInPlace(const SampleSource& source, std::size_t first, std::size_t count);
 
-// Silhouettes move: the pixel takes the depth of the one at a shift of (normals 0, 1) times
-// Nguyen's lateral sigma and `scale`, if that one is on another surface. Within a surface it keeps
-// its own depth: the axial sigma was measured on planes and already holds what a shift does there.
+// Lateral noise at silhouettes: the pixel takes the depth at a shift of (normals 0, 1) times
+// Nguyen's lateral sigma times `scale` if that lies on another surface. Within a surface it keeps
+// its own depth: the axial sigma was measured on planes and so includes the effect of lateral
+// shifts.
 DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, std::size_t count,
                                const NormalBlock& random, float scale);
 
 // The depth at a shift of (normals 0, 1) times sigma_px. Between pixels of one surface 1/z is
-// interpolated, which is exact on planes; where the four pixels around are not one surface, the
-// nearest is taken.
+// interpolated, which is exact on planes; where the four surrounding pixels are not one surface,
+// the nearest pixel is taken.
 DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, std::size_t count,
                                  const NormalBlock& random, float sigma_px);
 

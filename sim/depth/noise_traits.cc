@@ -44,8 +44,7 @@ Values MeasureAzure(const Unmeasured& block) {
 
 }  // namespace
 
-// Ranges are what the sensors' makers state (docs/sensors.md); Handa's model has no limits of its
-// own.
+// Ranges are those of the manufacturers (docs/sensors.md); Handa's model has none.
 NoiseTraits TraitsOf(DepthNoiseModel model) {
   switch (model) {
     case DepthNoiseModel::kNone:

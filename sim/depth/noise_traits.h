@@ -1,5 +1,4 @@
-// What differs between the depth noise models, a model in one place; their formulas are in
-// depth_noise_models.h.
+// The properties of each depth noise model; the formulas are in depth_noise_models.h.
 #pragma once
 
 #include <limits>
@@ -12,11 +11,11 @@ namespace depthgrid::noise {
 // Where a pixel takes its depth from (depth_samples.h).
 enum class Sampling { kInPlace, kAcrossEdges, kBetweenPixels };
 
-// A block of pixels to measure.
+// Input of a noise model for a block of pixels.
 struct Unmeasured {
   const DepthSamples& clean;
   const Values& theta;   // incidence
-  const Values& normal;  // the draw along the ray
+  const Values& normal;  // standard normal of the axial noise
   float scale;           // of the standard deviation
   float focal_px;
 };
@@ -26,7 +25,7 @@ struct NoiseTraits {
   Sampling sampling = Sampling::kInPlace;
   float shift_px = 0.0F;  // kBetweenPixels: its standard deviation
   Values (*measure)(const Unmeasured& block) = nullptr;
-  // Pixels at larger steps of depth are lost (DropEdges).
+  // Pixels at larger depth steps become invalid (DropEdges).
   float most_step_m = std::numeric_limits<float>::infinity();
 };
 

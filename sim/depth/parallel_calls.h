@@ -1,4 +1,4 @@
-// Independent calls on several threads, those that Embree uses as well.
+// Independent calls on several threads, from the pool (oneTBB) that Embree uses too.
 #pragma once
 
 #include <cstddef>

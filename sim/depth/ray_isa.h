@@ -3,8 +3,8 @@
 
 namespace depthgrid {
 
-// Chosen, not detected: AVX2 and AVX-512 differ on a tenth of all pixels by up to a micrometre, so
-// results are the same bytes only on one of them.
+// A setting rather than detected: AVX2 and AVX-512 differ in a tenth of all pixels by up to a
+// micrometre, so results are reproducible to the byte only with the same one.
 enum class RayIsa {
   kAvx2,    // packets of 8
   kAvx512,  // packets of 16, about a third faster; InputError on a machine without it

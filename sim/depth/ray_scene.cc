@@ -13,10 +13,9 @@
 namespace depthgrid {
 namespace {
 
-// Trees of eight branches with whole triangles in their leaves: the same depths bit for bit as the
-// four branches that Embree chooses with ROBUST, and packets of coherent rays take 0.83 of the time
-// (docs/tried.md, "Depth camera"). Leaves of precomputed triangles are faster still, but not
-// robust.
+// Eight branches per node and whole triangles in the leaves: the same depths bit for bit as
+// Embree's choice with ROBUST (four branches), but coherent packets take 0.83 of the time
+// (docs/tried.md, "Depth camera"). Precomputed triangles are faster still, but not robust.
 constexpr const char* kTriangleTree = "bvh8.triangle4v";
 
 std::string DeviceConfig(RayIsa isa) {
@@ -40,7 +39,7 @@ void CheckMesh(const TriangleMesh& mesh) {
   Require(std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
                       [&](const auto& t) { return t[0] < count && t[1] < count && t[2] < count; }),
           "a triangle's indices lie within the mesh's vertices");
-  // Embree leaves out triangles it cannot place without a word.
+  // Embree silently drops triangles with invalid vertices.
   Require(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                       [](const Eigen::Vector3f& v) { return v.allFinite(); }),
           "a mesh's vertices are finite");
@@ -107,7 +106,8 @@ Eigen::Vector3f ClosestPoint(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
   return a + vb / denominator * ab + vc / denominator * ac;
 }
 
-// Shrinks the query's radius to the distance of one triangle; true tells Embree that it shrank.
+// Embree callback: reduces the query's radius to the distance of a triangle; returns whether it
+// changed.
 bool ShrinkToTriangle(RTCPointQueryFunctionArguments* arguments) {
   const auto& scene = *static_cast<const RayScene::Impl*>(arguments->userPtr);
   const std::uint32_t* corners = scene.triangles + 3 * std::size_t{arguments->primID};
@@ -131,8 +131,8 @@ RayScene::Impl::Impl(const TriangleMesh& mesh, RayIsa chosen_isa, int build_thre
   device = rtcNewDevice(DeviceConfig(isa).c_str());
   if (device == nullptr) throw std::runtime_error("Embree could not start");
   scene = rtcNewScene(device);
-  // Without ROBUST about one ray in a million passes through the edge between two triangles. HIGH
-  // quality would silently be built like MEDIUM together with it.
+  // Without ROBUST about one ray in a million passes through the edge between two triangles. With
+  // it, HIGH quality would silently be built as MEDIUM.
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
   if (!mesh.triangles.empty()) {
@@ -167,7 +167,7 @@ RayScene::RayScene(const TriangleMesh& mesh, RayIsa isa, int build_threads)
 RayIsa RayScene::isa() const { return impl_->isa; }
 
 std::optional<RayHit> RayScene::NearestHit(const Ray& ray) const {
-  // A packet of one: Embree's kernels for single rays round differently.
+  // A packet with one active ray, as Embree's single-ray kernels round differently.
   RTCIntersectContext context = CoherentContext();
   RayPacket<8>::RayHits packet;
   alignas(32) int valid[8] = {-1, 0, 0, 0, 0, 0, 0, 0};

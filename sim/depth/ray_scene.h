@@ -1,5 +1,5 @@
-// A mesh made ready for ray queries (Embree 3). Built once, immutable, cheap to copy: copies share
-// the tree, and any number of threads may ask at the same time.
+// A mesh prepared for ray queries (Embree 3). Immutable and cheap to copy (copies share the tree);
+// queries are thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class RayScene {
  public:
   explicit RayScene(const TriangleMesh& mesh, RayIsa isa = RayIsa::kAvx2, int build_threads = 1);
 
-  // The nearest surface along the ray, either side of a triangle counting.
+  // The nearest surface along the ray; both sides of a triangle count.
   std::optional<RayHit> NearestHit(const Ray& ray) const;
   // The same for many rays: distance of each, infinity where nothing is hit. Neighbouring rays
   // should be alike (they are traced in packets); the result does not depend on it.

@@ -1,4 +1,5 @@
-// What a RayScene is made of. Only for sim's own .cc files: Embree stays out of public headers.
+// Implementation of RayScene, included only by sim's .cc files to keep Embree out of public
+// headers.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -18,11 +19,11 @@ struct RayScene::Impl {
   RayIsa isa;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  const float* vertices = nullptr;           // Embree's copy, xyz a vertex
-  const std::uint32_t* triangles = nullptr;  // Embree's copy, three indices a triangle
+  const float* vertices = nullptr;           // Embree's copy, x y z per vertex
+  const std::uint32_t* triangles = nullptr;  // Embree's copy, three indices per triangle
 };
 
-// Packets of 8 and 16 under one name.
+// Embree's packets of 8 and 16 rays under one name.
 template <int kWidth>
 struct RayPacket;
 
@@ -51,7 +52,7 @@ inline RTCIntersectContext CoherentContext() {
   return context;
 }
 
-// Makes lane `i` a fresh ray that has hit nothing yet; origin and direction are the caller's.
+// Resets lane `i` to a ray without a hit; the caller sets origin and direction.
 template <typename RayHits>
 void ResetLane(RayHits& packet, int i, float reach) {
   packet.ray.tnear[i] = 0.0F;

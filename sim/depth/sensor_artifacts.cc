@@ -11,8 +11,8 @@
 namespace depthgrid {
 namespace {
 
-// The depth of the 4-neighbour furthest from pixel (u, v)'s among those across a depth edge, or its
-// own when none is.
+// Of the 4-neighbours across a depth edge from pixel (u, v), the depth that differs most from the
+// pixel's; its own depth when there is none.
 float AcrossEdge(const DepthFrame& clean, const PinholeCamera& camera, int u, int v) {
   const DepthImage& depth = clean.depth;
   const float z = depth.At(u, v);
@@ -39,17 +39,17 @@ float AcrossEdge(const DepthFrame& clean, const PinholeCamera& camera, int u, in
 
 float UniformOf(std::uint32_t word) { return (static_cast<float>(word >> 9) + 0.5F) * 0x1.0p-23F; }
 
-// A row of the image as the projector sees it: each pixel moved sideways by its disparity, f b / z.
+// An image row as seen by the projector: each pixel is shifted by its disparity f b / z.
 class ProjectorRow {
  public:
-  // `fb` is focal length times baseline, pixels times metres; negative of a projector to the left.
+  // `fb` is focal length times baseline, pixels times metres; negative for a projector to the left.
   ProjectorRow(int width_px, float fb)
       : width_(width_px),
         fb_(fb),
         columns_(static_cast<std::size_t>(width_px)),
         nearest_(static_cast<std::size_t>(3 * width_px)) {}
 
-  // Invalidates what nearer surfaces of the row keep from being lit.
+  // Invalidates the pixels that nearer surfaces of the row shadow.
   void Shade(float* z_m) {
     std::fill(nearest_.begin(), nearest_.end(), 0.0F);
     for (int u = 0; u < width_; ++u) {
@@ -65,12 +65,12 @@ class ProjectorRow {
   }
 
  private:
-  static constexpr float kBiasPx = 1.5F;       // a slanted surface does not shade itself
+  static constexpr float kBiasPx = 1.5F;       // keeps slanted surfaces from shadowing themselves
   static constexpr int kWidestGapColumns = 4;  // neighbours further apart are different surfaces
 
   float DisparityOf(float z_m) const { return z_m > 0.0F ? std::abs(fb_) / z_m : 0.0F; }
   int& Column(int u) { return columns_[static_cast<std::size_t>(u)]; }
-  // Disparities beyond the image's width leave the projector's columns: nearer than f b / width.
+  // False for disparities beyond the image's width, i.e. depths below f b / width.
   bool IsSeen(int column) const {
     return column >= 0 && column < static_cast<int>(nearest_.size());
   }
@@ -78,7 +78,7 @@ class ProjectorRow {
   void Light(int column, float disparity) {
     if (IsSeen(column)) Nearest(column) = std::max(Nearest(column), disparity);
   }
-  // By the surface of pixel u and of its neighbour to the right.
+  // Enters the surface between pixel u and its right neighbour.
   void LightFrom(const float* z_m, int u) {
     if (z_m[u] <= 0.0F) return;
     const float disparity = DisparityOf(z_m[u]);
@@ -93,8 +93,8 @@ class ProjectorRow {
 
   int width_;
   float fb_;
-  std::vector<int> columns_;    // of each pixel
-  std::vector<float> nearest_;  // largest disparity in each column; the image's begin at width_
+  std::vector<int> columns_;    // projector column of each pixel
+  std::vector<float> nearest_;  // largest disparity in each projector column; offset by width_
 };
 
 }  // namespace
@@ -124,7 +124,7 @@ void CastProjectorShadow(DepthImage& depth, const PinholeCamera& camera, double 
 
 void DropEdges(const DepthImage& clean, float step_m, DepthImage& measured) {
   const int width = clean.width_px, height = clean.height_px;
-  // Columns first, then along the row: of three rows, then of three columns.
+  // Minimum and maximum over three rows, then over three columns.
   std::vector<float> low(static_cast<std::size_t>(width) + 2), high(low.size());
   for (int v = 0; v < height; ++v) {
     const float* const above = clean.Row(std::max(v - 1, 0));

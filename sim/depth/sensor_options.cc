@@ -19,7 +19,7 @@ double FocalOf(int width_px, double hfov_deg) {
   return 0.5 * width_px / std::tan(0.5 * RadFromDeg(hfov_deg));
 }
 
-// Square pixels and a centred axis, from a data sheet's horizontal field of view.
+// Square pixels and a centred principal point, from a data sheet's horizontal field of view.
 PinholeCamera Nominal(int width_px, int height_px, double hfov_deg) {
   const double focal_px = FocalOf(width_px, hfov_deg);
   return Pinhole(width_px, height_px, focal_px, focal_px, 0.5 * (width_px - 1),
@@ -110,7 +110,7 @@ PinholeCamera SensorCamera(const SensorOptions& options, const std::string& plac
   const int height_px = options.height_px > 0 ? options.height_px : camera.height_px;
   const double scale_x = static_cast<double>(width_px) / camera.width_px;
   const double scale_y = static_cast<double>(height_px) / camera.height_px;
-  // The image's left edge lies at u = -0.5, so that is what scaling keeps.
+  // Scaling is about the image's left edge, u = -0.5.
   const auto scaled_centre = [](double centre_px, double scale) {
     return scale == 1.0 ? centre_px : (centre_px + 0.5) * scale - 0.5;
   };
@@ -122,7 +122,7 @@ PinholeCamera SensorCamera(const SensorOptions& options, const std::string& plac
   if (options.cx_px > -1.0) camera.cx_px = options.cx_px;
   if (options.cy_px > -1.0) camera.cy_px = options.cy_px;
   Validate(camera, place);
-  if (width_px < 2 || height_px < 2) {  // no scan comes of fewer
+  if (width_px < 2 || height_px < 2) {  // too small for a scan
     throw InputError(place, "the image is " + std::to_string(width_px) + " x " +
                                 std::to_string(height_px) + " pixels, must be 2 x 2 or more");
   }

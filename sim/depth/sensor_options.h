@@ -1,4 +1,4 @@
-// The simulated depth sensor: which camera, which noise, which of a real sensor's weaknesses.
+// The simulated depth sensor: camera, noise model and artifacts.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ enum class DepthNoiseModel {
   kKinectV2,  // time of flight: Fankhauser et al. 2015
   kAzure,     // time of flight, Azure Kinect-like
 };
-// All of them; what differs between them is in noise_traits.h.
+// All models; noise_traits.h has their properties.
 inline constexpr std::array kDepthNoiseModels = {
     ChoiceName<DepthNoiseModel>{DepthNoiseModel::kNone, "none"},
     ChoiceName<DepthNoiseModel>{DepthNoiseModel::kNguyen, "nguyen"},
@@ -42,11 +42,11 @@ inline constexpr std::array kDepthNoiseModels = {
     ChoiceName<DepthNoiseModel>{DepthNoiseModel::kKinectV2, "kinect_v2"},
     ChoiceName<DepthNoiseModel>{DepthNoiseModel::kAzure, "azure"}};
 
-// Of an image: what the colour camera draws in memory that most have (1 GB); each run
-// makes some such pictures.
+// Limit of the image size: the colour camera needs 1 GB for a square image of this side, and each
+// run draws a few.
 constexpr int kMaxImageSidePx = 8192;
 
-constexpr double kNoGrazingLimitDeg = 90.0;  // as grazing_limit_deg: no pixel is lost
+constexpr double kNoGrazingLimitDeg = 90.0;  // as grazing_limit_deg: no pixel is invalidated
 
 struct SensorOptions {
   CameraPreset camera = CameraPreset::kIclNuim;  // the paper's data set
@@ -61,26 +61,26 @@ struct SensorOptions {
   double hfov_deg = 0.0;
 
   DepthNoiseModel noise = DepthNoiseModel::kNone;
-  double noise_scale = 1.0;  // times every standard deviation; a model's own quantisation stays
-  // Errors along the rays are alike in neighbouring pixels: their correlation at a distance of d
-  // pixels is exp(-(d / this)^2 / 2). 0: each pixel errs by itself, as the models have it. Stereo
-  // that compares blocks of pixels, and filters, make it several pixels.
+  double noise_scale = 1.0;  // factor of every standard deviation; quantisation is not scaled
+  // Correlation length of the axial errors: their correlation at a distance of d pixels is exp(-(d
+  // / this)^2 / 2). 0: independent pixels, as in the published models. Block-matching stereo and
+  // filters give several pixels.
   double noise_correlation_px = 0.0;
   // Measured depths outside become invalid; 0 takes the model's own limit (docs/sensors.md).
   double min_range_m = 0.0;
   double max_range_m = 0.0;
-  // Pixels meeting the surface more obliquely are lost: Handa's 82 degrees, which no other model's
-  // source contradicts. With softness the limit is drawn for each pixel, normal about the first.
-  // kNoGrazingLimitDeg: none is lost, softness or not.
+  // Pixels with a larger angle of incidence are invalid. The default is Handa's; no other model's
+  // source contradicts it. With softness (a standard deviation) the limit is drawn per pixel from a
+  // normal distribution. kNoGrazingLimitDeg: no pixel is lost, whatever the softness.
   double grazing_limit_deg = 82.0;
   double grazing_softness_deg = 0.0;
   // Share of the pixels at a depth edge that measure a mix of both sides, as time of flight does.
   double flying_pixels = 0.0;
-  // Distance of the pattern projector to the camera's right: what it does not light is lost. 0 off;
-  // a Kinect v1 has 0.075.
+  // Distance of the pattern projector to the right of the camera; pixels it does not light are
+  // invalid. 0: no shadow; a Kinect v1 has 0.075.
   double shadow_baseline_m = 0.0;
 
-  RayIsa isa = RayIsa::kAvx2;  // part of the result; AVX2 is on every machine of the last decade
+  RayIsa isa = RayIsa::kAvx2;  // changes results (ray_isa.h); AVX2 is the common denominator
 
   void Visit(OptionsVisitor& v);
 };
@@ -91,11 +91,11 @@ struct DepthRange {
   double max_m = std::numeric_limits<double>::infinity();
 };
 
-// The preset's camera with the overrides. Throws InputError, "PLACE: cx is ...", for a camera
-// nobody can build.
+// The preset's camera with the overrides. Throws InputError, "PLACE: cx is ...", for an impossible
+// camera.
 PinholeCamera SensorCamera(const SensorOptions& options, const std::string& place = "sensor");
 
-// The noise model's range with the overrides. Throws InputError when nothing is left of it.
+// The noise model's range with the overrides. Throws InputError when it is empty.
 DepthRange SensorRange(const SensorOptions& options);
 
 }  // namespace depthgrid

@@ -1,13 +1,13 @@
-// How many threads this process may really run on.
+// The number of cores that this process may use.
 #pragma once
 
 namespace depthgrid {
 
-// The cores that the process's affinity allows, which may be fewer than the machine has (taskset,
-// containers): oneTBB warns on standard error when asked for more.
+// The number of cores in the process's affinity mask, which may be fewer than the machine has
+// (taskset, containers); oneTBB warns on standard error when asked for more threads.
 int UsableThreads();
 
-// `requested` limited to these, at least 1.
+// `requested` limited to that number, at least 1.
 int UsableThreads(int requested);
 
 }  // namespace depthgrid

@@ -30,7 +30,7 @@ ViewPyramid::ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_ca
 
 std::optional<ValueSpan> ViewPyramid::Part(const Vector3d& origin, const Vector3d& direction,
                                            ValueSpan span) const {
-  // Keeps what has offset + t * slope >= 0; false when that is nothing.
+  // Keeps the t with offset + t * slope >= 0; false when none is left.
   const auto keep = [&span](double offset, double slope) {
     if (slope > 0.0) span.low = std::max(span.low, -offset / slope);
     if (slope < 0.0) span.high = std::min(span.high, -offset / slope);

@@ -1,5 +1,5 @@
-// What a camera's image covers of space: a pyramid of four planes through its centre, cut off where
-// the sensor's depth range begins and ends.
+// The view frustum of a camera: the pyramid of its image, cut off at the ends of the sensor's depth
+// range.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace depthgrid {
 
-// Two numbers of one line, low <= high.
+// An interval, low <= high.
 struct ValueSpan {
   double low = 0.0;
   double high = 0.0;
@@ -21,8 +21,8 @@ class ViewPyramid {
   ViewPyramid(const PinholeCamera& camera, const Pose3& world_from_camera,
               const ValueSpan& depth_m);
 
-  // The part of the line origin + t * direction, t within `span`, that lies in the pyramid, which
-  // is convex; nothing when there is none.
+  // The part of the line origin + t * direction, t within `span`, that lies in the pyramid (one
+  // interval, as it is convex); nothing when there is none.
   std::optional<ValueSpan> Part(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                 ValueSpan span) const;
   // Bearings in the world that the image reaches, around `heading_rad`; all of them when the camera

@@ -13,7 +13,7 @@
 namespace depthgrid {
 namespace {
 
-// Widens each wall's bearing interval, so that no ray slips between two walls that share a corner.
+// Widens each wall's bearing interval, so that no ray passes between two walls that share a corner.
 constexpr double kSlackRad = 1e-9;
 
 // Lowers the ranges of all beams that cross the wall (a, b in laser axes).

@@ -30,13 +30,13 @@ struct LaserOptions {
   double field_of_view_deg = 58.0;
   double min_range_m = 0.4;
   double max_range_m = 6.0;
-  // Standard deviation of a range r: relative * r + quadratic * r^2. 1 % is a cheap scanner's;
-  // 0.003 per metre without the relative part is like a structured-light camera's.
+  // Standard deviation of a range r: relative * r + quadratic * r^2. 1 % is typical of a cheap
+  // scanner; 0.003 per metre without the relative part resembles a structured-light camera.
   double noise_relative = 0.01;
   double noise_quadratic_per_m = 0.0;
   // Correlation of the noise of neighbouring beams (first-order autoregressive).
   double noise_correlation = 0.0;
-  double outlier_share = 0.0;  // beams that return anything between the limits
+  double outlier_share = 0.0;  // share of beams with a uniformly random range
 
   void Visit(OptionsVisitor& v);
   double BearingStepRad() const;

@@ -11,11 +11,11 @@
 namespace depthgrid {
 namespace {
 
-// Shares of the error of forward, left (m) and yaw (rad) that fit the logs this is modelled on;
-// `bias` and `white` are the standard deviations a frame at scale 1.
+// Standard deviations of bias and white error per frame at scale 1, in kUnitM: forward, left (m),
+// yaw (rad), fitted to real logs.
 constexpr std::array<double, 3> kBias = {0.80, 0.40, 0.22};
 constexpr std::array<double, 3> kWhite = {0.65, 0.30, 0.32};
-// Scale 1 errs by about a millimetre a frame.
+// Scale 1 gives an error of about a millimetre per frame.
 constexpr double kUnitM = 1e-3;
 
 using Errors = std::vector<Eigen::Vector3d>;
@@ -58,7 +58,7 @@ double MeanError(const std::vector<Pose2>& truth, const std::vector<Pose2>& odom
   return sum_m / static_cast<double>(truth.size());
 }
 
-// The error grows with the scale while the yaw error is moderate; bisection on a logarithm.
+// The error grows with the scale while the yaw error is moderate, so this bisects in log scale.
 double CalibratedScale(const std::vector<Pose2>& truth, const Errors& errors, double target_m) {
   constexpr double kLeastScale = 1e-4;
   constexpr double kMostScale = 1e2;

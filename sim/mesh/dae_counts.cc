@@ -23,7 +23,7 @@ constexpr std::string_view kCommentEnd = "-->";
 constexpr std::string_view kDataBegin = "<![CDATA[";
 constexpr std::string_view kDataEnd = "]]>";
 
-// What holds lists of whole numbers.
+// Elements that contain lists of whole numbers.
 constexpr std::array<std::string_view, 8> kListOwners = {"lines",     "linestrips",    "polygons",
                                                          "polylist",  "triangles",     "trifans",
                                                          "tristrips", "vertex_weights"};
@@ -33,7 +33,7 @@ bool IsOneOf(std::string_view name, const auto& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// What stands between the quotes of an attribute; empty when the tag has none of that name.
+// The value of an attribute; empty when the tag does not have it.
 std::string_view AttributeOf(std::string_view tag, std::string_view name) {
   for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
     if (at == 0 || kSpaces.find(tag[at - 1]) == std::string_view::npos) continue;
@@ -70,7 +70,7 @@ class Reader {
     if (text_.find('\0') != std::string_view::npos) {
       throw InputError(path_, "has a zero byte, must be text in UTF-8");
     }
-    std::size_t after = 0;  // the tag before
+    std::size_t after = 0;  // end of the previous tag
     for (std::size_t at = text_.find('<'); at < text_.size(); at = text_.find('<', after)) {
       ReadText(after, at);
       if (text_.substr(at).starts_with(kCommentBegin)) {
@@ -94,7 +94,7 @@ class Reader {
     return std::min(text_.find(mark, from), text_.size());
   }
 
-  // Its '>', which is none within quotes.
+  // The position of the tag's '>', ignoring those within quotes.
   std::size_t EndOfTag(std::size_t from) const {
     char quote = '\0';
     for (std::size_t at = from; at < text_.size(); ++at) {
@@ -143,14 +143,14 @@ class Reader {
     if (name == list_) list_ = {};
     if (name != owner_) return;
     owner_ = {};
-    // No index takes less than a byte. Divided, for the product may be too large for a number.
+    // Each index takes at least one byte. Division avoids overflow of the product.
     if (corners_ <= text_.size() / offsets_) return;
     throw InputError(Place(), fmt::format("{} states {} corners of {} indices each, must be {} "
                                           "indices at most: the file has no more bytes",
                                           name, corners_, offsets_, text_.size()));
   }
 
-  // Assimp reads a list up to its end, and never gets past what is no number.
+  // Assimp loops forever on a word in a list that is not a number.
   void ReadText(std::size_t begin, std::size_t end) {
     if (list_.empty()) return;
     for (std::size_t at = text_.find_first_not_of(kSpaces, begin); at < end;) {
@@ -162,9 +162,9 @@ class Reader {
     }
   }
 
-  // Each is of an item, or a number of items, of the file.
+  // Values are indices or counts of items, so they cannot exceed the file's size in bytes.
   std::uint64_t ListValue(std::string_view word) const {
-    constexpr std::string_view kNoBone = "-1";  // in the lists of bones alone
+    constexpr std::string_view kNoBone = "-1";  // only in lists of bones
     if (list_ == "v" && word == kNoBone) return 0;
     const auto number = WholeNumber(word);
     if (number && *number <= text_.size()) return *number;
@@ -173,7 +173,7 @@ class Reader {
                                           list_, word.substr(0, 40), text_.size()));
   }
 
-  // A byte at least is what each item takes.
+  // Each item takes at least one byte.
   std::uint64_t Number(std::string_view tag, std::string_view element, std::string_view attribute,
                        std::uint64_t otherwise) const {
     const std::string_view value = AttributeOf(tag, attribute);
@@ -187,7 +187,7 @@ class Reader {
 
   void RequireWithin(const Accessor& accessor) const {
     const auto array = arrays_.find(accessor.array);
-    if (array == arrays_.end() || accessor.count == 0) return;  // assimp's to say
+    if (array == arrays_.end() || accessor.count == 0) return;  // left to assimp
     const std::uint64_t last = accessor.offset + (accessor.count - 1) * accessor.stride;
     if (last < array->second) return;
     throw InputError(accessor.place, fmt::format("accessor uses value {} of {}, which has {}", last,
@@ -198,14 +198,14 @@ class Reader {
 
   const std::string& path_;
   std::string_view text_;
-  std::size_t counted_ = 0;  // up to here `line_` counts
+  std::size_t counted_ = 0;  // position up to which lines are counted
   std::ptrdiff_t line_ = 1;
-  std::map<std::string_view, std::uint64_t> arrays_;  // how many values each has
+  std::map<std::string_view, std::uint64_t> arrays_;  // number of values of each
   std::vector<Accessor> accessors_;
-  std::string_view owner_;  // of the lists that are being read
+  std::string_view owner_;  // the element whose lists are being read
   std::string_view list_;
-  std::uint64_t corners_ = 0;  // that the owner states
-  std::uint64_t offsets_ = 1;  // indices a corner
+  std::uint64_t corners_ = 0;  // stated by the owner
+  std::uint64_t offsets_ = 1;  // indices per corner
 };
 
 }  // namespace

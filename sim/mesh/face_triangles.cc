@@ -15,7 +15,7 @@ namespace {
 
 using FaceTriangles = std::vector<std::array<std::uint32_t, 3>>;
 
-// Twice the face's area along its normal: Newell's sum, whatever corner it begins at.
+// The face's normal with twice its area as length (Newell); does not depend on the first corner.
 Eigen::Vector3d AreaNormal(std::span<const Eigen::Vector3d> corners) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 2; i < corners.size(); ++i) {
@@ -24,7 +24,7 @@ Eigen::Vector3d AreaNormal(std::span<const Eigen::Vector3d> corners) {
   return sum;
 }
 
-// The corners on the plane across `normal`, counter-clockwise as seen from its tip.
+// The corners projected along `normal`, counter-clockwise seen from its tip.
 Polygon SeenAlong(const Eigen::Vector3d& normal, std::span<const Eigen::Vector3d> corners) {
   const Eigen::Vector3d u = normal.unitOrthogonal();
   const Eigen::Vector3d v = normal.normalized().cross(u);
@@ -36,7 +36,7 @@ Polygon SeenAlong(const Eigen::Vector3d& normal, std::span<const Eigen::Vector3d
   return polygon;
 }
 
-// Corners of a file are rounded to single precision: what is nearer than this to a line is on it.
+// Tolerance for a point on a line: files round corners to single precision.
 double RoundingM(std::span<const Eigen::Vector3d> corners) {
   double largest_m = 0.0;
   for (const Eigen::Vector3d& corner : corners) {
@@ -45,15 +45,15 @@ double RoundingM(std::span<const Eigen::Vector3d> corners) {
   return 4.0 * std::numeric_limits<float>::epsilon() * largest_m;
 }
 
-// How far `p` lies to the left of the line from a to b.
+// Signed distance of `p` to the left of the line from a to b.
 double LeftOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
   const Eigen::Vector2d along = b - a, to_p = p - a;
   const double length = along.norm();
   return length > 0.0 ? (along.x() * to_p.y() - along.y() * to_p.x()) / length : 0.0;
 }
 
-// An outline of which ears are clipped until nothing is left. Unlike those that Triangulate() of
-// polygon.h takes it may be rounded, crooked or cross itself.
+// Ear clipping of an outline that, unlike the input of Triangulate() in polygon.h, may be rounded,
+// not quite flat or self-intersecting.
 class RoughOutline {
  public:
   RoughOutline(Polygon polygon, double rounding_m)
@@ -84,12 +84,13 @@ class RoughOutline {
   }
   std::size_t After(std::size_t corner) const { return (corner + 1) % left_.size(); }
   const Eigen::Vector2d& At(std::size_t corner) const { return polygon_[left_[corner]]; }
-  // Over the line between its neighbours, outward.
+  // Height of a corner over the line between its neighbours, positive outward.
   double HeightOf(std::size_t corner) const {
     return -LeftOf(At(Before(corner)), At(After(corner)), At(corner));
   }
 
-  // Where there is no ear a corner on a straight edge, which takes nothing away, or any.
+  // The next ear to clip; if there is none, a corner on a straight edge, which removes no area,
+  // else any corner.
   std::size_t NextEar() const {
     std::size_t straight = 0;
     for (std::size_t i = 0; i < left_.size(); ++i) {
@@ -100,7 +101,7 @@ class RoughOutline {
     return straight;
   }
 
-  // No other corner is in the triangle at this one, or on its edges.
+  // Whether no other corner lies in the triangle at this corner or on its edges.
   bool IsClear(std::size_t corner) const {
     const Eigen::Vector2d &a = At(Before(corner)), &b = At(corner), &c = At(After(corner));
     return std::none_of(left_.begin(), left_.end(), [&](std::uint32_t other) {

@@ -9,9 +9,9 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kLevelLimitDeg = 5.0;           // ramps are steeper, uneven ground is not
-constexpr double kSlabM = 0.05;                  // surfaces this near in height count as one
-constexpr double kFloorShareOfFootprint = 0.25;  // more than a rug, less than an L
+constexpr double kLevelLimitDeg = 5.0;           // steeper than uneven ground, less than a ramp
+constexpr double kSlabM = 0.05;                  // surfaces within this height count as one
+constexpr double kFloorShareOfFootprint = 0.25;  // more than a rug, less than an L-shaped floor
 constexpr double kFloorShareOfLargest = 0.25;    // below that it is a pit, not the floor
 constexpr double kCeilingShareOfFootprint = 0.25;
 constexpr double kStandingRoomM = 1.5;
@@ -41,7 +41,7 @@ std::vector<LevelPatch> LevelPatches(const TriangleMesh& mesh, Facing facing) {
   return patches;
 }
 
-// For each patch the area of all patches from its height to a slab above it, summed afresh.
+// For each patch, the total area of patches from its height up to kSlabM above it.
 std::vector<double> SlabAreas(const std::vector<LevelPatch>& patches) {
   std::vector<double> below(patches.size() + 1, 0.0);
   for (std::size_t i = 0; i < patches.size(); ++i) below[i + 1] = below[i] + patches[i].area_m2;
@@ -69,8 +69,8 @@ double FootprintM2(const TriangleMesh& mesh) {
   return size.x() * size.y();
 }
 
-// Floors lie in the lower half, so that roofs and wall tops are none; a mesh too low to stand in
-// has no roof.
+// Floors lie in the lower half of the mesh, which excludes roofs and wall tops; a mesh too low to
+// stand in has no roof.
 double HighestFloorM(const TriangleMesh& mesh) {
   const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
   const double height_m = bounds.sizes().z();
@@ -102,7 +102,7 @@ std::optional<double> FindFloor(const TriangleMesh& mesh) {
 
 bool HasFloorAt(const TriangleMesh& mesh, double z_m) {
   const auto found = FindFloor(mesh);
-  if (found && std::abs(*found - z_m) <= kFloorToleranceM) return true;  // also of one inside out
+  if (found && std::abs(*found - z_m) <= kFloorToleranceM) return true;  // also if inside out
   double area_m2 = 0.0;
   for (const LevelPatch& patch : LevelPatches(mesh, Facing::kUp)) {
     if (std::abs(patch.z_m - z_m) <= kFloorToleranceM) area_m2 += patch.area_m2;

@@ -9,7 +9,7 @@ namespace depthgrid {
 
 // The height of the lowest level surface that faces up, lies in the lower half of the mesh and is
 // large: at least a quarter of the mesh's footprint (the rectangle around it) and a quarter of the
-// largest such surface. Meshes whose floor faces the wrong way are read as if it faced up.
+// largest such surface. A mesh whose floor is wound the wrong way is treated as if it faced up.
 std::optional<double> FindFloor(const TriangleMesh& mesh);
 
 // Whether level surface facing up covers a quarter of the footprint at this height (within 2 cm).

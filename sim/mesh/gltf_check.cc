@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kRequired = "extensionsRequired";
 
-// Nothing but positions is read; what meshes look like and how they are lit may be anything. Of
-// Draco assimp itself knows whether it can read it.
+// Extensions (prefixes) that do not matter, as only positions are read, not materials or lights.
+// For Draco assimp itself reports whether it can read it.
 constexpr std::array<std::string_view, 7> kHarmless = {"KHR_materials_",
                                                        "KHR_texture_",
                                                        "EXT_texture_",
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 7> kHarmless = {"KHR_materials_",
                                                        "EXT_lights_",
                                                        "KHR_draco_mesh_compression"};
 
-// The text of the file; of a GLB, whose first chunk begins with its length, that of the chunk.
+// The JSON text: the whole file, or for a GLB its first chunk, which begins with its length.
 std::string_view GltfText(std::string_view file) {
   constexpr std::size_t kLengthAt = 12;
   constexpr std::size_t kChunkAt = 20;
@@ -39,10 +39,10 @@ std::string_view GltfText(std::string_view file) {
     bytes = bytes << 8U | static_cast<unsigned char>(file[kLengthAt + i]);
   }
   const std::string_view chunk = file.substr(kChunkAt, bytes);
-  return chunk.substr(0, chunk.find('\0'));  // what some pad it with
+  return chunk.substr(0, chunk.find('\0'));  // some files pad with zeros
 }
 
-// That key alone of all that the text holds.
+// Parses the text, keeping only the key extensionsRequired.
 Json RequiredOf(std::string_view text, const std::string& path) {
   const auto keep = [](int depth, Json::parse_event_t event, const Json& key) {
     return depth != 1 || event != Json::parse_event_t::key || key == kRequired;

@@ -1,5 +1,5 @@
-// What a glTF file cannot be read without, held against what assimp reads: it passes over the
-// extensions that it does not know, whatever they do to the geometry.
+// Checks the extensions that a glTF file requires: assimp ignores those it does not know, even if
+// they change the geometry.
 #pragma once
 
 #include <string>

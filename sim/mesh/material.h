@@ -1,4 +1,4 @@
-// What a surface looks like to the colour camera. Depth does not depend on it.
+// Surface appearance for the colour camera. Depth does not depend on it.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,13 +6,13 @@
 
 namespace depthgrid {
 
-// Patterns are functions of the point in world axes, a mover's in its own (solid textures), so
-// nothing needs texture coordinates. sim/colour/colour_shaders.cc draws them.
+// Solid textures: patterns are functions of the point in world axes (for a mover, in its own axes),
+// so no texture coordinates are needed. sim/colour/colour_shaders.cc draws them.
 enum class TextureKind {
   kPlain = 0,
   kWood = 1,       // grain along `grain`
   kChecker = 2,    // cubes of side scale_m
-  kStripes = 3,    // across `grain`, one pair of stripes a scale_m
+  kStripes = 3,    // across `grain`, one pair of stripes per scale_m
   kFabric = 4,     // woven threads
   kPlaster = 5,    // fine bumps in brightness
   kTiles = 6,      // squares of side scale_m with joints in the second colour
@@ -32,8 +32,8 @@ struct Material {
   TextureKind texture = TextureKind::kPlain;
   float scale_m = 0.1F;   // period of the pattern
   Axis grain = Axis::kX;  // world axis of wood, stripes and planks
-  float gloss = 0.0F;     // share of a highlight, 0..1
-  float glow = 0.0F;      // light given off, in units of the colour: lamps, screens, the sky
+  float gloss = 0.0F;     // strength of the specular highlight, 0..1
+  float glow = 0.0F;      // emitted light, in units of the colour: lamps, screens, the sky
 };
 
 // Display colour, 0..1, to linear light (IEC 61966-2-1).

@@ -44,8 +44,7 @@ void RequireReadableFile(const std::string& path) {
   }
 }
 
-// Assimp's messages may span lines, and quote all that is left of the file; errors here are one
-// line.
+// Assimp's messages may span lines and quote the rest of the file; error messages must be one line.
 std::string OneLine(std::string text) {
   constexpr std::size_t kMostLetters = 200;
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
@@ -55,13 +54,13 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-// Assimp passes on what the standard library calls it.
+// Assimp passes on the standard library's message for lack of memory.
 bool IsOfMemory(std::string_view message) {
   return message.find("bad_alloc") != std::string_view::npos ||
          message.find("bad_array_new_length") != std::string_view::npos;
 }
 
-// The rotation that brings the file's up axis to z; cyclic, so handedness stays.
+// The rotation that maps the file's up axis to z.
 Eigen::Matrix3d ZUpFrom(UpAxis up) {
   Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
   if (up == UpAxis::kY) m << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -104,7 +103,7 @@ class Assembler {
   TriangleMesh Take() { return std::move(mesh_); }
 
  private:
-  // Recursive: assimp built the tree recursively too.
+  // Recursion depth is no concern: assimp built the tree recursively too.
   void AddNode(const aiNode& node, const Eigen::Affine3d& world_from_parent) {
     const Eigen::Affine3d world_from_node = world_from_parent * FromAssimp(node.mTransformation);
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -126,7 +125,7 @@ class Assembler {
         throw InputError(path_, fmt::format("vertex {} is not finite", index));
       }
     }
-    // A reflecting node transform turns triangles inside out; swap them back.
+    // A mirroring node transform reverses the orientation of triangles; restore it.
     const bool mirrored = world_from_part.linear().determinant() < 0.0;
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
       const aiFace& face = part.mFaces[i];
@@ -162,7 +161,7 @@ MeshFile ReadPlyFile(const std::string& path, double scale, UpAxis up) {
   return {Transformed(ReadPly(path), WorldFromFile(scale, up)), {Material{}}};
 }
 
-// What assimp takes as it is, whatever is wrong with it.
+// Checks for faults that assimp does not detect.
 void RequireSoundFile(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   if (extension == ".dae") RequireSoundCounts(path);
@@ -170,7 +169,7 @@ void RequireSoundFile(const std::string& path) {
   if (IsGltf(path)) RequireKnownExtensions(path);
 }
 
-// As read: joining vertices drops those that are not even equal to themselves.
+// Called before vertices are joined, which drops NaN vertices.
 void RequireFiniteVertices(const aiScene& scene, const std::string& path) {
   std::size_t index = 0;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -186,8 +185,8 @@ void RequireFiniteVertices(const aiScene& scene, const std::string& path) {
 MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
   RequireSoundFile(path);
   Assimp::Importer importer;
-  importer.SetIOHandler(std::make_unique<MeshStreams>().release());  // the importer's own
-  // Only positions matter here; without the rest, vertices that differ in nothing else join.
+  importer.SetIOHandler(std::make_unique<MeshStreams>().release());  // the importer owns it
+  // Drops all but positions, so that vertices at the same position are joined.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                   aiComponent_COLORS | aiComponent_TEXCOORDS |
@@ -207,7 +206,7 @@ MeshFile ReadByAssimp(const std::string& path, double scale, UpAxis up) {
     }
     throw InputError(path, "is not a readable mesh: " + OneLine(importer.GetErrorString()));
   }
-  // Assimp turns a DAE to +y up by what it states; glTF has +y up.
+  // Assimp rotates a DAE to +y up according to its stated axis; glTF has +y up.
   if (up == UpAxis::kAuto) up = is_dae || IsGltf(path) ? UpAxis::kY : UpAxis::kZ;
   MeshFile file;
   file.mesh = Assembler(*scene, path, WorldFromFile(scale, up)).Take();

@@ -9,8 +9,8 @@
 
 namespace depthgrid {
 
-// The axis that points up in the file. kAuto is what the format says: DAE states it, glTF has +y,
-// for OBJ, PLY and STL it is taken to be z.
+// The axis that points up in the file. kAuto: as the format defines; DAE states it, glTF has +y,
+// OBJ, PLY and STL are taken to have +z.
 enum class UpAxis { kAuto, kX, kY, kZ };
 
 struct MeshFile {
@@ -18,17 +18,17 @@ struct MeshFile {
   std::vector<Material> materials;
 };
 
-// The endings of mesh files: ".obj .ply ...".
+// The extensions of mesh files: ".obj .ply ...".
 std::string MeshExtensions();
 
-// Whether the path ends like a mesh file.
+// Whether the path has the extension of a mesh file.
 bool IsMeshFile(const std::string& path);
 
 // ".ply" of "Room.PLY".
 std::string LowerCaseExtension(const std::string& path);
 
-// Reads all triangles, node transforms applied, lines and points left out. Throws InputError for a
-// file that is missing, broken, too large or holds no triangle or a vertex that is not finite.
+// Reads all triangles with node transforms applied; ignores lines and points. Throws InputError for
+// a file that is missing, broken, too large, without triangles or with a vertex that is not finite.
 MeshFile ReadMeshFile(const std::string& path, double scale = 1.0, UpAxis up = UpAxis::kAuto);
 
 }  // namespace depthgrid

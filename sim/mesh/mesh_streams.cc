@@ -16,7 +16,7 @@
 namespace depthgrid {
 namespace {
 
-// Formats that are text alone: in others these bytes may be anything.
+// Only for text formats: elsewhere these bytes may be data.
 bool BeginsWithMark(const std::string& path) {
   const std::string extension = LowerCaseExtension(path);
   if (extension != ".obj" && extension != ".mtl" && extension != ".gltf") return false;
@@ -55,7 +55,7 @@ Assimp::IOStream* MeshStreams::Open(const char* path, const char* mode) {
   if (!BeginsWithMark(name)) return DefaultIOSystem::Open(name.c_str(), mode);
   const std::string whole_text = ReadFile(name, kMaxMeshFileBytes);
   const std::string_view text = WithoutByteOrderMark(whole_text);
-  auto* const bytes = new std::uint8_t[text.size()];  // the stream's own from here on
+  auto* const bytes = new std::uint8_t[text.size()];  // owned by the stream
   std::copy(text.begin(), text.end(), bytes);
   return new Assimp::MemoryIOStream(bytes, text.size(), true);
 }

@@ -1,6 +1,5 @@
-// How assimp opens the files of a mesh where it does not do so itself: names that a glTF writes as
-// percent-encoded URIs, and text that begins with a byte order mark. Of assimp's types, so only .cc
-// files include it.
+// File access for assimp, adding what it does not handle: percent-encoded URIs in glTF files and
+// text with a byte order mark. Uses assimp's types, so only .cc files include it.
 #pragma once
 
 #include <assimp/DefaultIOSystem.h>
@@ -9,7 +8,7 @@
 
 namespace depthgrid {
 
-// "my data.bin" of "my%20data.bin"; what is no such code stays.
+// "my data.bin" from "my%20data.bin"; invalid escapes are kept.
 std::string PercentDecoded(const std::string& uri);
 
 class MeshStreams : public Assimp::DefaultIOSystem {

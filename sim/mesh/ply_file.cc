@@ -21,7 +21,7 @@
 namespace depthgrid {
 namespace {
 
-// The file's text from front to back.
+// Reads the file's text from front to back.
 class PlyParser {
  public:
   PlyParser(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {}
@@ -47,7 +47,7 @@ class PlyParser {
  private:
   [[noreturn]] void Fail(const std::string& message) const { throw InputError(path_, message); }
 
-  // So that a wrong number in the header cannot ask for more memory than the file has data.
+  // Prevents a wrong count in the header from allocating more memory than the file has data.
   void RequireRoomFor(const PlyElement& element) const {
     std::size_t least_bytes = 0;
     for (const PlyProperty& p : element.properties) {
@@ -73,7 +73,7 @@ class PlyParser {
     const char* end = text_.data() + text_.size();
     double number = 0.0;
     const auto [stop, error] = std::from_chars(begin, end, number);
-    // Too large or too small for a double: from_chars leaves the number alone, strtod says which.
+    // Overflow or underflow: from_chars does not set the number; strtod gives infinity or 0.
     if (error == std::errc::result_out_of_range) number = std::strtod(begin, nullptr);
     if (error == std::errc::invalid_argument || (stop != end && !IsPlySpace(*stop))) {
       std::size_t word_end = at_;
@@ -185,7 +185,7 @@ class PlyParser {
     return static_cast<std::uint32_t>(number);
   }
 
-  // At the end: faces may come before vertices.
+  // Called at the end, as faces may come before vertices.
   void CutFaces() {
     for (std::size_t at = 0; at < faces_.size();) {
       const std::size_t corners = faces_[at];
@@ -217,7 +217,7 @@ class PlyParser {
   std::string text_;
   std::size_t at_ = 0;
   PlyEncoding encoding_ = PlyEncoding::kAscii;
-  std::vector<std::uint32_t> faces_;  // of each the number of its corners, and they
+  std::vector<std::uint32_t> faces_;  // of each face the number of its corners, then their indices
   std::size_t triangles_ = 0;         // of all faces
   TriangleMesh mesh_;
 };

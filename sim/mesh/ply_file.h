@@ -1,5 +1,5 @@
-// PLY meshes, ASCII and binary. Read here and not through assimp, whose reader (5.2) does not come
-// back from a file that was cut off.
+// PLY meshes, ASCII and binary. Not read through assimp, whose reader (5.2) hangs on truncated
+// files.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace depthgrid {
 
-// The vertices' x, y, z and the faces' polygons, cut into triangles; all else is passed over.
-// Throws InputError for anything that is not a whole PLY file.
+// Reads the vertices' x, y, z and the faces, triangulated; ignores all else. Throws InputError
+// unless the file is a complete PLY file.
 TriangleMesh ReadPly(const std::string& path);
 
 }  // namespace depthgrid

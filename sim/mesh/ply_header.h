@@ -1,4 +1,4 @@
-// What a PLY file says about itself before its numbers.
+// The header of a PLY file.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct PlyType {
 
 struct PlyProperty {
   std::string name;
-  std::optional<PlyType> count;  // of a list's length; empty for a single number
+  std::optional<PlyType> count;  // type of a list's length; empty for a single number
   PlyType value;
 };
 
@@ -32,7 +32,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::size_t bytes = 0;  // where the numbers begin
+  std::size_t bytes = 0;  // length of the header: the data begins here
 };
 
 bool IsPlySpace(char c);

@@ -13,7 +13,7 @@ double Turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-// p is known to lie on the line through a and b.
+// Whether p lies between a and b, given that it is on their line.
 bool WithinBox(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
   return p.x() >= std::min(a.x(), b.x()) && p.x() <= std::max(a.x(), b.x()) &&
          p.y() >= std::min(a.y(), b.y()) && p.y() <= std::max(a.y(), b.y());
@@ -69,7 +69,7 @@ bool IsSimple(const Polygon& polygon) {
     const Vector2d& a = polygon[i];
     const Vector2d& b = polygon[(i + 1) % n];
     const Vector2d& c = polygon[(i + 2) % n];
-    // Neighbours may only share their corner: no fold back along the edge.
+    // Neighbouring edges may share only their corner: the second must not fold back onto the first.
     if (a == b || (Turn(a, b, c) == 0 && (b - a).dot(c - b) <= 0)) return false;
     for (std::size_t j = i + 2; j < n; ++j) {
       if ((j + 1) % n == i) continue;
@@ -86,8 +86,8 @@ std::vector<std::array<std::uint32_t, 3>> Triangulate(const Polygon& polygon) {
   while (left.size() > 3) {
     std::size_t ear = 0;
     while (ear < left.size() && !IsEar(polygon, left, ear)) ++ear;
-    // A corner on a straight edge is no ear of its own but vanishes with its neighbour; when only
-    // such corners are left, any of them closes the outline.
+    // A corner on a straight edge is not an ear itself; when only such corners are left, any of
+    // them can be clipped.
     if (ear == left.size()) ear = 0;
     const std::size_t n = left.size();
     triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});

@@ -14,7 +14,8 @@
 namespace depthgrid {
 namespace {
 
-// A binary file: 80 bytes of anything, the number of triangles in 4, and 50 for each.
+// Binary layout: 80 arbitrary bytes, the number of triangles in 4 bytes, then 50 bytes per
+// triangle.
 constexpr std::size_t kStlCountAt = 80;
 constexpr std::size_t kStlHeaderBytes = 84;
 constexpr std::size_t kStlTriangleBytes = 50;
@@ -34,7 +35,6 @@ void RequireStatedSize(std::string_view file, const std::string& path) {
                                      file.size(), bytes, Counted(triangles, "triangle")));
 }
 
-// The line's first word.
 std::string_view FirstWordOf(std::string_view line) {
   constexpr std::string_view kBlanks = " \t\r\f\v";
   const std::size_t begin = line.find_first_not_of(kBlanks);

@@ -1,13 +1,13 @@
-// Whether an STL file is whole: assimp takes the facets that are left of one that was cut off, and
-// some of the binary ones for text.
+// Checks that an STL file is complete: assimp accepts the remaining facets of a truncated one and
+// takes some binary files for text.
 #pragma once
 
 #include <string>
 
 namespace depthgrid {
 
-// Throws InputError for text without its last `endsolid`, and for a binary file of another size
-// than its number of triangles gives.
+// Throws InputError for a text file without its last `endsolid` and for a binary file whose size
+// does not match its number of triangles.
 void RequireWholeStl(const std::string& stl_path);
 
 }  // namespace depthgrid

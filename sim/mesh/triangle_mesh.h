@@ -1,5 +1,5 @@
-// Triangles in world axes (z up, metres): the only geometry the depth camera, the colour camera and
-// the truth grids know. Every primitive and every mesh file becomes this.
+// Triangles in world axes (z up, metres): the only geometry that the cameras and the truth grids
+// use. Shapes and mesh files are converted to it.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,13 +20,13 @@ struct TriangleMesh {
     vertices.push_back(point.cast<float>());
     return static_cast<std::uint32_t>(vertices.size() - 1);
   }
-  // Nothing for a triangle that uses a vertex twice.
+  // Ignores a triangle that uses a vertex twice.
   void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
-  // The quadrilateral a b c d, counter-clockwise from outside, cut along a-c.
+  // The quadrilateral a b c d, counter-clockwise from outside, split along a-c.
   void AddQuad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 };
 
-// Adds `part` behind `whole`, its vertices shifted to their new indices.
+// Appends `part` to `whole`, with its indices shifted.
 void Append(TriangleMesh& whole, const TriangleMesh& part);
 
 // The mesh moved by a rotation, shift and positive scale.
@@ -35,7 +35,7 @@ TriangleMesh Transformed(const TriangleMesh& mesh, const Eigen::Affine3d& to_fro
 // Twice the triangle's area times its unit normal.
 Eigen::Vector3d ScaledNormal(const TriangleMesh& mesh, std::size_t triangle);
 
-// The box around all vertices; empty when there are none.
+// The bounding box of all vertices; empty when there are none.
 Eigen::AlignedBox3f BoundsOf(const TriangleMesh& mesh);
 
 }  // namespace depthgrid

@@ -11,14 +11,15 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kTableStepS = 0.02;     // of the timing table, in units of u (nominal seconds)
-constexpr int kSmoothingSteps = 20;      // half-width of the timing's smoothing: 0.4 s
-constexpr double kTableMargin = 1.01;    // of the bounds, for peaks between the table's samples
-constexpr double kFastestTiming = 0.25;  // no stretch is run through faster than 4 times nominal
-constexpr double kSteepestPitchRad = RadFromDeg(80.0);  // above, yaw has no meaning
-constexpr double kLongestS = 1e6 / kFrameRateHz;        // as many frames as an experiment can have
+constexpr double kTableStepS = 0.02;     // step of the timing table in u (nominal seconds)
+constexpr int kSmoothingSteps = 20;      // half-width of the smoothing window: 0.4 s
+constexpr double kTableMargin = 1.01;    // safety factor for peaks between the table's samples
+constexpr double kFastestTiming = 0.25;  // least seconds per nominal second
+constexpr double kSteepestPitchRad = RadFromDeg(80.0);  // beyond, yaw is ill-defined
+constexpr double kLongestS = 1e6 / kFrameRateHz;        // the most frames of an experiment
 constexpr double kTurnOnTheSpotRad = RadFromDeg(30.0);  // of a planar path within one table step
-// Influence of a natural spline's ends falls by 2 + sqrt(3) a knot: 6 knots leave less than 1e-3.
+// The influence of a natural spline's ends falls by a factor of 2 + sqrt(3) per knot: below 1e-3
+// after 6 knots.
 constexpr int kClosedPadding = 6;
 
 std::string Shown(const Eigen::Vector3d& p) {
@@ -45,20 +46,19 @@ PathPose PoseOf(const Waypoint& waypoint, const TrajectoryOptions& options) {
   return pose;
 }
 
-// Seconds from one station to the next at the bounds, were the way straight.
+// Time from one station to the next on a straight line at the bounds of speed and turn rate.
 double NominalTimeS(const PathPose& a, const PathPose& b, const TrajectoryOptions& options) {
   const double turn_rad = std::hypot(b.yaw_rad - a.yaw_rad, b.pitch_rad - a.pitch_rad);
   return std::max((b.position_m - a.position_m).norm() / options.speed_mps,
                   DegFromRad(turn_rad) / options.turn_rate_dps);
 }
 
-// The waypoints in the order they are passed, each at its nominal second; yaw always goes the short
-// way from one to the next.
+// The waypoints in order of passing with their nominal times; yaw turns the short way between them.
 class Stations {
  public:
   explicit Stations(const TrajectoryOptions& options) : options_(options) {}
 
-  // Of a closed path any whole number is a waypoint's, negative ones too.
+  // On a closed path `waypoint` may be any integer; it is wrapped.
   void Append(int waypoint) {
     const int count = static_cast<int>(options_.waypoints.size());
     const int wrapped = ((waypoint % count) + count) % count;
@@ -85,7 +85,7 @@ class Stations {
   }
   double u() const { return u_.back(); }
   const std::vector<double>& knots() const { return u_; }
-  // A column each: x y z, of a hand-held path yaw and pitch as well.
+  // One column per station: x y z, and for a hand-held path yaw and pitch.
   Eigen::MatrixXd Values() const {
     const bool planar = options_.kind == TrajectoryKind::kPlanar;
     Eigen::MatrixXd values(planar ? 3 : 5, static_cast<Eigen::Index>(poses_.size()));
@@ -103,8 +103,9 @@ class Stations {
   std::vector<double> u_;
 };
 
-// Above the table everywhere and smooth: the maximum within a window, then a Hann mean of the same
-// width, which never falls below the table as each maximum it averages covers the middle.
+// A smooth upper bound of the table: the maximum over a window, then a Hann-weighted mean of the
+// same width. The mean is never below the table, as the window of each maximum in it includes the
+// centre.
 std::vector<double> SmoothUpperBound(const std::vector<double>& table) {
   const int count = static_cast<int>(table.size());
   const auto clamped = [&](int i) { return static_cast<std::size_t>(std::clamp(i, 0, count - 1)); };
@@ -147,7 +148,7 @@ void CameraPath::BuildCurve(const TrajectoryOptions& options) {
   if (options.closed) {
     stations.Append(next++);
     last_u_ = first_u_ + options.laps * (stations.u() - first_u_);
-    // Waypoints lie unevenly: so many laps may take more stations than their share.
+    // Waypoints are unevenly spaced, so fractional laps may need more than their share of stations.
     constexpr double kRoundingU = 1e-9;
     while (next <= std::ceil(count * options.laps) || stations.u() < last_u_ - kRoundingU) {
       stations.Append(next++);
@@ -166,7 +167,7 @@ PathPose CameraPath::PoseAt(double u) const {
 
 double CameraPath::SecondsPerUnit(double u, const TrajectoryOptions& options) const {
   const Eigen::VectorXd slope = curve_->Slope(u);
-  double turn_rad = 0.0;  // a unit of u
+  double turn_rad = 0.0;  // per unit of u
   if (planar_) {
     const Eigen::VectorXd bend = curve_->Bend(u);
     const double speed_square = slope.head<2>().squaredNorm();
@@ -176,7 +177,7 @@ double CameraPath::SecondsPerUnit(double u, const TrajectoryOptions& options) co
                                           ": move its waypoints apart");
     }
   } else {
-    turn_rad = slope.tail<2>().norm();  // yaw and pitch axes are perpendicular
+    turn_rad = slope.tail<2>().norm();  // the axes of yaw and pitch are perpendicular
   }
   return std::max({kTableMargin * slope.head<3>().norm() / options.speed_mps,
                    kTableMargin * DegFromRad(turn_rad) / options.turn_rate_dps, kFastestTiming});

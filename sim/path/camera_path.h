@@ -9,28 +9,29 @@
 
 namespace depthgrid {
 
-// A camera pose without shake: roll is 0.
+// A camera pose without hand shake; roll is 0.
 struct PathPose {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  double yaw_rad = 0.0;    // not wrapped: continuous along the path
+  double yaw_rad = 0.0;    // unwrapped: continuous along the path
   double pitch_rad = 0.0;  // up is positive
 };
 
 class CameraPath {
  public:
-  // Throws InputError for waypoints no path goes through (too few, equal neighbours, straight up).
+  // Throws InputError for waypoints without a valid path (too few, equal neighbours, looking
+  // straight up or down).
   explicit CameraPath(const TrajectoryOptions& options);
 
-  // The shortest time that keeps within the bounds.
+  // The shortest duration that keeps speed and turn rate within their bounds.
   double DurationS() const { return duration_s_; }
-  // The pose at a share, 0 to 1, of the path's time.
+  // The pose at a fraction, 0 to 1, of the path's duration.
   PathPose At(double share) const;
 
  private:
   PathPose PoseAt(double u) const;
   void BuildCurve(const TrajectoryOptions& options);
   void BuildTiming(const TrajectoryOptions& options);
-  // Seconds the bounds demand for each unit of the curve's parameter.
+  // The least time per unit of the curve parameter u that the bounds allow.
   double SecondsPerUnit(double u, const TrajectoryOptions& options) const;
 
   bool planar_ = false;
@@ -42,7 +43,7 @@ class CameraPath {
   std::optional<CubicSpline> parameter_;  // u over time
 };
 
-// The optical axis at yaw and pitch, roll 0.
+// The camera pose whose optical axis has this yaw and pitch, with roll 0.
 Pose3 CameraPoseOf(const PathPose& pose);
 
 }  // namespace depthgrid

@@ -7,10 +7,10 @@
 namespace depthgrid {
 
 // Passes through column k of `values` at knot k; the second derivative is 0 at both ends. Outside
-// the knots the first and last polynomials go on.
+// the knots the first and last polynomials are extrapolated.
 class CubicSpline {
  public:
-  // Needs at least two strictly increasing knots and one column a knot.
+  // Needs at least two strictly increasing knots and one column per knot.
   CubicSpline(std::vector<double> knots, Eigen::MatrixXd values);
 
   Eigen::VectorXd Value(double u) const;
@@ -18,7 +18,8 @@ class CubicSpline {
   Eigen::VectorXd Bend(double u) const;   // second derivative
 
  private:
-  // Between knots k and k + 1, `step` apart: the shares that each of the two has of u.
+  // The segment between knots k and k + 1, `step` apart, and the linear weights of the two knots at
+  // u.
   struct Segment {
     Eigen::Index k = 0;
     double step = 1.0;

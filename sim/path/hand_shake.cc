@@ -7,8 +7,8 @@
 namespace depthgrid {
 namespace {
 
-// Sway and low tremor, up to what a 30 Hz camera samples without aliasing. Physiological tremor at
-// 8-12 Hz is an order of magnitude smaller and left out.
+// Sway and slow tremor, which a 30 Hz camera samples without aliasing. Physiological tremor (8-12
+// Hz) is an order of magnitude smaller and left out.
 constexpr double kLowestHz = 0.3;
 constexpr double kHighestHz = 4.0;
 constexpr int kWaves = 16;

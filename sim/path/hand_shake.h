@@ -1,5 +1,5 @@
-// Tremor of a hand that holds a camera: band-limited, smooth, the same for a seed whatever is
-// sampled when.
+// Tremor of a hand that holds a camera: smooth, band-limited, and a function of seed and time
+// alone.
 #pragma once
 
 #include <array>

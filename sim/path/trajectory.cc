@@ -25,7 +25,7 @@ void RequireSize(const std::vector<double>& values, std::size_t size, const char
 
 double RoundedStamp(int frame, double rate_hz) { return std::round(frame / rate_hz * 1e6) / 1e6; }
 
-// Rounding hides a frame's worth of arithmetic noise when the duration is a whole number of frames.
+// The tolerance avoids an extra frame from rounding when the duration is a whole number of frames.
 int FramesFor(double duration_s, double rate_hz) {
   return static_cast<int>(std::ceil(duration_s * rate_hz - 1e-6)) + 1;
 }
@@ -59,7 +59,7 @@ void TrajectoryOptions::Visit(OptionsVisitor& v) {
 
 namespace {
 
-// A hand-held path has its heights and pitches from its waypoints.
+// Hand-held paths take heights and pitches from their waypoints.
 void RequirePlanarKeysOnPlanarPaths(const Config& spec, TrajectoryKind kind) {
   if (kind == TrajectoryKind::kPlanar) return;
   for (const char* key : {"height_m", "pitch_deg"}) {

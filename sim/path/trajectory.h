@@ -1,6 +1,6 @@
 // Camera paths: hand-held motion through waypoints and planar robot motion, with bounded speed and
-// turn rate. A path is a C2 curve; it is timed so that no bound is exceeded anywhere, and `frames`
-// poses sample that time from end to end. More frames than the bounds need make the motion slower.
+// turn rate. A path is a C2 curve, timed so that no bound is exceeded; `frames` poses sample it
+// uniformly in time from end to end. More frames than the bounds need make the motion slower.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,16 +29,16 @@ struct Waypoint {
 struct TrajectoryOptions {
   TrajectoryKind kind = TrajectoryKind::kHandheld;
   double speed_mps = 0.5;       // a person looking around; ICL-NUIM's paths stay below
-  double turn_rate_dps = 40.0;  // deg/s, where rolling shutter and blur begin to trouble SLAM
-  double shake_deg = 0.0;       // rms about each camera axis, on top of the bounds
-  double shake_m = 0.0;         // rms along each camera axis, on top of the bounds
+  double turn_rate_dps = 40.0;  // deg/s; above, rolling shutter and blur trouble SLAM
+  double shake_deg = 0.0;       // rms about each camera axis, not subject to the bounds
+  double shake_m = 0.0;         // rms along each camera axis, not subject to the bounds
   double height_m = 0.6;        // planar: of the camera above z = 0
   double pitch_deg = 0.0;       // planar: of the optical axis, up is positive
   double clearance_m = 0.2;     // least distance from geometry
   bool closed = false;          // the path returns to its first waypoint
-  double laps = 1.0;            // closed: how often it goes round, so that a loop can overlap
+  double laps = 1.0;            // closed: number of rounds, may be fractional for an overlap
   std::vector<Waypoint> waypoints;
-  std::string place;  // where this was written, for errors
+  std::string place;  // file and line, for errors
 
   void Visit(OptionsVisitor& v);
 };
@@ -46,17 +46,17 @@ struct TrajectoryOptions {
 // Reads and checks one entry of a scene file's `trajectories`. Throws InputError.
 TrajectoryOptions ReadTrajectoryOptions(Config spec);
 
-// The least number of frames that keeps within the bounds.
+// The least number of frames that keeps speed and turn rate within their bounds.
 int MinimumFrames(const TrajectoryOptions& options, double rate_hz = kFrameRateHz);
 
-// Stamps are i / rate_hz rounded to 6 decimals, as files carry them. The seed only shakes. Throws
-// InputError for fewer frames than the bounds need.
+// Stamps are i / rate_hz rounded to 6 decimals, as files carry them. The seed affects only the
+// shake. Throws InputError for fewer frames than the bounds need.
 Trajectory MakeTrajectory(const TrajectoryOptions& options, int frames, double rate_hz,
                           std::uint64_t seed);
 
 double LengthM(const Trajectory& trajectory);
 
-// The way along it, without the hand's shake.
+// The length of the path without hand shake.
 double PathLengthM(const TrajectoryOptions& options);
 
 // Throws InputError naming `place`, the first frame nearer to geometry than clearance_m, its
@@ -71,8 +71,7 @@ std::optional<std::string> NearText(const Trajectory& trajectory,
                                     const std::function<double(std::size_t frame)>& distance_m,
                                     double clearance_m, const std::string& what);
 
-// Where a camera may be: within the bounds, and above them where nothing is overhead, as it may
-// look over walls.
+// Where a camera may be: within the bounds, and in open scenes also above them, to look over walls.
 struct CameraSpace {
   Eigen::AlignedBox3d bounds;
   bool open_above = false;
@@ -89,13 +88,14 @@ struct PathScene {
   Occlusion occluded;
 };
 
-// Of a path that was not made for this scene: its first frame nearer to geometry than clearance_m,
-// behind a surface as the one before sees it, or beside the scene, with its position.
+// Checks a path that was not made for this scene. Describes the first frame, with its position,
+// that is nearer to geometry than clearance_m, hidden by a surface from the frame before, or
+// outside the scene.
 std::optional<std::string> DoubtOfPath(const Trajectory& trajectory, const PathScene& scene,
                                        double clearance_m);
 
-// Throws InputError naming the first frame that a surface hides from the one before: the path goes
-// through it, be it that no frame is near.
+// Throws InputError naming the first frame that a surface hides from the frame before: the path
+// passes through the surface, even if no frame is near it.
 void CheckWay(const Trajectory& trajectory, const Occlusion& occluded, const std::string& place);
 
 // Throws InputError naming the first frame outside the scene.

@@ -13,9 +13,9 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kLatestS = 1e5;  // a day and more
+constexpr double kLatestS = 1e5;  // more than a day
 
-// What one that keeps ahead of the camera has.
+// Keys of a mover that keeps ahead of the camera.
 struct AheadOptions {
   MoverOptions& options;
 

@@ -1,5 +1,4 @@
-// What moves in a scene: a shape of its own and how it goes over the floor. docs/scenes.md,
-// "Movers".
+// A moving object of a scene: its shape and its motion over the floor (docs/scenes.md, "Movers").
 #pragma once
 
 #include <array>
@@ -11,28 +10,28 @@
 
 namespace depthgrid {
 
-// What an experiment's `movers` may be beside names, which are joined by a plus sign.
+// Values of an experiment's `movers` other than names joined by plus signs.
 constexpr const char* kAllMovers = "all";
 constexpr const char* kNoMovers = "none";
 
 struct MoverWaypoint {
   std::array<double, 2> at = {0, 0};  // world, metres
-  double wait_s = 0.0;                // it stops here, turns and waits so long
+  double wait_s = 0.0;                // it stops here, turns and waits this long
 
   void Visit(OptionsVisitor& v);
 };
 
 struct MoverOptions {
-  double ahead_m = 0.0;          // above 0 it keeps so far ahead of the camera and has no waypoints
-  double speed_mps = 1.2;        // people indoors
-  double turn_rate_dps = 120.0;  // deg/s, in bends and on the spot
-  bool closed = false;           // it goes round, back to its first waypoint
-  bool there_and_back = false;   // it turns at its last waypoint and goes back
-  double laps = 0.0;             // how often it goes round, or there and back; 0 is without end
-  double from_s = 0.0;           // when it sets out, or comes; the first frame is at 0
-  bool stays = true;  // it stands there before it sets out and after it arrived, else is not there
+  double ahead_m = 0.0;          // above 0: keeps this far ahead of the camera, no waypoints
+  double speed_mps = 1.2;        // walking speed of people indoors
+  double turn_rate_dps = 120.0;  // deg/s, while walking and on the spot
+  bool closed = false;           // returns to its first waypoint
+  bool there_and_back = false;   // turns round at its last waypoint and walks back
+  double laps = 0.0;             // number of rounds, or of trips there and back; 0: endless
+  double from_s = 0.0;           // when it starts or appears; 0 is the first frame
+  bool stays = true;             // present before it starts and after it arrives
   std::vector<MoverWaypoint> waypoints;
-  std::string place;  // where this was written, for errors
+  std::string place;  // file and line, for errors
 
   void Visit(OptionsVisitor& v);
 };
@@ -43,13 +42,13 @@ struct Mover {
   MoverOptions options;
 };
 
-// Reads and checks one entry of a scene file's `movers`, whose shapes are taken already. Throws
-// InputError, also for a path that nobody can walk.
+// Reads and checks one entry of a scene file's `movers`, without its shapes (already read). Throws
+// InputError, also for an impossible path.
 MoverOptions ReadMoverOptions(Config spec);
 
 // Removes the movers that an experiment does not name with its `movers`: `all`, `none`, or names
-// joined by a plus sign. Throws SettingError for a name that none has or that comes twice, and for
-// `all` where there is none.
+// joined by a plus sign. Throws SettingError for an unknown or repeated name, and for `all` in a
+// scene without movers.
 void KeepMovers(const std::string& chosen, std::vector<Mover>& movers);
 
 }  // namespace depthgrid

@@ -13,7 +13,7 @@ Pose2 Planar(const PathPose& pose) {
 
 bool Waits(const MoverWaypoint& waypoint) { return waypoint.wait_s > 0.0; }
 
-// A round's waypoints in the order they are passed.
+// The waypoints of one round in order of passing.
 std::vector<std::size_t> StationsOf(const MoverOptions& options) {
   std::vector<std::size_t> stations;
   for (std::size_t i = 0; i < options.waypoints.size(); ++i) stations.push_back(i);

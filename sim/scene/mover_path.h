@@ -1,4 +1,4 @@
-// Where a mover is at a time: along smooth curves from stop to stop, each timed like a camera path.
+// A mover's pose over time: smooth curves from stop to stop, each timed like a camera path.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,25 @@ namespace depthgrid {
 
 class MoverPath {
  public:
-  // Throws InputError for waypoints no path goes through.
+  // Throws InputError for waypoints without a valid path.
   explicit MoverPath(const MoverOptions& options);
 
-  // world_from_mover, `time_s` after the first frame; nothing while it is not there. Its x axis is
-  // where it goes. `world_from_base` is the camera's.
+  // world_from_mover at `time_s` after the first frame, x axis in the direction of motion; nothing
+  // while it is absent. `world_from_base` is the camera's pose.
   std::optional<Pose2> At(double time_s, const Pose2& world_from_base) const;
 
-  // Once along its waypoints, or round, or there and back; 0 for one ahead of the camera.
+  // Duration of one pass along the waypoints (one round, or there and back); 0 for one that keeps
+  // ahead of the camera.
   double RoundS() const { return round_s_; }
 
  private:
-  // From one stop to the next, where it turns towards the next walk's beginning and waits.
+  // The walk to the next stop, where it turns towards the next walk's start and waits.
   struct Walk {
     CameraPath path;
     Pose2 end;
     double turn_rad = 0.0;
     double turn_s = 0.0;
-    double stand_s = 0.0;  // the turn, at its end, included
+    double stand_s = 0.0;  // time at the stop; ends with the turn
   };
   void AddWalk(const std::vector<std::size_t>& stations);
   void AddStands(const std::vector<double>& waits_s);

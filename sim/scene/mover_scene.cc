@@ -11,8 +11,8 @@
 namespace depthgrid {
 namespace {
 
-// Whether a closed surface that faces outward goes around the point: how often it does is the sum
-// of the solid angles of its triangles (Van Oosterom and Strackee 1983) over that of a sphere.
+// Whether the point is inside a closed, outward-oriented surface, by the winding number: the sum of
+// the solid angles of the triangles (Van Oosterom and Strackee 1983) over that of a sphere.
 bool IsInside(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
   double half_angles_rad = 0.0;
   for (const auto& corners : mesh.triangles) {
@@ -24,7 +24,7 @@ bool IsInside(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
     half_angles_rad +=
         std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return half_angles_rad > kPi;  // half of once around
+  return half_angles_rad > kPi;  // a winding number of 1/2: the sum of half angles is 2 pi inside
 }
 
 void KeepNearer(const DepthFrame& of_mover, DepthFrame& frame) {
@@ -86,7 +86,7 @@ std::optional<MoverPlace> PlaceOf(std::size_t mover, const std::vector<MoverPlac
   return {};
 }
 
-// The first frame before which the mover passes through the camera, if there is one.
+// Describes the first frame before which the mover passes through the camera, if any.
 std::optional<std::string> PassingText(const Trajectory& trajectory, std::size_t mover,
                                        const MoverScene& movers, const std::string& what) {
   std::optional<MoverPlace> before;
@@ -109,7 +109,8 @@ std::optional<std::string> PassingText(const Trajectory& trajectory, std::size_t
 
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m) {
-  // A limit passes through single precision, so it is no answer to compare with the clearance.
+  // Larger than the clearance: the limit is rounded to single precision and may be returned as the
+  // distance.
   const double limit_m = clearance_m + 0.1;
   for (std::size_t i = 0; i < movers.size(); ++i) {
     const auto distance_m = [&](std::size_t frame) {
@@ -126,7 +127,7 @@ std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Sce
 
 namespace {
 
-// What one frame shows of a mover.
+// Visibility of a mover in one frame.
 struct MoverView {
   const RayScene& room;
   const RayScene& mover;
@@ -147,7 +148,7 @@ struct MoverView {
   bool ShowsAt(double u_px, double v_px) const {
     const Eigen::Vector3d to = Unproject(camera, u_px, v_px, 1.0);
     const Pose3 mover_from_camera = Inverse(world_from_mover) * world_from_camera;
-    // Along rays as long as z is: depths.
+    // Directions have z = 1 in camera axes, so hit distances are depths.
     const auto depth_m = [&](const RayScene& rays, const Pose3& from_camera) {
       Ray ray;
       ray.origin = from_camera.translation.cast<float>();
@@ -159,7 +160,7 @@ struct MoverView {
     return std::isfinite(mover_m) && mover_m <= most_m &&
            mover_m < depth_m(room, world_from_camera);
   }
-  // Any of its corners, or where the image shows nothing else.
+  // Whether any vertex of the mover is visible, or any pixel shows it.
   bool Shows(const TriangleMesh& mesh) const {
     for (const Eigen::Vector3f& vertex : mesh.vertices) {
       if (ShowsPoint(vertex.cast<double>())) return true;

@@ -1,5 +1,5 @@
-// The movers of a scene made ready: where each is at a time, how near it comes to a point, and what
-// a depth camera sees of them. Each is traced in its own axes, so the room's tree never changes.
+// The movers of a scene prepared for queries: their poses over time, their distance to a point and
+// their depth images. Each has its own ray tree in its own axes, so the room's tree never changes.
 #pragma once
 
 #include <optional>
@@ -24,13 +24,13 @@ class MoverScene {
   MoverScene(const Scene& scene, RayIsa isa);
 
   std::size_t size() const { return movers_.size(); }
-  // Those that are there at a frame of the camera's path. Their clock begins with the first one.
+  // The movers present at a frame of the camera's path; their time starts at the first frame.
   std::vector<MoverPlace> At(const Trajectory& trajectory, std::size_t frame) const;
-  // From a point to the nearest surface of a mover, or `limit_m` when none is nearer; 0 inside it.
+  // Distance from a point to a mover's nearest surface, at most `limit_m`; 0 inside the mover.
   double DistanceM(const MoverPlace& place, const Eigen::Vector3d& point_in_world,
                    double limit_m) const;
-  // Whether a mover that goes from one place to the other passes through a camera that moves
-  // meanwhile: whether its surface lies between the camera's two points as it has them.
+  // Whether a mover passes through the camera while both move: whether its surface lies between the
+  // camera's two positions, each taken in the mover's axes at that time.
   bool Passes(const MoverPlace& before, const Eigen::Vector3d& camera_before, const MoverPlace& now,
               const Eigen::Vector3d& camera_now) const;
   const RayScene& RaysOf(std::size_t mover) const { return movers_[mover].rays; }
@@ -46,28 +46,28 @@ class MoverScene {
   double floor_z_m_;
 };
 
-// Where a path comes nearer to one of the scene's movers than clearance_m, as NearText says it, or
-// where one passes through the camera between two frames; nothing where none does.
+// Describes where a path comes nearer than clearance_m to a mover (see NearText), or where a mover
+// passes through the camera between two frames; nothing if neither happens.
 std::optional<std::string> NearMoverText(const Trajectory& trajectory, const Scene& scene,
                                          const MoverScene& movers, double clearance_m);
 
-// The names of the movers that no frame shows, up to `most_m` away: whatever stands hides them, or
-// the camera looks elsewhere.
+// The names of the movers that are not visible in any frame within `most_m`: hidden by the room or
+// outside the image.
 std::vector<std::string> UnseenMovers(const Trajectory& trajectory, const Scene& scene,
                                       const RayScene& room, const MoverScene& movers,
                                       const PinholeCamera& camera, double most_m);
 
-// Depth images of movers, laid over those of the room: each pixel keeps the nearer of both.
+// Draws movers into depth images of the room: each pixel keeps the nearer depth.
 class MoverCamera {
  public:
   MoverCamera(const MoverScene& movers, const PinholeCamera& camera);
 
-  // Incidence too where the frame has it.
+  // Also updates the incidence if the frame has it.
   void DrawOver(const Pose3& world_from_camera, const std::vector<MoverPlace>& places,
                 DepthFrame& frame) const;
 
  private:
-  std::vector<DepthCamera> cameras_;  // one a mover
+  std::vector<DepthCamera> cameras_;  // one per mover
 };
 
 }  // namespace depthgrid

@@ -13,7 +13,7 @@
 namespace depthgrid {
 namespace {
 
-// `what` the mesh is of: "scene", "mover".
+// `what` for errors: "scene" or "mover".
 void RequireSaneMesh(const TriangleMesh& mesh, const std::string& what, const std::string& path) {
   if (mesh.triangles.empty()) throw InputError(path, fmt::format("the {} has no triangles", what));
   for (const auto& vertex : mesh.vertices) {
@@ -39,7 +39,7 @@ void RequireSaneMesh(const TriangleMesh& mesh, const std::string& what, const st
   }
 }
 
-// What a box that is to be the floor must know.
+// The extent of the mesh, to tell the user where a floor may be.
 std::string ExtentText(const TriangleMesh& mesh) {
   const Eigen::AlignedBox3f bounds = BoundsOf(mesh);
   return fmt::format("x {:.2f} to {:.2f}, y {:.2f} to {:.2f}, z {:.2f} to {:.2f} m",
@@ -61,8 +61,8 @@ double FloorOf(const TriangleMesh& mesh, const std::optional<double>& stated_z_m
                                      *stated_z_m, ExtentText(mesh)));
 }
 
-// For files that name no lamps: one so high and far aside that it lights all of the scene alike and
-// surfaces of different directions differently.
+// For files without lamps: a lamp high up and far to the side, which lights the whole scene evenly
+// but surfaces of different orientation differently.
 PointLight DefaultLight(const Scene& scene) {
   constexpr float kFarExtents = 10.0F;
   const Eigen::Vector3f direction = Eigen::Vector3f(0.45F, 0.25F, 0.86F).normalized();

@@ -1,5 +1,4 @@
-// A furnished world: geometry, materials, lights, what moves in it and the camera paths its file
-// names.
+// A scene: geometry, materials, lights, movers and the camera paths of its file.
 #pragma once
 
 #include <map>
@@ -29,7 +28,7 @@ constexpr int kMaxLights = 32;
 
 struct Scene {
   std::string name;
-  TriangleMesh mesh;  // of what stands
+  TriangleMesh mesh;  // of everything static
   std::vector<Material> materials;
   double floor_z_m = 0.0;
   std::optional<double> ceiling_z_m;  // empty when there is none
@@ -39,8 +38,7 @@ struct Scene {
 };
 
 // Reads a scene file (.yaml, docs/scenes.md) or a mesh file (.obj .ply .stl .gltf .glb .dae).
-// Throws InputError for anything a user can get wrong; what comes back has triangles, finite
-// vertices and a floor.
+// Throws InputError for bad input; the result has triangles, finite vertices and a floor.
 Scene LoadScene(const std::string& path);
 
 }  // namespace depthgrid

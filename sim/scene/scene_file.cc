@@ -15,7 +15,7 @@ namespace depthgrid {
 namespace {
 
 constexpr int kMaxGroupDepth = 16;
-// The material of triangles that take the one of the `use` around them.
+// Marks triangles that take the material of the enclosing `use`.
 constexpr std::uint16_t kInherited = 0xFFFF;
 constexpr std::size_t kMaxMaterials = 0xFFFF;
 
@@ -74,7 +74,7 @@ struct MeshOptions {
 struct Group {
   std::string name;
   std::vector<Config> items;
-  std::optional<TriangleMesh> mesh;  // once built
+  std::optional<TriangleMesh> mesh;  // cached once built
   bool being_built = false;
 };
 
@@ -95,7 +95,7 @@ class SceneReader {
     const bool has_floor = config.Has("floor_z_m");
     FileOptions options;
     options.name = std::filesystem::path(path).stem().string();
-    config.Only({"name", "floor_z_m"}).Read(options);  // of the others nothing is left
+    config.Only({"name", "floor_z_m"}).Read(options);  // the other keys have been consumed
     scene_.name = options.name;
     SceneFile file{std::move(scene_), {}};
     if (has_floor) file.floor_z_m = options.floor_z_m;
@@ -103,7 +103,8 @@ class SceneReader {
   }
 
  private:
-  // Here and not by the reader, which only sees the keys that are left and cannot name the nearest.
+  // Checked here because the reader sees only the remaining keys and could not suggest the nearest
+  // name.
   static void RequireKnownKeys(const Config& config) {
     const std::vector<std::string> known = {"name",      "include",      "floor_z_m",
                                             "materials", "groups",       "shapes",
@@ -115,7 +116,7 @@ class SceneReader {
     }
   }
 
-  // One file, or a list of them.
+  // `include` is one file or a list of files.
   void ReadIncludes(const Config& scene) {
     if (!scene.Has("include")) return;
     const std::string place = scene.PlaceOfKey("include");
@@ -124,7 +125,7 @@ class SceneReader {
     for (const std::string& name : names) ReadInclude(ExistingFile("include", name, place));
   }
 
-  // A file of furniture: materials and groups, nothing else.
+  // An included file may contain only materials and groups.
   void ReadInclude(const std::string& path) {
     Config config = Config::FromFile(path);
     for (const ConfigEntry& entry : config.Entries()) {
@@ -137,7 +138,7 @@ class SceneReader {
     ReadGroups(config.Take("groups"));
   }
 
-  // The path of a file that a key names relative to the scene's.
+  // Resolves a file name relative to the scene file.
   std::string ExistingFile(const std::string& key, const std::string& name,
                            const std::string& place) const {
     const auto path = std::filesystem::path(path_).parent_path() / name;
@@ -216,7 +217,8 @@ class SceneReader {
     }
   }
 
-  // Experiments name movers, several of them joined by +.
+  // Names must not collide with the experiment key `movers`: "all", "none" and "+" have a meaning
+  // there.
   static void RequireMoverName(const std::string& name, const std::string& place) {
     if (name != kAllMovers && name != kNoMovers && name.find('+') == std::string::npos) return;
     throw InputError(place, fmt::format("must be called otherwise: '{}' and '{}' are all movers "
@@ -224,7 +226,7 @@ class SceneReader {
                                         kAllMovers, kNoMovers));
   }
 
-  // With a material everywhere.
+  // Builds the items; triangles without a material get the default one.
   TriangleMesh BuildWhole(std::vector<Config> items) {
     TriangleMesh mesh = BuildItems(std::move(items), 0);
     std::replace(mesh.material_of_triangle.begin(), mesh.material_of_triangle.end(), kInherited,
@@ -250,7 +252,7 @@ class SceneReader {
     return whole;
   }
 
-  // One alone takes no step.
+  // Steps need a `count`.
   static void RequireStepsCounted(const Config& item) {
     for (const char* key : {"step", "step_yaw_deg"}) {
       if (!item.Has(key) || item.Has("count")) continue;
@@ -258,7 +260,7 @@ class SceneReader {
     }
   }
 
-  // The item in its own axes, its materials set.
+  // Builds the item in its own axes with its materials set.
   BuiltItem BuildItem(Config& config, int depth) {
     std::vector<std::string> kinds = ShapeNames();
     kinds.insert(kinds.end(), {"mesh", "use"});

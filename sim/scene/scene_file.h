@@ -7,7 +7,7 @@
 
 namespace depthgrid {
 
-// Everything the file says, unchecked as a whole: floor and ceiling are not looked for yet.
+// The contents of the file, before checks of the whole scene and the search for floor and ceiling.
 struct SceneFile {
   Scene scene;
   std::optional<double> floor_z_m;  // as stated

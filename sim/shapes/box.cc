@@ -9,9 +9,9 @@
 namespace depthgrid {
 namespace {
 
-// A point of the cube's surface grid, each coordinate in 0..2 segments + 1: the first half belongs
-// to the corner on the low side, the second to the one on the high side. Shared edges of two faces
-// have the same coordinates, so they share vertices.
+// A point of the cube's surface grid. Each coordinate is in 0..2 segments + 1; the lower half
+// belongs to the rounded corner on the low side, the upper half to that on the high side. Points on
+// an edge have the same coordinates in both faces, so vertices are shared.
 using GridPoint = std::array<int, 3>;
 
 class RoundedBoxBuilder {
@@ -33,7 +33,8 @@ class RoundedBoxBuilder {
  private:
   int Last() const { return 2 * segments_ + 1; }
 
-  // The cube-sphere direction's component: tangents of equal angle steps in [-45, 45] degrees.
+  // A component of the direction on the cube sphere: the tangent of equal angle steps in [-45, 45]
+  // degrees.
   double Tangent(int index) const {
     const int step = index <= segments_ ? index : index - 1;
     return std::tan(kPi / 4.0 * (step - segments_) / segments_);

@@ -1,4 +1,4 @@
-// Corners rounded by cutting them, of polygons and of paths in space.
+// Rounds corners of polygons and of paths in space by corner cutting.
 #pragma once
 
 #include <utility>
@@ -6,9 +6,9 @@
 
 namespace depthgrid {
 
-// Cuts each corner `rounds` times at a quarter of its edges (Chaikin 1974): tends to a quadratic
-// B-spline. The last point of a closed line joins the first; an open one keeps its ends, and either
-// the corners that `is_kept` says.
+// Cuts each corner `rounds` times at a quarter of its edges (Chaikin 1974), which converges to a
+// quadratic B-spline. The last point of a closed line joins the first; an open one keeps its ends.
+// Corners for which `is_kept` is true are not cut.
 template <typename Point, typename IsKept>
 std::vector<Point> CutCorners(std::vector<Point> line, int rounds, bool closed, IsKept is_kept) {
   for (int round = 0; round < rounds; ++round) {

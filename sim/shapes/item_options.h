@@ -12,8 +12,8 @@
 namespace depthgrid {
 
 constexpr Interval kCoordinate = {-kMaxSceneExtentM, kMaxSceneExtentM};
-constexpr Interval kLength = {1e-4, kMaxSceneExtentM};  // a tenth of a millimetre: paper
-constexpr Interval kFacets = {3, 512};                  // around something round
+constexpr Interval kLength = {1e-4, kMaxSceneExtentM};  // from 0.1 mm, the thickness of paper
+constexpr Interval kFacets = {3, 512};                  // of a full circle
 
 struct ItemOptions {
   std::string shape;
@@ -29,7 +29,7 @@ struct ItemOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// An item's keys and its shape's in one reading, so that an unknown key is found among both.
+// The keys of an item and of its shape read together, so that unknown keys are detected.
 template <typename Shape>
 struct WithItem {
   ItemOptions item;
@@ -40,9 +40,8 @@ struct WithItem {
   }
 };
 
-// Where the copies of an item stand: parent_from_item for each of its `count` repetitions. Each
-// further one is the one before, turned about the parent's z axis by step_yaw_deg and shifted by
-// step.
+// parent_from_item of each of the `count` copies of an item. Each copy is the one before turned
+// about the parent's z axis by step_yaw_deg and then shifted by step.
 std::vector<Eigen::Affine3d> PlacementsOf(const ItemOptions& item);
 
 }  // namespace depthgrid

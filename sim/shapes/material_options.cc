@@ -31,7 +31,7 @@ void MaterialOptions::Visit(OptionsVisitor& v) {
 }
 
 Material MaterialOptions::Make(const std::string& name) const {
-  constexpr float kDarker = 0.6F;  // of the pattern's second colour when none is given
+  constexpr float kDarker = 0.6F;  // second colour when none is given, as a factor of the first
   Material m;
   m.name = name;
   m.colour = LinearFrom255(colour);

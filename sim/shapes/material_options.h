@@ -9,7 +9,7 @@
 
 namespace depthgrid {
 
-// Colours are written as colour pickers show them, 0..255.
+// From sRGB components as scene files give them, 0..255.
 Eigen::Vector3f LinearFrom255(const std::array<double, 3>& srgb);
 
 struct MaterialOptions {

@@ -1,5 +1,5 @@
-// Lathe work, prisms, tubes, curtains and leaves as scene files write them: their keys and
-// defaults, and the mesh they stand for. Only sim/shapes/shapes.cc needs to see them.
+// Solids of revolution, prisms, tubes, curtains and leaves in scene files: keys, defaults and
+// meshes. Internal to sim/shapes/shapes.cc.
 #pragma once
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ struct LatheItem {
     if (!IsSimple(corners)) {
       throw InputError(place, "outline must have three corners or more and not cross itself");
     }
-    // A corner on the axis is none of the solid: cut, it would leave a pit there.
+    // A corner on the axis is not a corner of the solid: cutting it would leave a pit there.
     const auto is_on_axis = [](const Eigen::Vector2d& corner) { return corner.x() == 0.0; };
     return Revolve(CutCorners(corners, smooth, true, is_on_axis), segments);
   }
@@ -108,8 +108,7 @@ struct TubeItem {
     RequireWay(tube, place);
     return MakeTube(tube);
   }
-  // Its points differ from their neighbours, and between two edges there is a direction to go on
-  // in.
+  // Requires that neighbouring points differ and that no edge reverses the one before.
   static void RequireWay(const TubeShape& tube, const std::string& place) {
     constexpr double kStraightBackCos = -1.0 + 1e-9;
     const std::size_t count = tube.path.size();

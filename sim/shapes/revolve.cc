@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// The vertices an outline point becomes: a ring, or one vertex on the axis.
+// The vertices of an outline point: a ring, or a single vertex on the axis.
 struct Ring {
   std::uint32_t first = 0;
   bool on_axis = false;

@@ -1,4 +1,4 @@
-// Solids of revolution: cylinders, cones, spheres, tori and anything else a lathe can turn.
+// Solids of revolution: cylinders, cones, spheres, tori and others.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,14 +9,14 @@
 namespace depthgrid {
 
 // Points (r, z), r >= 0, of a closed polygon in the half-plane beside the z axis. Its orientation
-// does not matter; edges on the axis make no surface.
+// does not matter; edges on the axis give no surface.
 using LatheOutline = std::vector<Eigen::Vector2d>;
 
-// Turns the outline about z. `segments` (at least 3) flat facets replace a full circle; their
-// corners lie on it, so the solid is inscribed.
+// Revolves the outline about z. A full circle becomes `segments` (at least 3) flat facets with
+// corners on the circle, so the mesh is inscribed.
 TriangleMesh Revolve(const LatheOutline& outline, int segments);
 
-// The bottom's centre is the origin; a top radius of 0 gives a cone's tip.
+// The origin is the bottom's centre; a top radius of 0 gives a cone.
 LatheOutline FrustumOutline(double bottom_radius_m, double top_radius_m, double height_m);
 // The centre is the origin; half as many facets from pole to pole as around.
 LatheOutline SphereOutline(double radius_m, int segments);

@@ -8,11 +8,11 @@
 
 namespace depthgrid {
 
-// Names for `shape:`, without "use" and "mesh", which need the file around them.
+// Names for `shape:` except "use" and "mesh", which depend on the scene file.
 std::vector<std::string> ShapeNames();
 
-// Reads the item and uses it up. Throws InputError for anything wrong with it. `shape` is one of
-// ShapeNames().
+// Reads the item and consumes its keys. Throws InputError for anything wrong with it. `shape` is
+// one of ShapeNames().
 BuiltItem BuildShape(const std::string& shape, Config& config);
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// Boxes, cylinders, cones, spheres, tori and superellipsoids as scene files write them: their keys
-// and defaults, and the mesh they stand for. Only sim/shapes/shapes.cc needs to see them.
+// Boxes, cylinders, cones, spheres, tori and superellipsoids in scene files: keys, defaults and
+// meshes. Internal to sim/shapes/shapes.cc.
 #pragma once
 
 #include <fmt/format.h>

@@ -27,8 +27,8 @@ std::vector<Vector3d> Tangents(const Path& path, bool closed) {
   return tangents;
 }
 
-// A direction across each tangent that turns as little as possible along the path (parallel
-// transport); on a closed path what is left over is spread evenly, so that the ends meet.
+// A normal to each tangent, carried along the path by parallel transport. On a closed path the
+// remaining twist is spread evenly, so that the ends meet.
 std::vector<Vector3d> TransportedNormals(const std::vector<Vector3d>& tangents, bool closed) {
   const std::size_t n = tangents.size();
   std::vector<Vector3d> normals = {tangents[0].unitOrthogonal()};

@@ -1,4 +1,4 @@
-// Thin and bent things: tubes along a path, prisms, hanging cloth, leaves.
+// Swept shapes: tubes along a path, prisms, curtains, leaves.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,9 @@ namespace depthgrid {
 // The simple outline (any orientation), from z = 0 to z = height_m.
 TriangleMesh MakePrism(const Polygon& outline, double height_m);
 
-// A round tube along a path of at least two points (three when closed), its radius going linearly
-// from start to end; flat caps. `smooth` rounds of corner cutting bend the path first.
+// A round tube along a path of at least two points (three when closed), with flat caps and a radius
+// that changes linearly from start to end. The path is first smoothed by `smooth` rounds of corner
+// cutting.
 struct TubeShape {
   std::vector<Eigen::Vector3d> path;
   double start_radius_m = 0.01;
@@ -24,14 +25,14 @@ struct TubeShape {
 };
 TriangleMesh MakeTube(const TubeShape& tube);
 
-// Cloth hanging in waves along x, its foot on z = 0, centred on the origin.
+// A curtain with folds along x, its lower edge at z = 0, centred on the origin.
 struct CurtainShape {
   double width_m = 1.0;
   double height_m = 2.0;
   double depth_m = 0.08;  // crest to trough
   double thickness_m = 0.004;
   int folds = 8;
-  int segments = 16;  // facets a fold
+  int segments = 16;  // facets per fold
 };
 TriangleMesh MakeCurtain(const CurtainShape& curtain);
 

@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-// Edges of openings nearer than this fall together: narrower slits are rounding, not design.
+// Edges of openings nearer than this are merged: narrower slits are rounding errors.
 constexpr double kSameEdgeM = 1e-6;
 
 std::vector<double> SortedUnique(std::vector<double> values) {
@@ -19,7 +19,7 @@ std::vector<double> SortedUnique(std::vector<double> values) {
   return values;
 }
 
-// The wall's face cut along all edges of its openings: cells are solid or open.
+// The wall's face, divided into solid and open cells along all edges of its openings.
 class WallFace {
  public:
   WallFace(double length_m, double height_m, const std::vector<WallOpening>& openings) {

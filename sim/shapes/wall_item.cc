@@ -40,7 +40,7 @@ struct WallItem {
   }
 };
 
-// Numbers typed with two decimals and added up may stick out by rounding.
+// Tolerance for sums of decimal numbers that exceed the wall by rounding.
 constexpr double kOpeningSlackM = 1e-9;
 
 }  // namespace

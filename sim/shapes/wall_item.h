@@ -1,4 +1,4 @@
-// Walls as scene files write them.
+// Walls in scene files.
 #pragma once
 
 #include "mapper/io/config.h"
@@ -13,8 +13,8 @@ struct BuiltItem {
   TriangleMesh mesh;
 };
 
-// Takes the openings out of `config`. Throws InputError for keys that are wrong and openings that
-// do not lie within the wall.
+// Reads the wall and removes its openings from `config`. Throws InputError for keys that are wrong
+// and openings that do not lie within the wall.
 BuiltItem BuildWall(Config& config);
 
 }  // namespace depthgrid

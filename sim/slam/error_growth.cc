@@ -12,14 +12,14 @@ constexpr double kMaxWeight = 100.0;
 
 using Rows = Eigen::MatrixX4d;
 
-// What a unit square of each term adds to the growth at a lag.
+// The growth at a lag per unit of each term's square.
 Eigen::RowVector4d TermsAt(const CorrelationTimes& times, double lag_s) {
   const double x = lag_s / times.drift_s;
   return {2.0, -2.0 * std::expm1(-lag_s / times.bias_s), lag_s,
           2.0 * times.drift_s * times.drift_s * (x + std::expm1(-x))};
 }
 
-// Least squares with the columns in `mask` alone, the others 0.
+// Least squares over the columns in `mask`; the other unknowns are 0.
 Eigen::Vector4d Solve(const Rows& rows, const Eigen::VectorXd& target, int mask) {
   Rows used = rows;
   Eigen::Matrix4d unused = Eigen::Matrix4d::Zero();
@@ -77,7 +77,7 @@ GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes&
   }
   GrowthTerms best;
   best.misfit = std::numeric_limits<double>::infinity();
-  // Four unknowns: every choice of which are 0 can be tried.
+  // Non-negative least squares by trying all subsets of the four unknowns.
   for (int mask = 0; mask < 16; ++mask) {
     const Eigen::Vector4d squares = Solve(rows, target, mask);
     const double misfit = (rows * squares - target).squaredNorm() / weights;

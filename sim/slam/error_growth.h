@@ -1,4 +1,4 @@
-// How errors grow with time, and which jitter, walk and bias make them grow so.
+// Growth of pose errors over time lags, and a fit of jitter, bias, walk and drift to it.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,34 +6,34 @@
 
 namespace depthgrid {
 
-// The summed error since a stretch began.
+// The accumulated error since the start of a track.
 struct SummedError {
   double stamp_s = 0.0;
   Eigen::Vector3d error;
 };
-// A stretch without gaps, one entry a frame.
+// A track without gaps, one entry per frame.
 using ErrorTrack = std::vector<SummedError>;
 
-// Mean square per axis of the error over a lag.
+// Mean square of the error over a time lag, per axis.
 struct Growth {
   double lag_s = 0.0;
   double mean_square = 0.0;
-  double weight = 0.0;  // independent stretches of that lag, at most 100
+  double weight = 0.0;  // number of independent intervals of that lag, at most 100
 };
 
-// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track, those without any error
-// left out. A lag lasts the mean time of its pairs: stamps jitter, and a walk's growth is linear in
-// time. `axes` of the three are in use, the others 0.
+// At lags of 1, 2, 3, 5, 8 ... frames up to a third of the longest track; lags without any error
+// are omitted. `lag_s` is the mean time of the lag's pairs, as stamps jitter and a walk's growth is
+// linear in time. `axes` of the three components are used, the others are 0.
 std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axes);
 
-// One sigma each, per axis: white and slowly varying error of a pose, random walk in 1 s, slowly
-// varying rate.
+// Standard deviations per axis: white error of the pose (jitter), slowly varying error of the pose
+// (bias), random walk in 1 s, slowly varying rate (drift).
 struct GrowthTerms {
   double jitter = 0.0;
   double bias = 0.0;
   double walk = 0.0;
   double drift = 0.0;
-  double misfit = 0.0;  // weighted mean square of the relative differences
+  double misfit = 0.0;  // weighted mean square of the relative residuals
 };
 
 struct CorrelationTimes {
@@ -44,8 +44,8 @@ struct CorrelationTimes {
 // 2 jitter^2 + 2 bias^2 (1 - exp(-t/b)) + walk^2 t + 2 drift^2 d^2 (t/d - 1 + exp(-t/d)).
 double GrowthOf(const GrowthTerms& terms, const CorrelationTimes& times, double lag_s);
 
-// The terms, none negative, nearest to the growth in relative least squares, beside a walk of known
-// square. None, and no misfit, where nothing grew.
+// Fits non-negative terms to the growth by relative least squares, in addition to a walk of known
+// square. All zero, misfit included, without growth.
 GrowthTerms FitGrowth(const std::vector<Growth>& growth, const CorrelationTimes& times,
                       double known_walk_square);
 

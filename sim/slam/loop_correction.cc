@@ -7,8 +7,8 @@
 namespace depthgrid {
 namespace {
 
-// The weight of rotation against translation: one radian costs as much as 2 m, the distance of an
-// indoor scene.
+// Weight of rotation relative to translation: one radian costs as much as 2 m, a typical distance
+// of an indoor scene.
 constexpr double kMetresPerRad = 2.0;
 constexpr int kIterations = 10;
 constexpr double kConverged = 1e-12;  // metres and radians
@@ -22,7 +22,7 @@ Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-// Multipliers (mu, lambda) of: minimise sum |w_k|^2 + |v_k|^2 / m^2 subject to
+// Lagrange multipliers (mu, lambda) of: minimise sum |w_k|^2 + |v_k|^2 / m^2 subject to
 // sum w_k = turn and sum (v_k + w_k x d_k) = shift, where d_k leads from pose k to `second`. They
 // give w_k = mu + d_k x lambda and v_k = m^2 lambda.
 Vector6d Multipliers(const std::vector<Pose3>& poses, int fixed, int second,
@@ -40,7 +40,7 @@ Vector6d Multipliers(const std::vector<Pose3>& poses, int fixed, int second,
   return system.ldlt().solve(turn_and_shift);
 }
 
-// One step of the solution, applied motion by motion.
+// Applies one Gauss-Newton step to each motion.
 std::vector<Pose3> Bent(std::vector<Pose3> poses, int fixed, int second,
                         const Vector6d& multipliers) {
   const Eigen::Vector3d end = poses[static_cast<std::size_t>(second)].translation;

@@ -1,4 +1,4 @@
-// What a SLAM system does to its trajectory when it closes a loop.
+// The correction of a SLAM trajectory by a loop closure.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace depthgrid {
 
-// Moves pose `second` onto `target_of_second` by the least change of the motions between `fixed`
-// and `second` (equal weight each; a pose graph of one chain and one loop, solved by Gauss-Newton).
-// Poses up to `fixed` stay, poses after `second` move with it as a rigid body.
+// Moves pose `second` to `target_of_second` with the least change, equally weighted, of the motions
+// between `fixed` and `second`: a pose graph of one chain and one loop, solved by Gauss-Newton.
+// Poses up to `fixed` stay, poses after `second` move rigidly with it.
 std::vector<Pose3> CorrectChain(std::vector<Pose3> poses, int fixed, int second,
                                 const Pose3& target_of_second);
 

@@ -9,10 +9,10 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kLargestScale = 1000.0;  // what SlamOptions allows
-constexpr double kTolerance = 1e-3;       // of the target
+constexpr double kLargestScale = 1000.0;  // limit of SlamOptions
+constexpr double kTolerance = 1e-3;       // relative to the target
 constexpr int kMaxTrials = 40;
-constexpr double kLeastShare = 0.1;  // of the bracket that a trial cuts off at either end
+constexpr double kLeastShare = 0.1;  // least share of the bracket that a trial removes
 
 double LiveErrorM(const Trajectory& truth, const SlamOutput& output) {
   double sum_m = 0.0;
@@ -58,7 +58,7 @@ DriftCalibration CalibrateDrift(const Trajectory& truth, SlamOptions options, do
     low = high;
     high = tried(std::min(2.0 * high.scale, kLargestScale));
   }
-  // Regula falsi, kept off the ends so that the bracket shrinks from both sides.
+  // Regula falsi with trials kept away from the ends, so that the bracket shrinks from both sides.
   Trial best = high;
   for (int i = 0; i < kMaxTrials; ++i) {
     if (std::abs(best.error_m - target_m) <= kTolerance * target_m) {

@@ -1,4 +1,4 @@
-// Scaling a profile's drift until the live poses err as much as asked for.
+// Scales a profile's drift so that the live poses have a given mean error.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@ struct SeedRange {
   int count = 400;
 };
 
-// Mean over the seeds of the mean distance in xy between live and true poses; both start at the
-// same pose, nothing is aligned, frames without tracking do not count.
+// Mean over the seeds of the mean xy distance between live and true poses, without alignment: both
+// start at the same pose. Frames without tracking are ignored.
 double MeanLiveErrorM(const Trajectory& truth, const SlamOptions& options, const SeedRange& seeds);
 
 struct DriftCalibration {
   double drift_scale = 0.0;
   double mean_error_m = 0.0;  // with that scale
-  bool reached = false;       // false: no scale gives the target; the numbers are the nearest
+  bool reached = false;       // false: no scale gives the target, and this is the nearest
 };
 
-// The drift_scale that gives the target over these seeds. A pure function of its arguments: the
-// draws of all trials are the same, so the error is a smooth function of the scale.
+// Finds the drift_scale with the target error over these seeds. Deterministic; all trials use the
+// same random draws, so the error is a smooth function of the scale.
 DriftCalibration CalibrateDrift(const Trajectory& truth, SlamOptions options, double target_m,
                                 const SeedRange& seeds);
 

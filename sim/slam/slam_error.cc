@@ -28,16 +28,16 @@ Eigen::Vector3d Normals(RandomStream& random) {
 }
 
 Twist Draw(RandomStream& random, double translation_m, double rotation_deg) {
-  if (translation_m == 0.0 && rotation_deg == 0.0) return {};  // nothing else follows in a stream
+  if (translation_m == 0.0 && rotation_deg == 0.0) return {};  // the stream has no later draws
   const Eigen::Vector3d rotation = Normals(random);
   const Eigen::Vector3d translation = Normals(random);
   return {RadFromDeg(rotation_deg) * rotation, translation_m * translation};
 }
 
-// The probability of at least one event of a rate within a time.
+// The probability of at least one event within a time (Poisson process).
 double EventProbability(double rate_hz, double time_s) { return -std::expm1(-rate_hz * time_s); }
 
-// An Ornstein-Uhlenbeck process, exactly, whatever the time step.
+// An Ornstein-Uhlenbeck process with exact updates for any time step.
 class SlowProcess {
  public:
   struct Sigma {
@@ -66,7 +66,7 @@ class SlowProcess {
   Twist value_;
 };
 
-// The bias starts at 0, as the first pose is exact.
+// Starts at 0, as the first pose is exact.
 SlowProcess BiasProcess(const SlamOptions& options, std::uint64_t seed) {
   return {{options.bias_translation_m, options.bias_rotation_deg, options.bias_time_s},
           seed,
@@ -74,7 +74,7 @@ SlowProcess BiasProcess(const SlamOptions& options, std::uint64_t seed) {
           {}};
 }
 
-// The rate of drift is stationary from the start.
+// Starts in its stationary distribution.
 SlowProcess DriftProcess(const SlamOptions& options, std::uint64_t seed) {
   const SlowProcess::Sigma sigma = {options.drift_speed_mps, options.drift_turn_dps,
                                     options.drift_time_s};
@@ -130,7 +130,7 @@ Twist DrawJitter(const SlamOptions& options, std::uint64_t seed, std::uint32_t f
   return Draw(random, options.jitter_translation_m, options.jitter_rotation_deg);
 }
 
-// Turns about horizontal axes of the world are `share` of what was drawn.
+// Scales the rotation about horizontal world axes by `share`.
 Twist Levelled(const Twist& twist, const Pose3& world_from_camera, double share) {
   if (share == 1.0) return twist;
   const Eigen::Vector3d up_in_camera =

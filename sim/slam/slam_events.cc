@@ -5,7 +5,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kGapSteps = 1.5;  // a step longer than this many usual ones is a gap
+constexpr double kGapSteps = 1.5;  // a step longer than this many median steps is a gap
 constexpr double kJumpMedians = 5.0;
 constexpr double kOneJumpS = 0.2;
 constexpr double kCorrectedShare = 0.5;

@@ -14,15 +14,15 @@ namespace depthgrid {
 namespace {
 
 constexpr std::size_t kFewestPoses = 100;
-constexpr double kShortestTiltLagS = 1.0;  // below, jitter hides what drifts
-// Correlation times that are tried: half a minute of data does not tell finer ones apart.
+constexpr double kShortestTiltLagS = 1.0;  // at shorter lags jitter dominates
+// Correlation times to try; half a minute of data cannot resolve finer steps.
 constexpr double kBiasTimesS[] = {0.2, 0.5, 1.0, 2.0, 5.0, 10.0};
 constexpr double kDriftTimesS[] = {2.0, 5.0, 10.0, 20.0};
 
 struct RunEvents {
   const SlamRun* run = nullptr;
   std::vector<RunEvent> events;
-  std::vector<bool> in_event;  // of the motion that ends at each pose
+  std::vector<bool> in_event;  // for the motion that ends at each pose
 };
 
 RunEvents EventsOf(const SlamRun& run) {
@@ -33,8 +33,8 @@ RunEvents EventsOf(const SlamRun& run) {
   return found;
 }
 
-// Regression through the origin of the sideways shift on the turn: p - R p of a pivot p = (0, 0, d)
-// is d (-w_y, w_x, 0) to first order.
+// Regression through the origin of the sideways translation on the rotation w: to first order a
+// pivot p = (0, 0, d) gives p - R p = d (-w_y, w_x, 0).
 void FitPivot(const std::vector<RunEvents>& runs, SlamFit& fit) {
   double turn_turn = 0.0;
   double turn_shift = 0.0;
@@ -50,7 +50,7 @@ void FitPivot(const std::vector<RunEvents>& runs, SlamFit& fit) {
     }
   }
   if (turn_turn == 0.0 || shift_shift == 0.0) return;
-  // Turns that are the rounding of a file's quaternions are those of no pivot that could be.
+  // Rotations that are only rounding of the file's quaternions give an impossible pivot.
   const double pivot_m = turn_shift / turn_turn;
   if (!(pivot_m > 0.0 && pivot_m <= kMostPivotM)) return;
   fit.options.pivot_m = pivot_m;
@@ -86,10 +86,10 @@ struct Tracks {
   }
 };
 
-// The errors of all motions summed up, each in the axes the surrogate draws it in (turns about the
-// world's, shifts along the camera's), so that jitter, bias, walk and drift stay apart from what
-// turning does to a path. A jump is there with all its swings: what of them is not left at its end
-// is noise. A loss or a correction begins a new track.
+// The accumulated errors of all motions, each in the axes in which the surrogate draws it (rotation
+// in world axes, translation in camera axes), so that rotation errors do not leak into the
+// translation terms. Jumps are included with their oscillations; what cancels out by their end
+// counts as noise. A loss or a correction begins a new track.
 Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   Tracks tracks;
   for (const RunEvents& run : runs) {
@@ -111,14 +111,14 @@ Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   return tracks;
 }
 
-// Root mean ratio of tilt, per axis, to yaw over the longer lags; 1 where that is not known.
+// Root of the mean squared ratio of tilt (per axis) to yaw over the longer lags; 1 if unknown.
 double TiltShare(const std::vector<Growth>& tilt, const std::vector<Growth>& yaw) {
   if (tilt.empty() && !yaw.empty()) return 0.0;
   double ratio = 0.0;
   double weights = 0.0;
   for (const Growth& turned : yaw) {
     if (turned.lag_s < kShortestTiltLagS) continue;
-    // Of the same pairs of poses, unless there is none: lags without any error are left out.
+    // The same lag, if present: lags without any error are omitted.
     const auto tilted = std::ranges::find(tilt, turned.lag_s, &Growth::lag_s);
     const double tilt_square = tilted == tilt.end() ? 0.0 : tilted->mean_square;
     ratio += turned.weight * tilt_square / turned.mean_square;
@@ -166,7 +166,7 @@ void FitNoise(const ErrorGrowth& growth, SlamFit& fit) {
   }
 }
 
-// Root mean square per axis of some events.
+// Root mean square per axis over events.
 struct EventSize {
   int count = 0;
   double square_m2 = 0.0;
@@ -177,15 +177,15 @@ struct EventSize {
     square_rad2 += LogRotation(event.error.rotation).squaredNorm();
   }
   double TranslationM() const { return count ? std::sqrt(square_m2 / (3.0 * count)) : 0.0; }
-  // About the vertical, the others being `tilt_share` of it.
+  // About the vertical; the other axes have `tilt_share` of it.
   double RotationRad(double tilt_share) const {
     const double axes = 1.0 + 2.0 * tilt_share * tilt_share;
     return count ? std::sqrt(square_rad2 / (axes * count)) : 0.0;
   }
 };
 
-// Jumps that undo one another explain more growth than there is; then they are taken to be smaller:
-// as large as the growth allows at every lag.
+// Limits the jumps' size to what the growth allows at every lag: jumps that cancel each other would
+// explain more growth than was measured.
 double Capped(double jump, double rate_hz, const std::vector<Growth>& growth) {
   for (const Growth& point : growth) {
     jump = std::min(jump, std::sqrt(point.mean_square / (rate_hz * point.lag_s)));

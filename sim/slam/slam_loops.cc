@@ -10,15 +10,15 @@
 namespace depthgrid {
 namespace {
 
-// A revisit that breaks off for less than this goes on: the camera shakes at its border.
+// A revisit interrupted for less than this continues, as the camera may shake at its limit.
 constexpr double kEpisodeBreakS = 1.0;
-// False closures join views further apart than this many times what counts as a revisit.
+// False closures join views at least this many times farther apart than a revisit.
 constexpr double kFalseSeparation = 2.0;
 constexpr int kFalseAttempts = 50;
-// Graph solvers divide by sigma; a noise-free loop still states one.
+// Graph solvers divide by sigma, so a noise-free loop has one too.
 constexpr double kLeastSigma = 1e-4;
 
-// How far apart views are, in units of what counts as a revisit: at most 1 is the same view.
+// Distances between views in units of the limits of a revisit: at most 1 is the same view.
 class Views {
  public:
   Views(const Trajectory& truth, const SlamLoopOptions& options)
@@ -32,7 +32,7 @@ class Views {
     }
   }
 
-  // Squared distances of all earlier views to this one; column by column, as that vectorises.
+  // Squared distances of all earlier views to this one; axis by axis, which vectorises.
   Eigen::ArrayXd SquaredDistancesBefore(int second) const {
     Eigen::ArrayXd squared = Eigen::ArrayXd::Zero(second);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ class Views {
   double Angle(int a, int b) const {
     return RotationOf(a).angularDistance(RotationOf(b)) / max_angle_rad_;
   }
-  // Angle above 1, without computing it: |q_a . q_b| is the cosine of half the angle.
+  // Whether the angle is above 1, without arccos: |q_a . q_b| is the cosine of half the angle.
   bool TurnedAway(int a, int b) const {
     return std::abs(RotationOf(a).dot(RotationOf(b))) < cos_half_max_angle_;
   }
@@ -59,7 +59,8 @@ class Views {
   double cos_half_max_angle_;
 };
 
-// The most similar old view of frame `second`, if the camera has been elsewhere since.
+// The earlier frame with the view most similar to frame `second`'s, if the camera was elsewhere
+// since.
 std::optional<int> OldView(const Trajectory& truth, const std::vector<bool>& tracked,
                            const Views& views, int second, double min_gap_s) {
   const Eigen::ArrayXd squared_distance = views.SquaredDistancesBefore(second);
@@ -109,8 +110,7 @@ LoopClosure Closure(const SlamLoopOptions& options, const Revisit& frames,
           std::max(RadFromDeg(options.sigma_rotation_deg), kLeastSigma)};
 }
 
-// A pair of views that only look alike, and the relative pose SLAM believes: one as between the
-// views of a true closure.
+// A false closure of two different views; its relative pose is like that of a true closure.
 std::optional<LoopClosure> DrawFalse(const Trajectory& truth, const std::vector<bool>& tracked,
                                      const Views& views, const SlamLoopOptions& options,
                                      RandomStream& random) {
@@ -127,7 +127,7 @@ std::optional<LoopClosure> DrawFalse(const Trajectory& truth, const std::vector<
         options, frames,
         DrawMotion(random, options.max_distance_m / 2.0, RadFromDeg(options.max_angle_deg) / 2.0));
   }
-  return std::nullopt;  // all views are much the same: nothing to mistake
+  return std::nullopt;  // all views are about the same
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ std::vector<SimulatedLoop> SimulateLoops(const Trajectory& truth, const std::vec
     loops.push_back({*closure, is_true});
     loops.back().closure.reported_at_frame = *frame;
   };
-  // So many false closures a true one make `precision` the share of true ones.
+  // False closures per true one at this precision.
   const double false_per_true = (1.0 - options.precision) / options.precision;
   for (const Revisit& revisit : FindRevisits(truth, tracked, options)) {
     RandomStream random(seed, RandomStage::kSlamLoops, static_cast<std::uint32_t>(revisit.second));

@@ -1,5 +1,5 @@
-// Which loops a SLAM system closes: true ones where the true path comes back to an old view, late
-// or missed ones, and false ones between places that only look alike.
+// Simulates the loop closures of a SLAM system: true ones at revisits of old views, which may be
+// late or missed, and false ones between places that only look alike.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace depthgrid {
 
-// Frame `second` sees again what frame `first` saw, after the camera was elsewhere.
+// Frame `second` sees the view of frame `first` again, after the camera was elsewhere.
 struct Revisit {
   int first = 0;
   int second = 0;
@@ -18,8 +18,8 @@ struct Revisit {
   bool operator==(const Revisit&) const = default;
 };
 
-// The occasions to close a loop: the first frame of each revisit, and again every repeat_s while it
-// lasts. Frames without tracking cannot take part. Ordered by `second`.
+// The opportunities to close a loop: the first frame of each revisit, and another every repeat_s
+// while it lasts. Frames without tracking are ignored. Ordered by `second`.
 std::vector<Revisit> FindRevisits(const Trajectory& truth, const std::vector<bool>& tracked,
                                   const SlamLoopOptions& options);
 
@@ -28,8 +28,8 @@ struct SimulatedLoop {
   bool is_true = true;
 };
 
-// What SLAM reports of the revisits, ordered by reported_at_frame. A report waits for a tracked
-// frame; one that would come after the end is never made.
+// The closures SLAM reports, ordered by reported_at_frame. A report waits for a tracked frame;
+// reports due after the last frame are dropped.
 std::vector<SimulatedLoop> SimulateLoops(const Trajectory& truth, const std::vector<bool>& tracked,
                                          const SlamLoopOptions& options, std::uint64_t seed);
 

@@ -29,7 +29,7 @@ void SlamLoopOptions::Visit(OptionsVisitor& v) {
   v.Number("sigma_rotation_deg", sigma_rotation_deg, kDegrees,
            "sigma of a closure's measured relative pose");
   v.Flag("follow_false", follow_false, "whether SLAM's own estimate is bent by its false closures");
-  // Neither is 0: views are compared in these units. The scenario for no loops is `none`.
+  // Positive, as view distances are divided by these. Use the scenario `none` for no loops.
   v.Number("max_distance_m", max_distance_m, {0.001, 10.0},
            "a revisit is nearer than this to the old view");
   v.Number("max_angle_deg", max_angle_deg, {0.01, 180.0}, "and turned by less than this from it");

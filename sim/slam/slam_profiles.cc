@@ -1,4 +1,4 @@
-// The values of each SLAM profile; docs/slam_surrogate.md tells where they come from.
+// The values of each SLAM profile; docs/slam_surrogate.md has their sources.
 #include "mapper/core/error.h"
 #include "sim/slam/slam_options.h"
 
@@ -9,9 +9,9 @@ namespace {
 // poses is that of the recorded Planar-SLAM run: 3 mm and 0.1 degrees from frame to frame. The
 // drift is nearly all a slowly varying rate, so that it stays smooth from frame to frame (1 mm)
 // however much it is scaled. At scale 1 the translation error over time lags of 0.03 to 60 s is
-// that of ORB-SLAM2 on TUM fr2/desk within a factor of 1.3. Table 1 says nothing of rotation: the
-// turn is so chosen that yaw errs by 7 degrees for each metre, a fifth of what it does in the
-// recorded ORB-SLAM2 runs, where a drift of Table 1's size would turn the map by 15 degrees.
+// that of ORB-SLAM2 on TUM fr2/desk within a factor of 1.3. Table 1 does not give rotation: it is
+// chosen so that yaw errs by 7 degrees per metre, a fifth of that in the recorded ORB-SLAM2 runs,
+// in which a drift of Table 1's size would turn the map by 15 degrees.
 SlamOptions CalibratedBase() {
   SlamOptions options;
   options.pivot_m = 1.9;
@@ -29,7 +29,7 @@ SlamOptions CalibratedBase() {
   return options;
 }
 
-// Scales are those of the living room; the experiments hold the room's own, found by
+// The scales are for the living room; experiments in other rooms set their own, found by
 //   depthgrid slam-calibrate ROOM --set slam.profile=PROFILE --target TABLE_1
 SlamOptions OrbSlam2() {
   SlamOptions options = CalibratedBase();
@@ -37,7 +37,7 @@ SlamOptions OrbSlam2() {
   return options;
 }
 
-// Planes hold the rotation better than points do: half the turn for the same shift.
+// Planes constrain the rotation better than points: half the rotation for the same translation.
 SlamOptions PlanarSlam() {
   SlamOptions options = CalibratedBase();
   options.drift_scale = 37.5;
@@ -46,7 +46,7 @@ SlamOptions PlanarSlam() {
   return options;
 }
 
-// The Manhattan frame gives each pose its rotation from the walls: no drift at all.
+// The Manhattan frame gives each pose its rotation from the walls, so rotation does not drift.
 SlamOptions PlanarSlamMh() {
   SlamOptions options = CalibratedBase();
   options.drift_scale = 35.2;
@@ -97,8 +97,8 @@ SlamOptions PlanarSlamMeasured() {
 }
 
 // From the error over lags of 0.033 to 60 s on TUM fr2/desk (18.7 m, 99 s), reproduced within 25 %.
-// The pivot is the distance of the desk that makes rotation and translation errors agree. The
-// trajectory was that after all corrections, so there are no loops left to close.
+// The pivot is the distance of the desk, with which rotation and translation errors agree. The
+// trajectory was the fully corrected one, so no loops are left to close.
 SlamOptions OrbSlam2Desk() {
   SlamOptions options;
   options.pivot_m = 0.7;

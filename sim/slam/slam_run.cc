@@ -7,7 +7,7 @@
 namespace depthgrid {
 namespace {
 
-// How exactly a pair of poses has the lag: a quarter of a frame at 30 Hz.
+// Tolerance of the lag of a pair of poses: a quarter of a frame at 30 Hz.
 constexpr double kLagToleranceS = 0.008;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A recorded run of a SLAM system beside the truth, and how far its motions are off.
+// A recorded run of a SLAM system with the true poses, and the errors of its motions.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,12 @@
 
 namespace depthgrid {
 
-// Pose i of the estimate belongs to pose i of the truth. Where tracking was lost both have a gap.
+// Pose i of the estimate belongs to pose i of the truth. Both have a gap where tracking was lost.
 struct SlamRun {
   Trajectory truth;
   Trajectory estimate;
 
-  // From the pose before `to` until `to`.
+  // Time between the pose before `to` and `to`.
   double StepS(std::size_t to) const { return truth[to].stamp_s - truth[to - 1].stamp_s; }
 };
 
@@ -27,7 +27,7 @@ struct LagError {
   int pairs = 0;
 };
 
-// Over all pairs of poses that far apart, of all runs; lags no run is long enough for are absent.
+// Over all pairs of poses at each lag, of all runs; lags longer than every run are omitted.
 std::vector<LagError> ErrorOverLag(const std::vector<SlamRun>& runs,
                                    const std::vector<double>& lags_s);
 

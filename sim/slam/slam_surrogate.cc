@@ -9,14 +9,14 @@
 namespace depthgrid {
 namespace {
 
-// Identities are skipped so that poses without error stay what they are, bit for bit.
+// Identities are skipped so that poses without error are unchanged bit for bit.
 Pose3 Composed(const Pose3& a_from_b, const Pose3& b_from_c) {
   if (a_from_b == Pose3{}) return b_from_c;
   if (b_from_c == Pose3{}) return a_from_b;
   return a_from_b * b_from_c;
 }
 
-// SLAM's estimate of the frames so far, without the errors of single poses.
+// SLAM's estimate of the frames so far, without jitter and bias.
 class Estimate {
  public:
   explicit Estimate(const Trajectory& truth) : truth_(truth) {}
@@ -27,7 +27,7 @@ class Estimate {
     if (!(motion_error == Pose3{})) slam_from_world_ = poses_.back() * Inverse(true_pose);
   }
 
-  // Closes a loop: what earlier closures have corrected stays. Returns whether anything moved.
+  // Closes a loop; poses corrected by earlier closures stay. Returns whether anything moved.
   bool Correct(const LoopClosure& loop) {
     const int fixed = std::max(loop.first_frame, corrected_until_);
     if (loop.second_frame <= fixed) return false;

@@ -1,5 +1,5 @@
-// A stand-in for an RGB-D SLAM system: disturbs a true trajectory the way such systems err, in
-// 6 DoF, with loop closures that correct it (docs/slam_surrogate.md).
+// A simulated RGB-D SLAM system: adds such a system's errors to a true trajectory, in 6 DoF, with
+// loop closures that correct it (docs/slam_surrogate.md).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace depthgrid {
 
-// One live pose a pose of `truth`. The slam frame is the truth's world: the first pose is exact, z
-// is up. Without any error the poses are those of the truth, bit for bit.
+// One live pose per true pose. The SLAM frame is the true world (z up), as the first pose is exact.
+// With all errors 0 the poses equal the true ones bit for bit.
 SlamOutput DisturbTrajectory(const Trajectory& truth, const SlamOptions& options,
                              std::uint64_t seed);
 

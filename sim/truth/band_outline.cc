@@ -9,7 +9,7 @@ namespace {
 
 using Line = std::array<float, 4>;  // x y x y
 
-// The outlines of the polygons from above, each line once.
+// Appends the polygon's edges seen from above.
 void AddOutline(const BandPolygon& polygon, double resolution_m, std::vector<Line>& lines) {
   for (const auto* corner = polygon.begin(); corner != polygon.end(); ++corner) {
     const auto* next = corner + 1 == polygon.end() ? polygon.begin() : corner + 1;
@@ -18,7 +18,7 @@ void AddOutline(const BandPolygon& polygon, double resolution_m, std::vector<Lin
       ends[0][axis] = static_cast<float>((*corner)[axis] * resolution_m);
       ends[1][axis] = static_cast<float>((*next)[axis] * resolution_m);
     }
-    if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);  // neighbours walk a shared line both ways
+    if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);  // neighbours share it in reverse order
     if (ends[0] != ends[1]) lines.push_back({ends[0][0], ends[0][1], ends[1][0], ends[1][1]});
   }
 }

@@ -1,4 +1,4 @@
-// The obstacle band's surfaces seen from above. Only for sim's own .cc files.
+// The surfaces in the obstacle band seen from above. Internal to sim.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace depthgrid {
 
-// The height at which rays meet the fences below, whatever the band.
+// The z at which to cast rays at the fences below, whatever the band.
 constexpr float kFenceMiddleM = 0.5F;
 
-// The band's surfaces for rays that do not care about height.
+// The band's surfaces for rays in 2D.
 struct BandOutline {
-  TriangleMesh fences;              // what they look like from above, drawn out from z = 0 to 1
+  TriangleMesh fences;              // their outlines from above, extruded from z = 0 to 1
   std::vector<ValueSpan> height_m;  // of the surfaces in each cell of the truth map
 };
 
-// `truth` says which cells heights are wanted of; lines are the same whatever it covers.
+// Heights are computed for the cells of `truth`; the fences do not depend on it.
 BandOutline OutlineOf(const TriangleMesh& mesh, const HeightBand& band, const StateMap& truth);
 
-// The cell of the surface that a ray met there, by its index. A hit on a cell boundary lands on
-// either side of it by rounding; the occupied one of the two is meant.
+// The index of the occupied cell that contains the hit of a ray. A hit on a cell boundary may be
+// rounded to either side; the occupied cell of the two is returned.
 std::optional<std::size_t> OccupiedCellAt(const StateMap& truth, const Eigen::Vector2d& hit);
 
 }  // namespace depthgrid

@@ -11,8 +11,9 @@ double OnGrid(double cells, double tolerance_cells) {
   return SnappedTo(cells, std::round(cells), tolerance_cells);
 }
 
-// No ray meets a triangle without area, which meshes have where three corners lie on a line. Of
-// corners rounded to single precision the line is met within this, at 50 m from the origin.
+// Least height of a triangle over its longest side: rays do not hit triangles without area, which
+// occur in meshes with collinear corners. Rounding to single precision moves a corner off the line
+// by up to this at 50 m from the origin.
 constexpr double kThinnestM = 5e-6;
 
 bool HasArea(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
@@ -30,7 +31,7 @@ bool HasArea(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& trian
 }  // namespace
 
 BandPolygon BandPolygon::Cut(std::size_t axis, double bound, double sign) const {
-  constexpr double kRoundingCells = 1e-6;  // of snapped corners and the interpolation below
+  constexpr double kRoundingCells = 1e-6;  // for snapped corners and the interpolation below
   BandPolygon kept;
   for (int i = 0; i < size_; ++i) {
     const Corner& a = corners_[static_cast<std::size_t>(i)];
@@ -63,7 +64,7 @@ double BandPolygon::Max(std::size_t axis) const {
 
 BandPolygon InBand(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle,
                    const HeightBand& band, double resolution_m) {
-  constexpr double kSnapM = 1e-5;  // half a step of single precision is 2 um at 50 m
+  constexpr double kSnapM = 1e-5;  // single precision rounds by up to 2 um at 50 m
   BandPolygon polygon;
   for (const std::uint32_t index : triangle) {
     const Eigen::Vector3d vertex = mesh.vertices[index].cast<double>();

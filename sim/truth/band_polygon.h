@@ -1,4 +1,4 @@
-// A triangle's part inside the obstacle band, seen from above. Only for sim's own grids.
+// The part of a triangle inside the obstacle band, seen from above. Internal to sim.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ struct HeightBand {
   double high_z_m = 0.0;
 };
 
-// Convex: a triangle cut by three pairs of planes has at most nine corners. Corners are
-// (x in cells, y in cells, z in metres); x and y may well enclose no area, as a wall's do.
+// Convex: a triangle cut by three pairs of planes has at most nine corners. Corners are (x in
+// cells, y in cells, z in metres); the area in x and y may be 0, as for a wall.
 class BandPolygon {
  public:
   using Corner = std::array<double, 3>;
@@ -34,7 +34,7 @@ class BandPolygon {
 
   // The part with sign * (corner[axis] - bound) <= 0 (Sutherland and Hodgman 1974).
   BandPolygon Cut(std::size_t axis, double bound, double sign) const;
-  double Min(std::size_t axis) const;  // not of an empty one
+  double Min(std::size_t axis) const;  // requires a non-empty polygon
   double Max(std::size_t axis) const;
 
  private:
@@ -57,7 +57,7 @@ void ForEachCell(const BandPolygon& polygon, const Visit& visit) {
   for (int row = floor(polygon.Min(1)); row <= last_row; ++row) {
     const BandPolygon strip = polygon.Cut(1, row, -1.0).Cut(1, row + 1, 1.0);
     if (strip.empty()) continue;
-    // The strip's upper edge belongs to the next row: corners on it are approached, not reached.
+    // The strip's upper edge belongs to the next row, so corners on it do not count as reached.
     int last_column = floor(strip.Min(0));
     for (const auto& corner : strip) {
       const bool is_reached = corner[1] < row + 1;

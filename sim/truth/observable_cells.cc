@@ -45,7 +45,7 @@ void Walk(const Vector2d& from_cells, const Vector2d& to_cells, const Visit& vis
   }
 }
 
-// Looks around from poses and remembers what it saw.
+// Casts rays from poses and accumulates the cells seen.
 class Observer {
  public:
   Observer(const RayScene& fences, const std::vector<ValueSpan>& height_m, const HeightBand& band,
@@ -145,7 +145,7 @@ CellSet ObservableCells(const TriangleMesh& mesh, double floor_z_m, const StateM
       observers[k].LookFrom(world_from_camera[i].world_from_camera);
     }
   });
-  // A union: no order to depend on.
+  // A union does not depend on the order.
   CellSet seen = observers[0].seen();
   for (const Observer& observer : observers) {
     for (std::size_t i = 0; i < seen.members.size(); ++i) {

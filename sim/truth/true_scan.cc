@@ -14,7 +14,8 @@ namespace depthgrid {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
-// Past a surface that a ray met, and into the view of one that its edge met: more than rounding.
+// Step past a surface that was hit, or into view of one hit along the image's edge; larger than
+// rounding errors.
 constexpr double kBeyondM = 1e-3;
 
 }  // namespace
@@ -86,7 +87,8 @@ double TrueScanner::NextOutline(const Eigen::Vector3d& at, const Eigen::Vector3d
   return hit ? start_m + hit->distance : kNowhere;
 }
 
-// What lies flat, a box's top, comes into view where an edge of the image meets it.
+// The nearest hit along the image's lower and upper edge: a horizontal surface, such as a box's
+// top, comes into view there.
 double TrueScanner::NearestOnEdges(const ViewPyramid& image, const Eigen::Vector3d& at,
                                    const Eigen::Vector3d& direction) const {
   constexpr double kSteepest = 1e3;
@@ -104,7 +106,7 @@ double TrueScanner::NearestOnEdges(const ViewPyramid& image, const Eigen::Vector
   return nearest_m;
 }
 
-// `low_line` is where the foot of the band is in view.
+// `low_line` is the interval in which the band's lower edge is in view.
 TrueScanner::Sight TrueScanner::Look(const ViewPyramid& image, const Eigen::Vector3d& at,
                                      const Eigen::Vector3d& direction, double outline_m,
                                      const std::optional<ValueSpan>& low_line) const {
@@ -115,7 +117,8 @@ TrueScanner::Sight TrueScanner::Look(const ViewPyramid& image, const Eigen::Vect
   };
   if (!is_passed()) return sight;
   while (is_passed()) {
-    // Where the foot of the band is in view this hangs above the image: it is there all the same.
+    // Out of view although the band's lower edge is in view, so it is above the image: an obstacle
+    // all the same.
     if (low_line && sight.seen_m >= low_line->low) {
       sight.free_until_m = std::min(sight.free_until_m, sight.seen_m);
     }
@@ -141,7 +144,8 @@ Scan TrueScanner::Obstacles(const Pose3& world_from_camera) const {
       beam.clear_from_m = static_cast<float>(clear->low);
       beam.clear_to_m = static_cast<float>(clear->high);
     }
-    // Seen, but at a depth that the sensor cannot measure: no hit, and nothing behind it either.
+    // A visible obstacle at a depth that the sensor cannot measure gives no hit, nor does anything
+    // behind it.
     beam.hit =
         sight.seen_m <= range_m.high && IsSeen(view, (at + sight.seen_m * direction).head<2>());
     if (beam.hit) beam.range_m = static_cast<float>(sight.seen_m);

@@ -1,5 +1,5 @@
-// The scans a perfect converter would make of a camera's view: cast in the room itself, for
-// experiments that put the truth in place of depth images and their conversion.
+// The scans of a perfect depth-to-scan conversion, ray-cast in the scene itself, for experiments
+// that replace depth images and their conversion by the truth.
 #pragma once
 
 #include <memory>
@@ -16,33 +16,33 @@ namespace depthgrid {
 
 struct TrueScanOptions {
   int beams = 640;          // over the camera's horizontal field of view, uniform in angle
-  double band_low_m = 0.1;  // above the floor
+  double band_low_m = 0.1;  // heights above the floor
   double band_high_m = 1.8;
   double min_range_m = 0.4;
   double max_range_m = 6.0;
   double min_depth_m = 0.0;  // z-depths the sensor can measure
   double max_depth_m = 1e9;
-  double resolution_m = 0.05;  // of the truth map, whose cells' surfaces are in view or not
+  double resolution_m = 0.05;  // of the truth map; visibility is decided per cell
 };
 
 class TrueScanner {
  public:
-  // `rays` are of the mesh.
+  // `rays` is built from `mesh`.
   TrueScanner(const TriangleMesh& mesh, double floor_z_m, const RayScene& rays,
               const PinholeCamera& camera, const TrueScanOptions& options);
 
-  // The nearest obstacle of the band on each bearing that is in view: nearer ones below the image,
-  // or above it, are passed. Free as far as the band is seen down to its lower edge and nothing at
-  // all stands in it (docs/truth.md, observable cells: the same rules).
+  // Hits are the nearest obstacle of the band in view on each bearing; nearer ones below or above
+  // the image are skipped. A bearing is free as far as the band's lower edge is in view and nothing
+  // stands in the band (the rules for observable cells in docs/truth.md).
   Scan Obstacles(const Pose3& world_from_camera) const;
-  // The level slice at the camera's own height.
+  // The scan of a level slice at the camera's height.
   Scan Slice(const Pose3& world_from_camera) const;
 
  private:
   template <typename BeamOf>
   Scan ScanOf(const Pose3& world_from_camera, const RayScene& rays, float height_m,
               BeamOf beam_of) const;
-  // Of the band's surfaces where a level ray ends, any part.
+  // Whether any part of the band's surfaces in the cell at `end` is in view.
   bool IsSeen(const ViewPyramid& view, const Eigen::Vector2d& end) const;
   // Distances along a level ray; infinity where there is nothing.
   double NextOutline(const Eigen::Vector3d& at, const Eigen::Vector3d& direction,
@@ -51,7 +51,7 @@ class TrueScanner {
                         const Eigen::Vector3d& direction) const;
   struct Sight {
     double seen_m = 0.0;        // the nearest obstacle in view
-    double free_until_m = 0.0;  // the nearest one out of view that is not below it
+    double free_until_m = 0.0;  // the nearest obstacle out of view but not below the image
   };
   Sight Look(const ViewPyramid& image, const Eigen::Vector3d& at, const Eigen::Vector3d& direction,
              double outline_m, const std::optional<ValueSpan>& low_line) const;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMaxCells = 2e8;
 
-// Refuses what is surely a mistake of units before memory is asked for it.
+// Rejects an obvious mistake of units before allocating memory.
 void CheckExtent(const TriangleMesh& mesh, double resolution_m) {
   if (mesh.vertices.empty()) return;
   const Eigen::Vector3f size_m = BoundsOf(mesh).sizes();

@@ -16,18 +16,17 @@ struct TruthGridOptions {
   double band_high_m = 1.8;
 };
 
-// Occupied: cells a surface crosses inside the band (surfaces, not interiors). Free: what can be
-// reached from the camera's path over cells that are not occupied, side by side. Unknown: the rest.
-// The rectangle holds all occupied cells and the path. Throws InputError when it would be absurdly
-// large.
+// Occupied: cells that a surface crosses inside the band (surfaces, not interiors). Free: cells
+// reachable from the camera's path through unoccupied cells (4-connected). Unknown: the rest. The
+// rectangle contains all occupied cells and the path. Throws InputError when it would be too large.
 StateMap TruthMap(const TriangleMesh& mesh, double floor_z_m, const Trajectory& world_from_camera,
                   const TruthGridOptions& options);
 
 // The occupied cells alone; everything else is unknown.
 StateMap SurfaceCells(const TriangleMesh& mesh, double floor_z_m, const TruthGridOptions& options);
 
-// Turns the unknown cells that can be reached from `from`, through cells that are not occupied and
-// share a side, free.
+// Marks as free the unknown cells that are reachable from `from` through unoccupied cells
+// (4-connected).
 void FloodFree(StateMap& map, const std::vector<Cell>& from);
 
 }  // namespace depthgrid
