@@ -17,7 +17,7 @@ void Validate(const PinholeCamera& camera, const std::string& place) {
     }
   };
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  // Undistorting takes a pixel and its neighbours.
+  // Undistortion interpolates between neighbouring pixels.
   const int least_px = camera.HasDistortion() ? 2 : 1;
   const std::string sizes =
       "from " + std::to_string(least_px) + " to " + std::to_string(kMostImageSidePx) + " pixels";
@@ -29,8 +29,8 @@ void Validate(const PinholeCamera& camera, const std::string& place) {
   require(positive(camera.fx_px), "fx", camera.fx_px, "positive");
   require(positive(camera.fy_px), "fy", camera.fy_px,
           "positive (a y-up world is expressed in the poses, see docs/conventions.md)");
-  // A cut-out of an image need not hold its principal point; one this far outside is a slip of
-  // units or columns: its rays are 84 degrees off the axis and more.
+  // A cropped image need not contain its principal point, but one this far outside (rays 84 degrees
+  // off the axis and more) is a mistake of units or columns.
   constexpr double kMostFocalLengths = 10.0;
   const auto near = [](double centre_px, int size_px, double focal_px) {
     const double most_px = kMostFocalLengths * focal_px;

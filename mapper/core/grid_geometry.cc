@@ -10,8 +10,7 @@ namespace depthgrid {
 
 namespace {
 
-// Cells from the lower of two places on to the higher of two ends; as many as there are numbers
-// where it would be more.
+// Size of the union of two intervals, clamped to the maximum of int.
 int Extent(int low_a, int size_a, int low_b, int size_b) {
   const std::int64_t end = std::max(std::int64_t{low_a} + size_a, std::int64_t{low_b} + size_b);
   const std::int64_t most = std::numeric_limits<int>::max();

@@ -9,16 +9,16 @@
 namespace depthgrid {
 namespace {
 
-// A beam's code says whether it is a hit and where its numbers come from: 0, the beam before it,
-// its own range, or the next of the values, in the order range, clear_from, clear_to.
+// A beam's code: whether it is a hit and the source of its range, clear_from and clear_to (stored
+// in this order). Each is 0, the previous beam's, the beam's own range or the next stored value.
 constexpr std::uint8_t kHit = 1;
 constexpr std::uint8_t kRangeGiven = 2;  // else 0
-constexpr std::uint8_t kFromGiven = 4;   // else the one of the beam before, 0 for the first
+constexpr std::uint8_t kFromGiven = 4;   // else the previous beam's, 0 for the first
 constexpr std::uint8_t kToGiven = 8;     // else ...
-constexpr std::uint8_t kToIsRange = 16;  // ... its range, or the one of the beam before
+constexpr std::uint8_t kToIsRange = 16;  // ... its range, or the previous beam's
 constexpr std::uint8_t kAllBits = 31;
 
-// What is in front of a scan's codes and values in its block.
+// Precedes a scan's codes and values in its block.
 struct Header {
   double max_range_m = 0.0;
   std::uint32_t beams = 0;
@@ -31,7 +31,7 @@ std::size_t Padded(std::size_t bytes) {
   return (bytes + alignof(Header) - 1) / alignof(Header) * alignof(Header);
 }
 
-// To the bit: -0 and NaN come back as they were.
+// Compares bits, so that -0 and NaN are restored exactly.
 bool Same(float a, float b) {
   return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
 }
@@ -115,8 +115,8 @@ void ScanArchive::Pack(const Scan& scan) {
   }
 }
 
-// The newest block if the scan's bearings are its and it has room, else a new one: twice as large
-// as the one before, or for one scan when the bearings are others.
+// The newest block if it has the scan's bearings and enough room, else a new one: twice as large as
+// the last, or of the size of one scan if the bearings differ.
 std::shared_ptr<KeptScan::Block> ScanArchive::BlockFor(const Scan& scan, std::size_t bytes) {
   const bool same_bearings = newest_ && SameBearings(scan, *newest_->bearings_rad);
   if (same_bearings && newest_->room - newest_->used >= bytes) return newest_;

@@ -3,7 +3,7 @@
 namespace depthgrid {
 namespace {
 
-// Of a level camera: optical z is level x (forward), optical x is level -y, optical y is level -z.
+// For a level camera optical z is level x (forward), optical x is level -y, optical y is level -z.
 Eigen::Quaterniond LevelFromOptical() {
   Eigen::Matrix3d level_from_optical;
   level_from_optical << 0, 0, 1,  //

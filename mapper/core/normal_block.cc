@@ -6,8 +6,9 @@
 namespace depthgrid {
 namespace {
 
-// Philox4x32-10 (Salmon et al. 2011, section 4.2) for one counter, in a shape compilers vectorise
-// over counters. The constants are the paper's; normal_block_test holds it against Random123.
+// Philox4x32-10 (Salmon et al. 2011, section 4.2) for one counter, written so that compilers
+// vectorise over counters. The constants are the paper's; normal_block_test compares it with
+// Random123.
 struct Words {
   std::uint32_t w0, w1, w2, w3;
 };
@@ -48,12 +49,12 @@ inline float Log(float x) {
   p = p * m - 2.4999993993e-1F;
   p = p * m + 3.3333331174e-1F;
   const float square = m * m;
-  // log 2 in two parts, the first of them exact in few bits.
+  // log 2 as the sum of a part with few bits, so that its product with e is exact, and a remainder.
   return (m + (p * m * square - 2.12194440e-4F * e - 0.5F * square)) + 0.693359375F * e;
 }
 
 // Two normals from two words: the radius from the first, the direction from the second. The angle
-// lies within an eighth of a turn; the top bits then mirror it into the other three quarters.
+// is within an eighth of a turn of an axis; the top bits choose the quadrant.
 inline void BoxMuller(std::uint32_t radius_word, std::uint32_t angle_word, float& first,
                       float& second) {
   const float uniform =

@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-// The shortest digits that are read back as the same number.
+// The shortest decimal that parses to the same number.
 std::string Shown(double value) {
   constexpr double kLeastFixed = 1e-4, kMostFixed = 1e16;
   const double size = std::abs(value);
@@ -98,7 +98,7 @@ class RangeCheck final : public OptionsVisitor {
   std::string PlaceOf(std::string_view key) const {
     return places_ && !key.empty() ? places_(PathOf(key)) : "";
   }
-  // The other key may be the one that was given its value.
+  // Names `other_key`'s place if only that one was given.
   [[noreturn]] void Fail(std::string_view key, std::string_view other_key,
                          const std::string& message) const {
     std::string place = PlaceOf(key);
@@ -109,7 +109,7 @@ class RangeCheck final : public OptionsVisitor {
 
   std::string path_;
   KeyPlaces places_;
-  std::vector<std::size_t> lengths_;  // of the path around each group that is open
+  std::vector<std::size_t> lengths_;  // length of the path before each open group
 };
 
 }  // namespace

@@ -4,7 +4,7 @@ namespace depthgrid {
 
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad) {
   const double half_angle_rad = 0.5 * rotation_vector_rad.norm();
-  // sin(x)/x, by its series where the quotient is 0/0; the next term is below 1e-17 there.
+  // sin(x)/x, near 0 by its series, whose next term is below 1e-17.
   const double sinc = half_angle_rad < 1e-4 ? 1.0 - half_angle_rad * half_angle_rad / 6.0
                                             : std::sin(half_angle_rad) / half_angle_rad;
   const Eigen::Vector3d imaginary = 0.5 * sinc * rotation_vector_rad;
@@ -13,13 +13,13 @@ Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad) {
 }
 
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
-  const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation
+  const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;  // q and -q are the same rotation
   const double sine = rotation.vec().norm();
   if (sine < 1e-12) return 2.0 * sign * rotation.vec();
   return (2.0 * std::atan2(sine, sign * rotation.w()) / sine * sign) * rotation.vec();
 }
 
-// Eigen's own takes some ten seconds to compile wherever it is used: once, here.
+// Wrapped here because FromTwoVectors takes some ten seconds to compile wherever it is used.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to);
 }

@@ -27,7 +27,7 @@ std::uint32_t RandomStream::NextWord() {
 }
 
 double RandomStream::Uniform() {
-  // 52 bits and a half step: never 0 and never 1.
+  // 52 bits plus half a step, so the result is never 0 or 1.
   const std::uint64_t high = NextWord() >> 6;
   const std::uint64_t low = NextWord() >> 6;
   return (static_cast<double>((high << 26) | low) + 0.5) * 0x1.0p-52;

@@ -9,15 +9,15 @@
 namespace depthgrid {
 namespace {
 
-// So few do not tell what is usual.
+// With fewer steps the usual motion is unknown.
 constexpr std::size_t kFewSteps = 6;
-// After a gap as long the motion may be another.
+// After a gap this long the motion may have changed.
 constexpr double kForgottenS = 1.0;
-// A step is off so many times what is too much once the usual is known, where it is not. Chosen, of
-// no measurement: 0.33 m at 30 Hz, and ORB-SLAM2's first pose after a loss was off by 0.6 m.
+// Factor of the limit while the usual motion is not yet known. Chosen, not measured: it makes 0.33
+// m at 30 Hz, and ORB-SLAM2's first pose after a loss was off by 0.6 m.
 constexpr double kSurelyOff = 3.0;
-// A pose so near to the origin is there, and one so far away from it is not. Chosen, of no
-// measurement.
+// A pose this near to the origin is at it (kThere), one this far is away from it (kAway). Chosen,
+// not measured.
 constexpr double kThereM = 0.05;
 constexpr double kThereRad = 0.05;
 constexpr double kAwayM = 0.5;
@@ -51,8 +51,8 @@ int SlamEpochs::Of(const Frame& frame) {
   return epoch_;
 }
 
-// The step that breaks is the first of what comes after: were it a motion after all, what was usual
-// no longer is.
+// A step that breaks the motion is the first of the new motion: if it was real, the usual motion
+// has changed.
 bool SlamEpochs::Breaks(const Posed& last, const Posed& next) {
   const double duration_s = next.stamp_s - last.stamp_s;
   const bool gap = !(duration_s < kForgottenS);
@@ -80,17 +80,17 @@ bool SlamEpochs::Breaks(const Posed& last, const Posed& next) {
   return breaks;
 }
 
-// Over a pause a camera may go anywhere, but a driver or a SLAM that was started again counts from
-// its origin. A camera that was taken back there is where the map explains what it sees.
+// During a pause a camera may move anywhere, but a restarted driver or SLAM begins at its origin.
+// If instead the camera was carried back there, the map explains what it sees.
 bool SlamEpochs::BeginsAnew(const Posed& last, const Posed& next) const {
   return !IsWithin(last.slam_from_camera, next.slam_from_camera, kAwayM, kAwayRad) &&
          (IsWithin(next.slam_from_camera, *first_, kThereM, kThereRad) ||
           IsAtZero(next.slam_from_camera));
 }
 
-// SLAM that errs for a frame comes back in the next, and one that was lost corrects itself again
-// and again: while little is known of the motion since, a step is one that goes on as before, as
-// since or, after a gap, from standing.
+// A SLAM that errs in one frame returns in the next, and one that was lost corrects itself
+// repeatedly. So while few steps are known since the break, a step is accepted if it continues the
+// motion before it, the motion since or, after a gap, starts from standing.
 bool SlamEpochs::BreaksMotions(const SlamStep& step) const {
   if (!since_.AreFew()) return BreaksMotion(step, since_.Usual());
   const double times = gap_ ? kSurelyOff : 1.0;

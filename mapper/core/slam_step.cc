@@ -7,12 +7,12 @@
 namespace depthgrid {
 namespace {
 
-// What is not exceeded between poses: a car's emergency braking, and a hand that turns by 1 rad/s
-// more within a frame of 30 Hz.
+// Upper bounds between poses: a car's emergency braking, and a hand whose turn rate changes by 1
+// rad/s within a frame at 30 Hz.
 constexpr double kAccelerationMps2 = 10.0;
 constexpr double kTurnAccelerationRadps2 = 30.0;
 
-// In which the usual motion takes `dt_s`.
+// Whether the step differs too much from the usual motion over `dt_s`.
 bool BreaksWithin(double dt_s, const SlamStep& step, const SlamStep& usual, double times) {
   const Eigen::Vector3d off_m = step.velocity * step.duration_s - usual.velocity * dt_s;
   const Eigen::Vector3d off_rad = step.turn_rate * step.duration_s - usual.turn_rate * dt_s;

@@ -5,10 +5,11 @@
 namespace depthgrid {
 namespace {
 
-// How far SLAM goes, in itself or 3 m away, before it has left a place: ten times what the last
-// digits of odometry jitter by, and a tenth of a frame's way at a walking pace.
+// SLAM's motion, of the base or of a point 3 m away, beyond which it has left its place: ten times
+// the jitter in the last digits of odometry, a tenth of the motion per frame at walking pace.
 constexpr double kLeftM = 0.005;
-// And what is matched, which is noisy: no better match tells how SLAM errs (motion_noise.cc).
+// The same for matched poses, which are noisier; better matches give no information on SLAM's
+// errors (motion_noise.cc).
 constexpr double kSeenToLeaveM = 0.05;
 bool IsFarther(const Pose2& motion, double limit_m) {
   return motion.vector().cwiseQuotient(kMotionUnit).norm() > limit_m;

@@ -14,7 +14,7 @@
 namespace depthgrid {
 namespace {
 
-// Cell `i` of a tile's.
+// The global index of cell `i` of a tile.
 Cell CellOfTile(int tile_row, int tile_column, int i) {
   return {tile_column * kWordCells + i % kWordCells, tile_row * kWordCells + i / kWordCells};
 }
@@ -35,7 +35,7 @@ void RequireDrawable(const GridGeometry& seen) {
                               ": a pose lies far off, or the resolution is too fine");
 }
 
-// Null where no tile is.
+// The record of a cell; null where there is no tile.
 template <typename Tiles>
 auto RecordIn(const Tiles& tiles, const Cell& cell)
     -> decltype(tiles.begin()->second->cells.data()) {
@@ -43,7 +43,7 @@ auto RecordIn(const Tiles& tiles, const Cell& cell)
   return tile == tiles.end() ? nullptr : &tile->second->cells[CellInTile(cell)];
 }
 
-// The smallest rectangle around its cells; empty when it has none.
+// The bounding rectangle of the mask's cells; empty for none.
 GridGeometry RectangleOf(const CellMask& mask, double resolution_m) {
   constexpr int kNone = std::numeric_limits<int>::max();
   int low_x = kNone, end_x = -kNone, low_y = kNone, end_y = -kNone;
@@ -89,8 +89,8 @@ void MapDrawing::Add(const Scan& scan, const Pose2& map_from_base) {
   if (options_.min_surface_share > 0.0) AddSurface(scan, map_from_base);
 }
 
-// A beam stands for the length of wall between it and its neighbour, at most a cell, and weighs as
-// its range is known: sigma grows at least with r.
+// A beam represents the length of wall between it and its neighbour, at most a cell, weighted by
+// the accuracy of its range: sigma grows at least with r.
 void MapDrawing::AddSurface(const Scan& scan, const Pose2& map_from_base) {
   for (std::size_t i = 0; i < scan.beams.size(); ++i) {
     const Beam& beam = scan.beams[i];
@@ -145,7 +145,7 @@ float MapDrawing::Probability(const CellRecord& cell) const {
   return static_cast<float>(weighted_hits / (weighted_hits + cell.passes));
 }
 
-// A cell's counts and surface as if no more scans had seen it.
+// The record scaled down to at most options_.earlier_scans scans.
 MapDrawing::CellRecord MapDrawing::Limited(const CellRecord& earlier) const {
   const std::uint32_t seen = earlier.hits + earlier.passes;
   const auto most = static_cast<std::uint32_t>(options_.earlier_scans);
@@ -160,7 +160,8 @@ MapDrawing::CellRecord MapDrawing::Limited(const CellRecord& earlier) const {
   return record;
 }
 
-// Where this drive saw a cell, what earlier ones saw counts little; elsewhere it is all there is.
+// Adds earlier drives' records: with limited weight where this drive saw the cell, in full
+// elsewhere.
 void MapDrawing::AddEarlier(Tiles& tiles) const {
   for (const auto& [index, tile] : earlier_tiles_) {
     std::unique_ptr<Tile>& both = tiles[index];
@@ -184,7 +185,7 @@ void MapDrawing::Add(int frame, const Scan& scan, const Pose2& map_from_base) {
 }
 
 void MapDrawing::BeginDrive() {
-  // Log odds are clamped, and so make up for what is gone by themselves.
+  // Log odds are clamped, so they adapt to changes without this.
   if (options_.earlier_scans == 0 || options_.raster == RasterRule::kLogOdds) return;
   AddEarlier(tiles_);
   earlier_tiles_ = std::exchange(tiles_, {});
@@ -213,8 +214,8 @@ OccupancyMap MapDrawing::MapOf(const Tiles& tiles) const {
   return map;
 }
 
-// Looks along the direction a cell was seen from, before and behind it, for the most surface: where
-// the beams that ended here would have ended with other noise.
+// The largest surface value in front of and behind a cell along its viewing direction, where beams
+// that ended here would have ended with different noise.
 MapDrawing::Peak MapDrawing::PeakAlong(const Tiles& tiles, const Cell& cell,
                                        const CellRecord& record) const {
   Peak peak{record.surface, 0};
@@ -234,9 +235,8 @@ MapDrawing::Peak MapDrawing::PeakAlong(const Tiles& tiles, const Cell& cell,
   return peak;
 }
 
-// A cell next to a surface that has little of it keeps only what the beams passing it say. Behind
-// the surface, beams that passed because of their noise must not make a free cell: there it takes
-// many.
+// A cell next to a surface peak with little surface of its own keeps only its passes. Behind the
+// surface it takes many passes to make a cell free, as some beams pass it because of their noise.
 void MapDrawing::ThinWalls(const Tiles& tiles, OccupancyMap& map) const {
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {
     if (!(map.occupied_prob[i] > 0.0F)) continue;

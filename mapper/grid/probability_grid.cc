@@ -10,8 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// The rectangle grows by at least this much at a time, so that a moving camera seldom makes it
-// grow.
+// The rectangle grows by at least this much, so that a moving camera seldom causes it to grow.
 constexpr int kGrowthCells = 32;
 
 template <typename Value>
@@ -103,7 +102,7 @@ GridGeometry ProbabilityGrid::GeometryWith(const CellMask& mask) const {
 void ProbabilityGrid::GrowToContain(const CellMask& mask) {
   GridGeometry needed = GeometryOf(mask, map_.geometry.resolution_m);
   if (Union(map_.geometry, needed) == map_.geometry) return;
-  map();  // so that no cell is out of date while they move
+  map();  // brings all cells up to date before they move
   needed.min_cell.y -= kGrowthCells;
   needed.height_cells += 2 * kGrowthCells;
   const GridGeometry grown = Union(map_.geometry, needed);

@@ -10,10 +10,10 @@
 namespace depthgrid {
 namespace {
 
-// Neighbours count as touching only with this much to spare, so that no rounding decides.
+// Safety factor for neighbours to count as touching, so that rounding does not matter.
 constexpr double kTouchMargin = 0.99;
 
-// Beyond any scan, and within an int.
+// Farther than any scan, but within int.
 constexpr double kFarCells = 1e8;
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -21,14 +21,14 @@ using DoubleLanes = hn::CappedTag<double, 4>;
 using Doubles = hn::Vec<DoubleLanes>;
 constexpr DoubleLanes kDoubles;
 
-// Whole numbers as 32-bit integers.
+// Converts whole numbers to 32-bit integers.
 void StoreInts(Doubles values, std::int32_t* out) {
   const hn::Rebind<std::int32_t, DoubleLanes> ints;
   hn::StoreU(hn::DemoteTo(ints, values), ints, out);
 }
 
-// The last cell of the points between `end`, which counts, and `crossing`, which does not unless
-// the segment ends there.
+// The last cell of the points between `end`, inclusive, and `crossing`, exclusive unless the
+// segment ends there.
 Doubles LastCellBetween(Doubles end, Doubles crossing, hn::Mask<DoubleLanes> one_row) {
   const Doubles below_crossing = hn::Sub(hn::Ceil(crossing), hn::Set(kDoubles, 1.0));
   const auto open = hn::AndNot(one_row, hn::Gt(crossing, end));
@@ -56,7 +56,7 @@ const ScanCells& ScanRasterizer::Rasterize(const ScanSegments& segments) {
 }
 
 void ScanRasterizer::Resize(std::size_t padded) {
-  // Neighbours are read together, from the second beam on.
+  // One element more, as each beam is read together with its neighbour.
   for (auto* values : {&low_x_, &low_y_, &slope_, &reach_}) values->resize(padded + 1);
   touches_.resize(padded + 1);
   for (auto* values : {&first_row_, &last_row_, &first_span_first_, &first_span_last_,
@@ -82,8 +82,8 @@ void ScanRasterizer::FindEndSpans(const ScanSegments& segments) {
     const Doubles rise = hn::Sub(high_y, low_y);
     const Doubles divisor = hn::IfThenElse(hn::Gt(rise, hn::Zero(kDoubles)), rise, one);
     const Doubles quotient = hn::Div(hn::Sub(high_x, low_x), divisor);
-    // As VisitSegmentSpans: along a boundary of rows, where no double holds the slope, it lies
-    // above.
+    // As in VisitSegmentSpans: a segment along a row boundary, whose slope overflows, belongs to
+    // the row above.
     const auto has_slope = hn::IsFinite(quotient);
     const Doubles slope = hn::IfThenElseZero(has_slope, quotient);
     hn::StoreU(low_x, kDoubles, low_x_.data() + i);
@@ -125,7 +125,7 @@ void ScanRasterizer::SetEndSpans(const ScanSegments& segments) {
   }
 }
 
-// RowSpan of a beam that crosses the row from side to side: its leftmost and its rightmost cell.
+// RowSpan for a beam that crosses the whole row: its leftmost and rightmost cell.
 inline int ScanRasterizer::LeftCell(std::size_t beam, int row) const {
   const double below = low_x_[beam] + (row - low_y_[beam]) * slope_[beam];
   const double above = low_x_[beam] + (row + 1 - low_y_[beam]) * slope_[beam];
@@ -138,9 +138,9 @@ inline int ScanRasterizer::RightCell(std::size_t beam, int row) const {
   return std::max(FloorToInt(std::min(below, above)), LastCellBelow(std::max(below, above)));
 }
 
-// The crossing spans of a beam and of the one before it touch where h |slope difference| does not
-// exceed this, h the height above the origin at which they enter a row: both start at the origin,
-// so that is their distance, and within the row each is as wide as its slope.
+// The spans of a beam and of the one before it touch in a row if h |slope difference| does not
+// exceed this, with h the height above the origin at which they enter the row. Both start at the
+// origin, so h |slope difference| is their distance there, and each span is as wide as its slope.
 inline double ScanRasterizer::AllowedDistance(std::size_t beam) const {
   const double slope = slope_[beam];
   const double before = slope_[beam - 1];
@@ -148,7 +148,7 @@ inline double ScanRasterizer::AllowedDistance(std::size_t beam) const {
   return kTouchMargin * (1.0 + width);
 }
 
-// For every beam whether it touches the one before it in every row that either crosses.
+// For every beam, whether it touches the one before it in every row that both cross.
 void ScanRasterizer::FindTouching(const ScanSegments& segments) {
   const Doubles one = hn::Set(kDoubles, 1.0);
   const Doubles margin = hn::Set(kDoubles, kTouchMargin);
@@ -174,7 +174,7 @@ ScanRasterizer::RowRange ScanRasterizer::TouchingRows(std::size_t beam, double o
                         static_cast<int>(std::floor(origin_y + reach))});
 }
 
-// Above the origin x falls from beam to beam, below it rises.
+// With increasing bearing x decreases above the origin and increases below it.
 inline void ScanRasterizer::Open(std::size_t beam, bool above, int first, int last) {
   for (int row = first; row <= last; ++row) {
     open_x_[static_cast<std::size_t>(row - cells_.passed.first_row())] =
@@ -197,11 +197,11 @@ void ScanRasterizer::FillRuns(const ScanSegments& segments) {
   open_x_.resize(static_cast<std::size_t>(cells_.passed.rows()));
   const double origin_y = segments.origin.y();
   const auto is_above = [origin_y](const RowRange& rows) { return rows.first >= origin_y; };
-  RowRange open;  // rows in which a run goes on up to the beam before
+  RowRange open;  // rows in which a run includes the previous beam
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const RowRange crossed =
         segments.clears[i] != 0 ? RowRange{first_row_[i] + 1, last_row_[i] - 1} : RowRange{};
-    if (crossed == open && touches_[i] != 0) continue;  // most of them
+    if (crossed == open && touches_[i] != 0) continue;  // the usual case
     RowRange shared = Overlap(open, crossed);
     if (!shared.empty() && touches_[i] == 0) shared = TouchingRows(i, origin_y, shared);
     if (shared.empty()) {

@@ -13,7 +13,7 @@ Eigen::Map<Eigen::ArrayXd> AsArray(std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-// Farther than anything is cleared.
+// Farther than any beam clears.
 constexpr double kNoHitM = 1e9;
 
 std::size_t Padded(std::size_t count) {
@@ -45,8 +45,7 @@ void SegmentBuilder::Unpack(const Scan& scan, double clear_margin_m) {
   }
   segments_.hit.resize(count);
   segments_.clears.resize(count);
-  // Stores to bytes may change anything as far as the compiler knows, pointers to the rest
-  // included.
+  // Local pointers, because the compiler must assume that stores to bytes change members.
   std::uint8_t* const hit = segments_.hit.data();
   std::uint8_t* const clears = segments_.clears.data();
   float* const bearing_rad = bearing_rad_.data();
@@ -109,7 +108,7 @@ void SegmentBuilder::Place(const Pose2& map_from_base, double resolution_m) {
 void SegmentBuilder::Bound() {
   Eigen::Vector2d low = segments_.origin;
   Eigen::Vector2d high = segments_.origin;
-  // The near ends of the clear intervals lie between the origin and the far ends.
+  // Near ends of clear intervals need no check: they lie between the origin and the far ends.
   if (segments_.size() > 0) {
     low = low.cwiseMin(
         Eigen::Vector2d(AsArray(segments_.to_x).min(AsArray(segments_.end_x)).minCoeff(),
@@ -118,7 +117,8 @@ void SegmentBuilder::Bound() {
         Eigen::Vector2d(AsArray(segments_.to_x).max(AsArray(segments_.end_x)).maxCoeff(),
                         AsArray(segments_.to_y).max(AsArray(segments_.end_y)).maxCoeff()));
   }
-  // Rounding where a segment crosses a row can put it a hair outside its end points' cells.
+  // Where a segment crosses a row, rounding can put it slightly outside the range of its ends'
+  // columns.
   segments_.min_cell = {FloorToInt(low.x()) - 1, FloorToInt(low.y())};
   segments_.max_cell = {FloorToInt(high.x()) + 1, FloorToInt(high.y())};
 }

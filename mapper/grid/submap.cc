@@ -5,10 +5,9 @@
 namespace depthgrid {
 namespace {
 
-// A square of 400 m in cells of 5 cm; where cells are so small that a scan has more, four times its
-// own rectangle, which a narrow view that turns once on the spot covers. A pose that would make a
-// submap larger is wild, or SLAM began anew elsewhere: no scan so near to the last ones reaches so
-// far.
+// Limit of a submap's size: a square of 400 m in cells of 5 cm, or, with smaller cells, four times
+// the scan's own rectangle, which is what a narrow view covers when turning on the spot. A pose
+// beyond this is an outlier, or SLAM restarted elsewhere.
 constexpr std::size_t kMostSubmapCells = std::size_t{1} << 26;
 constexpr std::size_t kMostScans = 4;
 

@@ -6,18 +6,18 @@
 namespace depthgrid {
 namespace {
 
-// A hit tells its distance to the cells its beam crosses this far before and behind it: as far as
-// the bicubic interpolation around the wall reaches.
+// A hit updates the distances of the cells along its beam this far in front of and behind it, the
+// reach of bicubic interpolation around the wall.
 constexpr int kReachCells = 2;
 constexpr int kStepsPerCell = 2;
-// A wall's direction is that of the hits this far to either side.
+// A wall's direction is fitted to the hits this far to either side.
 constexpr double kNormalReachCells = 2.0;
-// Where the parabola that distances become probabilities by meets free space. Catmull-Rom
-// interpolation is exact for parabolas, so that a wall's ridge lies where the wall does. The four
-// cells around a wall lie within two of it, but 1.75 did better than 1.5, 2 and 2.25
+// The distance at which the parabola that maps distance to probability reaches free space.
+// Catmull-Rom interpolation is exact for parabolas, so the ridge of the map lies exactly on the
+// wall. The four cells around a wall are within two of it, but 1.75 was better than 1.5, 2 and 2.25
 // (docs/tried.md, "The paper's experiment").
 constexpr double kFreeFromCells = 1.75;
-// The rectangle grows by at least this much at a time.
+// The rectangle grows by at least this much.
 constexpr int kGrowthCells = 32;
 
 }  // namespace
@@ -100,7 +100,7 @@ void WallDistances::DrawOver(const OccupancyMap& map, OccupancyMap& drawn) const
     const float* const sum_m = &sum_m_[geometry_.Index(row)];
     const float* const count = &count_[geometry_.Index(row)];
     float* const prob = &drawn.occupied_prob[drawn.geometry.Index(row)];
-    for (int x = 0; x < geometry_.width_cells; ++x) {  // without branches, to be vectorised
+    for (int x = 0; x < geometry_.width_cells; ++x) {  // branch-free, so that it vectorises
       const float distance = per_m * sum_m[x] / std::max(count[x], 1.0F);
       const float near_wall = free_prob + height * std::max(0.0F, 1.0F - distance * distance);
       prob[x] = count[x] > 0.0F ? near_wall : prob[x];

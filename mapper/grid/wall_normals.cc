@@ -17,7 +17,7 @@ struct LineSums {
   }
 };
 
-// Of the least-squares line; `along` where the points are no line.
+// Normal of the least-squares line; `along` if the points do not form a line.
 Eigen::Vector2d NormalOf(const LineSums& sums, const Eigen::Vector2d& along, double least_spread) {
   const double xx = sums.xx - sums.x * sums.x / sums.count;
   const double xy = sums.xy - sums.x * sums.y / sums.count;
@@ -30,7 +30,7 @@ Eigen::Vector2d NormalOf(const LineSums& sums, const Eigen::Vector2d& along, dou
       lengthways < kLeastElongation * across) {
     return along;
   }
-  // Eigenvector of the smaller eigenvalue; of the two ways to write it the one that cannot vanish.
+  // Eigenvector of the smaller eigenvalue, in the form without cancellation.
   const Eigen::Vector2d normal = (xx > yy ? Eigen::Vector2d(-2.0 * xy, xx - yy + root)
                                           : Eigen::Vector2d(yy - xx + root, -2.0 * xy))
                                      .normalized();
@@ -61,7 +61,8 @@ void FindWallHits(const Scan& scan, double reach_m, std::vector<WallHit>& hits) 
       sums.Add(hits[end].point, 1.0);
     }
     for (; !within_reach(first, i); ++first) sums.Add(hits[first].point, -1.0);
-    // Evenly spread over +-reach the standard deviation is 0.58 of it; at an end, half of that.
+    // Points spread evenly over +-reach have a standard deviation of 0.58 reach, at a wall's end
+    // half of that.
     hits[i].normal = NormalOf(sums, hits[i].point.normalized(), 0.2 * reach_m);
   }
 }

@@ -6,7 +6,7 @@
 namespace depthgrid {
 namespace {
 
-// Weights of the four neighbours of a fraction t in [0, 1) between the second and the third.
+// Weights of four neighbours for a point at the fraction t in [0, 1) from the second to the third.
 struct SplineWeights {
   std::array<double, 4> value;
   std::array<double, 4> first;
@@ -23,7 +23,7 @@ SplineWeights CatmullRom(double t) {
           {-3.0 * t + 2.0, 9.0 * t - 5.0, -9.0 * t + 4.0, 3.0 * t - 1.0}};
 }
 
-// The 4 x 4 cells that a point's value is made of.
+// The 4 x 4 cells that a point is interpolated from.
 struct Neighbours {
   Cell first;
   SplineWeights x;
@@ -32,7 +32,7 @@ struct Neighbours {
 
 Neighbours NeighboursOf(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
   const double r = view.geometry.resolution_m;
-  const double u = point_in_map.x() / r - 0.5;  // values sit at cell centres
+  const double u = point_in_map.x() / r - 0.5;  // values are at cell centres
   const double v = point_in_map.y() / r - 0.5;
   const double u0 = std::floor(u);
   const double v0 = std::floor(v);

@@ -77,10 +77,12 @@ CorrelativeMatch CorrelativeSearch::SearchFast(const SearchLattice& lattice,
   CorrelativeMatch best;
   double best_score = -1.0;
   std::uint32_t best_sum = 0;
-  // From the predicted yaw outwards, -n before n: an equal score later on never wins.
+  // From the predicted yaw outwards, -n before n; a later candidate with an equal score does not
+  // win.
   for (int i = 0; i <= 2 * lattice.half_yaw_steps; ++i) {
     const int yaw = i % 2 == 1 ? -(i + 1) / 2 : i / 2;
-    // A prior's weight is at most 1.
+    // The prior's weight is at most 1, so a rotation that cannot reach best_score without it is
+    // skipped.
     if (!scorer_.ScoreRotation(yaw, static_cast<std::int64_t>(std::floor(best_score)))) continue;
     for (const LatticeStep& translation : translations_) {
       const LatticeStep step{translation.x_cells, translation.y_cells, yaw};

@@ -20,8 +20,8 @@ using Ints = hn::Vec<IntLanes>;
 constexpr FloatLanes kFloats;
 constexpr IntLanes kInts;
 
-// How far points may move before the map is copied again, and the unknown around the map: a
-// clamped point's 4 x 4 cells lie outside of the map.
+// How far points may move before the map is copied again, and the border of unknown cells around
+// the map, so wide that the 4 x 4 cells of a clamped point are outside the map.
 constexpr int kReachCells = 6;
 constexpr int kBorderCells = 5;
 
@@ -31,18 +31,18 @@ struct Cubic {
   Floats c0, c1, c2, c3;
 };
 
-// Catmull-Rom through four neighbours, between the second and the third, as powers of the fraction.
+// Coefficients of the Catmull-Rom cubic between the second and third of four neighbours.
 HWY_INLINE Cubic CatmullRom(Floats p0, Floats p1, Floats p2, Floats p3) {
   const Floats half = hn::Set(kFloats, 0.5F);
   const Floats inner = hn::Sub(p1, p2);
   const Floats c1 = hn::Mul(half, hn::Sub(p2, p0));
-  // c3 = (3 (p1 - p2) + p3 - p0) / 2 and c2 = p2 - p1 - c1 - c3, so that the cubic meets p2 at 1.
+  // c3 = (3 (p1 - p2) + p3 - p0) / 2 and c2 = p2 - p1 - c1 - c3, so that the cubic is p2 at 1.
   const Floats c3 = hn::Mul(half, hn::MulAdd(hn::Set(kFloats, 3.0F), inner, hn::Sub(p3, p0)));
   const Floats c2 = hn::Neg(hn::Add(inner, hn::Add(c1, c3)));
   return {p1, c1, c2, c3};
 }
 
-// Value, first and half the second derivative by repeated Horner.
+// Value, first derivative and half the second derivative by Horner's scheme.
 struct CubicValue {
   Floats value, first, half_second;
 };
@@ -61,8 +61,8 @@ struct Neighbours {
   Floats p0, p1, p2, p3;
 };
 
-// Four cells in a row from each point's first one: loads and a transposition, since gathers are
-// slow on many machines (with them the whole solver took 3.4 times as long).
+// Four cells in a row from each point's first one, by loads and a transposition: gathers are slow
+// on many machines (with them the whole solver took 3.4 times as long).
 HWY_INLINE Neighbours LoadRow(const float* probs, const std::int32_t* square) {
   using Four = hn::CappedTag<float, 4>;
   const auto from = [&](std::size_t lane) {
@@ -87,7 +87,7 @@ HWY_INLINE Neighbours LoadRow(const float* probs, const std::int32_t* square) {
           hn::InterleaveUpper(kFloats, ac_high, bd_high)};
 }
 
-// Coefficient j of y to the power and i of x is at [(4 i + j) lanes].
+// The coefficient of x^i y^j is at [(4 i + j) lanes].
 void FitPolynomials(const float* probs, int row, const std::int32_t* square, float* polynomial) {
   const std::size_t lanes = hn::Lanes(kFloats);
   Cubic along_x[4];
@@ -110,7 +110,7 @@ void FitPolynomials(const float* probs, int row, const std::int32_t* square, flo
   fit_y(&Cubic::c3, 3);
 }
 
-// M and its derivatives per cell.
+// M and its derivatives, with lengths in cells.
 struct Sample {
   Floats value, dx, dy, dxx, dxy, dyy;
 };
@@ -137,13 +137,15 @@ HWY_INLINE Sample EvaluatePolynomials(const float* polynomial, Floats tx, Floats
 // Pairwise, always in the same order.
 double SumOf(Floats lanes) { return hn::GetLane(hn::SumOfLanes(kFloats, lanes)); }
 
-// What one point adds, with lengths in cells; E is its motion per unit of (x, y, yaw).
+// The terms of one point, with lengths in cells; E is the derivative of its position by (x, y,
+// yaw).
 struct PointTerms {
   Floats residual;                   // 1 - M
   Floats slope_x, slope_y;           // gradient of M
   Floats slope_yaw;                  // E^T grad M
   Floats wall_xx, wall_xy, wall_yy;  // C = grad M grad M^T - (1 - M) D^2 M
-  Floats x_yaw, y_yaw, yaw_yaw;      // of E^T C E, and the bend of the point's way in yaw_yaw
+  Floats x_yaw, y_yaw,
+      yaw_yaw;  // of E^T C E plus, in yaw_yaw, the point's curved path
 
   HWY_INLINE PointTerms(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
     residual = hn::Mul(weight, hn::Sub(hn::Set(kFloats, 1.0F), m.value));
@@ -156,7 +158,7 @@ struct PointTerms {
     x_yaw = hn::NegMulAdd(arm_y, wall_xx, hn::Mul(arm_x, wall_xy));
     y_yaw = hn::NegMulAdd(arm_y, wall_xy, hn::Mul(arm_x, wall_yy));
     const Floats turn = hn::NegMulAdd(arm_y, x_yaw, hn::Mul(arm_x, y_yaw));
-    // The arm's own second derivative is minus the arm.
+    // The second derivative of the point by yaw is minus the arm.
     const Floats bend = hn::MulAdd(arm_x, slope_x, hn::Mul(arm_y, slope_y));
     yaw_yaw = hn::MulAdd(residual, bend, turn);
   }
@@ -224,7 +226,7 @@ struct AlongSums {
   }
 };
 
-// NaN becomes the constant of unknown cells.
+// Replaces NaN by the probability of unknown cells.
 void CopyRow(const float* probs, int count, float unknown_prob, float* copy) {
   for (int i = 0; i < count; ++i) copy[i] = probs[i] == probs[i] ? probs[i] : unknown_prob;
 }
@@ -246,7 +248,7 @@ void FastMatchCost::Prepare(const MatchPoints& points, const ProbabilityView& vi
   std::copy(points.y_m.begin(), points.y_m.end(), y_m_.begin());
   std::fill(weight_.begin(), weight_.begin() + static_cast<std::ptrdiff_t>(size), 1.0F);
   square_.resize(filled);
-  // One vector more, so that the coefficients can begin at a multiple of a vector's size.
+  // One vector more, so that the coefficients can start aligned.
   polynomial_.resize(kCoefficients * filled + lanes);
   CopyMap(map_from_base);
 }

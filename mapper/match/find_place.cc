@@ -12,41 +12,43 @@
 namespace depthgrid {
 namespace {
 
-// Returns used in all, spread over the scans: enough to tell rooms apart, few enough to try some
-// million places.
+// Number of returns used, spread over the scans: enough to distinguish rooms, few enough to try
+// some million places.
 constexpr std::size_t kPoints = 320;
 constexpr std::size_t kCoarsePoints = 64;
-// A return this far from a wall still counts exp(-1/2); coarsely kCoarseSigmaM.
+// The score of a return falls to exp(-1/2) at this distance from a wall (kCoarseSigmaM in the
+// coarse search).
 constexpr double kFineSigmaM = 0.06;
 constexpr double kFarthestM = 0.6;
-// Places this near to each other are one.
+// Places this near to each other count as one.
 constexpr double kApartM = 0.3;
 constexpr double kApartRad = RadFromDeg(8.0);
 constexpr double kOtherShare = 0.8;
 constexpr std::size_t kMostOthers = 7;
-// A refinement begins with steps of half the lattice's, which end at 1.6 mm and 0.06 degrees.
+// A refinement starts with half the lattice's steps; the last ones are 1.6 mm and 0.06 degrees.
 constexpr double kFirstStepM = 0.05;
 constexpr double kFirstStepRad = RadFromDeg(2.0);
 constexpr int kHalvings = 5;
 constexpr double kElsewhereM = 1.0;
 constexpr double kElsewhereRad = RadFromDeg(30.0);
-// What lies this near to the guess (SLAM's drift since the map was made) needs this share of the
-// best score.
+// A place near the guess (within SLAM's drift since the map was made) is preferred if it has this
+// share of the best score.
 constexpr double kGuessShare = 0.9;
 constexpr double kGuessReachRad = RadFromDeg(12.0);
 constexpr double kGuessStepM = 0.15;
 constexpr double kGuessStepRad = RadFromDeg(4.0);
 constexpr std::size_t kGuessesRefined = 10;
-// What is this near to the best score may be the place as well; looked for along so many lines.
+// Poses with this share of the best score may be the place as well; they are searched along
+// kUnsureLines lines.
 constexpr double kUnsureShare = 0.97;
 constexpr int kUnsureLines = 36;  // 5 degrees apart: at 1 m half of that is 4 cm across
 constexpr double kUnsureStepM = 0.05;
 constexpr double kUnsureReachM = 5.0;
-// Less than this is found by matching: of 40 starts in two rooms those right to 2 cm had 0.16 m and
-// less, but for four of which another place fitted nearly as well.
+// Less uncertainty than this is resolved by matching: of 40 starts in two rooms, those correct to 2
+// cm had at most 0.16 m, except four for which another place fitted nearly as well.
 constexpr double kLeastUnsureM = 0.2;
 
-// Every n-th return of all scans, in the axes of the first scan's base.
+// About `wanted` evenly chosen returns of all scans, in base axes of the first scan.
 PlaceReturns PointsOf(const std::vector<PlacedScan>& scans, std::size_t wanted) {
   PlaceReturns all;
   const Pose2 first_from_slam = Inverse(scans.front().slam_from_base);
@@ -85,7 +87,7 @@ double ScoreOf(const DistanceField& walls, const PlaceReturns& points, const Pos
   return sum / ((1.0 + kFreeWorth) * static_cast<double>(points.size()));
 }
 
-// Steps along each axis, halved when none is better.
+// Coordinate search: steps along each axis, halved when none improves the score.
 PlaceCandidate Refined(const DistanceField& walls, const PlaceReturns& points, const Pose2& start) {
   PlaceCandidate best{start, ScoreOf(walls, points, start, kFineSigmaM)};
   Eigen::Vector3d step(kFirstStepM, kFirstStepM, kFirstStepRad);
@@ -135,8 +137,8 @@ PlaceCandidate NearGuess(const DistanceField& walls, const PlaceReturns& coarse_
   return best;
 }
 
-// The next one, unless another within reach is much better: what is known beforehand is kept where
-// little is seen, as along a corridor. The known place itself where it fits as well.
+// The place nearest to `known`, unless another within reach is much better: keeps the prior where
+// little is seen, as along a corridor. `known` itself if it fits as well.
 PlaceCandidate NextTo(const DistanceField& walls, const PlaceReturns& coarse_points,
                       const PlaceReturns& points, const Pose2& known, double within_m) {
   const PlaceCandidate given{known, ScoreOf(walls, points, known, kFineSigmaM)};
@@ -151,7 +153,7 @@ PlaceCandidate NextTo(const DistanceField& walls, const PlaceReturns& coarse_poi
   return FitsAsWell(given.score, place.score) ? given : place;
 }
 
-// Those that may be the place too, best first.
+// Other candidates that may be the place, best first.
 std::vector<Pose2> OthersThan(const PlaceCandidate& best, std::vector<PlaceCandidate> candidates) {
   std::stable_sort(
       candidates.begin(), candidates.end(),
@@ -169,7 +171,7 @@ std::vector<Pose2> OthersThan(const PlaceCandidate& best, std::vector<PlaceCandi
   return others;
 }
 
-// How far to either side of the place, and along which line farthest, the score stays near its own.
+// The line through the place along which the score stays high farthest, and how far to either side.
 UnsureAlong UnsureLine(const DistanceField& walls, const PlaceReturns& points,
                        const std::vector<PlaceCandidate>& candidates, const PlaceCandidate& best) {
   UnsureAlong widest;
@@ -185,7 +187,7 @@ UnsureAlong UnsureLine(const DistanceField& walls, const PlaceReturns& points,
   for (int i = 0; i < 2 * kUnsureLines; ++i) {
     const double way_rad = kPi * i / kUnsureLines;
     const Eigen::Vector2d way(std::cos(way_rad), std::sin(way_rad));
-    // As far as it goes without a break: what lies beyond one is another place.
+    // Only up to the first drop: what lies beyond it is another place.
     for (double off_m = kUnsureStepM; off_m <= kUnsureReachM; off_m += kUnsureStepM) {
       Pose2 pose = best.map_from_first;
       pose.x_m += off_m * way.x();

@@ -8,11 +8,11 @@
 namespace depthgrid {
 namespace {
 
-// 64 quantised probabilities sum up to less than 2^16.
+// The sum of 64 quantised probabilities is below 2^16.
 constexpr int kBlock = 64;
 static_assert(kBlock * kMatchProbScale < (1 << 16));
 
-constexpr int kColumns = 8;   // translations in x a load covers
+constexpr int kColumns = 8;   // translations in x per load
 constexpr int kMaxPairs = 6;  // row pairs summed at once; the sums stay in registers
 
 // 8 columns of 2 rows, interleaved.
@@ -48,8 +48,8 @@ constexpr AddSquaresFunction kAddSquares[kMaxPairs + 1] = {
 
 int RoundUp(int value, int step) { return (value + step - 1) / step * step; }
 
-// Quantises one row and returns its largest value. Its own function so that the compiler knows
-// that nothing else changes meanwhile.
+// Quantises one row and returns its largest value. A separate function so that the compiler need
+// not assume aliasing.
 std::uint32_t QuantiseRow(const float* probs, int count, float unknown_prob,
                           std::uint32_t* quantised) {
   std::uint32_t largest = 0;
@@ -61,7 +61,7 @@ std::uint32_t QuantiseRow(const float* probs, int count, float unknown_prob,
   return largest;
 }
 
-// Puts the row above into the high halves.
+// Stores the row above in the high halves.
 void PairRows(const std::uint32_t* above, std::size_t count, std::uint32_t* row) {
   for (std::size_t i = 0; i < count; ++i) row[i] |= above[i] << 16;
 }
@@ -74,7 +74,7 @@ void LatticeScorer::Prepare(const SearchLattice& lattice, const MatchPoints& poi
   CopyPoints(points);
   const int side = 2 * lattice.half_cells + 1;
   // A rotation moves the farthest point by less than its arc; one more cell for rounding. Points
-  // beyond the map and one square around it see nothing but unknown cells.
+  // beyond the map by more than one square reach only unknown cells.
   const double turn_rad = std::min(2.0, lattice.half_yaw_steps * lattice.yaw_step_rad);
   const int turn_cells = static_cast<int>(turn_rad * points.farthest_m / lattice.resolution_m) + 2;
   copied_ = ReachedCells(points, lattice.CellsAt(0), turn_cells + lattice.half_cells, view.geometry,
@@ -91,8 +91,8 @@ void LatticeScorer::CopyPoints(const MatchPoints& points) {
   const auto size = static_cast<std::size_t>(points_);
   x_m_.resize(size);
   y_m_.resize(size);
-  // Block b takes points b, b + blocks, b + 2 blocks ...: a few blocks already know how good a
-  // rotation is. The order of a sum of integers does not matter.
+  // Block b has the points b, b + blocks, b + 2 blocks ..., so that a few blocks already estimate a
+  // rotation's score. The order does not matter for a sum of integers.
   const std::size_t blocks = (size + kBlock - 1) / kBlock;
   std::size_t to = 0;
   for (std::size_t block = 0; block < blocks; ++block) {
@@ -131,8 +131,8 @@ void LatticeScorer::CopyMap(const ProbabilityView& view) {
 
 void LatticeScorer::FindCells(const PointCells& rotation, int first, int count) {
   const int half = lattice_.half_cells;
-  // The square's corner, relative to the copied rectangle. Points farther outside than the
-  // rectangle reaches see nothing but unknown cells, wherever they are moved to.
+  // The corner of the point's square, relative to the copied rectangle. Points farther outside
+  // reach only unknown cells at every translation.
   const float x_shift = static_cast<float>(rotation.whole_cells.x - copied_.min_cell.x - half);
   const float y_shift = static_cast<float>(rotation.whole_cells.y - copied_.min_cell.y - half);
   const float x_last = static_cast<float>(copied_.width_cells - 2 * half - 1);

@@ -6,7 +6,7 @@
 namespace depthgrid {
 namespace {
 
-// The view as Ceres' interpolator reads it: row = y, column = x.
+// Adapter of the view for Ceres' interpolator: row = y, column = x.
 class CeresGrid {
  public:
   enum { DATA_DIMENSION = 1 };
@@ -63,7 +63,8 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = max_iterations;
-  // Tight: Gauss-Newton crawls to this minimum, and a looser stop would end millimetres away.
+  // Tight, as Gauss-Newton converges slowly here and would otherwise stop millimetres from the
+  // minimum.
   options.function_tolerance = 1e-14;
   options.gradient_tolerance = 1e-12;
   options.parameter_tolerance = 1e-12;

@@ -6,11 +6,11 @@
 namespace depthgrid {
 namespace {
 
-// Every so many-th beam is compared: it is on a wall, or off it, or passes one where asked.
+// Every this many-th beam is compared.
 constexpr std::size_t kNextBeam = 4;
 constexpr double kOnWallM = 0.15;
-// What the map does not know is worth this much of what it contradicts: a place from where the
-// robot leaves the map at once has little to show.
+// Weight of all beams relative to those that contradict the map, so that beams into unknown space
+// count a little. Small, because a robot that leaves the map at once sees little of it.
 constexpr double kUnknownWorth = 0.1;
 
 }  // namespace

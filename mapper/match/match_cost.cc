@@ -11,7 +11,7 @@ MatchCost EvaluateMatchCost(const MatchPoints& points, const ProbabilityView& vi
   const double c = std::cos(map_from_base.yaw_rad);
   const double s = std::sin(map_from_base.yaw_rad);
   for (std::size_t i = 0; i < points.x_m.size(); ++i) {
-    // The point turned into the map's axes, still relative to base.
+    // The point relative to base, in map axes.
     const Eigen::Vector2d arm{c * points.x_m[i] - s * points.y_m[i],
                               s * points.x_m[i] + c * points.y_m[i]};
     const BicubicSample m = SampleBicubic(view, map_from_base.translation() + arm);

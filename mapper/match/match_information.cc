@@ -8,12 +8,12 @@
 namespace depthgrid {
 namespace {
 
-// Eigenvalues below this share of the largest are rounding.
+// Eigenvalues below this share of the largest are rounding errors.
 constexpr double kRounding = 1e-9;
 
-// The curvature left in every direction when `noise` of it is wrong: with
-// curvature v = lambda noise v the factor max(0, 1 - 3 / lambda), three being where an estimate is
-// told from its error.
+// Removes the part of the curvature that `noise` may have caused: along each generalised
+// eigenvector, curvature v = lambda noise v, the factor is max(0, 1 - 3 / lambda). At three times
+// the noise an estimate is distinguishable from its error.
 Eigen::Matrix3d Debiased(const Eigen::Matrix3d& curvature, const Eigen::Matrix3d& noise) {
   constexpr double kNoiseLevels = 3.0;
   const SymmetricEigen pencil = GeneralizedEigenOf(curvature, noise);
@@ -29,13 +29,13 @@ Eigen::Vector2d LargestAxis(const Eigen::Matrix2d& matrix) {
   const double twice_off = 2.0 * matrix(0, 1);
   const double root = std::sqrt(difference * difference + twice_off * twice_off);
   if (!(root > 0.0)) return Eigen::Vector2d::UnitX();
-  // Of the two ways to write it the one without cancellation.
+  // The form without cancellation.
   const Eigen::Vector2d axis = difference >= 0.0 ? Eigen::Vector2d(difference + root, twice_off)
                                                  : Eigen::Vector2d(twice_off, root - difference);
   return axis / axis.norm();
 }
 
-// Eigenvectors and eigenvalues per square metre of an information, a radian of yaw being
+// Eigenvectors and eigenvalues (1/m^2) of an information matrix, with a radian of yaw taken as
 // `scale_m.z()` metres.
 SymmetricEigen AxesOf(const Eigen::Matrix3d& information, const Eigen::Vector3d& scale_m) {
   const Eigen::Vector3d unscale = scale_m.cwiseInverse();
@@ -64,7 +64,7 @@ void MatchInformationOptions::Visit(OptionsVisitor& v) {
 void AddPatch(const Eigen::Vector3d& gradient, const Eigen::Matrix<double, 3, 2>& shift_curvature,
               double map_sigma_m, Eigen::Matrix3d& gradient_covariance) {
   gradient_covariance += gradient * gradient.transpose();
-  // A wall only shifts across itself, where its curvature is largest.
+  // A wall's error matters only across the wall, where its curvature is largest.
   const Eigen::Vector2d across = LargestAxis(shift_curvature.topRows<2>());
   const Eigen::Vector3d shifted = map_sigma_m * (shift_curvature * across);
   gradient_covariance += shifted * shifted.transpose();
@@ -99,7 +99,7 @@ InformationSums SumUpInformation(const MatchPoints& points, const ProbabilityVie
     wall = slope * slope.transpose() - residual * wall;
     Eigen::Matrix2d along;
     along << wall(1, 1), -wall(0, 1), -wall(1, 0), wall(0, 0);
-    Eigen::Matrix<double, 2, 3> motion;  // of the point per unit of (x, y, yaw)
+    Eigen::Matrix<double, 2, 3> motion;  // derivative of the point by (x, y, yaw)
     motion << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
     sums.curvature += motion.transpose() * wall * motion;
     sums.curvature(2, 2) += residual * arm.dot(slope);
@@ -125,12 +125,13 @@ Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_f
   const double size = sums.curvature.cwiseAbs().maxCoeff();
   if (sums.explained == 0 || !(size > 0.0)) return Eigen::Matrix3d::Zero();
   const double sigma2 = options.wall_direction_sigma_rad * options.wall_direction_sigma_rad;
-  // Away from a minimum a wall can count negatively; here both must be positive definite.
+  // Away from the minimum a wall's curvature can be negative, but both must be positive definite
+  // here.
   const Eigen::Matrix3d noise =
       WithEigenvaluesAtLeast(sigma2 * sums.curvature_along_walls, kRounding * size);
   const Eigen::Matrix3d curvature = Debiased(sums.curvature, noise);
-  // The sandwich: an error of the gradient with covariance V moves the minimum by H^-1 of it, so
-  // the inverse covariance is H V^-1 H.
+  // Sandwich estimator: an error of the gradient with covariance V moves the minimum by H^-1 times
+  // the error, so the inverse covariance is H V^-1 H.
   const double variance = sums.gradient_covariance.trace();
   if (!(variance > 0.0)) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix3d gradient_covariance =

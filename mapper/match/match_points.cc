@@ -13,9 +13,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Farther than any laser sees: keeps cell indices of corrupt ranges within int.
+// Beyond any laser's range; keeps cell indices of corrupt ranges within int.
 constexpr float kFarthestUsedM = 1e4F;
-// Two turns: no scanner's bearing, and the vectorised sine is exact there.
+// Two turns: beyond any scanner's bearing and within the accurate range of the vectorised sine.
 constexpr float kLargestBearingRad = static_cast<float>(4.0 * kPi);
 
 // Replaces (bearing, range) by (x, y), in place.

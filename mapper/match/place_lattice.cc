@@ -11,17 +11,17 @@ namespace depthgrid {
 namespace {
 
 constexpr double kCoarseStepM = 0.1;
-// The lattice's cells are the map's, or several of them together: where those are smaller than
-// this, or with all that the returns can reach would be more than half a gigabyte.
+// The lattice uses the map's cells, or blocks of them if they are smaller than this or if the map
+// with all that returns can reach would need more than half a gigabyte.
 constexpr double kCoarseCellM = 0.05;
 constexpr std::size_t kMostCoarseCells = std::size_t{1} << 26;
-// A map holds what was seen, and a camera does not see where it stands.
+// Search margin around the map: a camera does not see the place where it stands.
 constexpr double kMarginM = 2.0;
-constexpr int kHeadings = 90;  // 4 degrees apart: 0.2 m at 3 m, which the score's width bridges
-constexpr std::size_t kBestPlaces = 60;  // are refined
+constexpr int kHeadings = 90;            // 4 degrees apart: 0.2 m at 3 m, within the score's width
+constexpr std::size_t kBestPlaces = 60;  // number of places that are refined
 
-// The map with a margin of unseen cells, so that every candidate's returns lie in it: what a return
-// is worth that ends in a cell, and one that passes through it.
+// The score of a return that ends in a cell and of one that passes through it. The grid has a
+// margin of unseen cells, so that it contains the returns of every candidate.
 class CoarseMap {
  public:
   CoarseMap(const GridGeometry& geometry, const DistanceField& walls) : geometry_(geometry) {
@@ -35,7 +35,7 @@ class CoarseMap {
     }
   }
 
-  // A return's four cells, relative to the candidate's.
+  // Index offsets of a return's four cells from the candidate's cell.
   struct Offsets {
     std::ptrdiff_t end = 0;
     std::ptrdiff_t on_the_way[std::size(kOnTheWay)] = {};
@@ -44,9 +44,9 @@ class CoarseMap {
                                  double reach_m) const {
     const Eigen::Rotation2Dd turn(heading_rad);
     const auto offset_of = [&](const Eigen::Vector2d& point) {
-      // What lies farther is outside of the map from everywhere, and so is this.
+      // Shortened to reach_m: beyond that, points are outside the map for every candidate.
       const double share = std::min(1.0, reach_m / std::max(point.norm(), 1e-9));
-      // From the middle of a cell.
+      // Relative to a cell's centre.
       const Cell cell = CellOf((turn * (share * point)).array() + 0.5 * geometry_.resolution_m,
                                geometry_.resolution_m);
       return static_cast<std::ptrdiff_t>(cell.y) * geometry_.width_cells + cell.x;
@@ -62,12 +62,12 @@ class CoarseMap {
     return offsets;
   }
 
-  // 0..1, or less than `least` as soon as it cannot be reached.
+  // The score, 0..1; stops with a value below `least` as soon as `least` cannot be reached.
   double ScoreAt(const Cell& cell, const std::vector<Offsets>& offsets, double least) const {
     const CellWorth* here = cells_.data() + geometry_.Index(cell);
     const auto most = static_cast<float>(1.0 + kFreeWorth);
     const auto count = static_cast<float>(offsets.size());
-    // What may be lost; not to a last digit.
+    // The loss still allowed, with a margin for rounding.
     float spare = (1.0F - static_cast<float>(least)) * most * count + 1e-3F;
     float sum = 0.0F;
     for (const Offsets& offset : offsets) {
@@ -89,7 +89,7 @@ class CoarseMap {
   std::vector<CellWorth> cells_;
 };
 
-// The farthest that a point or sensor lies from the first scan's base.
+// The largest distance of a point or sensor from the first scan's base.
 double ReachOf(const PlaceReturns& points) {
   double reach_m = 0.0;
   for (const PlaceReturn& point : points) {
@@ -98,7 +98,7 @@ double ReachOf(const PlaceReturns& points) {
   return reach_m;
 }
 
-// The map's cells in squares of `side` a coarser one, as many as it takes to cover them.
+// The geometry with squares of `side` x `side` cells as cells, covering all of `fine`.
 GridGeometry Coarser(const GridGeometry& fine, int side) {
   const auto down = [&](int cell) {
     return static_cast<int>(std::floor(static_cast<double>(cell) / side));
@@ -109,7 +109,7 @@ GridGeometry Coarser(const GridGeometry& fine, int side) {
           down(fine.min_cell.y + fine.height_cells - 1) - first.y + 1};
 }
 
-// What is searched, and with all that returns can end in from there.
+// The searched cells and the margin that returns can reach from there.
 struct CoarseGeometry {
   GridGeometry map;
   int margin_cells = 0;
@@ -150,12 +150,12 @@ std::vector<PlaceCandidate> BestOnLattice(const OccupancyMap& map, const Distanc
     for (int y = -margin; y < g.height_cells + margin; y += step) {
       for (int x = -margin; x < g.width_cells + margin; x += step) {
         const Cell cell{g.min_cell.x + x, g.min_cell.y + y};
-        // The robot's own place may not have been seen, but it is no wall.
+        // The robot's own cell may be unknown, but not occupied.
         if (walls.FreeAt(CellCentre(cell, g.resolution_m)) < 0) continue;
         const double least = best.size() == kBestPlaces ? best.front().score : 0.0;
         const double score = coarse.ScoreAt(cell, offsets, least);
         if (best.size() == kBestPlaces && score <= least) continue;
-        // A heap with the worst of the best in front.
+        // A heap with the worst of the best places in front.
         if (best.size() == kBestPlaces) {
           std::pop_heap(best.begin(), best.end(), better);
           best.pop_back();

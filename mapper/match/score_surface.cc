@@ -20,7 +20,7 @@ void ForEachStep(const SearchLattice& lattice, Visitor visit) {
   }
 }
 
-// Covariance of the candidates in steps.
+// Score-weighted covariance of the candidates, in steps.
 Eigen::Matrix3d WeightedCovariance(const ScoreSurface& surface, double sharpness) {
   const std::uint32_t best = *std::max_element(surface.sums.begin(), surface.sums.end());
   const double per_unit = sharpness / kMatchProbScale;
@@ -61,9 +61,9 @@ void ScoreAll(const SearchLattice& lattice, const MatchPoints& points, const Pro
 
 Eigen::Matrix3d SurfaceInformation(const ScoreSurface& surface, double sharpness) {
   const SearchLattice& lattice = surface.lattice;
-  // Variance of a whole step, and of n steps in a row, spread evenly.
+  // Variance of a uniform distribution over one step; n^2 of it over n steps.
   constexpr double kUnitVariance = 1.0 / 12.0;
-  // Least squares after the search leaves about half of what the lattice rounds away.
+  // Least squares after the search halves the lattice's rounding error.
   constexpr double kRefined = 0.25;
   const double side = 2.0 * lattice.half_cells + 1.0;
   const double turns = 2.0 * lattice.half_yaw_steps + 1.0;
@@ -76,8 +76,8 @@ Eigen::Matrix3d SurfaceInformation(const ScoreSurface& surface, double sharpness
                                    WeightedCovariance(surface, sharpness) *
                                    unit.cwiseInverse().asDiagonal();
   const SymmetricEigen spread = EigenOf(relative + rounding);
-  // 1 / c is the information of scores and window together, 1 that of the window; a direction is
-  // determined when the scores halve the window's spread.
+  // 1 / c is the information of scores and window together, 1 that of the window alone. A direction
+  // is determined if the scores halve the window's standard deviation.
   constexpr double kDeterminedVariance = 0.25;
   Eigen::Vector3d information = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {

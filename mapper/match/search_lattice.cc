@@ -19,9 +19,10 @@ bool PrecedesInLattice(const LatticeStep& a, const LatticeStep& b) {
 SearchLattice MakeLattice(const Pose2& predicted_map_from_base, double window_m, double window_rad,
                           double resolution_m, double farthest_m) {
   Require(resolution_m > 0.0, "a searched grid has a resolution");
-  // Nearer points than this would only make the step uselessly large (Cartographer's floor).
+  // Lower bound of the distance, as in Cartographer: nearer points would make the step uselessly
+  // large.
   constexpr double kNearestUsedCells = 3.0;
-  // Keeps the farthest point strictly below one cell of motion.
+  // Keeps the motion of the farthest point strictly below one cell.
   constexpr double kSafety = 1.0 - 1e-3;
   const double distance_m = std::max(farthest_m, kNearestUsedCells * resolution_m);
   const double ratio = resolution_m / distance_m;
@@ -29,7 +30,7 @@ SearchLattice MakeLattice(const Pose2& predicted_map_from_base, double window_m,
   lattice.predicted_map_from_base = predicted_map_from_base;
   lattice.resolution_m = resolution_m;
   lattice.yaw_step_rad = kSafety * std::acos(1.0 - 0.5 * ratio * ratio);
-  // A window that is a whole number of steps must not grow by one from rounding.
+  // A window of a whole number of steps must not gain one by rounding.
   constexpr double kRounding = 1e-9;
   lattice.half_cells = static_cast<int>(std::ceil(window_m / resolution_m - kRounding));
   lattice.half_yaw_steps =
