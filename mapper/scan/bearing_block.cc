@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "mapper/scan/bearing_block.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 #include <hwy/highway.h>
-// After the above.
+// Must follow foreach_target.h.
 #include <hwy/cache_control.h>
 
 #include "mapper/scan/bearing_stripe-inl.h"
@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace depthgrid::internal {
 namespace HWY_NAMESPACE {
 
-// Between two rows the smallest of linear functions is nowhere below its chord, the largest nowhere
-// above.
+// Bounds of linear functions over a range of rows: the minimum of the functions is nowhere below
+// its chord between the end rows, the maximum nowhere above.
 struct ChordBounds {
   AlongRows least, most;
 };
@@ -28,7 +28,8 @@ ChordBounds BoundLinear(const BearingBlock& block, const float* at_0, const floa
   const auto last = static_cast<float>(block.rows.last);
   const Vec at_first = hn::Add(f0, hn::Mul(f1, hn::Set(d, first)));
   const Vec at_last = hn::Add(f0, hn::Mul(f1, hn::Set(d, last)));
-  // Of sums and products in single precision, here and of each sample: 2^-24 each.
+  // Relative rounding error of single-precision sums and products (2^-24 each), here and in the
+  // samples.
   constexpr float kRounding = 2e-6F;
   const Vec size = hn::Add(hn::Abs(f0), hn::Mul(hn::Abs(f1), hn::Set(d, last)));
   const float spare = kRounding * hn::GetLane(hn::MaxOfLanes(d, size));
@@ -58,8 +59,8 @@ RowRange RowsOfGroup(const ReturnLimits& limits, std::size_t group) {
   return {from, std::min(from + static_cast<int>(kGroupRows) - 1, limits.last_row)};
 }
 
-// Fetches the columns of the next group, a few with each tile: the processor does not foresee steps
-// of a whole row, and takes no more than a dozen at once.
+// Prefetches the columns of the next group, a few per tile: the hardware prefetcher does not follow
+// strides of a whole row, and only about a dozen prefetches can be in flight.
 class Fetching {
  public:
   Fetching(const DepthImage& image, int next_row, const Survey& survey, std::size_t tiles)
@@ -82,7 +83,7 @@ class Fetching {
   const float* next_ = nullptr;
 };
 
-// Puts vectors of all blocks in their places.
+// Collects the bounds of the vectors of all blocks.
 StripeVectors VectorsOf(std::span<const BearingBlock> blocks, int width) {
   const std::size_t lanes = hn::Lanes(Floats());
   const bool is_wide = width >= static_cast<int>(2 * lanes);
@@ -124,7 +125,7 @@ void SampleGroup(const StripeJob& job, std::size_t group, StripeVectors& vectors
   const ReturnLimits& limits = job.bands.limits;
   const RowRange rows = RowsOfGroup(limits, group);
   GroupTiles tiles;
-  // What held two groups ago still holds, and is nearly as good.
+  // The skip limits of two groups ago are still valid and nearly as good.
   if (group % 2 == 0) FindSkipFrom(job.rule, job.found, vectors);
   LayOut(vectors, image.width_px, rows, tiles);
   SurveyColumns(image, rows, tiles.first_column, tiles.end_column, survey);

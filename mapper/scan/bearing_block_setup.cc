@@ -1,4 +1,4 @@
-// The rows of a block's bearings, one a vector lane (bearing_block.h).
+// The rows of a block's bearings, one bearing per vector lane (bearing_block.h).
 #include "mapper/scan/bearing_block.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,7 +22,7 @@ HWY_INLINE int Most(Vec rows) {
   return static_cast<int>(hn::GetLane(hn::MaxOfLanes(Floats(), rows)));
 }
 
-// `rows`: where any takes part; `shared_rows`: where all do.
+// `rows` has those in which any bearing takes part, `shared_rows` those in which all do.
 void ChooseRows(const BearingLineBlock& lines, const ReturnLimits& limits, BearingBlock& block) {
   const Floats d;
   const Vec first_row = hn::Set(d, static_cast<float>(limits.first_row));

@@ -31,7 +31,7 @@ ImageAxes AxesOf(const PinholeCamera& camera, const Eigen::Quaterniond& level_fr
 }  // namespace
 
 bool LinesRunAlongRows(const PinholeCamera& camera, const Eigen::Quaterniond& level_from_camera) {
-  // Bearing 0: column slope of the line in pixels a row, against one.
+  // Whether the line of bearing 0 moves by more than one column per row.
   const Eigen::RowVector3d off_plane = level_from_camera.toRotationMatrix().row(1);
   return std::abs(off_plane.y()) * camera.fx_px > std::abs(off_plane.x()) * camera.fy_px;
 }
@@ -55,7 +55,8 @@ const std::vector<Bearing>& ScanBearings(const PinholeCamera& camera,
   fan.right_rad = right_rad;
   fan.step_rad = step_rad;
   const double first_angle_rad = right_rad + 0.5 * step_rad;
-  // Each direction is the one before, turned by a step: a thousand steps err by 1e-13.
+  // Each direction is the previous one rotated by a step; the error is 1e-13 after a thousand
+  // steps.
   const double step_cosine = std::cos(step_rad);
   const double step_sine = std::sin(step_rad);
   Bearing bearing{first_angle_rad, std::cos(first_angle_rad), std::sin(first_angle_rad)};

@@ -1,4 +1,4 @@
-// The lines of many bearings at once, one a vector lane (bearing_lines.h).
+// The image lines of many bearings at once, one per vector lane (bearing_lines.h).
 #include "mapper/scan/bearing_lines.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,7 +22,7 @@ constexpr double kMinHorizontal = 0.05;
 
 HWY_INLINE Vec Times(double a, Vec b) { return hn::Mul(hn::Set(Doubles(), a), b); }
 
-// value = at_zero + slope * v, of each lane.
+// value = at_zero + slope * v, per lane.
 struct Linear {
   Vec at_zero, slope;
   HWY_INLINE Vec operator()(Vec v) const { return hn::Add(at_zero, hn::Mul(slope, v)); }
@@ -39,7 +39,7 @@ HWY_INLINE Rows ClipBelow(const Linear& function, double at_least, const Rows& r
   const Vec limit = hn::Set(d, at_least), zero = hn::Zero(d);
   const Mask is_whole =
       hn::And(hn::Ge(function(rows.low), limit), hn::Ge(function(rows.high), limit));
-  if (HWY_LIKELY(hn::AllTrue(d, is_whole))) return rows;  // most: no division
+  if (HWY_LIKELY(hn::AllTrue(d, is_whole))) return rows;  // the usual case needs no division
   const Vec root = hn::Div(hn::Sub(limit, function.at_zero), function.slope);
   const Mask rises = hn::Gt(function.slope, zero), falls = hn::Lt(function.slope, zero);
   const Mask is_none = hn::AndNot(hn::Or(rises, falls), hn::Lt(function.at_zero, limit));
@@ -50,12 +50,12 @@ HWY_INLINE Rows ClipBelow(const Linear& function, double at_least, const Rows& r
           hn::IfThenElse(is_whole, rows.high, hn::IfThenElse(is_none, before, high))};
 }
 
-// A ray's (a, b, 1) has a linear in b = (v - cy) / fy.
+// For a ray (a, b, 1) on a bearing's line, a is linear in b = (v - cy) / fy.
 struct RayOfRow {
   Vec a_at_b0, a_slope;
 };
 
-// Of a function of rays, f . (a, b, 1), along rows.
+// The function f . (a, b, 1) of rays as a linear function of the row.
 HWY_INLINE Linear LinearInRow(Vec fx, Vec fy, Vec f1, const RayOfRow& ray, const ImageAxes& axes) {
   const Vec slope = Times(1.0 / axes.fy_px, hn::Add(hn::Mul(fx, ray.a_slope), fy));
   return {hn::Sub(hn::Add(hn::Mul(fx, ray.a_at_b0), f1), Times(axes.cy_px, slope)), slope};
@@ -81,8 +81,8 @@ void FindLanes(const ImageAxes& axes, const BlockDirections& directions, Bearing
     const auto along = [&](int k)
                            HWY_ATTR { return hn::Add(Times(m(0, k), c), Times(m(1, k), s)); };
     const auto up = [&](int k) HWY_ATTR { return hn::Set(d, m(2, k)); };
-    // off_plane . (a, b, 1) = 0, so a is linear in b and all else with it.
-    const Vec across = off_plane(0);  // how much faster than rows a column leaves the bearing
+    // off_plane . (a, b, 1) = 0, so a is linear in b, and all other quantities too.
+    const Vec across = off_plane(0);  // rate at which columns leave the bearing's plane
     const Vec inverse = hn::Div(none, across);
     const RayOfRow ray{hn::Mul(off_plane(2), inverse), hn::Mul(off_plane(1), inverse)};
     const Linear horizontal = LinearInRow(along(0), along(1), along(2), ray, axes);

@@ -28,14 +28,14 @@ std::size_t LanesOf(const BearingBlock& block) {
   return (block.RowCount() + 2 * block.GroupCount()) * kLanesPerRow;
 }
 
-// Room for the samples and the smallest ones of a block.
+// Divides the storage into a block's samples and its two minima per group.
 BandSamples RoomAt(const BearingBlock& block, float* samples) {
   float* const nearest = samples + block.RowCount() * kBlockBearings;
   return {samples, nearest, nearest + block.GroupCount() * kBlockBearings};
 }
 
-// The samples of a lane, one a row. Of groups without a range it matters only that none of their
-// rows marks.
+// The samples of a lane, one per row. Samples of a group without a range may be missing; any value
+// that does not mark will do.
 std::span<const float> SamplesOf(const BandSamples& band, std::size_t rows, std::size_t lane,
                                  const ReturnLimits& limits, std::vector<float>& column) {
   column.clear();
@@ -72,9 +72,9 @@ struct ReturnsJob {
   ReturnsMemory& memory;
 };
 
-// FindNearest for a block of so many bearings, of obstacles FindNearestOrSlanting. Lanes whose
-// smallest sample is not supported by others (a stray pixel, a surface at a slant) are done one by
-// one. A lane of which what was skipped could matter, or none.
+// FindNearest, or FindNearestOrSlanting for obstacles, for a block of `bearings` bearings. Lanes
+// whose smallest sample is not supported by others (a stray pixel, a surface at a slant) are
+// processed one by one. Returns a lane whose result could depend on skipped samples, or none.
 template <bool kSlanting>
 std::optional<std::size_t> FindNearestOfBlock(const ReturnsJob& job, const BearingBlock& block,
                                               const BandFound& found, std::size_t bearings,
@@ -124,7 +124,7 @@ BlockViews NoViews() {
   return views;
 }
 
-// The block `at` of the image's, of so many bearings.
+// Processes block number `at` of the image, with `bearings` bearings.
 void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::size_t bearings,
                         std::size_t at, BlockSamples& found) {
   ImageReturns& all = job.memory.returns;
@@ -148,7 +148,7 @@ void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::s
   }
 }
 
-// Some neighbouring blocks.
+// A number of neighbouring blocks that are read together.
 struct Stripe {
   std::array<BearingBlock, internal::kMostStripeBlocks> blocks;
   std::array<BlockSamples, internal::kMostStripeBlocks> found;
@@ -164,7 +164,7 @@ void LayOut(std::span<const BearingLineBlock> lines, const ReturnLimits& limits,
     lanes += 2 * LanesOf(stripe.blocks[b]);
   }
   if (memory.size() < lanes) memory.resize(lanes);
-  float* room = memory.empty() ? nullptr : memory.front().lane;  // none while no block has rows
+  float* room = memory.empty() ? nullptr : memory.front().lane;  // null while no block has rows
   for (std::size_t b = 0; b < stripe.size; ++b) {
     for (BandFound* band : {&stripe.found[b].band, &stripe.found[b].slice}) {
       band->samples = RoomAt(stripe.blocks[b], room);

@@ -1,4 +1,5 @@
-// The slice's ranges where its upper or lower part stands elsewhere (bearing_block.h).
+// The slice's ranges where its upper or lower part differs in range from its core
+// (bearing_block.h).
 #include "mapper/scan/bearing_block.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -23,7 +24,7 @@ struct Sum {
     sum = hn::IfThenElse(taken, hn::Add(sum, sample), sum);
     count = hn::IfThenElse(taken, hn::Add(count, hn::Set(d, 1.0F)), count);
   }
-  // Of none: not a number.
+  // NaN if there are no samples.
   HWY_INLINE Vec Mean() const { return hn::Div(sum, count); }
 };
 
@@ -60,14 +61,14 @@ HWY_INLINE Mask Agree(const Sum& part, const Sum& core, Vec limit) {
   return hn::Or(hn::Eq(part.count, hn::Zero(d)), hn::Le(square, most));
 }
 
-// The samples within a window, row by row: take(row, inside, sample).
+// Calls take(row, inside, sample) for each row with samples within the window.
 template <typename Take>
 HWY_INLINE void ForSamples(const BearingBlock& block, const BandSamples& band, std::size_t at,
                            const Window& window, const Take& take) {
   const Floats d;
   const Vec none = hn::Set(d, -1.0F);
   for (std::size_t group = 0; group < block.GroupCount(); ++group) {
-    // Samples of lanes with nothing near may be missing: none of them counts.
+    // Lanes without a near sample may have undefined samples, none of which counts.
     const Vec nearest = hn::Load(d, band.nearest + group * kBlockBearings + at);
     const Mask near = hn::Le(nearest, window.to);
     if (hn::AllFalse(d, near)) continue;

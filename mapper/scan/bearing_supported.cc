@@ -1,4 +1,4 @@
-// The nearest surfaces of many bearings at once, one a vector lane (bearing_block.h).
+// The nearest surfaces of many bearings at once, one per vector lane (bearing_block.h).
 #include <array>
 #include <limits>
 
@@ -25,7 +25,7 @@ struct Running {
 
   HWY_INLINE void Add(Floats d, Vec sample) {
 #if HWY_TARGET <= HWY_AVX3
-    if constexpr (hn::MaxLanes(Floats()) == 16) {  // masks are half of the operations otherwise
+    if constexpr (hn::MaxLanes(Floats()) == 16) {  // saves half the operations (masks)
       const __mmask16 near = _mm512_cmp_ps_mask(sample.raw, to.raw, _CMP_LE_OQ);
       const __mmask16 inside =
           kFromLeast ? near : _mm512_mask_cmp_ps_mask(near, sample.raw, from.raw, _CMP_GE_OQ);
@@ -45,11 +45,11 @@ struct Running {
   }
 };
 
-// Vectors that are summed together: the additions of one wait for each other, those of the others
-// fill in.
+// Number of vectors summed at a time: the additions of one vector depend on each other, and
+// interleaving several hides their latency.
 constexpr std::size_t kTogether = 4;
 
-// Those of a block from lane `at` on.
+// Adds up the vectors of a block from lane `at` on.
 template <bool kFromLeast>
 HWY_INLINE void AddAll(const BandSamples& band, std::size_t rows, std::size_t at,
                        std::array<Running<kFromLeast>, kTogether>& running) {
@@ -59,7 +59,7 @@ HWY_INLINE void AddAll(const BandSamples& band, std::size_t rows, std::size_t at
   auto [r0, r1, r2, r3] = running;
   const Vec to0 = r0.to, to1 = r1.to, to2 = r2.to, to3 = r3.to;
   for (std::size_t first = 0; first < rows; first += kGroupRows) {
-    // Samples of lanes with nothing near may be missing: none of them counts.
+    // Lanes without a near sample may have undefined samples, none of which counts.
     const float* HWY_RESTRICT nearest = band.nearest + first / kGroupRows * kBlockBearings + at;
     const auto limit = [&](std::size_t k, Vec to) HWY_ATTR {
       return hn::IfThenElse(hn::Le(hn::Load(d, nearest + k * lanes), to), to, none);
@@ -83,7 +83,7 @@ HWY_INLINE void AddAll(const BandSamples& band, std::size_t rows, std::size_t at
   running = {r0, r1, r2, r3};
 }
 
-// What FindNearest finds of a vector.
+// FindNearest for a vector of bearings.
 class NearestLanes {
  public:
   NearestLanes(const BandFound& found, const ReturnLimits& limits, const float* width_m,
@@ -106,7 +106,8 @@ class NearestLanes {
   }
   HWY_INLINE void Keep(const Running<false>& of) { range_ = of.MeanOr(Floats(), centre_); }
   HWY_INLINE bool AnyNarrow() const { return !hn::AllFalse(Floats(), Narrow()); }
-  // Around what was kept, where windows are narrow; the others' stay.
+  // Sums around the current range in lanes with a narrow window; around the old centre in the
+  // others.
   HWY_INLINE Running<false> Again() { return Around(hn::IfThenElse(Narrow(), range_, centre_)); }
   HWY_INLINE void Take(BlockHits& hits, NearestOfBlock& of) const {
     const Floats d;

@@ -1,4 +1,4 @@
-// What the columns of some rows hold (bearing_block.h).
+// Least depths and holes of the columns over some rows (bearing_block.h).
 
 #include "mapper/scan/bearing_block.h"
 
@@ -15,8 +15,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vec = hn::Vec<Floats>;
 
-// Neighbouring columns by vectors that begin where lines of memory do, as far as the image allows:
-// it is two vectors wide or more.
+// Neighbouring columns in vectors, aligned to cache lines as far as the image allows. The image is
+// at least two vectors wide.
 template <int kRows>
 void SurveyRows(const DepthImage& image, const RowRange& rows, const Survey& survey) {
   const Floats d;
@@ -44,7 +44,7 @@ void Columns(const DepthImage& image, const RowRange& rows, const Survey& survey
            : SurveyRows<0>(image, rows, survey);
 }
 
-// Where lines of memory begin.
+// The first column, at or before `first`, that is aligned to a vector in memory.
 int LineBegin(const DepthImage& image, int row, int first) {
   const auto at = reinterpret_cast<std::uintptr_t>(image.Row(row) + first) / sizeof(float);
   return std::max(first - static_cast<int>(at % hn::Lanes(Floats())), 0);
@@ -52,14 +52,14 @@ int LineBegin(const DepthImage& image, int row, int first) {
 
 constexpr float kVeryFar = 1e30F;
 
-// The last column has none to its right.
+// The last column, which has no right neighbour.
 void HolesOfColumn(const DepthImage& image, const RowRange& rows, int u, const Survey& survey) {
   float there = kVeryFar;
   for (int v = rows.first; v <= rows.last; ++v) {
     if (image.At(u, v) > 0.0F) there = std::min(there, image.At(u, v));
   }
   survey.least_there()[u] = there;
-  survey.least_of_two()[u] = kVeryFar;  // nobody reads pixels beyond
+  survey.least_of_two()[u] = kVeryFar;  // pixels beyond are never read
 }
 
 void Holes(const DepthImage& image, const RowRange& rows, const Survey& survey) {
@@ -72,7 +72,7 @@ void Holes(const DepthImage& image, const RowRange& rows, const Survey& survey) 
     const float* HWY_RESTRICT pixels = image.Row(rows.first) + from;
     const Vec least = hn::LoadU(d, survey.least() + from);
     Vec there = very_far, of_two = very_far;
-    if (hn::AllTrue(d, hn::Gt(least, hn::Zero(d)))) {  // no pixel is missing
+    if (hn::AllTrue(d, hn::Gt(least, hn::Zero(d)))) {  // all pixels are valid
       hn::StoreU(least, d, survey.least_there() + from);
       hn::StoreU(least, d, survey.least_of_two() + from);
       continue;

@@ -1,4 +1,4 @@
-// Which rows of a block were seen (bearing_block.h).
+// The rows of a block with usable pixels, and the gaps between them (bearing_block.h).
 #include "mapper/scan/bearing_block.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,7 +15,7 @@ using Floats = hn::CappedTag<float, kBlockBearings>;
 using Vec = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 
-// The longest run between two usable rows so far.
+// The longest gap between two usable rows so far.
 struct Gap {
   Vec from, to;
 };
@@ -24,10 +24,10 @@ HWY_INLINE Gap Longer(Mask here, Vec from, Vec to, const Gap& gap) {
   return {hn::IfThenElse(longer, from, gap.from), hn::IfThenElse(longer, to, gap.to)};
 }
 
-// Stands for the last usable row before there is one: the run to the first is longer than any.
+// The last usable row before there is one; makes the gap to the first longer than any other.
 constexpr float kNeverSeen = -1e6F;
 
-// Lanes of which every row was usable.
+// For lanes in which every row is usable.
 void SeeAll(const BearingBlock& block, std::size_t i, BlockViews& out) {
   const Floats d;
   const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0F);
@@ -49,9 +49,9 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
     }
     const Vec g0 = hn::Load(d, &block.lines->g0[i]), g1 = hn::Load(d, &block.lines->g1[i]);
     Vec first = zero, last = hn::Set(d, kNeverSeen);
-    // A run needs a row between: the difference of its ends exceeds one.
+    // A gap has a row between its ends, so their difference exceeds one.
     Gap below{zero, one}, above{zero, one};
-    // Runs up to this long change nothing; the first usable row is looked at too.
+    // Gaps up to this length change nothing, except the one before the first usable row.
     Vec long_above = one, long_below = one;
     const auto take = [&](int v, Mask usable) HWY_ATTR {
       const Vec row = hn::Set(d, static_cast<float>(v));
@@ -69,7 +69,7 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
       }
       last = hn::IfThenElse(usable, row, last);
     };
-    bool was_whole = false;  // the row before, in all lanes: no run ends at the next
+    bool was_whole = false;  // all lanes of the previous row were usable: no gap ends here
     for (std::size_t r = 0; r < block.RowCount(); r += kGroupRows) {
       const RowRange rows = block.RowsOfGroup(r / kGroupRows);
       const Vec least = hn::Load(d, band.least_depth + r / kGroupRows * kBlockBearings + i);
@@ -80,7 +80,7 @@ void ViewLanes(const BearingBlock& block, const BlockLane& least_depth, const Ba
         continue;
       }
       const Vec nearest = hn::Load(d, band.nearest + r / kGroupRows * kBlockBearings + i);
-      if (hn::AllTrue(d, hn::Ge(nearest, hn::Set(d, kUnusable)))) {  // nothing is usable
+      if (hn::AllTrue(d, hn::Ge(nearest, hn::Set(d, kUnusable)))) {  // no pixel is usable
         was_whole = false;
         continue;
       }

@@ -27,7 +27,7 @@ Distances WhereGapHides(const SlopeRange& gap, double camera_height_m, const Sca
   return {options.max_gap_m / (gap.high - gap.low), leaves_band_m};
 }
 
-// Takes `hidden` out of `clear`, which stays one interval: the longer of what is left.
+// Removes `hidden` from `clear` and keeps the longer of the remaining parts.
 Distances Without(const Distances& clear, const Distances& hidden) {
   if (hidden.from_m >= clear.to_m || hidden.to_m <= clear.from_m || hidden.from_m >= hidden.to_m) {
     return clear;

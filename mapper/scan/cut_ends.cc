@@ -6,12 +6,12 @@
 namespace depthgrid {
 namespace {
 
-// Where fewer bearings in a row have no hit, pixels were lost.
+// A surface ends where this many bearings in a row have no hit; fewer are lost pixels.
 constexpr int kBearingsOfNothing = 4;
-// Noise must not hide how far the end is: the farthest of so many beams counts.
+// The end's depth is the greatest of this many beams, as noise makes beams short.
 constexpr int kBeamsOfEnd = 3;
 
-// The scan's beams from one of its ends, so that both are looked at in one way.
+// The scan's beams in either order, so that both ends are treated alike.
 class BeamsFrom {
  public:
   BeamsFrom(Scan& scan, bool backwards) : beams_(scan.beams), backwards_(backwards) {}
@@ -42,7 +42,7 @@ class BeamsFrom {
   bool backwards_;
 };
 
-// Of the surface whose last hit this is.
+// Drops the cut end of the surface whose last hit is beam `last`.
 void DropCutEnd(const BeamsFrom& beams, int last, float width_m, double farthest_m) {
   float end_m = 0.0F;
   int first = last;

@@ -19,7 +19,7 @@ void Transpose(const DepthImage& image, DepthImage& transposed) {
   }
 }
 
-// Which image is read; the lines it is read along are in the memory.
+// The image that is read; the lines along which it is read are in the memory.
 struct Reading {
   bool transposed = false;
   const DepthImage* image = nullptr;
@@ -40,8 +40,8 @@ Reading ReadingOf(const DepthImage& depth, const PinholeCamera& camera, const Ca
   return reading;
 }
 
-// Samples count up to a noise window beyond the reach: of those short of it alone the mean would
-// lie before a surface near it.
+// Samples count up to a noise window beyond max_range_m. Without those beyond it, the mean for a
+// surface near max_range_m would be too short.
 ReturnLimits LimitsOf(const ScanOptions& options, const PinholeCamera& camera, bool transposed,
                       double camera_height_m, const NoiseWindow& window) {
   ReturnLimits limits;
@@ -76,7 +76,7 @@ void DropBeyond(double reach_m, std::vector<BlockHits>& hits) {
   }
 }
 
-// One of an image's scans: what was read, and within which limits.
+// One of an image's scans: its returns and limits.
 struct Band {
   const ScanOptions& options;
   const ReturnLimits& limits;
@@ -92,7 +92,8 @@ Scan ScanOf(const DepthImage& image, const Band& band, std::vector<BlockHits>& h
   return scan;
 }
 
-// A band of this half height above a floor that lies as far below the camera.
+// Options for a slice: with a floor `half_height_m` below the camera, the band from 0 to twice
+// that.
 ScanOptions SliceOptions(ScanOptions options, double half_height_m) {
   options.band_low_m = 0.0;
   options.band_high_m = 2.0 * half_height_m;

@@ -5,14 +5,14 @@
 namespace depthgrid {
 namespace {
 
-// 0 where the depth is not usable.
+// Horizontal range at row v; 0 where the depth is not usable.
 float RangeAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits, int v) {
   const auto row = static_cast<float>(v);
   const float z_m = DepthOn(image, line, v);
   return z_m >= limits.min_depth_m ? z_m * (line.h0 + line.h1 * row) : 0.0F;
 }
 
-// Where the rays are level: near it they reach farthest.
+// The row of level rays, near which rays reach farthest.
 int LevelRow(const BearingLine& line, const RowRange& rows) {
   const float row = line.g1 != 0.0F ? -line.g0 / line.g1 : 0.0F;
   return static_cast<int>(

@@ -28,12 +28,12 @@ float MeanWithin(std::span<const float> samples, float low, float high, float ot
   return within.count > 0.0F ? within.Mean() : otherwise;
 }
 
-// The row at which rays have this slope, height over range.
+// The row whose rays have this slope (height over range).
 float RowAtSlope(const BearingLine& line, float slope) {
   return (slope * line.h0 - line.g0) / (line.g1 - slope * line.h1);
 }
 
-// The slice's core as rows of a line.
+// The rows of a line that are in the slice's core.
 struct CoreRows {
   float first = 0.0F, last = 0.0F;
 
@@ -53,8 +53,8 @@ bool Agree(const Sum& part, const Sum& core, float limit_m) {
          limit_m * limit_m * (part.count + core.count);
 }
 
-// Ranges are not negative, so their bits order as they do; and integers vectorise without ado. The
-// differences of smaller ones wrap round and are larger than any other.
+// Non-negative floats have the order of their bits, and integers vectorise easily. Differences for
+// samples below `from` wrap round and are larger than all others.
 std::uint32_t SmallestFrom(std::span<const float> samples, std::uint32_t from) {
   std::uint32_t least = std::numeric_limits<std::uint32_t>::max() - from;
   for (const float sample : samples) {

@@ -7,35 +7,35 @@
 namespace depthgrid {
 namespace {
 
-// Pixels looked at along the longer side of the image: a floor that fills 1 % of it has 50.
+// Samples along the longer side of the image: a floor that fills 1 % of it has 50.
 constexpr int kSamplesAcross = 80;
-// A surface is looked at over so many of them: 16 pixels of 640 are 5 cm at 1.5 m, where a Kinect's
-// floor is rough by 7 mm.
+// Slopes are measured over this many samples: 16 of 640 pixels are 5 cm at 1.5 m, where a Kinect's
+// floor has a roughness of 7 mm.
 constexpr int kSlopeSamples = 2;
 constexpr float kSteepestSlope = 0.4F;
-// Rows are fetched so long before they are read: the processor does not foresee steps of some rows.
+// Rows are prefetched this far ahead: the hardware prefetcher does not follow strides of several
+// rows.
 constexpr int kRowsAhead = 2;
 // Camera heights considered: hand-held and robot-mounted.
 constexpr float kMinHeightM = 0.1F;
 constexpr float kMaxHeightM = 3.0F;
 constexpr float kBinM = 0.02F;
 constexpr int kBins = 145;
-// Farther floor is seen at a grazing angle, and sensors see it badly.
+// Farther floor is seen at a grazing angle and measured badly.
 constexpr float kMaxDistanceM = 5.0F;
-// A peak of three bins counts as a surface with this share of all samples and this share of the
-// highest peak: skirting boards and the noise below a floor have less, rugs and tables no lower
-// surface.
+// A peak of three bins counts as a surface if it has this share of all samples and this share of
+// the highest peak. Skirting boards and noise below a floor have less.
 constexpr double kMinImageShare = 0.01;
 constexpr double kMinPeakShare = 0.25;
-// Points farther than this from the plane do not draw at it, from round to round: first tilt and
-// height may be off; at last rugs, door sills and the feet of chairs are to be left out (with 6 cm
-// they tilted the office room's floor by 0.9 degrees).
+// Points farther than this from the plane have no weight, per iteration: tilt and height may be off
+// at first; in the end rugs, door sills and chair feet must be excluded (with 6 cm they tilted the
+// office room's floor by 0.9 degrees).
 constexpr std::array<double, 6> kGatesM = {0.15, 0.1, 0.06, 0.04, 0.025, 0.025};
 constexpr double kWidestGateSigmas = 2.5;
 constexpr double kSigmaM = 0.02;  // of a point's height
-// Neighbouring points err alike, so that many are worth one.
+// Errors of neighbouring points are correlated, so this many count as one.
 constexpr double kPointsPerWitness = 10.0;
-// A plane turned by more from what is known is something else than the floor.
+// A plane tilted by more than this from the expected one is not the floor.
 constexpr double kMostTilt = 0.15;
 
 // Weighted sums over the points near a plane.
@@ -91,7 +91,7 @@ void PointGrid::Resize(int row_count, int column_count) {
   rows = row_count;
   columns = column_count;
   stride = (static_cast<std::size_t>(columns + kSlopeSamples) + kLanes - 1) / kLanes * kLanes;
-  // The last row too is read from beyond its first column on.
+  // Padding: vectors also read the last row beyond its end.
   const std::size_t size = static_cast<std::size_t>(rows) * stride + kLanes;
   for (std::vector<float>* numbers : {&x, &y, &z}) numbers->resize(size);
 }
@@ -120,7 +120,7 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
 }
 
 std::optional<double> LowestSurface(const LevelPoints& level) {
-  std::array<int, kBins + 2> histogram{};  // one empty bin at either end
+  std::array<int, kBins + 2> histogram{};  // with one empty bin at either end
   for (const Eigen::Vector3f& point : level.points) {
     const int bin = static_cast<int>((-point.z() - kMinHeightM) / kBinM);
     ++histogram[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1)) + 1];
@@ -134,7 +134,7 @@ std::optional<double> LowestSurface(const LevelPoints& level) {
   std::size_t lowest = kBins;  // the largest drop whose peak is high enough
   while (lowest > 0 && peak(lowest) < enough) --lowest;
   if (lowest == 0) return {};
-  // Up the flank to the top of the peak.
+  // Climb to the top of the peak.
   while (lowest > 1 && peak(lowest - 1) > peak(lowest)) --lowest;
   return kMinHeightM + (static_cast<double>(lowest) - 0.5) * kBinM;
 }
@@ -144,7 +144,7 @@ std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& p
   Eigen::Vector3d plane(-prior.height_m, 0.0, 0.0);
   Sums sums;
   for (const double gate_m : kGatesM) {
-    // What is known better than the first gates need not begin with them.
+    // Skip gates that are wide compared with the prior.
     if (gate_m > kWidestGateSigmas * prior.sigma_m) continue;
     sums = SumsOver(level.points, plane.cast<float>(), static_cast<float>(gate_m));
     plane = Solved(sums, prior);

@@ -1,4 +1,4 @@
-// Pixels as points and which of them lie on level surfaces, many at once, one a vector lane
+// Converts pixels to points and selects those on level surfaces, one per vector lane
 // (floor_plane.h).
 #include <algorithm>
 #include <bit>
@@ -11,7 +11,7 @@
 #define HWY_TARGET_INCLUDE "mapper/scan/floor_points.cc"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 #include <hwy/highway.h>
-// After the above.
+// Must follow foreach_target.h.
 #include <hwy/cache_control.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -68,7 +68,7 @@ HWY_INLINE Mask IsLevel(const Points& a, const Points& b, float steepest) {
   return hn::Le(Square(hn::Sub(b.z, a.z)), most);
 }
 
-// Comparisons with what is not a number are false.
+// Comparisons with NaN are false.
 void FindLanes(const PointGrid& grid, const LevelLimits& limits,
                std::vector<Eigen::Vector3f>& points) {
   const Floats d;

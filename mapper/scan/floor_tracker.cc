@@ -8,30 +8,29 @@
 namespace depthgrid {
 namespace {
 
-// Around where the floor is expected, a surface is the floor: what SLAM drifts from one sight of it
-// to the next, and the tilt's error times the distance.
+// A surface this near to the expected floor is the floor: SLAM's drift between two sights of it
+// plus the tilt's error times the distance.
 constexpr double kNearM = 0.12;
-// Heights that a pose may have if its z is that of the floor's frame; z of a recording often begins
-// at 0.
+// Plausible heights of a pose if its z is above the floor; in recordings z often begins at 0.
 constexpr double kLeastPoseHeightM = 0.1;
 constexpr double kMostPoseHeightM = 3.0;
-// A lower surface is the floor, and what was taken for it a table; a few frames in a row must say
-// so. A higher one is mostly a table that hides the floor; only if it stays did SLAM jump. Where
-// the camera stands so much lower above it than above the floor when that was seen last, SLAM did
-// not: it is a table, unless it stays very long.
+// A surface below the assumed floor is the real floor (the assumed one was a table) once a few
+// frames in a row show it. A surface above it is mostly a table that hides the floor; only if it
+// stays, SLAM has jumped. If the camera's height above it is kTableM less than above the floor when
+// last seen, it is a table, unless it stays very long.
 constexpr int kFramesToBelieveLower = 5;
 constexpr int kFramesToBelieveHigher = 60;
 constexpr int kFramesToBelieveTable = 600;
 constexpr double kTableM = 0.3;
-// What SLAM errs from frame to frame (docs/slam_surrogate.md: 0.1-0.2 degrees, 2-5 mm), with
-// something to spare; before the floor was seen, tilts as recordings have them.
+// SLAM's error from frame to frame (docs/slam_surrogate.md: 0.1-0.2 degrees, 2-5 mm) with a margin;
+// kFirst: before the floor was seen, the tilt errors found in recordings.
 constexpr double kStepSigmaM = 0.03;
 constexpr double kStepSigmaRad = RadFromDeg(0.3);
 constexpr double kFirstSigmaM = 0.1;
 constexpr double kFirstSigmaRad = RadFromDeg(2.0);
-// What is known from the frame before narrows the fit, and a plane that lags behind SLAM's tilt
-// sees no more than the points that agree with it. So every so often the floor is looked for as if
-// nothing was known of it, and taken where so many times as many points lie on that plane.
+// The previous frame's plane is a narrow prior, and a plane that lags behind SLAM's tilt only gets
+// the points that agree with it. So every few frames the plane is also fitted with the wide prior,
+// and taken if it has kMorePoints times as many points.
 constexpr int kFramesToLookAnew = 4;
 constexpr double kMorePoints = 1.1;
 
@@ -56,7 +55,7 @@ bool FloorTracker::Believes(double height_m, double expected_m) {
   if (std::abs(higher_m - other_higher_m_) > kNearM) other_frames_ = 0;
   other_higher_m_ = higher_m;
   ++other_frames_;
-  // The floor lower than thought is the camera higher above it.
+  // A larger height means a lower floor.
   const bool table = floor_height_m_ && height_m < *floor_height_m_ - kTableM;
   const int higher = table ? kFramesToBelieveTable : kFramesToBelieveHigher;
   if (other_frames_ < (higher_m > 0.0 ? kFramesToBelieveLower : higher)) return false;

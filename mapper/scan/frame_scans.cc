@@ -20,19 +20,19 @@ float ReachOf(const Scan& scan) {
   return static_cast<float>(KnowsReach(scan) ? scan.max_range_m : kFarthestSeenM);
 }
 
-// The sound beams in their order, none clear beyond its scan's reach.
+// Copies the valid beams, sorted by bearing, with clear_to limited to the scan's reach.
 void CopySound(const Scan& given, Scan& sound) {
   const float reach_m = ReachOf(given);
   sound.max_range_m = given.max_range_m;
   sound.beams.clear();
   for (const Beam& beam : given.beams) {
     if (!IsSound(beam, reach_m)) continue;
-    // A number that stands for "nothing came back": were it taken at its word, as far as anything
-    // is seen at all would be free, and each map a square kilometre.
+    // A number that stands for "no return". Taken literally it would clear the bearing up to
+    // kFarthestSeenM, and each map would be a square kilometre.
     if (!KnowsReach(given) && !beam.hit && beam.clear_to_m > reach_m) continue;
     Beam& kept = sound.beams.emplace_back(beam);
     kept.clear_to_m = std::min(beam.clear_to_m, reach_m);
-    // Drivers write infinity where nothing came back; files and prior maps hold numbers only.
+    // Drivers write infinity for no return; files and prior maps can hold only finite numbers.
     if (!std::isfinite(beam.range_m)) kept.range_m = 0.0F;
   }
   const auto before = [](const Beam& a, const Beam& b) { return a.bearing_rad < b.bearing_rad; };
@@ -41,12 +41,12 @@ void CopySound(const Scan& given, Scan& sound) {
   }
 }
 
-// Bits of a float without its sign: in the order of sizes, those that are no number above infinity.
+// Bits of a float without its sign: ordered by magnitude, with NaN above infinity.
 constexpr std::uint32_t kInfinityBits = 0x7F800000;
 std::uint32_t SizeBits(float z_m) { return std::bit_cast<std::uint32_t>(z_m) & 0x7FFFFFFFU; }
 
-// What follows compares depths many at once and takes all for numbers. Cameras' drivers also write
-// NaN where nothing was measured.
+// Replaces NaN, which some drivers write for invalid pixels: the vectorised comparisons that follow
+// do not handle it.
 std::shared_ptr<const DepthImage> SoundImage(const std::shared_ptr<const DepthImage>& depth) {
   std::uint32_t most = 0;  // a loop that vectorises: 25 us for 640 x 480 pixels
   for (const float z_m : depth->z_m) most = std::max(most, SizeBits(z_m));
@@ -68,7 +68,7 @@ std::shared_ptr<Scan> ScanPool::Take() {
 }
 
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
-    // The other modes read few rows at the camera's height already.
+    // The other modes only read a few rows at the camera's height anyway.
     : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0),
       drop_cut_ends_(options.drop_cut_ends) {
   if (!camera) return;

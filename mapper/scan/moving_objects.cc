@@ -10,45 +10,46 @@
 namespace depthgrid {
 namespace {
 
-// Neighbouring beams whose ranges differ by more lie on two objects: what a person stands out from
-// a wall behind, and 4 sigmas of both at 1 % noise.
+// Neighbouring beams whose ranges differ by more are on two objects: the distance of a person from
+// the wall behind, and 4 sigma of both ranges at 1 % noise.
 constexpr double kJumpM = 0.15;
 constexpr double kJumpShare = 0.05;
-// A person, not a table; near and large enough to carry a match along.
+// Limits of a followed object: a person, not a table; near and large enough to affect a match.
 constexpr double kWidestM = 0.8;
 constexpr double kFarthestM = 4.0;
 constexpr double kLeastShare = 0.05;  // of a scan's beams
 constexpr std::size_t kLeastBeams = 5;
-// Between two scans nothing moves farther in the view.
+// The largest motion in the view between two scans.
 constexpr double kFarthestStepM = 0.1;
-// What noise, or somebody before it, hides for a moment is known again.
+// Objects hidden for this many scans, by noise or by somebody in front, are still recognised.
 constexpr int kMostUnseenScans = 5;
-// Who walks along a wall is one piece with it for a while: up to 27 scans in simulated logs
-// (docs/tried.md, "What moves"). Once is not enough: what noise makes an object of now and then
-// would cost a part of the view each time.
+// A person walking along a wall may be merged with it for up to 27 scans in simulated logs
+// (docs/tried.md, "What moves"); objects judged moving this often are then searched for. Once is
+// not enough: spurious objects made by noise would each cost a part of the view.
 constexpr int kSurelyMoved = 3;
 constexpr int kMostHiddenScans = 30;
-// Odometry that drifts by 1.875 m made walls seem to move up to four times (docs/tried.md, "What
-// moves").
+// Judged moving this often, it is not SLAM's error: with odometry that drifts by 1.875 m, walls
+// seemed to move up to four times (docs/tried.md, "What moves").
 constexpr int kNoErrorOfSlam = 5;
-// What else lies so near to the middle of what moves, or to the end that is followed, may be a part
-// of it: some person's half width.
+// Returns this near to the followed point of a moving object may belong to it: half a person's
+// width.
 constexpr double kBesideM = 0.2;
-// While a robot stands nothing shows. By then the first frames are no longer there (Beginning).
+// Nothing can be judged while a robot stands. After this many scans the first frames are gone
+// (Beginning).
 constexpr std::size_t kMostAssumed = 300;
-// A person's half width, and what the step is off by.
+// Half a person's width plus the error of the predicted step.
 constexpr double kHiddenRadiusM = 0.3;
-// What is wider lies round the base, or at both ends of a scan that goes all round.
+// A wider object surrounds the base or is split between both ends of a 360 degree scan.
 constexpr auto kWidestHiddenRad = static_cast<float>(RadFromDeg(120.0));
-// Chosen: a step is the mean over some five scans, and dies away as fast, as who comes to a wall
-// goes no farther towards it (0.7 to 0.9 are alike).
+// Chosen: the step is averaged over about five scans and decays as fast while hidden, as a person
+// who reaches a wall goes no farther towards it (0.7 to 0.9 make no difference).
 constexpr double kNewStepShare = 0.2;
 constexpr double kKeptStepShare = 0.8;
-// What lies off by this share of the way that it would have gone if it stood does not stand. The
-// middle of what is seen of a thing that stands goes along by less, as other sides of it come into
-// view (docs/tried.md, "What moves").
+// An object moves if it is off its predicted place by this share of the motion in the view that a
+// standing object would have had. The visible middle of a standing object shifts by less as other
+// sides come into view (docs/tried.md, "What moves").
 constexpr double kMovingShare = 0.4;
-// Judging begins anew after so many times the least way: who walks does not walk evenly.
+// Judging restarts after this many times the least distance, as people do not walk evenly.
 constexpr double kLongestWay = 2.5;
 
 bool SaysSomething(const Beam& beam) { return beam.hit || beam.clear_to_m > beam.clear_from_m; }
@@ -70,8 +71,8 @@ bool IsBehind(const Beam& beam, const Beam& edge) {
   return !beam.hit || beam.range_m > edge.range_m;
 }
 
-// Whether an object ends with its beams `begin` to `end`: all but one of as many beams beyond, from
-// `next` on by `step`, lie behind. A single one may do so by noise.
+// Whether the beams `begin` to `end` are the true end of an object: of the kLeastBeams beams
+// beyond, from `next` on by `step`, all but one lie behind it (noise may affect one).
 bool IsAnEnd(const std::vector<Beam>& beams, std::size_t begin, std::size_t end, std::size_t next,
              int step) {
   double range_m = 0.0;
@@ -86,7 +87,7 @@ bool IsAnEnd(const std::vector<Beam>& beams, std::size_t begin, std::size_t end,
 
 }  // namespace
 
-// Of beams that hit one object; empty where it is none that is followed.
+// The object of beams `begin` to `end`; empty if it is not to be followed.
 std::optional<MovingObjects::Object> MovingObjects::ObjectOf(const Scan& scan, std::size_t begin,
                                                              std::size_t end) {
   const std::vector<Beam>& beams = scan.beams;
@@ -94,7 +95,7 @@ std::optional<MovingObjects::Object> MovingObjects::ObjectOf(const Scan& scan, s
   const bool is_large = count >= kLeastBeams && static_cast<double>(count) >=
                                                     kLeastShare * static_cast<double>(beams.size());
   if (!is_large) return {};
-  // The view ends where nothing is told any more: some cameras have bands without depth.
+  // The view ends at the last beam with data: some cameras have margins without depth.
   const auto at = [&](std::size_t i) { return beams.begin() + static_cast<std::ptrdiff_t>(i); };
   const bool has_first = std::any_of(beams.begin(), at(begin), SaysSomething);
   const bool has_last = std::any_of(at(end), beams.end(), SaysSomething);
@@ -129,10 +130,10 @@ void MovingObjects::Find(const Scan& scan) {
   }
 }
 
-// What was known before: where it would be, and where it is looked for.
+// Predicts the known objects' places: `would_be_m` if standing, `at_m` where they are searched for.
 void MovingObjects::Carry(const Pose2& base_from_before) {
   std::swap(objects_, before_);
-  // What was not recognised in the last scan is still among before_, now objects_.
+  // Objects not recognised in the last scan are still in the old before_, which is now objects_.
   for (Object& object : objects_) {
     if (object.unseen_scans <= kMostUnseenScans) before_.push_back(std::move(object));
   }
@@ -151,8 +152,8 @@ void MovingObjects::Carry(const Pose2& base_from_before) {
   }
 }
 
-// From the middle to the middle, or from end to end where one of the two is cut; infinite where
-// they are at opposite edges.
+// The offset between the middles, or between ends if one of the two objects is cut; infinite if
+// they are cut at opposite sides.
 Eigen::Vector2d MovingObjects::OffM(const Object& known, const Object& seen) {
   for (std::size_t i = 0; i < known.points.size(); ++i) {
     if (known.points[i] && seen.points[i]) return seen.points[i]->at_m - known.points[i]->at_m;
@@ -160,7 +161,7 @@ Eigen::Vector2d MovingObjects::OffM(const Object& known, const Object& seen) {
   return Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
 }
 
-// The middle if there is one.
+// The middle if known, else an end.
 const MovingObjects::Point& MovingObjects::FirstOf(const Points& points) {
   return **std::find_if(points.begin(), points.end(),
                         [](const auto& point) { return point.has_value(); });
@@ -211,8 +212,8 @@ void MovingObjects::Judge(Object& object) {
   }
 }
 
-// What moved and is no object of its own in this scan: what lies where it must be by now is taken
-// for it. Whether it gets there is not asked, so only for a while.
+// For objects that moved and are not found in this scan, the returns at the predicted place are
+// taken as the object. The prediction is not verified, so only for a while.
 void MovingObjects::FindHidden(const Scan& scan) {
   const auto is_hidden = [&](const Object& known) {
     if (known.times_moved < kSurelyMoved || known.unseen_scans > kMostHiddenScans) return false;
@@ -263,15 +264,15 @@ bool MovingObjects::IsHalfUnjudged(const Scan& scan) const {
   return 2 * unjudged >= hits;
 }
 
-// Where the sensor's least range cuts somebody near, some beams of theirs hang beside: among those
-// that say nothing.
+// Includes isolated returns beside the object, separated by beams without data: the sensor's
+// minimum range may cut off part of a near person.
 MovingObjects::BeamRange MovingObjects::WithFringe(const Object& object, const Scan& scan) {
   const std::vector<Beam>& beams = scan.beams;
   const Eigen::Vector2d& at_m = FirstOf(object.points).at_m;
   const auto farthest = [&](std::size_t last, std::size_t step) {
     std::size_t found = last;
     bool beyond = false;
-    for (std::size_t i = last + step; i < beams.size(); i += step) {  // ends below 0 too
+    for (std::size_t i = last + step; i < beams.size(); i += step) {  // 0 - 1 wraps
       if (!SaysSomething(beams[i])) {
         beyond = true;
       } else if (!beams[i].hit || (EndPoint(beams[i]) - at_m).norm() > kBesideM) {
@@ -285,7 +286,7 @@ MovingObjects::BeamRange MovingObjects::WithFringe(const Object& object, const S
   return {farthest(object.begin, static_cast<std::size_t>(-1)), farthest(object.end - 1, 1) + 1};
 }
 
-// The scan itself where nothing moves.
+// The scan without its moving objects; the scan itself if there are none.
 std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan>& scan,
                                                 Unjudged unjudged) {
   const bool any = std::any_of(objects_.begin(), objects_.end(),
@@ -302,8 +303,8 @@ std::shared_ptr<const Scan> MovingObjects::Rest(const std::shared_ptr<const Scan
   return rest;
 }
 
-// The first scan says where the map, or the epoch, lies: what is cut, mostly walls, is in it, and
-// the rest too if it is half of what is seen.
+// The first scan defines where the map, or the epoch, lies. So cut objects, mostly walls, are
+// assumed to stand, and the others too if they are half of the view.
 void MovingObjects::AssumeTheyStand(const Scan& scan) {
   for (Object& object : objects_) {
     if (object.is_free()) continue;

@@ -10,10 +10,11 @@
 namespace depthgrid {
 namespace {
 
-// 1,280 samples of a 640x480 image, in rows that lie together in memory.
+// 1,280 samples of a 640x480 image, along few rows for memory locality.
 constexpr int kRows = 16;
 constexpr int kColumnStep = 8;
-// Columns between the three pixels: sensors smooth over a few pixels, which neighbours would hide.
+// Columns between the three pixels: sensors smooth over a few pixels, so adjacent ones would show
+// too little noise.
 constexpr int kLag = 3;
 
 // The quantile of |second difference| that sigma is read from. High, because a quantised sensor
@@ -23,14 +24,15 @@ constexpr double kQuantile = 0.8;
 constexpr double kQuantileSigmas = 1.2816 * 2.4495;
 
 constexpr int kMinSamples = 20;
-// As wide as those of noise, and up to what no depth camera measures: what drivers write where
-// nothing came back lies beyond.
+// Classes of the same width for the reach, up to beyond any depth camera; what drivers write for no
+// return is farther still.
 constexpr int kClassesOfReach = 64;
-// Until something is measured: Kinect v1 (Nguyen 2012) has 0.0012 to 0.0019 a metre.
+// Default until measured: Kinect v1 (Nguyen 2012) has 0.0012 to 0.0019 per metre.
 constexpr double kDefaultInverseSigma = 0.002;
 
-// The value that std::nth_element puts at `nth`, of numbers that are not negative. Their bits order
-// as they do, and counting those below a middle vectorises: a fifth of the time for 300 of them.
+// The value that std::nth_element puts at `nth`, for non-negative numbers. These have the order of
+// their bits, so a bisection over bits works, and its counting vectorises: a fifth of the time for
+// 300 values.
 float NthSmallest(const std::vector<float>& values, std::size_t nth) {
   std::uint32_t low = 0;
   std::uint32_t high = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
@@ -68,7 +70,7 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
       __builtin_prefetch(next_row + u);
       const float left = row[u - kLag], here = row[u], right = row[u + kLag];
       if (!(left > 0.0F && here > 0.0F && right > 0.0F)) continue;
-      // Anything may be written in a pixel that was not measured, also more than there are numbers.
+      // Invalid pixels may have any value, also one too large for an integer.
       const float position = here / static_cast<float>(kClassM);
       if (position >= static_cast<float>(kClassesOfReach)) continue;
       const auto depth_class = static_cast<std::size_t>(position);
@@ -95,7 +97,7 @@ NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   }
 }
 
-// At, without branches that keep the compiler from vectorising it.
+// Like At(range), without branches so that it vectorises.
 void NoiseWindow::At(std::span<const float> ranges_m, float* __restrict widths_m) const {
   const auto clamped = [](double value, double low, double high) {
     const double raised = value < low ? low : value;

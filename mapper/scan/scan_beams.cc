@@ -5,7 +5,7 @@
 namespace depthgrid {
 namespace {
 
-// Of scans that are read like a laser's.
+// For the modes that clear as a laser does.
 void FindClearOfLaser(const BearingViews& views, const std::vector<BlockHits>& hits,
                       double camera_height_m, const ScanOptions& options, BeamNumbers& beams) {
   for (std::size_t k = 0; k < beams.clear_to_m.size(); ++k) {

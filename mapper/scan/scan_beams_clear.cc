@@ -1,5 +1,5 @@
-// Slopes of rays and ClearInterval (clear_interval.h) of many bearings at once, one a vector lane;
-// each lane computes the same operation by operation, so the values are the same bit for bit.
+// Slopes of rays and ClearInterval (clear_interval.h) of many bearings at once, one per vector
+// lane. Each lane performs the same operations, so the values are equal bit for bit.
 #include <limits>
 
 #include "mapper/scan/scan_beams.h"
@@ -20,7 +20,7 @@ using Vec = hn::Vec<Doubles>;
 using Mask = hn::Mask<Doubles>;
 static_assert(kBlockBearings % hn::MaxLanes(Doubles()) == 0);
 
-// Edges of the band above the camera, and what may hide in a gap.
+// Heights of the band's edges above the camera, and the tallest allowed gap.
 struct Band {
   double low_m, high_m, max_gap_m;
 };
@@ -33,7 +33,7 @@ HWY_INLINE Vec Widened(const std::vector<float>& numbers, std::size_t k) {
   return hn::PromoteTo(Doubles(), hn::LoadU(Floats(), &numbers[k]));
 }
 
-// Where the band's lower edge is seen. The camera looks down on it or up.
+// Where the band's lower edge is in view, for an edge below (kLooksDown) or above the camera.
 template <bool kLooksDown>
 HWY_INLINE Interval WhereEdgeIsSeen(const Slopes& seen, std::size_t k, Vec rise, Mask& any) {
   const Doubles d;
@@ -57,7 +57,7 @@ HWY_INLINE Interval Without(const Interval& clear, const Slopes& gaps, std::size
   const Vec below =
       hn::IfThenElse(hn::Lt(high, zero), hn::Div(hn::Set(d, band.low_m), high), never);
   const Vec to = hn::IfThenElse(hn::Gt(low, zero), hn::Div(hn::Set(d, band.high_m), low), below);
-  const Vec slopes = hn::PromoteTo(  // the difference of two floats is one
+  const Vec slopes = hn::PromoteTo(  // the difference of two floats is a float
       d, hn::Sub(hn::LoadU(Floats(), &gaps.high[k]), hn::LoadU(Floats(), &gaps.low[k])));
   const Vec from = hn::Div(hn::Set(d, band.max_gap_m), slopes);
   const Mask meets = hn::And(hn::Lt(from, clear.to), hn::Gt(to, clear.from));
@@ -103,8 +103,8 @@ void FindClearLanes(const BearingViews& views, const std::vector<BlockHits>& hit
   }
 }
 
-// Of the rays of these rows of each bearing, some rows apart at least; `none` and its negative
-// where there are no such rows.
+// Slopes of the rays in rows `first` and `last` of each bearing, if these are far enough apart;
+// else `none` and its negative.
 struct RaysOfBlock {
   const BearingLineBlock* lines;
   const BlockLane *first, *last;
@@ -136,7 +136,7 @@ void FindSlopeLanes(const BearingLineBlock& lines, const BlockViews& rows, std::
   FindSlopesOf({&lines, &rows.first, &rows.last, 0.0F, kNever}, &views.seen.low[at],
                &views.seen.high[at]);
   views.has_gap[block] = rows.has_gaps ? 1 : 0;
-  if (!rows.has_gaps) {  // nobody looks for any
+  if (!rows.has_gaps) {  // no gaps to look for
     return;
   }
   constexpr float kGapRows = 2.0F;

@@ -3,22 +3,23 @@
 namespace depthgrid {
 namespace {
 
-// What the floor itself is off: a camera above a rug sees 2.5 cm less and half a degree of tilt at
-// its edge (living_room: 1.6 cm and 0.31 degrees, root mean square; office_room, without rugs, 3 mm
-// and 0.07 degrees).
+// Unevenness of the floor: above a rug the height is 2.5 cm less, with half a degree of tilt at the
+// rug's edge (living_room: 1.6 cm and 0.31 degrees rms; office_room, without rugs, 3 mm and 0.07
+// degrees).
 constexpr double kFloorSigmaM = 0.02;
 constexpr double kFloorSigmaRad = RadFromDeg(0.35);
-// SLAM is right at first: it counts as if it had agreed with the floor for so long before (3 s).
+// SLAM is assumed correct at first: it counts as having agreed with the floor for this many frames
+// (3 s) before.
 constexpr int kFramesBefore = 90;
 
-// Of what two differ by, that which the other one errs: its variance is what is left of the mean
-// square when the floor's own is taken off.
+// SLAM's share of the difference between SLAM and floor: its variance is the mean square minus the
+// floor's variance.
 double ShareOfSlam(double square_sum, int frames, double floor_sigma) {
   const double floor_sum = (frames + kFramesBefore) * floor_sigma * floor_sigma;
   return square_sum > floor_sum ? 1.0 - floor_sum / square_sum : 0.0;
 }
 
-// The turn, in level axes, from the tilt of the pose to that over the floor.
+// The rotation, in level axes, from the pose's tilt to the tilt over the floor.
 Eigen::Vector3d TiltBetween(const Pose3& pose, const CameraStand& over_floor) {
   return LogRotation(over_floor.level_from_camera * LevelFromCamera(pose).conjugate());
 }
@@ -42,7 +43,7 @@ Pose3 StandBlend::Placed(const Pose3& map_from_camera, const CameraStand& over_f
   const Eigen::Quaterniond turned =
       ExpRotation(tilt_share * TiltBetween(map_from_camera, over_floor)) *
       LevelFromCamera(map_from_camera);
-  // Turning between two tilts may leave a trace of heading.
+  // Rotating between two tilts may change the heading slightly, so it is restored.
   const Eigen::Quaterniond level_from_camera = LevelFromCamera({turned, {}});
   placed.rotation = (Lift(BaseOf(map_from_camera)).rotation * level_from_camera).normalized();
   return placed;
