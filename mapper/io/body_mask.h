@@ -1,5 +1,5 @@
-// Parts of the robot that its depth camera sees: a gripper, a mast, the rim of a shield. They go
-// with it wherever it goes, would be matched as what stands still, and drawn along its way.
+// Parts of the robot in the view of its depth camera: a gripper, a mast, the rim of a shield. They
+// move with the robot, so they must neither be matched as static surfaces nor drawn along its path.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,19 +13,19 @@
 
 namespace depthgrid {
 
-// Which pixels of a camera's images show the robot, and how it looks to say so.
+// The pixels of a camera's images that show the robot, with what a warning says of them.
 struct BodyMask {
   int width_px = 0;
   int height_px = 0;
-  std::vector<std::uint8_t> is_body;  // by pixel, as of DepthImage
+  std::vector<std::uint8_t> is_body;  // per pixel, in the order of DepthImage
   double share = 0.0;                 // of all pixels
-  double depth_m = 0.0;               // the median of what it shows there
-  int first_column = 0;               // the box around it
+  double depth_m = 0.0;               // median depth of the body
+  int first_column = 0;               // bounding box
   int last_column = 0;
   int first_row = 0;
   int last_row = 0;
 
-  // Makes "no measurement" of its pixels. Images of another size stay as they are.
+  // Sets the body's pixels to invalid. Images of another size are left unchanged.
   void Drop(DepthImage& image) const;
 };
 
@@ -33,22 +33,22 @@ class BodyFinder {
  public:
   static constexpr std::size_t kMostViews = 24;
 
-  // An image since whose forerunner the camera had turned by kBodyViewTurnDeg. Those of another
-  // size than the first are not looked at.
+  // Adds an image; the camera must have turned by kBodyViewTurnDeg since the one before. Images of
+  // another size than the first are ignored.
   void Add(const DepthImage& view);
 
-  // Pixels nearer than 1 m behind which hardly anything (5 % of what was measured) was seen, while
-  // half of it is within 3 cm or 5 % of one depth, in half of the views at least; and three pixels
-  // around. Nothing that stands in a room, walks ahead or is carried past stays like that; what
-  // does is the floor before a camera that is always as high and as steep, so what lies in one
-  // plane with such pixels beyond 1 m is none of it. Nothing of fewer than kFewestBodyViews, nor of
-  // half the image or more.
+  // A body pixel is nearer than 1 m, measured in at least half of the views, with half of its
+  // depths within 3 cm or 5 % of one depth and hardly any (5 %) beyond it. Three pixels around are
+  // added. Nothing static or moving in a room looks like this, except the floor in front of a
+  // camera of constant height and tilt; so pixels in one plane with such constant pixels beyond 1 m
+  // are excluded. Nothing is returned with fewer than kFewestBodyViews views or for half the image
+  // or more.
   std::optional<BodyMask> Find() const;
 
  private:
-  // Of a pixel's depths, and the shares of those measured that are near it or beyond.
+  // The median of a pixel's depths and the shares of its depths that are near it or beyond it.
   struct Middle {
-    double depth_m = 0.0;  // 0: hardly ever measured
+    double depth_m = 0.0;  // 0: rarely measured
     double near_share = 0.0;
     double beyond_share = 0.0;
   };
@@ -58,7 +58,8 @@ class BodyFinder {
     int row = 0;
     double depth_m = 0.0;
   };
-  // Inverse depth over (column, row, 1) of what stays beyond the body's reach.
+  // Planes, as coefficients of inverse depth over (column, row, 1), of constant pixels beyond the
+  // body's reach.
   std::vector<Eigen::Vector3d> LevelPlanes() const;
   BodyMask MaskOf(std::vector<Seen> seen) const;
   std::size_t PixelAt(int column, int row) const {

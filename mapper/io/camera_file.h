@@ -8,11 +8,11 @@
 
 namespace depthgrid {
 
-// No unit of depth is longer than a metre. Scales the other way round, metres a unit, are below.
+// Smallest scale in units per metre, as no unit of depth is longer than a metre. A scale given the
+// other way round (metres per unit) is below it.
 inline constexpr double kLeastDepthScale = 1.0;
 
-// What depth images need besides themselves: the camera, and how many of a PNG's units make a
-// metre.
+// The data needed to read depth images: the camera and the number of PNG units per metre.
 struct CameraFile {
   PinholeCamera camera;
   double depth_scale_per_m = 5000.0;  // TUM RGB-D's convention; millimetre data has 1000

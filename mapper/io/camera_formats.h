@@ -10,11 +10,11 @@
 namespace depthgrid {
 
 struct CameraDescription {
-  std::string kind;  // for the screen: "ROS CameraInfo"
+  std::string kind;  // for display: "ROS CameraInfo"
   CameraFile file;
   bool has_size = true;         // a bare matrix does not say width and height
-  bool has_depth_scale = true;  // nor how many units make a metre
-  // A camera.yaml that leaves depth_scale out has the usual one all the same, which is warned of.
+  bool has_depth_scale = true;  // nor the units per metre
+  // A camera.yaml without depth_scale gets the usual one, with a warning.
   bool takes_usual_scale = false;
   // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
   // poses are to be turned by FlipY.
@@ -24,15 +24,14 @@ struct CameraDescription {
 // Our camera.yaml, a ROS CameraInfo (YAML of camera_calibration or of a printed message),
 // ORB-SLAM2/3 settings, or a text with a 3x3, 3x4 or 4x4 matrix. Throws InputError.
 CameraDescription ReadCameraDescription(const std::string& path);
-// What may be wrong with the file is added to `warnings`.
+// Adds possible faults of the file to `warnings`.
 CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings);
 CameraDescription ParseCameraDescription(const std::string& text, const std::string& place);
-// That a camera file states no depth_scale, and what is taken.
+// The warning that a camera file has no depth_scale, with the scale used.
 std::string NoDepthScale(const std::string& path, double scale_per_m);
 
-// The same motion as seen by a camera whose y axis points down, in a world whose y axis is turned
-// likewise: S T S with S = diag(1, -1, 1, 1).
+// The same pose with the y axes of camera and world flipped: S T S with S = diag(1, -1, 1, 1).
 Pose3 FlipY(const Pose3& world_from_camera);
 SlamOutput FlipY(SlamOutput slam);
 

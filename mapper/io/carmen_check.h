@@ -1,6 +1,6 @@
-// What may be wrong with a laser log although each of its lines can be read: no-returns that look
-// like walls, ranges that are not in metres, headings in degrees, a scanner that is no half circle,
-// a header that contradicts itself, a mount of a laser that states its own poses.
+// Checks a laser log for faults that no single line shows: no-returns that look like walls, ranges
+// not in metres, headings in degrees, a field of view other than a half circle, a contradictory
+// header, a mount given for a log that states the laser's poses.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace depthgrid {
 
-// Of each doubt at most one warning a log. The scans are given in order of time.
+// Gives at most one warning of each kind per log. Scans are added in order of time.
 class CarmenCheck {
  public:
   explicit CarmenCheck(const CarmenLogOptions& options)
       : min_range_m_(options.min_range_m),
         knows_fov_(options.fov_deg > 0.0),
         knows_mount_(options.mount.base_from_laser() != Pose2{}) {}
-  // As the line states it. Readings from `no_return_m` on are known to be no hit.
+  // Adds a scan as written in its line. Readings of at least `no_return_m` are known to be no hit.
   void Add(const CarmenScan& scan, double no_return_m, int line_number);
   std::vector<std::string> Warnings(const std::string& path) const;
 
@@ -43,7 +43,7 @@ class CarmenCheck {
   bool knows_mount_;
 
   std::int64_t readings_ = 0;
-  std::int64_t largest_count_ = 0;  // readings as large as the largest hit
+  std::int64_t largest_count_ = 0;  // readings equal to the largest hit
   double largest_m_ = 0.0;
   int largest_line_ = 0;
   double shortest_m_ = std::numeric_limits<double>::infinity();
@@ -53,7 +53,7 @@ class CarmenCheck {
 
   RangeCrowdCheck crowd_;
 
-  // Readings that are no return, by the power of kAlikeRatio they are.
+  // Number of no-return readings in bins of log(range) to base kAlikeRatio.
   std::map<int, std::int64_t> beyond_;
   int beyond_line_ = 0;
   double beyond_m_ = 0.0;  // where the first began
@@ -76,11 +76,11 @@ class CarmenCheck {
 
   bool any_states_angles_ = false;
   bool any_takes_fov_ = false;
-  int uncommon_counts_ = 0;  // lines without angles that are no scanner's half circle
+  int uncommon_counts_ = 0;  // lines without angles whose count fits no half-circle scanner
   std::size_t first_count_ = 0;
   int first_count_line_ = 0;
 
-  // Lines whose field of view is not that of their readings, and the first of them.
+  // Lines whose stated field of view contradicts their readings, and the first of them.
   int contradictions_ = 0;
   int contradiction_line_ = 0;
   double contradiction_fov_rad_ = 0.0;

@@ -18,9 +18,9 @@ LaserReach ReachOf(const CarmenScan& line, const CarmenLogOptions& options);
 // Of a line's readings, in the laser's axes.
 Bearings BearingsOf(const CarmenScan& line, const CarmenLogOptions& options);
 
-// In the odometry's frame.
+// odom_from_laser.
 Pose2 LaserPoseOf(const CarmenScan& line, const CarmenLogOptions& options);
-// Of a line and options that are sound.
+// ScanOf for a line and options that have been checked.
 Scan ScanOfLine(const CarmenScan& line, const CarmenLogOptions& options);
 
 }  // namespace depthgrid

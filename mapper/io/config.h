@@ -1,6 +1,7 @@
 // Option structs from YAML and back (mapper/core/options.h). Every key of a file must be known: an
-// unknown one is an error that names the nearest known key, with file and line. That is one that
-// ends in the same word, wherever it is, else the nearest of its own group, else the nearest word.
+// unknown one is an error that names the nearest known key, with file and line. The nearest key is
+// one that ends in the same word anywhere, else the nearest one of the same group, else the nearest
+// word.
 #pragma once
 
 #include <functional>
@@ -39,7 +40,7 @@ std::string ValueOf(Options options, const std::string& key_path) {
   return value;
 }
 
-// Whether a key takes whole numbers alone; false when there is no such key.
+// Whether a key takes whole numbers only; false when there is no such key.
 template <typename Options>
 bool IsWholeNumber(Options options, const std::string& key_path) {
   bool is_whole = false;
@@ -62,34 +63,34 @@ class Config {
   Config& operator=(const Config&);
   ~Config();
 
-  // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML. Throws InputError, as for a
-  // file that has a key twice, where an assignment before has given this key.
+  // Overrides one key: "mapper.fusion.gain=0.5"; the value is YAML. Throws InputError if an earlier
+  // assignment set the same key.
   void Set(const std::string& assignment);
-  // The same with the key and the YAML value apart, for sweeps; `place` is what errors name, the
-  // assignment when empty.
+  // The same with separate key and YAML value, for sweeps. Errors name `place`, or the assignment
+  // if it is empty.
   void Set(const std::string& key_path, const std::string& yaml_value,
            const std::string& place = "");
-  // Removes a top-level key, dots and all, and returns its subtree; an empty tree if absent. Errors
-  // name the subtree's keys by their whole path in the file.
+  // Removes a top-level key (dots are part of its name) and returns its subtree; an empty tree if
+  // absent. Errors name the subtree's keys by their whole path in the file.
   Config Take(const std::string& key);
-  // Removes a top-level key, dots and all, whose value is a list of maps and returns them in order;
-  // none if absent.
+  // Removes a top-level key (dots are part of its name) whose value is a list of maps and returns
+  // them in order; none if absent.
   std::vector<Config> TakeMaps(const std::string& key);
-  // What this tree is about, "trajectory 'tour'": errors name it behind file and line, and its keys
-  // without the path to it.
+  // Names what this tree describes, such as "trajectory 'tour'". Errors then give it after file and
+  // line, and keys relative to it.
   void NameSubject(const std::string& subject);
   bool Has(const std::string& key_path) const;
   bool HasList(const std::string& key_path) const;
-  // A copy with only these of the top-level keys: for files of other programs, which may hold more
-  // than is read here.
+  // A copy with only these top-level keys: for files of other programs, which may have further
+  // keys.
   Config Only(const std::vector<std::string>& keys) const;
-  // The file (and line) this tree came from, for errors of whoever reads it.
+  // The file (and line) of this tree, for errors.
   std::string Place() const;
-  // The same of one key: of the assignment that set it, if one did.
+  // The file and line of one key, or the assignment that set it.
   std::string PlaceOfKey(const std::string& key_path) const;
   // Names of the top-level keys in file order.
   std::vector<std::string> Keys() const;
-  // Every top-level key as it is written, dots and all, with its value; in file order.
+  // Every top-level key as written (dots are part of its name) with its value, in file order.
   std::vector<ConfigEntry> Entries() const;
   // The YAML texts of a list's elements at a key path; a scalar is a list of one. Throws InputError
   // if absent.
@@ -97,7 +98,7 @@ class Config {
   // The text at a key path, `otherwise` if there is no such key. Throws InputError for a list or a
   // map.
   std::string Text(const std::string& key_path, const std::string& otherwise = "") const;
-  // The same of a list of them; one text is a list of one, no key an empty one.
+  // The texts of a list; a single text is a list of one, an absent key an empty list.
   std::vector<std::string> Texts(const std::string& key_path) const;
   // The tree as YAML.
   std::string ToYaml() const;
@@ -116,14 +117,14 @@ class Config {
 
  private:
   explicit Config(std::unique_ptr<Tree> tree);
-  // `all_keys` is asked when one is unknown.
+  // `all_keys` is called for the error message of an unknown key.
   std::unique_ptr<OptionsVisitor> Reader(std::function<std::vector<std::string>()> all_keys) const;
   static void FinishReading(OptionsVisitor& reader);
 
   std::unique_ptr<Tree> tree_;
 };
 
-// Where the last of these trees that has the key has it; empty where none has.
+// The place of the key in the last of these trees that has it; empty if none has.
 std::string PlaceOfKey(const std::vector<const Config*>& layers, const std::string& key_path);
 
 struct ConfigEntry {
@@ -143,7 +144,7 @@ std::string ToYaml(Options options) {
   return out;
 }
 
-// One line a key: path, default, allowed values, meaning. For --help and docs.
+// One line per key: path, default, allowed values, meaning. For --help and docs.
 template <typename Options>
 std::string ListKeys(Options options) {
   std::string out;
@@ -152,16 +153,15 @@ std::string ListKeys(Options options) {
 }
 
 // The only candidate that begins with `word`, else the one closest to it in edit distance (two
-// neighbouring letters swapped are one slip), or "" when none is near (more than half its letters
-// differ).
+// neighbouring letters swapped are one slip), or "" when more than half of its letters differ.
 std::string NearestWord(const std::string& word, const std::vector<std::string>& candidates);
 
 // ", did you mean 'prefixNEAREST'?" for the end of a message, or "" when no candidate is near.
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& candidates,
                        const std::string& prefix = "");
 
-// The same of key paths, by their last words: those that end as `key_path` does or, when none does
-// and `or_near`, in the word nearest to its last; at most three, the ones most like it.
+// The same for key paths, by their last words: those with the same last word as `key_path` or, if
+// there is none and `or_near`, with the nearest last word; at most the three most similar.
 std::string DidYouMeanKey(const std::string& key_path, const std::vector<std::string>& key_paths,
                           bool or_near);
 

@@ -1,4 +1,4 @@
-// The words in which configuration speaks to people: lists of names.
+// Texts for configuration messages.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace depthgrid {
 
-// What a text is that is no YAML, and what takes it: a laser log or a trajectory by its first row.
-// Empty of all else.
+// For a text that is not YAML but, by its first row, a laser log or a trajectory: what it is and
+// which option takes it. Else empty.
 std::string OtherTextThanKeys(std::string_view text);
 // "fixed, kalman".
 std::string Joined(const std::vector<std::string_view>& names);
-// The word, of a very long one its beginning.
+// The word, truncated if very long.
 std::string Shortened(const std::string& word);
 
 }  // namespace depthgrid

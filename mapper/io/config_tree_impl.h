@@ -1,4 +1,4 @@
-// The tree behind a Config, and how an options struct is filled from it (mapper/io/config.h).
+// The tree of a Config and the reader that fills an options struct from it (mapper/io/config.h).
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -13,34 +13,34 @@
 
 namespace depthgrid {
 
-// A key that was set after the file was read, and the words that set it.
+// A key that was set after the file was read, and the assignment that set it.
 struct ConfigOverride {
   std::string key_path;
   std::string place;
-  bool by_user = false;  // by an assignment such as --set has
+  bool by_user = false;  // by an assignment as of --set
 };
 
 struct Config::Tree {
-  // Becomes part of another tree by reset(): an assignment copies the list of all nodes there are,
-  // and took half of the time that reading a scene item by item takes.
+  // Make it share another tree's node by reset(), not by assignment, which copies the list of all
+  // nodes (half of the time of reading a scene).
   YAML::Node root{YAML::NodeType::Map};
   std::string place;
-  std::string subject;  // what errors name behind file and line; may be empty
-  std::string within;   // the key path of the root in its file, for errors: of a tree taken out
+  std::string subject;  // named after file and line in errors; may be empty
+  std::string within;   // for errors: the root's key path in its file, if taken out
   std::vector<ConfigOverride> overrides;
 
-  // A key path as it is in the file.
+  // The full path in the file of a key path in this tree.
   std::string WholePath(const std::string& key_path) const {
     return within.empty() ? key_path : within + "." + key_path;
   }
   // The place of a node's mark, for errors: "file:line", and the subject.
   std::string At(const YAML::Mark& mark) const;
-  // Where a value came from, for errors: the assignment that set it, or one that set the group of
-  // keys it is in, else file and line.
+  // Where a value came from, for errors: the assignment that set it or its group of keys, else file
+  // and line.
   std::string PlaceOfKey(const std::string& key_path, const YAML::Mark& mark) const;
-  // The assignment of a user's that has given a key already, or a group or a key of it; or null.
+  // An earlier user assignment of this key, of a group it is in or of a key in it; or null.
   const ConfigOverride* GivenBefore(const std::string& key_path) const;
-  // The overrides inside the subtree of a key, their paths counted from there.
+  // The overrides within the subtree of a key, with paths relative to it.
   std::vector<ConfigOverride> OverridesBelow(const std::string& key) const;
 };
 
@@ -55,7 +55,7 @@ std::string TextIn(const Config::Tree& tree, const std::string& key_path, const 
 // Fills options from `tree`, which must outlive it. `all_keys`: their key paths, for errors.
 std::unique_ptr<OptionsVisitor> MakeYamlReader(const Config::Tree& tree,
                                                std::function<std::vector<std::string>()> all_keys);
-// Throws InputError for a key of the tree that a reader of MakeYamlReader was not asked for.
+// Throws InputError for a key of the tree that was not read by a reader from MakeYamlReader.
 void RequireAllKeysUsed(OptionsVisitor& reader);
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// Damage inside a long file or sequence: the first case is named, all are counted, the rest is
-// used.
+// Tolerated damage in a long file or sequence: the first case is reported, all are counted, and the
+// rest of the data is used.
 #pragma once
 
 #include <string>
@@ -16,12 +16,12 @@ struct Tally {
   std::string first;
 
   void Add(const std::string& what);
-  // "name: 3 things what (first: ...)", nothing when there was none.
+  // Appends "name: 3 things what (first: ...)" unless the count is 0.
   void AppendTo(std::vector<std::string>& warnings, const std::string& name, std::string_view thing,
                 std::string_view what) const;
 };
 
-// "name: 3 things what", nothing when there was none.
+// Appends "name: 3 things what" unless the count is 0.
 void WarnOfCount(std::vector<std::string>& warnings, const std::string& name, int count,
                  std::string_view thing, std::string_view what);
 
@@ -43,16 +43,16 @@ class RowDamage {
     last_is_good_ = true;
     return true;
   }
-  // Once all rows of `text` are read. Throws the first damage unless good rows outnumber the
-  // damaged: the file is something else then, or too short to say.
+  // Call after all rows of `text`. Throws the first damage unless good rows outnumber the damaged
+  // ones: otherwise the file is of another kind, or too short to tell.
   void RequireMostGood(std::string_view text);
   // Throws the first damage, if there is any.
   void RequireAllGood() const;
   int damaged() const { return damaged_.count; }
-  // A row that is sound, but nothing that can be used; `what` says where and why.
+  // Counts a valid row that cannot be used; `what` says where and why.
   void LeaveOut(const std::string& what) { left_out_.Add(what); }
   const Tally& left_out() const { return left_out_; }
-  // The error of a text of which no row is left: each is left out, or there is none.
+  // The error for a text without usable rows.
   InputError NothingIn(const std::string& place, std::string_view thing) const;
   void AppendTo(std::vector<std::string>& warnings, const std::string& place) const;
 
@@ -64,7 +64,8 @@ class RowDamage {
   bool may_be_cut_ = false;
 };
 
-// A last line without line end is used, but said: a number that lost its last digits is a number.
+// Warns if the last line, which is used, has no line end: its last number may be truncated and
+// still parse.
 void WarnOfCut(const std::string& place, std::string_view text, std::vector<std::string>& warnings);
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// A folder of depth images of any layout, as it is written: its images, how they are read, and
-// poses in the folder's own world.
+// A folder of depth images of any layout: its images, their reader, and the poses in the folder's
+// own world.
 #pragma once
 
 #include <optional>
@@ -20,16 +20,15 @@ struct DepthSequence {
   SlamOutput slam;
   WorldUp usual_up = WorldUp::kZ;
   bool y_up = false;               // the poses were turned by FlipY
-  std::vector<std::string> notes;  // what was found out about it, a line each
+  std::vector<std::string> notes;  // findings about it, one line each
 };
 
-// Its images alone, with those of the part. `format` is one of images. Throws InputError.
+// Lists only the images, and which are in the part. `format` is one of images. Throws InputError.
 Recording ListDepthImages(const std::string& path, SequenceFormat format,
                           const SequenceOptions& options);
 
-// As OpenSequence takes it, but for which way is up, and without the robot in its images unless
-// `options` keeps it. `options.format` is not looked at, but `format`, one of images. Throws
-// InputError.
+// Reads a folder as OpenSequence does, but without finding up. The robot is removed from the images
+// unless `options` keeps it. `format`, one of images, replaces `options.format`. Throws InputError.
 DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const SequenceOptions& options = {},
                                 const std::optional<SlamOutput>& slam = {});

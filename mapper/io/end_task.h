@@ -1,6 +1,5 @@
-// What must be done before a program ends, also when it has to end at once, in the middle of work
-// on several threads: half-written files and folders are taken away. A process ends once for all
-// its threads, so the list of these tasks is the process's.
+// Tasks to be done before the program ends, even when it must end at once while several threads are
+// working: removing half-written files and folders. The list of tasks is global to the process.
 #pragma once
 
 #include <functional>
@@ -8,8 +7,8 @@
 
 namespace depthgrid {
 
-// Does `task` when it goes out of scope, or earlier when the program has to end at once; then
-// perhaps twice, and on another thread.
+// Runs `task` when it goes out of scope, or earlier when the program has to end at once; then
+// perhaps twice and on another thread.
 class EndTask {
  public:
   explicit EndTask(std::function<void()> task);  // throws nothing
@@ -22,7 +21,7 @@ class EndTask {
   std::function<void()> task_;
 };
 
-// While one exists the program does not end at once: for steps that happen whole or not at all.
+// While one exists, ending the program waits: for steps that must not be interrupted.
 class EndDelay {
  public:
   EndDelay();
@@ -33,8 +32,8 @@ class EndDelay {
   std::unique_lock<std::recursive_mutex> lock_;
 };
 
-// Does all tasks, the youngest first. Only for a caller who ends the process next: whoever comes to
-// the begin or the end of a task or a delay from now on waits there for ever.
+// Runs all tasks, the newest first. Only for a caller that ends the process next: from now on every
+// construction or destruction of a task or delay blocks forever.
 void DoEndTasks();
 
 }  // namespace depthgrid

@@ -11,11 +11,11 @@
 
 namespace depthgrid::internal {
 
-// Of a row of loops.csv.
+// Number of columns of loops.csv.
 constexpr std::size_t kCsvColumns = 14;
 constexpr std::size_t kCsvColumnsWithStamps = 17;
 
-// The frame of a stamp; nothing when the recording has none that near.
+// Finds the frame nearest to a stamp, within max_difference_s.
 class FrameFinder {
  public:
   FrameFinder(const std::vector<double>& stamps_s, double max_difference_s)
@@ -27,7 +27,7 @@ class FrameFinder {
   double max_difference_s_;
 };
 
-// A row of loops.csv (mapper/io/slam_files.h lists the columns), with the frames as it names them.
+// A row of loops.csv (columns: mapper/io/slam_files.h), with frames as numbered there.
 struct CsvEvent {
   SlamEvent event;  // frames by their numbers in the recording
   // Stamps of the event's frame and of the loop's two, where the row has them.
@@ -37,15 +37,15 @@ struct CsvEvent {
 };
 CsvEvent ParseCsvEvent(std::string_view row, const std::string& place);
 
-// A line of ORB-SLAM2's events: any number of events (GBA_DONE is none). Empty and `missing` set
-// when it is of a frame that is not there.
+// Result for a line of ORB-SLAM2's events, which may contain no event (GBA_DONE). `missing`: its
+// frame is not in the recording.
 struct FoundEvent {
   std::optional<SlamEvent> event;
   bool missing = false;
 };
 FoundEvent ParseOrbEvent(const TextRow& row, const std::string& path, const FrameFinder& frames);
 
-// A row of numbers: both stamps, first_from_second, and the sigmas or none.
+// A row of numbers: both stamps, first_from_second and optionally the sigmas.
 FoundEvent ParseStampedLoop(const TextRow& row, const std::string& path, const FrameFinder& frames);
 
 }  // namespace depthgrid::internal

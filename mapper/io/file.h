@@ -1,5 +1,5 @@
-// Whole files in and out. Readers of formats take the text from here, so that a missing, unreadable
-// or absurdly large file is reported in one way.
+// Reads and writes whole files. All format readers use this, so that missing, unreadable or too
+// large files are reported uniformly.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ void RequireFile(const std::string& path);
 // `max_bytes`.
 std::string ReadFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
 
-// Throws InputError, with what to do, for a file that begins as one of a program that compresses.
-// Readers of text that take it line by line ask before they begin.
+// Throws InputError, with advice, for a compressed file (by its first bytes). For readers that read
+// line by line.
 void RequireUncompressed(const std::string& path);
 
 // ReadFile() for text: throws InputError for a compressed file as well.
@@ -31,7 +31,7 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes = kMaxFi
 // a part. Throws std::runtime_error (a failure while running, not bad input) and leaves nothing
 // behind.
 void WriteFile(const std::string& path, std::string_view content);
-// The same of what `write` puts into the stream, so that a large file need not be held whole.
+// The same for what `write` puts into the stream, so that a large file need not be in memory.
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace depthgrid

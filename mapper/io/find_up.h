@@ -1,4 +1,4 @@
-// Up and the floor as the images of a recording show them, and how they are said.
+// Finds up and the floor in the images of a recording, and formats them for messages.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +11,12 @@
 
 namespace depthgrid {
 
-// From a few images spread over the recording, and some of its first. Nothing where no floor is
-// seen or the recording cannot be opened.
+// Uses a few images spread over the recording and some of its first. Nothing if no floor is seen or
+// the recording cannot be opened.
 std::optional<Gravity> FindGravity(const Recording& recording, const SlamOutput& slam,
                                    const DepthReader& reader, const RecordingOptions& options);
 
-// Up as the floor in the images has it, one of the axes where it is near enough to one.
+// The floor's normal, snapped to an axis if near enough.
 Eigen::Vector3d SnappedUp(const Gravity& gravity);
 
 // "z" or "(0.000, 0.707, 0.707)".

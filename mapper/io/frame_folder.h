@@ -1,5 +1,5 @@
-// Folders with a depth image and a pose a frame, as 7-Scenes, 3DMatch and ScanNet-like exports have
-// them (docs/formats.md, "Frame folder").
+// Folders with one depth image and one pose file per frame, as of 7-Scenes, 3DMatch and
+// ScanNet-like exports (docs/formats.md, "Frame folder").
 #pragma once
 
 #include <optional>
@@ -17,22 +17,22 @@ namespace depthgrid {
 struct FrameFolder {
   Recording recording;      // without a camera
   SlamOutput poses;         // the folder's own
-  Tally without_pose;       // of files of one pose each, those that are damaged or hold none
+  Tally without_pose;       // single-pose files that are damaged or have no pose
   std::string camera_path;  // empty when the folder has none
 };
 
-// Whether the folder looks like one: numbered depth images. Poses may be a file's elsewhere.
+// Whether the folder has numbered depth images. Poses may come from elsewhere.
 bool IsFrameFolder(const std::string& folder);
 
 // Throws InputError when there are no depth images.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
 
-// The folder's own poses. Throws InputError when there are none, with the first file and what is
-// wrong there when files of one pose each hold none.
+// The folder's own poses. Throws InputError when there are none, naming the first single-pose file
+// and its fault, if any.
 SlamOutput OwnPoses(const FrameFolder& folder);
 
-// The folder's camera, or that of `camera_path` when not empty, with what its file leaves open
-// (image size, depth scale) filled in. Throws InputError when there is none.
+// The folder's camera, or that of `camera_path` when not empty, with image size and depth scale
+// filled in if its file lacks them. Throws InputError when there is none.
 CameraDescription FrameFolderCamera(const FrameFolder& folder, const std::string& camera_path,
                                     std::vector<std::string>& warnings);
 

@@ -1,4 +1,4 @@
-// How other files name the frames of a recording: by stamp, or by a number.
+// How other files refer to the frames of a recording: by stamp or by number.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,17 @@
 namespace depthgrid {
 
 struct FrameNames {
-  std::vector<double> stamps_s;  // by the clock of the poses
-  // Of each frame in the recording as it was recorded, ascending: frames that were left out since
-  // keep theirs. Empty: 0, 1, 2 ...
+  std::vector<double> stamps_s;  // in the clock of the poses
+  // The number of each frame in the original recording, ascending; numbers of frames left out since
+  // are not reused. Empty: 0, 1, 2 ...
   std::vector<std::int64_t> numbers = {};
-  // What was added to the recording's own stamps to get those of the poses.
+  // Offset that was added to the recording's own stamps.
   double time_offset_s = 0.0;
-  // Poses this near to each other are interpolated; none: a frame has the pose of its stamp.
+  // Poses at most this far apart (s) are interpolated; empty: a frame gets the pose nearest to its
+  // stamp.
   std::optional<double> interpolated_gap_s = {};
-  // Those that are read: poses and events are of the whole recording, messages of these.
+  // The frames that are read. Poses and events refer to the whole recording, messages to these
+  // frames.
   FramePart part = {};
 
   std::size_t CountInPart() const { return part.CountAmong(stamps_s.size()); }
@@ -30,25 +32,25 @@ struct FrameNames {
   }
 };
 
-// Whether of two spans of time, in seconds, one is so much longer that it must be of other units:
-// milliseconds take a thousand times as long.
+// Whether one of two time spans (s) is so much longer that its unit must differ, such as
+// milliseconds.
 bool AreOfOtherUnits(double span_s, double other_span_s);
 
-// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", what was added to the images', the
-// part's own and what may be done about it. `names` has frames, and there are poses, in order.
+// "images from 1.000 to 5.000 s, poses from 11.000 to 15.000 s", with the offset added to the
+// images, the part's range and advice. Requires frames and sorted poses.
 std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s);
 
-// Whether so few frames have a pose that it is to be said why.
+// Whether so few frames have a pose that a warning should explain it.
 inline bool MostLackPoses(std::size_t with_pose, std::size_t frames) {
   return 2 * with_pose < frames;
 }
 
-// "frames 300 to 599 of 900, 10.000 to 19.967 s of 29.967": which they are of the whole recording.
+// The part as "frames 300 to 599 of 900, 10.000 to 19.967 s of 29.967".
 std::string PartShown(const FrameNames& names);
 
-// Poses without stamps, an entry a frame of `numbers`: one for each frame in order, or for each of
-// the part or, where some frames have been left out, one for each number from 0. Another count is a
-// warning, and they pair from the first.
+// Pairs poses without stamps with the frames: one pose per frame, per frame of the part or, if
+// frames have been left out, per number from 0. Any other count gives a warning, and they are
+// paired from the first.
 std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
                                               const FrameNames& frames, const std::string& place,
                                               std::vector<std::string>& warnings);

@@ -1,5 +1,5 @@
-// Depth images that a driver gave again and again while the camera went on: they would be drawn,
-// and matched, where nothing of it is.
+// Detects depth images that a driver repeats while the camera moves: they would be drawn and
+// matched at wrong places.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@ namespace depthgrid {
 
 class FrozenImages {
  public:
-  // Whether the image is the same to the last pixel as those before it, since the first of which
-  // the camera turned or went ahead: by more than 2 degrees or 5 cm, and as much for each second,
-  // which a SLAM that wanders while its camera stands does not do. A camera that moves sideways
-  // along a wall may see the same without noise. Asked for every image that has a pose, in the
-  // order of time; the number changes where poses before and after cannot be compared.
+  // Whether the image equals those before it in every pixel although the camera has turned or moved
+  // forward since the first of them: by more than 2 degrees or 5 cm plus as much per second, more
+  // than SLAM drifts while the camera stands. Sideways motion does not count, as a wall seen
+  // without noise may look the same. Call for every image with a pose, in order of time;
+  // `slam_epoch` changes where poses before and after are not comparable.
   bool IsFrozen(std::shared_ptr<const DepthImage> image, const Pose3& slam_from_camera,
                 double stamp_s, int slam_epoch);
 
  private:
-  std::shared_ptr<const DepthImage> image_;  // the newest that was another than the one before
+  std::shared_ptr<const DepthImage> image_;  // the newest image that differed from its predecessor
   Pose3 slam_from_camera_;
   double stamp_s_ = 0.0;
   int slam_epoch_ = 0;

@@ -1,4 +1,4 @@
-// How far a sensor goes that gives the same again and again, before that is its driver's fault.
+// Motion of a sensor with unchanging data beyond which its driver is taken to be frozen.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace depthgrid {
 
-// 2 degrees or 5 cm, and as much for each second: SLAM and odometry that wander while the sensor
-// stands do not go so far. Chosen, of no measurement.
+// 2 degrees or 5 cm plus as much per second, more than SLAM and odometry drift while the sensor
+// stands. Chosen, not measured.
 inline bool IsFrozenTurn(double turn_rad, double seconds) {
   return std::abs(turn_rad) > RadFromDeg(2.0) * (1.0 + seconds);
 }

@@ -25,7 +25,7 @@ struct PlanarGraph {
 };
 
 // VERTEX_SE2 id x y yaw, FIX of the first, EDGE_SE2 first second dx dy dyaw and the upper triangle
-// of the information matrix. Numbers in the shortest form that reads back as the same double.
+// of the information matrix. Numbers are in the shortest form that parses to the same double.
 std::string G2oText(const PlanarGraph& graph);
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// Which way is up in a recording whose world is not level: the floor's plane in some of its depth
-// images, seen through their poses (docs/formats.md, "World conventions").
+// Finds up in a recording whose world is not level, from the floor's plane in some of its depth
+// images and their poses (docs/formats.md, "World conventions").
 #pragma once
 
 #include <Eigen/Core>
@@ -15,30 +15,31 @@ namespace depthgrid {
 
 struct Gravity {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
-  // By how much up differs from image to image: SLAM's tilt wanders and normals have errors. Nine
-  // of ten images are nearer.
+  // 90 % quantile of the angle between up in single images and up_in_world: SLAM's tilt drifts and
+  // normals have errors.
   double wander_rad = 0.0;
-  // More than normals' errors explain: SLAM's tilt drifts, and up is as the first images have it.
+  // wander_rad is more than errors of normals explain: SLAM's tilt drifts, and up is from the first
+  // images.
   bool drifts = false;
-  // Of the floor along `up`: up . point. Where SLAM's height drifts so much that the images do not
-  // agree on one floor, as the first images have it.
+  // up . point for points of the floor. From the first images if SLAM's height drifts so much that
+  // the images disagree.
   double floor_m = 0.0;
   double camera_height_m = 0.0;  // above the floor, median over the frames
-  // It drifts, and the first images see no floor: floor_m is off by what it drifted before one did.
+  // It drifts, and the first images see no floor: floor_m includes the drift until one did.
   bool floor_is_late = false;
-  double share_below = 0.0;  // of all surface seen, what lies clearly lower than the floor
+  double share_below = 0.0;  // share of all surface seen that is clearly below the floor
 };
 
-// Whether the floor may be a table that fills the images: beside it they see what lies lower. Of a
-// floor they see little, reflections or steps.
+// Whether the "floor" may be a table that fills the images, with lower surfaces beside it. Below a
+// real floor there is little: reflections or steps.
 inline bool IsTable(const Gravity& gravity) { return gravity.share_below > 0.01; }
 
 class GravityFinder {
  public:
   // An undistorted image of the recording; a dozen spread over it are enough.
   void Add(const DepthImage& image, const PinholeCamera& camera, const Pose3& world_from_camera);
-  // One of the recording's first, in order of time: where SLAM's tilt drifts, its world is level as
-  // these have it. Images given to Add() may be given too.
+  // Adds one of the recording's first images, in order of time; they define up if SLAM's tilt
+  // drifts. They may have been given to Add() too.
   void AddFirst(const DepthImage& image, const PinholeCamera& camera,
                 const Pose3& world_from_camera);
 

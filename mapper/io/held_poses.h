@@ -1,5 +1,5 @@
-// Odometry that gives one pose again and again while the robot drives on, as a node does that asks
-// for the latest transform when its source has stopped: nothing is known of where it was.
+// Detects odometry that repeats one pose while the robot moves, as from a node that uses the latest
+// transform after its source has stopped: the true poses are unknown.
 #pragma once
 
 #include <algorithm>
@@ -13,23 +13,23 @@ namespace depthgrid {
 
 class HeldPoses {
  public:
-  // The next scan of a log, its readings as the log has them: from `no_return_m` on they are no
-  // return, and no data below `min_range_m`.
+  // Adds the next scan of a log with its readings as logged: from `no_return_m` on no-returns,
+  // below `min_range_m` no data.
   void Add(const Pose2& odom_from_laser, std::vector<double> range_m, double min_range_m,
            double no_return_m);
 
-  // For each scan added: whether its pose, to the last bit that of the scan before, was held while
-  // half of what the scan shows moved. Somebody who fills the view of a robot that stands is such a
-  // motion as well. None in a log whose poses have not moved yet, as there is no odometry.
+  // For each scan added, whether its pose equals that of the scan before bit for bit while half of
+  // the readings changed. Somebody who fills the view of a standing robot has the same effect.
+  // False until the log's poses have moved, as it may have no odometry.
   const std::vector<bool>& held() const { return held_; }
   int count() const { return static_cast<int>(std::count(held_.begin(), held_.end(), true)); }
 
  private:
   std::optional<Pose2> pose_;
-  bool moves_ = false;           // there was another pose before
-  std::vector<double> first_m_;  // the readings where this pose came first
+  bool moves_ = false;           // a different pose occurred before
+  std::vector<double> first_m_;  // the readings at the first scan with this pose
   std::vector<double> last_m_;
-  std::size_t moved_from_ = 0;  // scans from here to the last one show that they moved
+  std::size_t moved_from_ = 0;  // scans from this one to the last show motion
   std::vector<bool> held_;
 };
 

@@ -19,8 +19,8 @@ bool IsIclFolder(const std::string& folder);
 // Lists the images; their stamps are their numbers, as in the .gt.freiburg files.
 Recording ListIclFolder(const std::string& folder);
 
-// The folder's own poses, as written: of a camera whose y axis points up. What was mended is added
-// to the recording's warnings.
+// The folder's own poses as written, for a camera whose y axis points up. Repairs are added to the
+// recording's warnings.
 SlamOutput ReadIclPoses(const std::string& folder, Recording& recording);
 
 // ICL-NUIM's camera, unless the folder has a camera.yaml.
@@ -30,11 +30,12 @@ CameraDescription IclCamera(const std::string& folder, std::vector<std::string>&
 DepthImage ParseRayLengths(const std::string& text, const PinholeCamera& camera,
                            const std::string& place);
 
-// Of an image's ray lengths, in metres: 1, or 0.01 as of the office's files; 0 if it shows nothing.
+// Unit of an image's ray lengths in metres: 1, or 0.01 as in the office's files; 0 if it has no
+// data.
 double RayUnitM(const DepthImage& lengths);
 
-// Reads either kind of depth image of the recording, whose camera is known. The part's first image
-// that shows something tells the unit of all ray lengths.
+// Reads either kind of depth image; the recording's camera must be set. The unit of all ray lengths
+// is that of the part's first image with data.
 DepthReader IclDepthReader(const Recording& recording, const RecordingOptions& options);
 
 }  // namespace depthgrid

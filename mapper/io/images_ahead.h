@@ -1,6 +1,5 @@
-// The depth images of a recording in their order, of which the next ones are read and decoded on
-// threads of their own while the caller is at work with those before. Only for this folder's own
-// files.
+// Reads the depth images of a recording in order; the next ones are read and decoded on other
+// threads while the caller processes the current one. Internal to mapper/io.
 #pragma once
 
 #include <cstddef>
@@ -14,23 +13,22 @@
 
 namespace depthgrid::internal {
 
-// As it was read; what is wrong with it is told where it is asked for, so in the images' order.
+// An image, or the reason why there is none, which is reported in the images' order.
 struct ReadImage {
   std::shared_ptr<const DepthImage> depth;
   std::string unreadable;  // why there is none
-  std::string wrong_size;  // likewise
+  std::string wrong_size;  // the reason, if the size is wrong
 };
 
 class ImagesAhead {
  public:
-  // Of the images [begin, end), `most` ahead: so many threads read at once, so many images wait at
-  // most. With 0 no thread is started. `read` is called on several threads at once, for each image
-  // once, and is given its number.
+  // Reads the images [begin, end) with at most `most` threads and waiting images; 0 starts no
+  // thread. `read` is called once per image, with its index, on several threads at once.
   ImagesAhead(std::size_t begin, std::size_t end, std::size_t most,
               std::function<ReadImage(std::size_t)> read);
 
-  // The next one, of which there must be one; those after it are begun. Throws what `read` threw
-  // for it.
+  // The next image, of which there must be one; starts reading those after it. Throws what `read`
+  // threw for it.
   ReadImage Next();
 
  private:
@@ -38,12 +36,13 @@ class ImagesAhead {
 
   std::size_t next_, end_, most_;
   std::function<ReadImage(std::size_t)> read_;
-  // Each waits for its thread when it is destroyed, so before what the thread reads with.
+  // Destroying a future waits for its thread; declared last, so destroyed before what the threads
+  // use.
   std::deque<std::future<ReadImage>> coming_;
 };
 
-// How many ahead serve a caller that takes less time for an image than its reading does: one a
-// core, none where there is but one.
+// The number of images to read ahead when reading takes longer than processing: one per core, none
+// with a single core.
 std::size_t UsualImagesAhead();
 
 }  // namespace depthgrid::internal

@@ -1,4 +1,5 @@
-// What a laser log's scans and odometry show to be wrong with them, and is mended while it is read.
+// Faults of a laser log's scans and odometry that are detected from all of them and repaired while
+// reading.
 #pragma once
 
 #include <optional>
@@ -17,15 +18,15 @@ class LaserFaults {
  public:
   explicit LaserFaults(const CarmenLogOptions& options) : options_(options) {}
 
-  // The scans of the log, or of its part, in order; then Find().
+  // Add the scans of the log, or of its part, in order, then call Find().
   void Add(const CarmenScan& line);
   void Find();
 
-  // By the order in which they were added.
-  bool HasPose(std::size_t scan) const;  // else it was held
-  bool HasScan(std::size_t scan) const;  // else it was frozen
+  // `scan` is the index in the order of adding.
+  bool HasPose(std::size_t scan) const;  // false: the pose was held
+  bool HasScan(std::size_t scan) const;  // false: the scan was frozen
   void DropBody(CarmenScan& line) const { body_.Drop(line); }
-  // `first_frame` is that of the first scan added.
+  // `first_frame` is the frame of the first scan added.
   std::vector<std::string> Warnings(const std::string& path, std::size_t first_frame) const;
 
  private:

@@ -1,4 +1,4 @@
-// Where a laser sits on its robot.
+// The mounting pose of a laser on its robot.
 #pragma once
 
 #include "mapper/core/options.h"
@@ -6,8 +6,8 @@
 
 namespace depthgrid {
 
-// The laser's pose in base axes, base being the point of the robot whose poses a log states. All
-// zero: they are the laser's own.
+// The laser's pose in base axes, where base is the body whose poses a log states. All zero: the log
+// states the laser's poses.
 struct LaserMount {
   double x_m = 0.0;
   double y_m = 0.0;

@@ -1,13 +1,13 @@
-// What a recording's camera sees of its own robot is found before anything else is done with it.
-// Only for this folder's own files.
+// Removes the robot's own body from a recording's images, before any other processing. Internal to
+// mapper/io.
 #pragma once
 
 #include "mapper/io/depth_sequence.h"
 
 namespace depthgrid::internal {
 
-// Looks for the robot in a few images of the part, between which the camera turned, and lets the
-// reader leave it out of all of them, with a warning.
+// Finds the robot in a few images of the part between which the camera turned, makes the reader
+// remove it from all images and adds a warning.
 void LeaveOutBody(const RecordingOptions& options, DepthSequence& sequence);
 
 }  // namespace depthgrid::internal

@@ -1,4 +1,4 @@
-// What a SLAM system reported of itself while it ran: loops closed and relocalisations, from a
+// Events that a SLAM system reported while running (loop closures and relocalisations), from a
 // file.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace depthgrid {
 
 struct SlamEvent {
   int frame = 0;             // the input frame, from 0, with whose pose it takes effect
-  std::optional<int> epoch;  // SLAM's epoch from this frame on, where the file counts them
-  bool new_epoch = false;    // where it does not: whether SLAM's poses jump with this frame
+  std::optional<int> epoch;  // SLAM's epoch from this frame on, if the file counts epochs
+  bool new_epoch = false;    // otherwise: whether SLAM's poses jump at this frame
   std::optional<LoopClosure> loop;
 };
 
@@ -22,7 +22,7 @@ struct SlamEvent {
 constexpr const char* kOwnEvents = "loops.csv";
 
 struct SlamEvents {
-  std::string kind;               // for the screen: "loops.csv"
+  std::string kind;               // for display: "loops.csv"
   std::vector<SlamEvent> events;  // ordered by frame
   std::vector<std::string> warnings;
 };
@@ -31,9 +31,9 @@ struct SlamEvents {
 //   loops.csv            frames by number and stamp, as `depthgrid slam` writes it
 //   ORB-SLAM2 events     LOOP frame stamp matched_frame stamp ... Tcm 3x4 | RELOC frame n t stamp
 //   stamped loops        first_stamp second_stamp tx ty tz qx qy qz qw [sigma_m sigma_rad]
-// Stamps name the nearest frame, at most `max_difference_s` away. The loops of frames that are not
-// there and damaged rows are left out and counted in the warnings. Throws InputError for an empty
-// file and one with mostly damaged rows.
+// Stamps name the nearest frame, at most `max_difference_s` away. Loops of missing frames and
+// damaged rows are left out and counted in the warnings. Throws InputError for an empty file and
+// one with mostly damaged rows.
 SlamEvents ParseSlamEvents(const std::string& text, const std::string& place,
                            const FrameNames& frames, double max_difference_s);
 

@@ -1,4 +1,4 @@
-// Maps as ROS's map_server and Nav2 keep them: a YAML file beside an image (docs/formats.md,
+// Maps in the format of ROS's map_server and Nav2: a YAML file and an image (docs/formats.md,
 // "Maps").
 #pragma once
 
@@ -22,26 +22,26 @@ enum class MapMode { kTrinary, kScale, kRaw };
 // 1, unknown ones NaN, so that StatesOf gives the states Nav2 gives.
 struct MapFile {
   OccupancyMap map;
-  // From the frame of the map's cells to the world the file speaks of, or to the frame that was
-  // asked for: the identity unless the origin has a yaw there or is no multiple of the resolution.
+  // From the frame of the map's cells to the file's world, or to the requested frame: the identity
+  // unless the origin has a yaw there or is not a multiple of the resolution.
   Pose2 world_from_grid;
   bool negate = false;
-  // What of the YAML is allowed but likely of another unit, a line each.
+  // Values of the YAML that are allowed but probably in a wrong unit, one line each.
   std::vector<std::string> doubts;
 };
 
 // Throws InputError for a missing, unreadable or contradictory YAML or image (PGM or PNG).
-// `world_from_frame`: such as another map's world_from_grid, in whose cells this one is wanted.
+// `world_from_frame`: the frame wanted for the cells, such as another map's world_from_grid.
 MapFile ReadMap(const std::string& yaml_path, const Pose2& world_from_frame = {});
 
-// The map redrawn on cells along the world's axes, or the frame's: each takes the value of the cell
-// its centre falls into.
+// The map resampled to cells along the axes of the world (or the requested frame): each takes the
+// value of the cell that contains its centre.
 OccupancyMap AlignedMap(const MapFile& file);
 
 // The states of a map file's cells, on the lattice.
 StateMap ReadStates(const std::string& path, const Pose2& world_from_frame = {});
 
-// The cells a map file calls free: in observable.yaml those that could be seen.
+// The free cells of a map file; in observable.yaml these are the observable ones.
 CellSet ReadFreeCells(const std::string& path);
 
 // The image beside a map: the same name with .pgm, or for `scale`, which needs transparency,

@@ -1,4 +1,4 @@
-// Pixels of map images to probabilities and back (mapper/io/map_file.h says which is which).
+// Converts pixels of map images to probabilities and back (rules: mapper/io/map_file.h).
 #pragma once
 
 #include <string>
@@ -27,11 +27,11 @@ ShadeImage ReadShades(const std::string& path, MapMode mode);
 
 float OccupiedProb(double shade, bool opaque, const ShadeRule& rule);
 
-// What the YAML file of a map that is written in this mode states.
+// The thresholds in the YAML file of a map written in this mode.
 StateThresholds WrittenThresholds(MapMode mode);
 
-// The image's bytes, in which every cell keeps its state by these: PGM, or PNG with transparency
-// for kScale.
+// The image file: PGM, or PNG with transparency for kScale. With WrittenThresholds every cell keeps
+// its state.
 std::string EncodeMapImage(const OccupancyMap& map, MapMode mode);
 
 }  // namespace depthgrid::internal

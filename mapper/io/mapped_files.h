@@ -1,5 +1,6 @@
-// A map to go on in, as files of a folder: scans.bin holds what it is drawn from and, where that is
-// another scan, matched.bin what is matched. A folder of `depthgrid run` or `map` is one.
+// A map to continue, as files of a folder: scans.bin has the scans it is drawn from and
+// matched.bin, if they differ, those that are matched. Folders of `depthgrid run` and `map` have
+// this form.
 #pragma once
 
 #include <string>
@@ -9,13 +10,13 @@
 
 namespace depthgrid {
 
-// `mapped` of a MapperResult, or CurrentMapped(), into a folder that is there, in place of what was
-// saved there before. A save that is cut off leaves a map: that one or this. Throws
-// std::runtime_error where nothing can be written.
+// Writes `mapped` of a MapperResult, or CurrentMapped(), into an existing folder, replacing an
+// earlier map. An interrupted save leaves either the old or the new map. Throws std::runtime_error
+// on a write error.
 void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& frames);
 
-// The frames as PriorMap wants them: their numbers are below 0, one left out between two drives.
-// Throws InputError for files that are missing, damaged, empty or of two maps.
+// The frames as PriorMap needs them: with negative numbers, one skipped between two drives. Throws
+// InputError for files that are missing, damaged, empty or of two maps.
 std::vector<MappedFrame> ReadMapped(const std::string& folder);
 
 }  // namespace depthgrid

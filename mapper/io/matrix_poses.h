@@ -10,21 +10,21 @@
 
 namespace depthgrid {
 
-// A file with one 4x4 (or 3x4) matrix in four (three) lines, as 7-Scenes and ScanNet give each
-// frame. Nothing when it holds NaN or infinity: the frame has no pose, and `left_out` says why.
-// Throws InputError when it is no rigid motion.
+// A file with one 4x4 (or 3x4) matrix in four (three) lines, as in 7-Scenes and ScanNet for each
+// frame. Nothing for NaN or infinity, with the reason in `left_out`: the frame has no pose. Throws
+// InputError if it is not a rigid motion.
 std::optional<Pose3> ReadMatrixPose(const std::string& path, Tally& left_out);
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
 
-// A file with many: one of 16 or 12 numbers a line, or three or four lines of four numbers each
-// (ICL-NUIM's .gt.sim). Damaged ones keep their place without a pose and are counted in `damage`,
-// which leaves out those of NaN, a zero rotation or beyond 10,000 km. Throws InputError when the
-// damaged are not fewer than the others; reading a file, also when no pose is left.
+// A file with many matrices: one of 16 or 12 numbers per line, or in three or four lines of four
+// numbers (ICL-NUIM's .gt.sim). Damaged ones stay in the list without a pose and are counted in
+// `damage`, as are unusable ones (NaN, a zero rotation, beyond 10,000 km). Throws InputError unless
+// the good outnumber the damaged; ReadMatrixPoses also when no pose is left.
 std::vector<std::optional<Pose3>> ReadMatrixPoses(const std::string& path,
                                                   std::vector<std::string>& warnings);
 std::vector<std::optional<Pose3>> ParseMatrixPoses(const std::string& text,
                                                    const std::string& place, RowDamage& damage);
-// Throws InputError, with what was left out, when there is none among what was parsed.
+// Throws InputError, with what was left out, if there is no pose.
 void RequireSomePose(const std::vector<std::optional<Pose3>>& poses, const RowDamage& damage,
                      const std::string& place);
 

@@ -1,4 +1,4 @@
-// Text files of number columns (trajectories, matrices): one home for splitting and number syntax.
+// Splitting and number syntax of text files with columns (trajectories, matrices).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ struct TextRow {
   std::vector<std::string_view> fields;
 };
 
-// Windows programs begin UTF-8 text with a mark.
+// Removes the byte order mark with which Windows programs begin UTF-8 text.
 std::string_view WithoutByteOrderMark(std::string_view text);
 
 // The lines of `text` that are neither empty nor `#` comments, split at spaces, tabs and commas.
@@ -29,43 +29,41 @@ std::vector<std::string_view> SplitAtCommas(std::string_view line);
 // entirely a number.
 std::optional<double> ParseNumber(std::string_view field);
 
-// 010, which is 8 to some programs and 10 to others; 0 and 0.5 have none.
+// True for 010, which some programs read as 8 and others as 10; false for 0 and 0.5.
 bool HasLeadingZero(std::string_view number);
 
 // "file:12", the place of a row in errors.
 std::string PlaceOfLine(const std::string& path, int line);
 
-// From the row's field of this number (from 0) to its last, as the line has it: a file's name with
-// spaces.
+// The text of the line from field number `field` (from 0) on: for file names with spaces.
 std::string_view RestOf(const TextRow& row, std::size_t field);
 
-// Throws InputError when the row is no UTF-8 text: UTF-16, as a Windows shell redirects, is full of
-// zero bytes.
+// Throws InputError for a row with zero bytes: UTF-16, as redirected by a Windows shell.
 void RequireText(const TextRow& row, const std::string& path);
 
-// Throws InputError for columns as spreadsheets of some languages write them, that other errors
-// would only count: semicolons between them, or numbers with decimal commas.
+// Throws InputError for semicolons between columns or decimal commas, as from spreadsheets in some
+// languages; otherwise each row would only be counted as damaged.
 void RequirePlainColumns(const std::vector<TextRow>& rows, const std::string& path);
 
 // All fields of a row as numbers; throws InputError unless there are exactly `count`.
 std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::string& path);
 
-// Stamps are seconds: those of milliseconds or nanoseconds since 1970 lie beyond this (year 5138).
+// Stamps are in seconds; milliseconds or nanoseconds since 1970 are beyond this (year 5138).
 constexpr double kLatestStampS = 1e11;
 // Throws InputError unless it is a finite number of seconds.
 void RequireSeconds(double stamp_s, const std::string& place);
 
-// Whether both are one stamp where they are written: with six decimals.
+// Whether both are equal when written with six decimals.
 bool IsSameStamp(double a_s, double b_s);
 
-// What is wrong with a pose's position that is not finite or beyond reach (IsWithinReach).
+// The error message for a position that is not finite or out of range (IsWithinReach).
 std::string PositionBeyondReach(const Eigen::Vector3d& position_m, const std::string& place);
 
 // How far the norm of a unit quaternion may be off. Files print four to nine digits, so norms are
 // off by up to 1e-4; a larger error is a column mistaken for another.
 constexpr double kMaxNormError = 0.05;
 // Closer than this the quaternion is kept bit for bit (nine printed digits of a float pose), so
-// that a pose that passes through the program unchanged is printed unchanged.
+// that an unchanged pose is printed unchanged.
 constexpr double kExactNormError = 1e-6;
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// Image files told apart by the number at the end of their names.
+// Image files with a number at the end of their names.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@ namespace depthgrid {
 struct NumberedImage {
   long number = 0;
   std::filesystem::path path;
-  std::filesystem::path stem;          // the path less its ending
-  std::optional<double> stamp_s = {};  // of names that are seconds
+  std::filesystem::path stem;          // the path without its extension
+  std::optional<double> stamp_s = {};  // if names are seconds
 };
 
-// The folder's files with this ending and a number before it, in order of their numbers. Where all
-// names are seconds with a fraction (1305031102.160407, as TUM's), they are in order of these, and
-// their numbers are their places, from 0.
+// The folder's files with this ending and a number before it, in order of their numbers. If all
+// names are seconds with a fraction (1305031102.160407, as TUM's), they are sorted by these and
+// numbered from 0.
 std::vector<NumberedImage> NumberedImagesIn(const std::filesystem::path& folder,
                                             const std::string& ending);
 

@@ -1,5 +1,5 @@
-// Parts of the robot that its laser sees: a post, a wheel, a cable. They go with it wherever it
-// goes, would be matched as what stands still, and drawn along its way.
+// Parts of the robot in the view of its laser: a post, a wheel, a cable. They move with the robot,
+// so they must neither be matched as static surfaces nor drawn along its path.
 #pragma once
 
 #include <cstddef>
@@ -11,35 +11,34 @@ namespace depthgrid {
 
 class OwnBody {
  public:
-  // Readings next to each other, all of the body.
+  // A run of neighbouring readings of the body.
   struct Part {
     std::size_t first = 0;
     std::size_t last = 0;
-    double range_m = 0.0;  // the median of all of them
+    double range_m = 0.0;  // median of the part's readings
   };
 
-  // The next scan of a log, with the heading of its odometry. Lines with another count of readings
-  // than the first are not looked at. Nearer readings than `min_range_m` are no data.
+  // Adds the next scan of a log, with its odometry's heading. Lines with a different number of
+  // readings than the first are ignored. Readings nearer than `min_range_m` are no data.
   void Add(const CarmenScan& line, double min_range_m);
-  // After all of them: readings nearer than 1 m that stayed within 3 cm or 5 % of one range in 95 %
-  // of the scans, each of which the robot had turned by 20 degrees since the one before; 9 of them
-  // at least, 64 at most. Nothing that stands in a room, walks ahead or is driven along stays like
-  // that.
+  // Call after all scans. The body is readings nearer than 1 m that stay within 3 cm or 5 % of one
+  // range in 95 % of the views. Between two views the robot turned by 20 degrees; 9 to 64 are used.
+  // Nothing static or moving in a room looks like this.
   void Find();
 
   const std::vector<Part>& parts() const { return parts_; }
-  // Makes "no data" of what is the body, and of what shows its edge beside it.
+  // Sets readings of the body, and of its edges beside it, to "no data".
   void Drop(CarmenScan& line) const;
 
  private:
-  double LastedAtM(std::size_t reading) const;  // 0: it did not
+  double LastedAtM(std::size_t reading) const;  // 0: none
 
   std::size_t count_ = 0;  // of a line's readings
   double step_rad_ = 0.0;
   double yaw_rad_ = 0.0;                      // of the newest view
   std::vector<std::vector<double>> views_m_;  // 0 is no data
   std::vector<Part> parts_;
-  std::vector<double> body_to_m_;  // by reading: nearer is the body; empty where there is none
+  std::vector<double> body_to_m_;  // per reading: nearer is the body; empty without a body
 };
 
 }  // namespace depthgrid

@@ -21,8 +21,8 @@ struct PgmImage {
 };
 
 bool IsPgm(std::string_view bytes);
-// Throws InputError for anything that is not a whole PGM image, and for one with more behind it
-// than white space or the next image, which is not read.
+// Throws InputError unless it is a complete PGM image, followed at most by white space or another
+// image, which is ignored.
 PgmImage DecodePgm(std::string_view bytes, const std::string& place);
 // P5 with one line each for magic, size and maximum.
 std::string EncodePgm(const GreyImage& image);

@@ -1,6 +1,6 @@
 // PNG files: depth images (16-bit grey), colour images and 8-bit grey images. The same image gives
-// the same bytes. Reading throws InputError for anything that is not a whole, intact PNG of the
-// wanted kind.
+// the same bytes. Reading throws InputError unless the file is a complete, intact PNG of the wanted
+// kind.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,16 @@ struct GreyImage {
   bool operator==(const GreyImage&) const = default;
 };
 
-// How depth is kept in 16 bits.
+// How depth is stored in 16 bits.
 struct DepthPngFormat {
-  double scale_per_m = 5000.0;  // units a metre (TUM RGB-D; millimetre data has 1000)
-  // Units that mean "no measurement", besides 0. 65535 is 7-Scenes' mark, and a saturated value in
-  // other data.
+  double scale_per_m = 5000.0;  // units per metre (TUM RGB-D; millimetre data has 1000)
+  // Values that mean "no measurement", besides 0. 65535 is used by 7-Scenes, and is a saturated
+  // value in other data.
   std::vector<std::uint16_t> invalid_units = {65535};
 };
 
-// Depth in units. A positive depth never becomes 0 (too near is not invalid) and beyond the range
-// it becomes 65534 (too far is not invalid either: 13.1 m at 5000 a metre).
+// Depth in units. A positive depth never becomes 0 (too near is not invalid), and beyond the range
+// it becomes 65534 (too far is not invalid either; 13.1 m at 5000 per metre).
 std::uint16_t DepthUnits(float z_m, double scale_per_m);
 // The image as it will be read back.
 DepthImage QuantiseDepth(const DepthImage& image, const DepthPngFormat& format = {});
@@ -46,11 +46,11 @@ std::string EncodeRgbPng(const RgbImage& image);
 RgbImage DecodeRgbPng(std::string_view png, const std::string& place);
 void WriteRgbPng(const std::string& path, const RgbImage& image);
 
-// Grey: colour is not converted but refused.
+// Grey images; colour is not converted but rejected.
 std::string EncodeGreyPng(const GreyImage& image);
 GreyImage DecodeGreyPng(std::string_view png, const std::string& place);
 
-// Any PNG as 8-bit red, green, blue, alpha, for files whose transparency says something.
+// Any PNG as 8-bit red, green, blue, alpha, for files in which transparency has a meaning.
 struct RgbaImage {
   int width_px = 0;
   int height_px = 0;

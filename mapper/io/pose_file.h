@@ -1,4 +1,4 @@
-// Poses of a sequence from a file of either kind.
+// Reads the poses of a sequence from a TUM trajectory or a file of matrices.
 #pragma once
 
 #include <optional>
@@ -10,19 +10,19 @@
 
 namespace depthgrid {
 
-// A TUM trajectory, or a matrix a frame (4x4 or 3x4, row-major, camera to world; KITTI's), which
-// take the stamps of the frames (PairInOrder). What had to be mended goes to `warnings`. Throws
-// InputError, also when there is no pose.
+// A TUM trajectory, or one matrix per frame (4x4 or 3x4, row-major, camera to world, as KITTI's),
+// which gets the frames' stamps (PairInOrder). Repairs are added to `warnings`. Throws InputError,
+// also when there is no pose.
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings);
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings);
 
-// Whether the text is of matrices rather than a TUM trajectory: its first rows have 4, 12 or 16
-// columns.
+// Whether the text has matrices (4, 12 or 16 columns in its first rows) rather than a TUM
+// trajectory.
 bool HoldsMatrices(const std::string& text);
-// The matrices of such a text, those without a pose (NaN, damaged) in their places. What had to be
-// mended goes to `warnings`. Throws InputError.
+// The matrices of such a text; entries without a pose (NaN, damaged) are empty. Repairs are added
+// to `warnings`. Throws InputError.
 std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const std::string& place,
                                                   std::vector<std::string>& warnings);
 

@@ -1,4 +1,4 @@
-// How badly two depth images fit the poses given for them.
+// Measures how badly two depth images fit their poses.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace depthgrid {
 
-// Two images that show much of the same, by their stamps.
+// Two images, near in time, with much overlap.
 struct ImagePair {
   double first_s = 0.0;
   double second_s = 0.0;
@@ -20,22 +20,22 @@ struct ImagePair {
   std::shared_ptr<const DepthImage> second;
 };
 
-// The images to check poses by, two a pair, spread over the recording: each with the first one half
-// a second later, or the 15th where whole stamps a second apart are but numbers. None across a
-// pause.
+// Image pairs for checking poses, spread over the recording: each image with the first one half a
+// second later, or with the 15th next if stamps are only numbers (integers one apart). None across
+// a pause.
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images);
 
-// Whether most of an image holds its largest depth, as a sensor or simulator gives for all that is
-// farther than it sees: those surfaces lie elsewhere, and tell nothing of poses.
+// Whether most of an image has its largest depth, as from a sensor or simulator that clamps what is
+// farther: such surfaces are not where the depth says, and are useless for checking poses.
 bool IsMostlyCut(const DepthImage& image);
 
-// What the numbers of a depth image are.
+// What the values of a depth image mean.
 enum class DepthMeaning { kZ, kRayLength };
 
 constexpr double kNothingShared = 1.0;
 
-// How far the surfaces of one image lie from where the other one has them, as a share of their
-// depth: the median over what both show, kNothingShared where that is next to nothing.
+// The median distance of the surfaces in one image from those in the other, as a share of depth,
+// over what both show; kNothingShared with next to no overlap.
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
                 DepthMeaning meaning = DepthMeaning::kZ);
 

@@ -1,4 +1,4 @@
-// What poses and cameras become when they are read as something else than they were.
+// Poses and cameras under other interpretations (pose_check.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,19 +8,19 @@
 
 namespace depthgrid {
 
-// Rows are t x y z qw qx qy qz.
+// For rows of t x y z qw qx qy qz.
 Pose3 WithWFirst(const Pose3& pose);
-// Of a robot's axes at the camera: x forward, y left, z up.
+// For poses of robot axes at the camera: x forward, y left, z up.
 Pose3 FromBodyAxes(const Pose3& pose);
-// Of other axes at the camera than its own. Where `camera_from_own` mirrors, their world is a
-// mirror image too, and any one of it does.
+// For poses of other axes at the camera. If `camera_from_own` is a reflection, their world is
+// mirrored too; any mirror image of it will do.
 Pose3 FromAxes(const Pose3& pose, const Eigen::Matrix3d& camera_from_own);
-// The camera looks so far below the axes' forward direction.
+// For a camera pitched down by `down_rad` from the axes' forward direction.
 Pose3 LookingDown(const Pose3& pose, double down_rad);
 
 PinholeCamera WithFocal(PinholeCamera camera, double scale);
 PinholeCamera WithCentre(PinholeCamera camera, const Eigen::Vector2d& centre_px);
-// The image's corner, half a pixel before the middle of the first, stays where it is.
+// Scales the intrinsics about the image's corner (-0.5, -0.5).
 PinholeCamera OfImageSize(PinholeCamera camera, double scale);
 
 }  // namespace depthgrid

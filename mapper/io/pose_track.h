@@ -9,23 +9,23 @@
 
 namespace depthgrid {
 
-// Position of the entry whose stamp is nearest (the first on ties) and at most `max_difference_s`
+// Index of the entry whose stamp is nearest (the first on ties) and at most `max_difference_s`
 // away. `stamps_s` is sorted.
 std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, double stamp_s,
                                         double max_difference_s);
 
-// A trajectory without events, as SLAM might have given it live: one epoch, no loop.
+// A trajectory as SLAM output: one epoch, no loops.
 SlamOutput SlamOutputOf(const Trajectory& trajectory);
 
 class PoseTrack {
  public:
-  // What SLAM said live; frames it was lost in stay without a pose.
+  // `live`: SLAM's live poses; frames where it was lost have none.
   PoseTrack(const std::vector<SlamPose>& live, const RecordingOptions& options);
 
   struct Found {
     std::optional<Pose3> slam_from_camera;
     int epoch = 0;
-    // The entry that was taken (the nearer one when interpolated); empty when none is near.
+    // The entry used (the nearer one when interpolated); empty when none is near.
     std::optional<std::size_t> entry;
   };
   Found At(double stamp_s) const;

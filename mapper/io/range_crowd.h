@@ -1,5 +1,5 @@
-// No-returns of a laser that writes them as its reach and a little more or less, not as one number:
-// readings crowd at the log's longest ranges, wherever the laser is.
+// Detects no-returns of a laser that writes them as its maximum range with some noise rather than
+// as one number: readings cluster at the log's longest ranges, wherever the laser is.
 #pragma once
 
 #include <array>
@@ -13,21 +13,21 @@
 
 namespace depthgrid {
 
-// Readings that lie close together, the log's longest.
+// The cluster of the log's longest readings.
 struct RangeCrowd {
   double shortest_m = 0.0;
   double longest_m = 0.0;
   std::int64_t count = 0;
-  std::int64_t readings = 0;   // of all that were looked at
-  double times_as_many = 0.0;  // as in a band of that width below, in the mean
+  std::int64_t readings = 0;   // all readings examined
+  double times_as_many = 0.0;  // relative to the mean of equally wide bands below
 };
 
 class RangeCrowdCheck {
  public:
-  // Hits are those from `least_m` to below `most_m`. Of scans at one place the first is taken.
+  // Hits are readings in [least_m, most_m). Only the first scan at each place is used.
   void Add(const Pose2& odom_from_laser, const std::vector<double>& range_m, double least_m,
            double most_m);
-  // Nothing where the laser was at few places.
+  // Nothing if the laser was at too few places.
   std::optional<RangeCrowd> Found() const;
 
  private:

@@ -1,6 +1,5 @@
-// A recorded depth sequence as a frame source, whatever its folder looked like: a list of image
-// files with stamps, a camera and poses. The layouts (TUM folder, frame-by-frame folder, ICL-NUIM)
-// only make the list.
+// A recorded depth sequence as a frame source: a list of image files with stamps, a camera and
+// poses. Readers of the folder layouts (TUM, frame folder, ICL-NUIM) only make the list.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +19,9 @@
 namespace depthgrid {
 
 struct RecordedImage {
-  double stamp_s = 0.0;     // of the frame, and of its pose
-  std::string depth_path;   // empty: the frame is known to have no image
-  std::int64_t number = 0;  // in the recording as it was recorded, see FrameNames
+  double stamp_s = 0.0;     // stamp of the frame and its pose
+  std::string depth_path;   // empty: the frame has no image
+  std::int64_t number = 0;  // number in the original recording, see FrameNames
 };
 
 struct Recording {
@@ -30,16 +29,16 @@ struct Recording {
   std::vector<RecordedImage> images;
   CameraFile camera;
   std::vector<std::string> warnings;  // found while listing
-  FramePart part = {};                // the images that become frames, and are read
+  FramePart part = {};                // the images that are read and become frames
 };
 
 FramePart FindPart(const PartOptions& part, const Recording& recording);
 std::span<const RecordedImage> ImagesOfPart(const Recording& recording);
 
-// Of the recording's images these alone.
+// The recording with its images replaced.
 Recording WithImages(Recording recording, std::vector<RecordedImage> images);
 
-// With the stamps as recorded, but for the options' offset.
+// With the stamps as recorded plus the options' offset.
 FrameNames NamesOf(const Recording& recording, const RecordingOptions& options = {});
 
 // Reads one depth image; throws InputError. Called on several threads at once.
@@ -48,19 +47,19 @@ using DepthReader = std::function<DepthImage(const std::string& path)>;
 // 16-bit PNG images.
 DepthReader PngDepthReader(const DepthPngFormat& format);
 
-// How a recording's PNGs keep depth.
+// The depth format of a recording's PNG images.
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
 
-// A camera file that does not say the image's size takes it from the part's first readable PNG.
+// Sets an unknown image size to that of the part's first readable PNG.
 void CompleteSize(const Recording& recording, CameraDescription& camera);
 
 // Frames of the recording's part in its order, without the camera's distortion, numbered as in the
 // whole recording. Images that are missing, damaged or of the wrong size become frames with a pose
-// only and are counted, and so do those that came again while the camera moved (FrozenImages);
-// loops with an end outside the part are left out. Throws InputError when there is no image, when
-// none of the first images can be read, when their size is not the camera's, or when no image finds
-// a pose. Where there is a second core, the next few images are read on other threads while the
-// caller is at work with a frame; what comes out is the same.
+// only and are counted, as do repeated images while the camera moved (FrozenImages); loops with an
+// end outside the part are left out. Throws InputError when there is no image, when none of the
+// first images can be read, when their size is not the camera's, or when no image has a pose. With
+// more than one core the next few images are read on other threads while the caller processes a
+// frame; results are the same.
 std::unique_ptr<FrameSource> OpenRecording(Recording recording, const SlamOutput& slam,
                                            const RecordingOptions& options, DepthReader reader);
 

@@ -1,5 +1,5 @@
-// The stamps of a log's scans as they are taken: read through once, they are mended where they fall
-// (StampOrder), which only those after them can tell.
+// The stamps of a log's scans. Decreasing stamps are repaired (StampOrder), which depends on later
+// ones and so needs a first pass over all of them.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@ namespace depthgrid {
 
 class ScanClock {
  public:
-  // Begins at the first scan again.
+  // Restarts at the first scan.
   void Rewind() { next_ = 0; }
-  // What the next scan's stamp is taken as; empty for one that is ahead of all after it. Until
-  // Mend() each is taken as it is stated.
+  // The stamp to use for the next scan; empty for a glitch that is ahead of all later stamps.
+  // Before Mend() each is used as stated.
   std::optional<double> Take(double stated_s, int line);
-  // Once all were taken. Whether some fall: then they are others from now on.
+  // Call after taking all. Whether some decrease; Take() then gives repaired stamps.
   bool Mend();
 
-  // Whether the clock was set back just before the scan taken last.
+  // Whether the clock was set back just before the last scan taken.
   bool IsSetBack() const;
-  // Where it was, in seconds before the stamp `end_s` as it is taken.
+  // The places where it was set back, in seconds before the stamp `end_s` (as used).
   std::vector<std::string> Warnings(const std::string& path, double end_s) const;
 
  private:

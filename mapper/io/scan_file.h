@@ -11,7 +11,7 @@
 namespace depthgrid {
 
 struct StoredScan {
-  int frame = 0;  // of the input, counted from 0; below 0: of a map that was gone on in
+  int frame = 0;  // input frame from 0; negative: of the prior map
   double stamp_s = 0.0;
   Pose2 map_from_base;
   KeptScan scan;
@@ -19,9 +19,9 @@ struct StoredScan {
   bool operator==(const StoredScan&) const = default;
 };
 
-// Throws InputError for a file that is missing, truncated or something else.
+// Throws InputError for a file that is missing, truncated or of another kind.
 std::vector<StoredScan> ReadScans(const std::string& path);
-// Beams must be such that CanBeKept(), as a mapper's are: others are not read again.
+// All beams must satisfy CanBeKept(), as those of a mapper do; others could not be read back.
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// What kind of recorded sequence it is and how it is read.
+// Options for opening a recorded sequence.
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ struct SequenceOptions {
   // and, where none is seen, takes z (-y for ICL-NUIM).
   WorldUp world_up = WorldUp::kAuto;
   std::string camera;  // a camera file in place of the folder's own
-  // Which of its frames are given, numbered as in the whole recording. All that is not of single
-  // frames (poses' order, up) is found from the whole, so that parts of one recording share a world
-  // and fit its other files.
+  // The part of the frames to read, numbered as in the whole recording. What does not concern
+  // single frames (order of poses, up) is found from the whole recording, so that its parts share a
+  // world and fit its other files.
   PartOptions part;
   RecordingOptions recording;
   CarmenLogOptions laser;

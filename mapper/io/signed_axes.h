@@ -1,4 +1,4 @@
-// Permutations of axes with signs: what one convention's axes are in another's.
+// Signed permutations of axes, which convert between axis conventions.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 
 namespace depthgrid {
 
-// All 48, those that change the fewest axes first. Half of them are rotations, the others mirror.
+// All 48, those that change the fewest axes first. Half are rotations, the others reflections.
 std::vector<Eigen::Matrix3d> AllSignedAxes();
 
 }  // namespace depthgrid

@@ -1,5 +1,5 @@
-// Stamps that do not rise from line to line: which of them is wrong, and where a clock was set back
-// (docs/formats.md, "Laser logs").
+// Repairs stamps that do not increase from line to line: finds which are wrong and where the clock
+// was set back (docs/formats.md, "Laser logs").
 #pragma once
 
 #include <cstddef>
@@ -10,24 +10,25 @@
 namespace depthgrid {
 
 struct StampOrder {
-  // From this position on the clock is so much behind: what is missing to the usual step.
+  // From index `at` on the clock is behind by `by_s`, measured against the usual step.
   struct SetBack {
     std::size_t at = 0;
     double by_s = 0.0;
   };
-  // Each stamp with what the clock was set back by before it. Empty where it is ahead of all that
-  // come after it, which rise as they should: a glitch. What is still no later than those before it
-  // is no scan of its own, or late itself.
+  // Each stamp corrected for the clock being set back before it. Empty for a glitch: a stamp ahead
+  // of all later ones, which increase normally. A corrected stamp that is still not later than its
+  // predecessors belongs to a repeated or late scan.
   std::vector<std::optional<double>> stamps_s;
   std::vector<SetBack> set_back;
 };
 
-// In the order in which they were recorded. Of three stamps or fewer that disagree with the others
-// it is these that are wrong. Stamps that fall from line to line are of no clock: all stay.
+// `stamps_s` are in order of recording. If three or fewer stamps disagree with the others, these
+// are wrong. Stamps that decrease from line to line are from no clock and all kept.
 StampOrder OrderOf(const std::vector<double>& stamps_s);
 
-// What to say of rows that are sorted by stamp: pairs with the rows of another file are found by
-// it, so it is left as it is. `lines` are those of the stamps. Nothing where no clock was set back.
+// A warning for rows that will be sorted by stamp if the clock was set back, else nothing. The
+// stamps are not corrected, as rows of other files are paired by them. `lines` are the stamps' line
+// numbers.
 std::optional<std::string> DoubtOfSorted(const std::vector<double>& stamps_s,
                                          const std::vector<int>& lines, const std::string& place);
 

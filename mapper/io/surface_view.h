@@ -1,5 +1,4 @@
-// Pieces of surface in a depth image, for what is level in a recording. Only for this folder's own
-// files.
+// Surface patches of depth images, for finding level surfaces. Internal to mapper/io.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,12 +11,12 @@
 namespace depthgrid {
 
 namespace internal {
-// A piece of surface as an image shows it.
+// A small piece of surface in an image.
 struct SurfacePatch {
   Eigen::Vector3d point;   // in the world
   Eigen::Vector3d normal;  // towards the camera
 };
-// What an image shows.
+// The surface patches of one image.
 struct SurfaceView {
   Eigen::Vector3d camera;  // its position
   std::vector<SurfacePatch> patches;
@@ -26,7 +25,7 @@ struct SurfaceView {
 SurfaceView ViewOf(const DepthImage& image, const PinholeCamera& camera,
                    const Pose3& world_from_camera);
 
-// Of all patches, those whose height along `up` is less than `height_m`.
+// The share of all patches whose height along `up` is below `height_m`.
 double ShareBelow(const std::vector<SurfaceView>& views, const Eigen::Vector3d& up,
                   double height_m);
 }  // namespace internal

@@ -1,4 +1,4 @@
-// TUM trajectories: `stamp tx ty tz qx qy qz qw` a line, one space between columns, `#` comments.
+// TUM trajectories: lines `stamp tx ty tz qx qy qz qw`, one space between columns, `#` comments.
 #pragma once
 
 #include <optional>
@@ -10,33 +10,34 @@
 
 namespace depthgrid {
 
-// A recorded trajectory as far as it is usable: sorted by strictly increasing stamp. What had to be
-// mended is counted.
+// The usable poses of a recorded trajectory, in strictly increasing order of stamps. Repairs are
+// counted.
 struct TrajectoryFile {
   Trajectory poses;
-  int unsorted_stamps = 0;                 // rows earlier than their predecessor: sorted
+  int unsorted_stamps = 0;                 // rows earlier than their predecessor, sorted
   std::optional<std::string> clock_doubt;  // DoubtOfSorted
-  Tally doubled_stamps;                    // all but the first row of one stamp: dropped
-  // Rows that are no pose, and left out those of NaN, a zero quaternion or too far away: dropped.
+  Tally doubled_stamps;                    // all but the first row of each stamp, dropped
+  // Dropped rows: damaged ones, and as left out those with NaN, a zero quaternion or too far away.
   RowDamage damage;
 
   std::vector<std::string> Warnings(const std::string& name) const;
 };
 
-// A row without eight numbers, with a stamp that is not finite or a quaternion whose norm is not
-// near 1 is damaged. Throws InputError for an unreadable file and one with mostly such rows.
+// A row is damaged if it does not have eight numbers, its stamp is not finite or the norm of its
+// quaternion is not near 1. Throws InputError for an unreadable file and for one with mostly
+// damaged rows.
 TrajectoryFile ReadTrajectoryFile(const std::string& path);
 // The same from text; `place` names it in errors.
 TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place);
-// Its poses alone; additionally throws InputError when there is none or any row is damaged.
+// Only the poses; also throws InputError if there is none or any row is damaged.
 Trajectory ReadTrajectory(const std::string& path);
-// Damaged rows are survived; what was mended is added to `warnings`.
+// Tolerates damaged rows; repairs are added to `warnings`.
 Trajectory ReadTrajectory(const std::string& path, std::vector<std::string>& warnings);
-// Those of a file that was read.
+// The poses of a file that was read.
 Trajectory PosesOf(TrajectoryFile file, const std::string& place,
                    std::vector<std::string>& warnings);
 
-// Stamps with six decimals, pose values in the shortest form that reads back as the same double.
+// Stamps with six decimals, pose values in the shortest form that parses to the same double.
 std::string TrajectoryText(const Trajectory& trajectory);
 void WriteTrajectory(const std::string& path, const Trajectory& trajectory);
 

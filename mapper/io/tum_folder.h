@@ -21,7 +21,7 @@ namespace depthgrid {
 struct StampedFile {
   double stamp_s = 0.0;
   std::string path;
-  std::int64_t number = 0;  // in order of stamps; damaged rows count, doubled ones do not
+  std::int64_t number = 0;  // in order of stamps; damaged rows count, duplicates do not
 };
 
 struct StampedFileList {
@@ -29,19 +29,19 @@ struct StampedFileList {
   std::vector<std::string> warnings;
 };
 
-// A row that is not a finite stamp and a file name is damaged. Throws InputError when not most are
-// good.
+// A row other than a finite stamp and a file name is damaged. Throws InputError unless most rows
+// are good.
 StampedFileList ParseFileList(const std::string& text, const std::string& place);
 
 // Throws InputError for a missing depth.txt. The camera is not filled in.
 Recording ListTumFolder(const std::string& folder, const RecordingOptions& options = {});
 
-// camera.yaml, or what else of camera files has that name; without it, a folder named as TUM names
-// its sequences (freiburg1, 2, 3) gets that camera, with a warning. Throws InputError when neither
-// says it.
+// From camera.yaml, which may be any kind of camera file. Without it, a folder named like TUM's
+// sequences (freiburg1, 2, 3) gets that camera, with a warning. Throws InputError if neither
+// applies.
 CameraDescription TumFolderCamera(const std::string& folder, std::vector<std::string>& warnings);
 
-// Writes such a folder. Frames may be written in any order and from several threads at once; Finish
+// Writes a TUM folder. Frames may be written in any order and from several threads at once; Finish
 // writes the lists.
 class TumFolderWriter {
  public:
@@ -53,8 +53,8 @@ class TumFolderWriter {
   // depth.txt (and rgb.txt) for these stamps, groundtruth.txt and camera.yaml.
   void Finish(const std::vector<double>& stamps_s, bool with_colour, const Trajectory& truth) const;
 
-  // The images that the lists of a folder it wrote name as it names them, relative to the folder,
-  // and rgb.txt when it names no others.
+  // Of a folder it wrote, the listed images that have names as written by it, relative to the
+  // folder, and rgb.txt if it lists no others.
   static std::set<std::string> FilesIn(const std::string& folder);
 
  private:

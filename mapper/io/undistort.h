@@ -1,5 +1,5 @@
-// Depth images as a camera without distortion would have taken them (plumb bob, Brown 1966), so
-// that straight lines are straight for all that follows.
+// Removes lens distortion (plumb bob, Brown 1966) from depth images, so that all later steps can
+// assume a pinhole camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace depthgrid {
 
-// Where a ray of normalised coordinates (x/z, y/z) falls in the image of the distorted camera.
+// The pixel of the distorted image for a ray with normalised coordinates (x/z, y/z).
 Eigen::Vector2d DistortedPixel(const PinholeCamera& camera, const Eigen::Vector2d& normalised);
 
 class Undistorter {
@@ -19,14 +19,14 @@ class Undistorter {
 
   // Same size and intrinsics, no distortion.
   PinholeCamera camera() const;
-  // Depth is the z of the point and does not change with distortion; it is interpolated between the
-  // four pixels around where they are one surface, elsewhere the nearest one counts. Pixels whose
-  // ray fell outside the image are invalid.
+  // Depth is z, which distortion does not change. It is interpolated between the four surrounding
+  // pixels if they are one surface, else the nearest is taken. Pixels whose ray is outside the
+  // image are invalid.
   DepthImage Apply(const DepthImage& distorted) const;
 
  private:
   PinholeCamera camera_;
-  std::vector<Eigen::Vector2f> source_px_;  // of each pixel
+  std::vector<Eigen::Vector2f> source_px_;  // per pixel of the result
 };
 
 }  // namespace depthgrid

@@ -14,8 +14,8 @@ enum class WorldUp { kAuto, kX, kMinusX, kY, kMinusY, kZ, kMinusZ };
 Eigen::Vector3d AxisOf(WorldUp up);
 std::string NameOf(WorldUp up);  // "-y"
 
-// The axis within a degree of `up`, or within more when `up` is not known as well; kAuto when there
-// is none. A world that is level by construction stays exactly as it is.
+// The axis within a degree of `up`, or within `within_rad` if that is more (for an uncertain `up`);
+// kAuto when there is none. So a world that is level by construction is not changed.
 WorldUp NearestAxis(const Eigen::Vector3d& up, double within_rad = 0.0);
 
 // The smallest rotation that makes `up` z; the identity for z itself.
