@@ -13,27 +13,27 @@
 namespace depthgrid {
 namespace {
 
-// Something may come before it, but not be behind it, but for a bad measurement.
+// Objects may appear in front of the body, but nothing behind it except bad measurements.
 constexpr double kLastingShare = 0.5;
 constexpr double kBeyondShare = 0.05;
 constexpr double kMeasuredShare = 0.5;
 constexpr double kMostOfImage = 0.5;
 // Fewer lone pixels are noise.
 constexpr double kLeastOfImage = 5e-4;
-// Pixels at an edge mix what is on both sides.
+// Pixels at an edge mix both sides.
 constexpr int kEdgePx = 3;
 
 constexpr double kMostFloorM = 4.0;
-// So many columns are looked at for it, and rows as far apart.
+// Number of columns sampled for it, and rows with the same spacing.
 constexpr int kFloorColumns = 160;
 constexpr std::size_t kLeastFloorPixels = 100;
 constexpr double kOnFloorShare = 0.07;
 constexpr int kFloorFits = 4;
 
 constexpr double kMmPerM = 1000.0;
-constexpr double kFarMm = 65535.0;  // what is farther counts as so far
+constexpr double kFarMm = 65535.0;  // farther depths are clamped to this
 
-// A pixel's place and inverse depth, in which planes are linear.
+// A pixel's position and inverse depth, which is linear in the position on a plane.
 struct InversePixel {
   Eigen::Vector3d place;  // (column, row, 1)
   double inverse = 0.0;
@@ -48,7 +48,7 @@ Eigen::Vector3d PlaceOf(int column, int row) {
   return {static_cast<double>(column), static_cast<double>(row), 1.0};
 }
 
-// By least squares of those that lie on the one before; nothing of few.
+// Repeated least-squares fit to the pixels on the previous plane; nothing with too few.
 std::optional<Eigen::Vector3d> PlaneOf(const std::vector<InversePixel>& pixels) {
   std::optional<Eigen::Vector3d> plane;
   for (int fit = 0; fit < kFloorFits; ++fit) {

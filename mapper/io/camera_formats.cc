@@ -49,7 +49,7 @@ int WholeAt(const Config& config, const std::string& key, const std::string& pla
   return PixelsOf(NumberAt(config, key, place), key, place);
 }
 
-// The first of several names a key goes by; empty when there is none.
+// The first of several alternative keys that is present; empty when there is none.
 std::string FirstOf(const Config& config, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     if (config.Has(key)) return key;
@@ -237,7 +237,7 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
     pinhole.fy_px = -pinhole.fy_px;
   }
   PinholeCamera checked = pinhole;
-  if (!camera.has_size) {  // checked again beside the first image
+  if (!camera.has_size) {  // checked again with the first image's size
     checked.width_px = checked.height_px = kMostImageSidePx;
   }
   Validate(checked, place);

@@ -14,25 +14,26 @@ namespace {
 
 // Readings this near to each other are the same: logs are written in centimetres or millimetres.
 constexpr double kSameRangeM = 1e-3;
-// Of hits hardly two are as far as the farthest; of no-returns all are.
+// Hardly any two hits have the largest range, but all no-returns do.
 constexpr double kSuspiciousShare = 0.01;
 constexpr std::int64_t kFewestSuspicious = 20;
 
-// A laser writes about the same for each that has no return; what it measures differs by more.
+// A laser writes about the same number for all no-returns; measurements differ by more.
 constexpr double kAlikeRatio = 1.05;
-// So many different ones, of so many of the readings each, are hits that were taken for none: a
-// laser's codes for what has no return are two or three.
+// This many distinct values, each with this share of the readings, are hits mistaken for
+// no-returns: a laser has two or three codes for no-returns.
 constexpr int kFewestKinds = 5;
 constexpr double kShareOfHits = 0.005;
 
-// No robot turns by half a turn between two scans, or by a whole one a second; in degrees, taken
-// for radians, a slow one does. Small steps are left aside: stamps may be nearly the same.
+// No robot turns by half a turn between two scans or by one turn per second, but headings in
+// degrees taken for radians do. Small steps are ignored, as stamps may be nearly equal.
 constexpr double kFastestTurnRadPerS = 2.0 * kPi;
 constexpr double kSmallestStepRad = 0.2;
-// A step so near a whole turn is a heading that was wrapped, unless it lies farther out.
+// A step this near to a whole turn is a wrapped heading, unless the heading exceeds
+// kMostWrappedRad.
 constexpr double kWrapToleranceRad = 0.5;
 constexpr double kMostWrappedRad = 2.0 * kPi + 1.0;
-// Odometry that is set anew gives one such step, degrees one at most turns.
+// A reset of odometry gives one such step, degrees one at most turns.
 constexpr int kFewestImpossibleSteps = 3;
 constexpr double kImpossibleShare = 0.01;
 
@@ -45,12 +46,12 @@ bool IsImpossible(double first_rad, double second_rad, double time_s) {
   return wrapped_rad > kSmallestStepRad && wrapped_rad > kFastestTurnRadPerS * time_s;
 }
 
-// No robot drives by so few scans; milliseconds look like that.
+// No robot has so few scans per second; stamps in milliseconds look like that.
 constexpr double kLongStepS = 5.0;
 constexpr std::size_t kFewestSteps = 10;
 
-// Logs state as field of view what lies between the first and the last reading, or a step more;
-// angles are written with three decimals or more, 0.009 for half a degree being 3 % off.
+// Logs state as field of view the angle between the first and the last reading, or a step more.
+// Angles have three decimals or more; 0.009 for half a degree is 3 % off.
 constexpr double kFovToleranceSteps = 1.5;
 constexpr double kFovToleranceShare = 0.035;
 
@@ -103,7 +104,7 @@ void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int li
   }
 }
 
-// Codes for what has no return are few and the same.
+// Codes for no-returns are few distinct values.
 bool CarmenCheck::DifferAsHitsDo() const {
   const auto common = std::count_if(beyond_.begin(), beyond_.end(), [this](const auto& alike) {
     return static_cast<double>(alike.second) >= kShareOfHits * static_cast<double>(readings_);
@@ -170,7 +171,7 @@ std::optional<std::string> CarmenCheck::DoubtOfUnits(const std::string& path) co
 }
 
 std::optional<std::string> CarmenCheck::DoubtOfLargest(const std::string& path) const {
-  // Rounded down, so that the setting takes all of them.
+  // Rounded down, so that the setting covers all of them.
   const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
   if (setting_m > min_range_m_ && largest_count_ >= kFewestSuspicious &&
       static_cast<double>(largest_count_) >= kSuspiciousShare * static_cast<double>(readings_)) {

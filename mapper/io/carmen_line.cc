@@ -18,7 +18,7 @@ namespace depthgrid {
 namespace {
 
 constexpr int kMaxReadings = 20000;
-// After the host: the logger's time, and what some loggers add.
+// Columns after the host: the logger's time, and additions of some loggers.
 constexpr int kMostLastColumns = 8;
 constexpr double kMaxYawRad = 1e6;  // beyond is a damaged number
 constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
@@ -31,7 +31,7 @@ std::optional<double> NumberIn(std::string_view token) {
   return value;
 }
 
-// Of a line that ends, or of any other field.
+// A field for error messages; "missing" at the end of a line.
 std::string Shown(std::string_view token) {
   constexpr std::size_t kMostShown = 40;
   return token.empty() ? "missing" : fmt::format("'{}'", token.substr(0, kMostShown));
@@ -74,7 +74,7 @@ CarmenDamage Damage(std::string_view message, std::string_view what, std::string
 
 struct NumberList {
   std::vector<double> values;
-  std::string fault;  // empty when it is sound
+  std::string fault;  // empty when it is valid
 };
 
 // Reads a count and as many numbers.
@@ -109,7 +109,7 @@ std::optional<StatedPose> ReadPose(Tokens& tokens) {
   const std::optional<double> x_m = tokens.NextNumber();
   const std::optional<double> y_m = tokens.NextNumber();
   const std::optional<double> yaw_rad = tokens.NextNumber();
-  // Negated so that NaN is refused as well.
+  // False for NaN too.
   const auto sane = [](const std::optional<double>& v, double most) {
     return v && std::abs(*v) <= most;
   };
@@ -140,14 +140,14 @@ std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int s
     return Damage(name, "with a time that is not in seconds",
                   fmt::format("it is {}, must be at most {:g}", Shown(time), kLatestStampS));
   }
-  // Without the host after it, the time's own digits may have been cut.
+  // Without a host after it, the time itself may be truncated.
   const std::string_view host = tokens.Next();
   if (host.empty()) {
     return Damage(name, kNoTime,
                   fmt::format("the line ends with {}, must go on with the host", Shown(time)));
   }
-  // More readings than the line states move the columns: the time is where the host belongs. Some
-  // hosts are numbers, but then the logger's time alone follows.
+  // If a line has more readings than stated, the columns are shifted and the time is in the host's
+  // place. Some hosts are numbers, but then only the logger's time follows.
   const bool is_number = NumberIn(host).has_value();
   for (int i = 0;; ++i) {
     const std::string_view token = tokens.Next();
@@ -184,7 +184,7 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   return scan;
 }
 
-// What is impossible of a ROBOTLASER1 header's angles; empty when nothing is.
+// The fault of a ROBOTLASER1 header's angles; empty if they are possible.
 std::string FaultOfAngles(double first_rad, double fov_rad, double resolution_rad,
                           std::size_t readings) {
   const auto steps = static_cast<double>(readings - 1);

@@ -29,13 +29,13 @@ namespace {
 // 20,000 readings and as many remissions fit; a longer "line" is a binary file.
 constexpr std::size_t kMaxLineBytes = 1U << 20U;
 
-// Its odometry was set anew, or the line is damaged.
+// Whether odometry was reset or the line is damaged.
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
   return IsTooFar((odom_from_next.translation() - odom_from_last.translation()).norm(), time_s);
 }
 
-// How long it took while the clock was set back is not known: what is farther than from one scan to
-// the next is no motion. Chosen, of no measurement.
+// The time that passed while the clock was set back is unknown: a larger step is not taken for
+// motion. Chosen, not measured.
 constexpr double kUntimedStepM = 0.5;
 constexpr double kUntimedStepRad = 0.5;
 
@@ -44,7 +44,7 @@ double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
          (b.stamp_s - a.stamp_s);
 }
 
-// The second one's camera in the first one's, from the same of the bases.
+// Converts a loop between bases to one between cameras.
 LoopClosure CameraLoop(LoopClosure loop, const Pose2& base_from_laser) {
   const Pose3 base_from_camera = CameraOf(base_from_laser, 0.0);
   loop.first_from_second = Inverse(base_from_camera) * loop.first_from_second * base_from_camera;
@@ -103,13 +103,13 @@ class CarmenLogSource : public FrameSource {
     std::string first_fault;  // ": field, value and rule", where that is known
   };
 
-  // What may be wrong with the scans of the part.
+  // Possible faults of the part's scans.
   struct Doubts {
     CarmenCheck check;
     std::vector<double> speeds_mps;
   };
 
-  // Reads all of the log, from its beginning, and names its scans.
+  // Reads the whole log from its beginning and collects its scans' names.
   Doubts ReadThrough() {
     Rewind();
     Doubts doubts{CarmenCheck(options_), {}};
@@ -127,8 +127,8 @@ class CarmenLogSource : public FrameSource {
     return doubts;
   }
 
-  // Says what may be wrong with the log. Where stamps fall it is read once more, as only those
-  // after them tell which are wrong.
+  // Warns of possible faults of the log. If stamps decrease it is read once more, as only later
+  // stamps show which are wrong.
   void Survey() {
     Doubts doubts = ReadThrough();
     if (clock_.Mend()) {
@@ -164,12 +164,12 @@ class CarmenLogSource : public FrameSource {
     }
   }
 
-  // Among the scans of the part.
+  // Index among the scans of the part.
   std::size_t InPart(int index) const {
     return static_cast<std::size_t>(index) - names_.part.begin;
   }
 
-  // After Survey().
+  // Call after Survey().
   void RequireScans() const {
     if (!names_.stamps_s.empty()) return;
     if (has_zero_bytes_)
@@ -203,7 +203,7 @@ class CarmenLogSource : public FrameSource {
     place_ = Place::kBeforePart;
   }
 
-  // With each scan that is used. What was noted before the part is not of it.
+  // Call for each scan that is used. Faults noted before the part are discarded.
   void MoveTo(double stamp_s) {
     if (!first_stamp_s_) first_stamp_s_ = stamp_s;
     const bool in_part = part_.Has(stamp_s - *first_stamp_s_);
@@ -215,7 +215,7 @@ class CarmenLogSource : public FrameSource {
     earlier_ = 0;
   }
 
-  // Also where it was set back before the part: whose stamps are others than the log's.
+  // Also if it was set back before the part, whose stamps then differ from the log's.
   void WarnOfClock() {
     if (names_.stamps_s.empty()) return;  // RequireScans() says so
     const double end_s = part_.to_s > 0.0 ? names_.stamps_s.front() + part_.to_s
@@ -225,7 +225,8 @@ class CarmenLogSource : public FrameSource {
     }
   }
 
-  // Sorting is not for the program: of a clock that was set back it would make one drive of two.
+  // The program does not sort the scans: after the clock was set back this would interleave two
+  // drives.
   void WarnOfOrder() {
     const std::size_t used = names_.CountInPart();
     if (static_cast<std::size_t>(earlier_) <= used) return;
@@ -261,7 +262,7 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
-  // Whether no motion leads from the last scan to this one.
+  // Whether the step from the last scan to this one is not a motion.
   bool BreaksOff(const CarmenScan& scan) {
     if (!odom_from_last_) return false;
     if (IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
@@ -277,11 +278,11 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
-  // False for a scan that is not later than the one before it: it is left out.
+  // False for a scan that is not later than the one before and is left out.
   bool GoOnWith(const CarmenScan& scan) {
     const bool is_same = IsSameStamp(scan.stamp_s, last_stamp_s_);
     if (!is_same) ++lines_of_scans_;
-    // Also what drops the second of two messages written for one scan.
+    // This also drops the second of two messages for one scan.
     if (is_same || scan.stamp_s < last_stamp_s_) {
       const bool counts = place_ != Place::kBehindPart;
       earlier_ += counts && !is_same ? 1 : 0;
@@ -351,7 +352,7 @@ class CarmenLogSource : public FrameSource {
   LaserFaults faults_;  // of the part
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
-  int earlier_ = 0;              // scans left out, those of the same stamp aside
+  int earlier_ = 0;              // scans left out, except those with a repeated stamp
   bool has_zero_bytes_ = false;  // before the first scan
   std::map<std::string, Problem> problems_;
   std::vector<std::string> warnings_;

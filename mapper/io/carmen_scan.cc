@@ -7,7 +7,7 @@
 namespace depthgrid {
 namespace {
 
-// Where nothing else says when a reading is no return (CarmenLogOptions).
+// Used if nothing else defines no-returns (CarmenLogOptions).
 constexpr double kUsualMaxM = 80.0;
 // Some lasers write a little less than the stated maximum (29.99 of 30.00).
 constexpr double kMaxToleranceM = 0.01, kMaxToleranceShare = 1e-3;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxConfigBytes = 16U << 20U;
 
-// "a." has an empty part too, which is the name of no key.
+// "a." has an empty last part, which matches no key.
 std::vector<std::string> SplitPath(const std::string& path) {
   std::vector<std::string> parts;
   std::stringstream stream(path + ".");
@@ -38,7 +38,7 @@ YAML::Node Find(const YAML::Node& root, const std::string& key_path) {
   return node;
 }
 
-// As it stands: a name that a user gave (a path's, a material's) may have dots in it.
+// Without splitting at dots, which user-chosen names (of paths, materials) may contain.
 YAML::Node FindTopLevel(const YAML::Node& root, const std::string& key) {
   return root.IsMap() ? root[key] : YAML::Node(YAML::NodeType::Undefined);
 }
@@ -48,7 +48,7 @@ YAML::Node FindTopLevel(const YAML::Node& root, const std::string& key) {
 const ConfigOverride* Config::Tree::GivenBefore(const std::string& key_path) const {
   const bool is_there = Find(root, key_path).IsDefined();
   for (const ConfigOverride& set : overrides) {
-    // Of a group that was given whole, a key that it lacks may be added.
+    // A key may be added to a group that was set as a whole if it lacks the key.
     const bool lost = set.key_path == key_path || set.key_path.starts_with(key_path + ".");
     const bool replaced = is_there && key_path.starts_with(set.key_path + ".");
     if (set.by_user && (lost || replaced)) return &set;

@@ -15,7 +15,7 @@
 namespace depthgrid {
 namespace {
 
-// More keys are no help on one line.
+// Longer lists do not help in a one-line message.
 constexpr std::size_t kMostListed = 12;
 
 class YamlReader final : public OptionsVisitor {
@@ -139,7 +139,7 @@ class YamlReader final : public OptionsVisitor {
     level.known.emplace_back(key);
     return static_cast<const YAML::Node&>(level.node)[std::string(key)];
   }
-  // What comes out as another number in another program is not guessed at.
+  // Rejects numbers that other programs would read differently.
   void RequireDecimal(const YAML::Node& node, std::string_view key) const {
     if (HasLeadingZero(node.Scalar())) {
       Fail(node, key, "a decimal number without leading zeros");
@@ -187,7 +187,7 @@ class YamlReader final : public OptionsVisitor {
                                    Hint(prefix, key, entry.second, level.known)));
     }
   }
-  // A group is known by its own name before the keys in it are; a key may be of another group.
+  // Suggests a group by its own name first, then keys of any group.
   std::string Hint(const std::string& prefix, const std::string& key, const YAML::Node& value,
                    const std::vector<std::string>& siblings) const {
     std::vector<std::string> paths = all_keys_();
@@ -203,7 +203,7 @@ class YamlReader final : public OptionsVisitor {
                ? ", must be one of " + Joined({siblings.begin(), siblings.end()})
                : near;
   }
-  // Of a key or of a group of keys.
+  // Whether the path is of a key or of a group of keys.
   static bool IsPathIn(const std::vector<std::string>& paths, const std::string& path) {
     return std::any_of(paths.begin(), paths.end(), [&](const std::string& known) {
       return known == path || known.starts_with(path + ".");
@@ -237,7 +237,7 @@ class YamlReader final : public OptionsVisitor {
 
 namespace {
 
-// The emitter asks each list and map how it was written.
+// Sets the style per node, as the emitter uses each list's and map's own.
 void WriteOnOneLine(YAML::Node node) {
   if (!node.IsSequence() && !node.IsMap()) return;
   node.SetStyle(YAML::EmitterStyle::Flow);
@@ -257,7 +257,8 @@ std::string FlowText(const YAML::Node& node) {
 
 namespace {
 
-// Of a key without a value yaml-cpp gives the mark of what follows: the key's own then.
+// For a key without a value yaml-cpp gives the mark of what follows; the key's mark is used
+// instead.
 YAML::Mark MarkOf(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node) {
   YAML::Node group = tree.root;
   std::size_t begin = 0;
@@ -280,7 +281,7 @@ YAML::Mark MarkOf(const Config::Tree& tree, const std::string& key_path, const Y
 
 void FailValue(const Config::Tree& tree, const std::string& key_path, const YAML::Node& node,
                const std::string& rule) {
-  constexpr std::size_t kMostLetters = 200;  // enough to know the place by
+  constexpr std::size_t kMostLetters = 200;  // enough to recognise the value
   std::string text = FlowText(node);
   if (text.size() > kMostLetters) text.replace(kMostLetters, std::string::npos, "...");
   const std::string shown = node.IsNull() ? "empty" : "'" + text + "'";
@@ -297,7 +298,7 @@ std::string Config::Tree::PlaceOfKey(const std::string& key_path, const YAML::Ma
   const auto holds = [](const std::string& group, const std::string& key) {
     return group == key || key.starts_with(group + ".");
   };
-  // The last assignment counts: it may have set the key anew.
+  // The last assignment is in effect.
   for (auto set = overrides.rbegin(); set != overrides.rend(); ++set) {
     if (holds(set->key_path, key_path) || holds(key_path, set->key_path)) return set->place;
   }

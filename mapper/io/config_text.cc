@@ -37,10 +37,10 @@ std::string OtherTextThanKeys(std::string_view text) {
 
 namespace {
 
-// What is longer is no misspelt name; to compare it would take for ever.
+// Longer texts are not misspelt names and too slow to compare.
 constexpr std::size_t kLongestName = 100;
 
-// Optimal string alignment: letters put in, left out or replaced, and neighbours swapped.
+// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> two_above, above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -18,7 +18,7 @@ std::string NameAt(const std::vector<std::string_view>& names, int index) {
   return std::string(names[static_cast<std::size_t>(index)]);
 }
 
-// Writes two-space indented YAML; numbers in the shortest form that reads back to the same double.
+// Writes two-space indented YAML; numbers in the shortest form that parses to the same double.
 class YamlWriter final : public OptionsVisitor {
  public:
   explicit YamlWriter(std::string& out) : out_(out) {}
@@ -84,7 +84,7 @@ class YamlWriter final : public OptionsVisitor {
 
 constexpr const char* kWhole = "whole";
 
-// What is said of each key.
+// Called with the description of each key.
 using KeyLine = std::function<void(const std::string& path, const std::string& value,
                                    const std::string& allowed, std::string_view meaning)>;
 

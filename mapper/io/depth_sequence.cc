@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A TUM folder's own camera, or that of --camera. A file that cannot state a scale (a matrix) is
-// warned of as a camera.yaml that leaves it out: many a folder of this layout is in millimetres.
+// A TUM folder's own camera, or that of --camera. A file that cannot state a scale (a matrix) gives
+// the same warning as a camera.yaml without it: many folders of this layout are in millimetres.
 CameraDescription CameraOfTum(const std::string& folder, const std::string& given,
                               std::vector<std::string>& warnings) {
   CameraDescription camera =

@@ -12,7 +12,7 @@ struct TaskList {
   std::vector<EndTask*> tasks;
 };
 
-// Never destroyed: threads may be at work until the very end.
+// Never destroyed, as threads may run until the process ends.
 TaskList& Tasks() {
   static TaskList& list = *new TaskList;
   return list;
@@ -35,7 +35,8 @@ EndDelay::EndDelay() : lock_(Tasks().mutex) {}
 
 void DoEndTasks() {
   Tasks().mutex.lock();  // and never unlocks
-  // A thread on its way from the begin of a task to the file it is about may yet create that file.
+  // A thread between registering a task and creating its file may still create it, so run the tasks
+  // twice.
   constexpr std::chrono::milliseconds kOnItsWay{5};
   for (const bool again : {false, true}) {
     if (again) std::this_thread::sleep_for(kOnItsWay);

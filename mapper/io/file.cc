@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// First bytes of compressed files, and the program that undoes each.
+// First bytes of compressed files, and the program that decompresses each.
 struct Compression {
   std::string_view begin;
   const char* name;
@@ -57,7 +57,7 @@ std::string TemporaryName(const std::string& path) {
 void RequireFile(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  // Such as in a folder that may not be entered.
+  // Such as in a folder without permission.
   if (!fs::status_known(status)) throw InputError(path, "cannot be read: " + error.message());
   if (!fs::exists(status)) throw InputError(path, "no such file");
   if (fs::is_directory(status)) throw InputError(path, "is a folder, must be a file");

@@ -15,16 +15,16 @@
 namespace depthgrid {
 namespace {
 
-// Images looked at for gravity.
+// Number of images used for gravity.
 constexpr int kGravityViews = 24;
-// Between the first two of them: what is level before SLAM drifts.
+// Number of images between the first two of them, to find up before SLAM drifts.
 constexpr int kFirstGravityViews = 8;
-// Where SLAM's tilt drifts, what one place's floor says of up is off by 1.5 degrees; and a world as
-// little tilted is levelled from image to image (FloorTracker).
+// If SLAM's tilt drifts, up from the floor at one place is off by 1.5 degrees; such a small tilt is
+// corrected per image anyway (FloorTracker).
 constexpr double kDriftingAxisRad = RadFromDeg(3.0);
 
-// Where up is looked for: in all of the recording that has poses, so that its parts have one world;
-// in the part where SLAM was given little more.
+// The images for finding up: all with poses, so that the parts of a recording share a world; only
+// the part if SLAM's poses cover little more.
 std::vector<RecordedImage> ImagesForUp(const Recording& recording, const SlamOutput& slam,
                                        const RecordingOptions& options) {
   const PoseTrack track(slam.live, options);
@@ -69,7 +69,7 @@ std::optional<Gravity> FindGravity(const Recording& recording, const SlamOutput&
       if (frame->stamp_s < first_end_s) finder.AddFirst(*frame->depth, *source->Camera(), pose);
     }
   } catch (const InputError&) {
-    return {};  // what is wrong with the recording is said when the whole of it is opened
+    return {};  // the error is reported when the whole recording is opened
   }
   return finder.Find();
 }

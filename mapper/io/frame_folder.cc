@@ -20,9 +20,8 @@ namespace fs = std::filesystem;
 // Exports of depth in millimetres (7-Scenes, 3DMatch, ScanNet) when no camera file says otherwise.
 constexpr double kMillimetres = 1000.0;
 
-// Names that are stamps (ROS, EuRoC): no recording has as many frames, and in these units the
-// numbers from here on are times since 1970, micro- up to nanoseconds those of the next 3,000
-// years.
+// Names from here on are stamps since 1970 (ROS, EuRoC), not frame numbers: microseconds, and from
+// kLeastNanoseconds on nanoseconds (unambiguous for 3,000 years).
 constexpr long kLeastMicroseconds = 1'000'000'000'000'000;
 constexpr long kLeastNanoseconds = 100'000'000'000'000'000;
 
@@ -93,7 +92,7 @@ std::string CameraPathOf(const fs::path& folder) {
   return found ? found->string() : "";
 }
 
-// Poses of the images in their order: a file each, or a line each in one file.
+// Poses of the images in order: one file each, or one line each in a common file.
 std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& images,
                                           const fs::path& folder, FrameFolder& listed) {
   Recording& recording = listed.recording;

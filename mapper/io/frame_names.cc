@@ -11,7 +11,7 @@
 namespace depthgrid {
 namespace {
 
-// Spans that differ by more are of other units.
+// Spans whose ratio is larger are in different units.
 constexpr double kMostSpanRatio = 100.0;
 
 double PartBeginS(const FrameNames& names) { return names.stamps_s[names.part.begin]; }
@@ -19,8 +19,8 @@ double PartEndS(const FrameNames& names) {
   return names.stamps_s[names.part.EndAmong(names.stamps_s.size()) - 1];
 }
 
-// Of stamps in seconds that belong to numbers from the first to the last of `numbers`: how many a
-// second. Nothing where the numbers may be whole seconds: they span as much.
+// The rate (1/s) of stamps in seconds that belong to numbers with the span `numbers`. Nothing if
+// the spans are similar, so that the numbers may be seconds.
 std::optional<double> RateBesideNumbers(const std::vector<double>& stamps_s, double numbers) {
   if (stamps_s.size() < 2 || 2.0 * (stamps_s.back() - stamps_s.front()) > numbers) return {};
   std::vector<double> steps_s;
@@ -32,8 +32,8 @@ std::optional<double> RateBesideNumbers(const std::vector<double>& stamps_s, dou
   return 1.0 / step_s;
 }
 
-// Images with their numbers for stamps (ICL-NUIM) and poses with seconds, not more than there are
-// numbers: how many poses a second.
+// The poses per second, if the images' stamps are their numbers (ICL-NUIM) and the poses' are
+// seconds, with at most as many poses as numbers.
 std::optional<double> PosesASecond(const FrameNames& names,
                                    const std::vector<double>& pose_stamps_s) {
   for (std::size_t i = 0; i < names.stamps_s.size(); ++i) {
@@ -45,8 +45,8 @@ std::optional<double> PosesASecond(const FrameNames& names,
   return RateBesideNumbers(pose_stamps_s, numbers);
 }
 
-// Images with seconds and poses with their images' numbers, counted from 0 or 1, for stamps: how
-// many images a second.
+// The images per second, if the images' stamps are seconds and the poses' are image numbers from 0
+// or 1.
 std::optional<double> ImagesASecond(const FrameNames& names,
                                     const std::vector<double>& pose_stamps_s) {
   const auto is_number = [](double stamp_s) {
@@ -130,7 +130,7 @@ std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> 
                                               std::vector<std::string>& warnings) {
   const std::size_t count = frames.stamps_s.size();
   if (poses.size() == count || count == 0) return poses;
-  if (poses.size() == frames.CountInPart()) {  // SLAM was given the part alone
+  if (poses.size() == frames.CountInPart()) {  // SLAM ran on the part only
     poses.insert(poses.begin(), frames.part.begin, std::nullopt);
     poses.resize(count);
     return poses;

@@ -9,7 +9,7 @@
 namespace depthgrid {
 namespace {
 
-// Stamps are printed with six decimals, and doubles hold those since 1970 to 2.4e-7 s.
+// Stamps are printed with six decimals, and doubles resolve those since 1970 to 2.4e-7 s.
 constexpr double kStampRoundingS = 1e-6;
 
 constexpr double kLongestS = 1e10;
@@ -24,7 +24,7 @@ void RequireWithin(const PartOptions& part, double length_s, const std::string& 
   if (part.from_s > length_s + kStampRoundingS) {
     refuse("from_s", part.from_s, "at most", length_s, "");
   }
-  // 30 s of 30 frames a second end a frame before.
+  // A recording of 30 s at 30 Hz ends one frame before 30 s.
   const double next_second_s = std::floor(length_s) + 1.0;
   if (part.to_s > next_second_s) {
     refuse("to_s", part.to_s, "at most", next_second_s, "; 0 is its end");

@@ -9,11 +9,11 @@
 namespace depthgrid {
 namespace {
 
-// A scan with fewer hits, or fewer pieces of wall that must have come nearer, shows nothing.
+// With fewer hits, or fewer pieces of wall that must have moved, nothing can be decided.
 constexpr int kFewHits = 20;
 constexpr int kFewPieces = 5;
-// A piece of wall: long enough that noise and whole centimetres do not turn it, straight, and not
-// across the gap between two things.
+// A piece of wall: long enough that noise and rounding to centimetres do not change its direction,
+// straight, and not across the gap between two objects.
 constexpr double kPieceM = 0.3;
 constexpr double kMostPieceM = 0.6;
 constexpr double kStraightM = 0.03;
@@ -24,8 +24,8 @@ bool IsSame(const std::vector<double>& a_m, const std::vector<double>& b_m) {
                     [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
 }
 
-// How many pieces of wall are by more than `least_m` nearer or farther along their beam after this
-// motion of the laser.
+// The number of pieces of wall whose range changes by more than `least_m` with this motion of the
+// laser.
 int PiecesThatMove(const Scan& scan, const Eigen::Vector2d& motion, double least_m) {
   int pieces = 0;
   std::vector<Eigen::Vector2d> wall;  // hits without one missing in between
@@ -52,14 +52,13 @@ int PiecesThatMove(const Scan& scan, const Eigen::Vector2d& motion, double least
   return pieces;
 }
 
-// The step of the readings as they are written, such as a centimetre; 0 where they have more than
-// six decimals.
+// The resolution of the readings as written, such as a centimetre; 0 with more than six decimals.
 double WrittenStepM(const Scan& scan) {
   double step_m = 1.0;
   for (int decimals = 0; decimals <= 6; ++decimals, step_m *= 0.1) {
     const bool is_whole = std::all_of(scan.beams.begin(), scan.beams.end(), [&](const Beam& beam) {
       const double steps = beam.range_m / step_m;
-      // Of a float's seven digits the last one may be off.
+      // The last of a float's seven digits may be off.
       return !beam.hit || std::abs(steps - std::round(steps)) < 1e-6 * steps + 1e-9;
     });
     if (is_whole) return step_m;
@@ -67,9 +66,9 @@ double WrittenStepM(const Scan& scan) {
   return 0.0;
 }
 
-// Whether neighbouring readings differ as only noise does, which never comes twice: by their second
-// differences, which of walls are below 3 mm in the middle of a scan (1 degree apart, a corridor 2
-// m wide) and with rounding at most a step more.
+// Whether the readings have noise, which never repeats exactly, by their second differences.
+// Without noise these are below 3 mm on walls in the middle of a scan (1 degree apart, a corridor 2
+// m wide) plus at most one step of rounding.
 bool IsNoisy(const Scan& scan) {
   std::vector<double> bends_m;
   for (std::size_t i = 1; i + 1 < scan.beams.size(); ++i) {
@@ -78,7 +77,7 @@ bool IsNoisy(const Scan& scan) {
     bends_m.push_back(std::abs(static_cast<double>(a.range_m) - 2.0 * b.range_m + c.range_m));
   }
   if (bends_m.size() < static_cast<std::size_t>(kFewHits)) return false;
-  constexpr double kFloatRounding = 1.0 + 1e-3;  // of differences of centimetres
+  constexpr double kFloatRounding = 1.0 + 1e-3;  // for differences of centimetres
   return UpperMedian(std::move(bends_m)) > kMostBendM + WrittenStepM(scan) * kFloatRounding;
 }
 

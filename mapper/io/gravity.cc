@@ -26,7 +26,7 @@ constexpr std::size_t kCandidates = 300;
 constexpr std::size_t kVoterStep = 3;
 constexpr std::size_t kMinFloorPatches = 200;
 constexpr double kMinFloorShare = 0.02;  // of all patches
-// Of one image, to have a say in what is level.
+// Patches that an image needs to be used for the level.
 constexpr std::size_t kMinViewPatches = 40;
 constexpr double kWanderShare = 0.9;
 
@@ -36,23 +36,23 @@ constexpr double kFloorPeakShare = 0.25;
 // The images agree on the floor when this share of them has its lowest surface this near to it.
 constexpr double kAgreeM = 0.1;
 constexpr double kAgreeShare = 0.5;
-// Where they do not, this many of the first ones say where the floor is, and which way is up.
+// If they do not, this many of the first ones define the floor and up.
 constexpr std::size_t kFirstViews = 3;
-// Or where these have it farther off than this, though the camera is as high above what they see as
-// later: in a few seconds SLAM's height drifts by less than kAgreeM for half of the images.
+// The same if the first images have the floor farther off than this with the camera as high above
+// it as later: in a few seconds SLAM's height drifts by less than kAgreeM for half of the images.
 constexpr double kFirstFloorOffM = 0.03;
-// Above a table the camera stands so much lower than above the floor, whatever its hand does.
+// A camera above a table is at least this much lower than above the floor, also if hand-held.
 constexpr double kTableM = 0.3;
-// Half of the images' normals scatter by less than this (0.4 degrees where cushions and sills are
-// all that some see); more is SLAM's drift.
+// Without drift the median scatter of the images' normals is below this (0.4 degrees even if some
+// see only cushions and sills).
 constexpr double kDriftRad = RadFromDeg(0.8);
-// Or the first images' floor is off by more than one place's may be (1.5 degrees) from what all
-// agree on: SLAM's tilt drifted at first and then no more.
+// SLAM's tilt also drifted, at the start only, if the first images' floor is off from the common
+// one by more than a single place may be (1.5 degrees).
 constexpr double kFirstOffRad = RadFromDeg(2.0);
-// Patches this near the plane take part in its fit, from the first to the last round.
+// Patches this near to the plane are used in its fit, per iteration.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
-// The direction that most normals share, of a few hundred tried.
+// The direction shared by most normals, among a few hundred candidates.
 Eigen::Vector3d CommonNormal(const Patches& patches) {
   Eigen::Vector3d best = patches.front().normal;
   std::size_t most = 0;
@@ -78,8 +78,8 @@ std::vector<Eigen::Vector3d> LevelPoints(const Patches& patches, const Eigen::Ve
   return points;
 }
 
-// How many points lie how high, in bins of kHeightBinM. Only bins with points take memory: poses
-// may lie thousands of kilometres apart.
+// Histogram of heights in bins of kHeightBinM. Sparse, as poses may be thousands of kilometres
+// apart.
 struct Levels {
   double low_m = 0.0;
   std::map<std::int64_t, int> bins;
@@ -95,13 +95,13 @@ struct Levels {
   double HeightM(std::int64_t bin) const {
     return low_m + (static_cast<double>(bin) + 0.5) * kHeightBinM;
   }
-  // The lowest of them where several are.
+  // The fullest bin; the lowest of several.
   std::pair<std::int64_t, int> Fullest() const {
     return *std::max_element(bins.begin(), bins.end(),
                              [](const auto& a, const auto& b) { return a.second < b.second; });
   }
   double FullestM() const { return HeightM(Fullest().first); }
-  // The lowest that holds many of the points.
+  // The lowest level with many points.
   double LowestM() const {
     const double enough = kFloorPeakShare * Fullest().second;
     auto lowest = bins.begin();
@@ -113,7 +113,8 @@ struct Levels {
   }
 };
 
-// How the points near a height scatter around their mean; the least spread is across the plane.
+// Scatter of the points near a height around their mean; the direction of least spread is the
+// plane's normal.
 struct PlaneFit {
   std::size_t points = 0;
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
@@ -154,9 +155,8 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::acos(std::min(1.0, a.dot(b)));
 }
 
-// Up as the first images have it: SLAM's world was defined there, and its tilt drifts with time.
-// The middle one of their normals, so that a slanted surface in one of them does no harm, and of
-// the larger surfaces only.
+// Up from the first images, as SLAM's world was defined there and its tilt drifts. The median of
+// their normals, to be robust against a slanted surface, using the larger surfaces only.
 Eigen::Vector3d FirstUp(std::vector<PlaneFit> fits, const Eigen::Vector3d& up,
                         std::size_t most_views) {
   std::vector<double> sizes;
@@ -190,12 +190,12 @@ std::vector<PlaneFit> LargestLevels(const Views& views, const Eigen::Vector3d& u
   return fits;
 }
 
-// Up as the common normal of the largest level surface of each image. Every image's surface has a
-// height of its own: a table's is as level as the floor, and SLAM's height drifts (0.6 m of drift
-// tilted one plane through all of it by 2.9 degrees).
+// Up as the common normal of the largest level surface of each image. Each surface has its own
+// height, as a table is as level as the floor and SLAM's height drifts (a single plane through all
+// was tilted by 2.9 degrees by a drift of 0.6 m).
 struct CommonLevel {
   Eigen::Vector3d up;
-  std::vector<PlaneFit> fits;  // of the images that see a level surface; none: nothing is known
+  std::vector<PlaneFit> fits;  // of the images with a level surface; empty: up is unknown
 };
 
 CommonLevel FitCommonLevel(const Views& views, const Eigen::Vector3d& about_up) {
@@ -222,7 +222,7 @@ struct FloorOfViews {
   bool is_late = false;
 };
 
-// Each image's own lowest surface.
+// The lowest surface of each image.
 std::vector<FloorOfViews> OwnFloors(const Views& views, const Eigen::Vector3d& up) {
   std::vector<FloorOfViews> floors;
   for (const SurfaceView& view : views) {
@@ -242,7 +242,7 @@ double MiddleOf(const std::vector<FloorOfViews>& floors, double FloorOfViews::*n
   return UpperMedian(numbers);
 }
 
-// As the recording's first images have it, if they see a floor.
+// Up from the recording's first images, if they see a floor.
 std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
   if (first_views.empty()) return {};
   const auto patches = PatchesOf(first_views);
@@ -252,7 +252,7 @@ std::optional<Eigen::Vector3d> UpAtFirst(const Views& first_views) {
   return FirstUp(first.fits, first.up, first.fits.size());
 }
 
-// Whether most of the first images see the floor where the later ones do, and as level.
+// Whether most of the first images see the floor at the same height and as level as the later ones.
 bool SeeSameFloor(const Views& first_views, const Views& views, const Eigen::Vector3d& up) {
   const auto later = OwnFloors(views, up);
   if (later.empty()) return false;
@@ -268,8 +268,8 @@ bool SeeSameFloor(const Views& first_views, const Views& views, const Eigen::Vec
   return 2 * seeing > first_views.size();
 }
 
-// Whether the camera is as high above what is level at first as above the later images' floor: the
-// normals of a sofa's cushions may agree as well.
+// Whether the camera's height above the first images' level surface equals that above the later
+// images' floor; otherwise the surface may be a sofa's cushions.
 bool IsFloorToo(const Views& first_views, const Eigen::Vector3d& first_up, const Views& views,
                 const Eigen::Vector3d& up) {
   const auto first = OwnFloors(first_views, first_up);
@@ -296,7 +296,7 @@ std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
                        !SeeSameFloor(first_views, views, level.up) &&
                        IsFloorToo(first_views, *first, views, level.up));
   if (!drifts) return Direction{level.up, wander_rad, false};
-  // Otherwise as the first of those spread over it that see one.
+  // Otherwise from the first of the spread images that see a floor.
   return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
 }
 
@@ -307,8 +307,9 @@ std::vector<FloorOfViews> WithoutTables(std::vector<FloorOfViews> floors, double
   return floors;
 }
 
-// As the first images have it; the camera's height is that above each image's own lowest surface.
-// Where few of the first see the floor the next ones say where it is: late, unless the few agree.
+// The floor from the first images; the camera's height is the one above each image's own lowest
+// surface. If few of the first images see the floor, the next ones are used: late, unless the few
+// agree.
 FloorOfViews FirstFloor(const std::vector<FloorOfViews>& first,
                         const std::vector<FloorOfViews>& own) {
   const double usual_m = MiddleOf(own, &FloorOfViews::camera_height_m);
@@ -324,8 +325,8 @@ FloorOfViews FirstFloor(const std::vector<FloorOfViews>& first,
   return {next_m, usual_m, std::abs(first_m - next_m) > kFirstFloorOffM};
 }
 
-// Whether SLAM's height drifts: the images do not agree on the lowest of all surfaces, or the first
-// ones see theirs elsewhere, and it is no table.
+// Whether SLAM's height drifts: the images disagree on the lowest surface, or the first ones see
+// theirs at another height and it is not a table.
 bool HeightDrifts(const std::vector<FloorOfViews>& first, const std::vector<FloorOfViews>& own,
                   double lowest_m) {
   if (own.empty()) return false;
@@ -340,8 +341,8 @@ bool HeightDrifts(const std::vector<FloorOfViews>& first, const std::vector<Floo
          std::abs(at_first.camera_height_m - usual_m) < kAgreeM;
 }
 
-// The floor is the lowest of all surfaces, and the camera's height is that above it. With SLAM's
-// height drifting it is where the first images have it.
+// The floor is the lowest of all surfaces, with the camera's height above it. If SLAM's height
+// drifts, it is the floor of the first images.
 FloorOfViews FloorUnder(const Views& views, const Views& first_views,
                         const std::vector<Eigen::Vector3d>& level, const Eigen::Vector3d& up) {
   const double lowest_m = Levels(level, up).LowestM();

@@ -8,16 +8,16 @@
 namespace depthgrid {
 namespace {
 
-// Of a scan and one before it half of the readings differ by more than this, and by more than so
-// often what they differ by from one scan to the next, as noise does. Chosen: a robot at 0.5 m/s
-// and 10 Hz shows it after four scans.
+// The robot has moved if the median difference of the readings to an earlier scan exceeds this and
+// this many times the difference between successive scans, which is noise. Chosen: a robot at 0.5
+// m/s and 10 Hz is detected after four scans.
 constexpr double kMovedM = 0.05;
 constexpr double kTimesNoise = 2.0;
-// It is looked for from where it began to show.
+// The scans are marked from where this share of the change was reached.
 constexpr double kBegunShare = 0.5;
 constexpr std::size_t kFewReadings = 20;
 
-// The median difference of readings that both have; 0 where there are few.
+// The median difference of the readings that both have; 0 if they are few.
 double DifferenceM(const std::vector<double>& a_m, const std::vector<double>& b_m) {
   std::vector<double> differences_m;
   for (std::size_t i = 0; i < std::min(a_m.size(), b_m.size()); ++i) {

@@ -22,11 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRayEnding = ".depth";
-// Longer rays than this are not of a room in metres: the office's files are in centimetres. A few
-// may be: through a window, or wild.
+// Rays longer than this are not in metres: the office's files are in centimetres. A few may be
+// longer, through a window or as outliers.
 constexpr float kCentimetresAbove = 50.0F;
 constexpr double kNearlyAll = 0.95;
-// So many images may show nothing or be damaged before the unit is metres.
+// After this many images without data or damaged, the unit is taken to be metres.
 constexpr std::size_t kImagesToTry = 20;
 
 // The first file (by name) with the ending, empty when there is none.
@@ -40,8 +40,8 @@ std::string FileWith(const std::string& folder, const std::string& ending) {
   return found.empty() ? "" : found.front();
 }
 
-// .gt.sim has no stamps: one matrix an image, or one for each but the first. Images may have been
-// left out since, matrices may not.
+// .gt.sim has no stamps: one matrix per image, or one for each but the first. Images may have been
+// removed since, matrices not.
 SlamOutput SlamOutputOf(std::vector<std::optional<Pose3>> poses, Recording& recording,
                         const std::string& path) {
   const std::size_t images = recording.images.size();
@@ -145,7 +145,7 @@ double RayUnitM(const DepthImage& lengths) {
 
 namespace {
 
-// One unit for a whole folder: a near wall's centimetres would pass for metres.
+// One unit for the whole folder, as an image of a near wall in centimetres could pass for metres.
 double RayUnitM(const Recording& recording, const PinholeCamera& camera) {
   const auto images = ImagesOfPart(recording);
   for (const RecordedImage& image : images.first(std::min(images.size(), kImagesToTry))) {
@@ -154,7 +154,7 @@ double RayUnitM(const Recording& recording, const PinholeCamera& camera) {
     try {
       const double unit_m = RayUnitM(ParseRayLengths(ReadTextFile(path), camera, path));
       if (unit_m > 0.0) return unit_m;
-    } catch (const InputError&) {  // said where the recording is read
+    } catch (const InputError&) {  // reported when the recording is read
     }
   }
   return 1.0;

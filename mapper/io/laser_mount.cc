@@ -5,7 +5,7 @@
 namespace depthgrid {
 namespace {
 
-// No robot of a map like these is longer; millimetres are beyond it.
+// Larger than any robot for such maps; exceeded by values in millimetres.
 constexpr double kFarthestMountM = 10.0;
 
 }  // namespace

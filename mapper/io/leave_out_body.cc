@@ -14,8 +14,7 @@
 namespace depthgrid {
 namespace {
 
-// Images since whose forerunner the camera turned; of many, as many as are looked at, spread
-// evenly.
+// Images between which the camera turned; if there are too many, an evenly spread choice.
 std::vector<std::string> ViewsOf(const DepthSequence& sequence, const RecordingOptions& options) {
   const PoseTrack track(sequence.slam.live, options);
   std::vector<std::string> turned;
@@ -54,7 +53,7 @@ void internal::LeaveOutBody(const RecordingOptions& options, DepthSequence& sequ
     ReadImage read;
     try {
       read.depth = std::make_shared<DepthImage>(reader(views[i]));
-    } catch (const InputError&) {  // said when the recording is opened
+    } catch (const InputError&) {  // reported when the recording is opened
     }
     return read;
   });
