@@ -1,4 +1,4 @@
-// The ratios that a run of the benchmarks is compared with, and the machine that they are of.
+// Reference ratios for the benchmarks and the machine they were measured on.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@ using Ratios = std::map<std::string, std::map<std::string, double>>;
 
 struct Machine {
   std::string cpu;  // as /proc/cpuinfo names it
-  int cores = 0;    // that are there, whichever the program may use
+  int cores = 0;    // installed, not only those the program may use
   bool operator==(const Machine&) const = default;
 };
 Machine ThisMachine();
@@ -22,7 +22,7 @@ struct Baseline {
   Ratios ratios;
 };
 
-// Throws InputError for a file that is missing or no baseline.
+// Throws InputError for a file that is missing or not a baseline.
 Baseline ReadBaseline(const std::string& path);
 void WriteBaseline(const std::string& path, const Baseline& baseline);
 

@@ -18,7 +18,7 @@ constexpr int kDepthFrames = 12;
 constexpr int kStrollFrames = 60;
 constexpr int kLaserFrames = 600;
 
-// What the camera sees from these poses; without the noise as well if so.
+// The images from these poses; if `clean`, also those without noise.
 DepthWalk SeenFrom(const std::vector<Pose3>& poses, int width_px, int height_px, bool clean) {
   static const RayScene room(test::ClutteredRoom(kTriangles));
   DepthWalk walk;

@@ -1,4 +1,4 @@
-// What the benchmarks work on, made once a run.
+// Input data of the benchmarks, made once per run.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace depthgrid::bench {
 
-// A hand-held camera in a cluttered room of 100,000 triangles, tilted by up to 12 degrees. The
-// images are more than a second-level cache holds, as those from a camera are.
+// A hand-held camera in a cluttered room of 100,000 triangles, tilted by up to 12 degrees. Together
+// the images exceed the second-level cache, as with a real camera.
 struct DepthWalk {
   PinholeCamera camera;
   std::vector<Pose3> poses;
@@ -21,8 +21,8 @@ struct DepthWalk {
 };
 // ICL-NUIM's field of view at this many pixels; views from all around, none near another.
 const DepthWalk& DepthWalkOf(int width_px, int height_px);
-// Views that follow each other as a recording's do: 2.5 cm and 1.5 degrees apart, to and fro. Only
-// the noisy images are kept.
+// Successive views as in a recording: 2.5 cm and 1.5 degrees apart, to and fro. Only the noisy
+// images are kept.
 const DepthWalk& DepthStrollOf(int width_px, int height_px);
 // Adds the floor of a depth image of this width copied, the fastest anything can read and write it,
 // and returns its name.
@@ -35,11 +35,11 @@ struct LaserWalk {
 };
 const LaserWalk& LaserWalkOf(int beams);
 
-// Goes round and round a walk: the k-th motion, with an odometry that drifts slowly.
+// Odometry with a slow drift for a walk that is repeated endlessly.
 class DriftingOdometry {
  public:
   Pose2 Next(const Pose2& motion) {
-    constexpr double kBiasM = 1e-4, kBiasRad = 1e-4;  // a frame: 3 mm and 0.2 degrees a second
+    constexpr double kBiasM = 1e-4, kBiasRad = 1e-4;  // per frame: 3 mm and 0.2 degrees per second
     pose_ = pose_ * motion * Pose2{kBiasM, -0.5 * kBiasM, kBiasRad};
     return pose_;
   }

@@ -11,7 +11,7 @@
 namespace depthgrid::bench {
 namespace {
 
-// Filled by the static initialisers of the benchmark files, hence functions.
+// Filled by static initialisers of the benchmark files, so a function-local static.
 std::vector<Case>& Cases() {
   static std::vector<Case> cases;
   return cases;
@@ -59,10 +59,10 @@ std::string TimeText(double seconds) {
   return fmt::format("{:.3g} s", seconds);
 }
 
-// Three digits are more than the measurement holds.
+// Measurements are less accurate than three digits.
 double Rounded(double ratio) { return std::stod(fmt::format("{:.3g}", ratio)); }
 
-// The part of a floor's name that says what it is; behind '@' stands for which case.
+// The displayed part of a floor's name; the case it belongs to follows '@'.
 std::string LabelOf(const std::string& floor) { return floor.substr(0, floor.find(" @")); }
 
 std::string ChangeText(double ratio, const std::optional<double>& before, double band) {
@@ -78,7 +78,7 @@ void AddFloor(const std::string& name, const Loop& loop, int iterations) {
   Floors().insert({name, {loop, iterations}});
 }
 
-// Beside the other cases of its stage.
+// Inserts it after the other cases of its stage.
 void AddCase(const Case& row) {
   const auto same_stage = [&](const Case& other) { return other.stage == row.stage; };
   const auto last = std::find_if(Cases().rbegin(), Cases().rend(), same_stage);
@@ -113,7 +113,7 @@ Ratios RatiosOf(const Times& times) {
   return ratios;
 }
 
-// Cases that were not run keep theirs; those that are no more go.
+// Cases that were not run keep their ratios; cases that no longer exist are dropped.
 Ratios Renewed(const Ratios& before, const Ratios& ratios) {
   Ratios all;
   for (const Case& row : Cases()) {

@@ -1,6 +1,6 @@
-// Every benchmark stands beside a floor (little work over the same data: copy the image, Embree's
-// packets alone) or a plain reference (exhaustive search, Ceres) measured in the same run: load
-// adds to both, so their ratio depends less on it than times do. It does depend on the machine.
+// Every benchmark is compared with a floor (minimal work on the same data: copying the image,
+// Embree's packets alone) or a plain reference (exhaustive search, Ceres) measured in the same run.
+// Load slows both, so their ratio depends less on it than times do; it does depend on the machine.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -15,8 +15,8 @@ namespace depthgrid::bench {
 
 using Loop = std::function<void(benchmark::State&)>;
 
-// What cases are compared with; several may share one. Known once, by name; what follows " @" in it
-// is not shown. `iterations` as of a case.
+// Adds a floor or reference that cases refer to by name; several may share one. The part of the
+// name after " @" is not shown. `iterations` as for a case.
 void AddFloor(const std::string& name, const Loop& loop, int iterations = 0);
 
 struct Case {
@@ -25,7 +25,7 @@ struct Case {
   std::string floor;  // name given to AddFloor
   Loop loop;
   bool slow = false;   // only with --long
-  int iterations = 0;  // of a repetition; 0: as many as its time (--min-time) holds
+  int iterations = 0;  // per repetition; 0: as many as fit in --min-time
 };
 void AddCase(const Case& row);
 
@@ -33,14 +33,15 @@ void AddCase(const Case& row);
 // InputError where there is none.
 void RegisterCases(const std::string& filter, bool with_slow);
 
-// Seconds an iteration took, by Google Benchmark's name: the best repetition, as load only adds.
+// Seconds per iteration by Google Benchmark's name, of the fastest repetition, as load only adds
+// time.
 using Times = std::map<std::string, double>;
 Ratios RatiosOf(const Times& times);
-// `before` with these ratios in place of its own, without cases that are no more.
+// `before` updated with these ratios, without cases that no longer exist.
 Ratios Renewed(const Ratios& before, const Ratios& ratios);
 
-// The tables as Markdown, and below them, where there is a baseline, what changed by more than
-// `band` (0.25: takes a quarter more, or less).
+// The tables as Markdown, followed by the changes against the baseline, if any, of more than `band`
+// (0.25: a quarter more or less time).
 std::string TablesOf(const Times& times, const Ratios& baseline, double band);
 
 }  // namespace depthgrid::bench

@@ -1,5 +1,4 @@
-// The options of a measuring program: what is wrong with them is one line and exit code 2
-// (guarded_main.h).
+// Parses the options of a measuring program; an error is one line and exit code 2 (guarded_main.h).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,7 +11,7 @@
 
 namespace depthgrid {
 
-// False: help was asked for, and is printed.
+// False if help was requested and printed.
 inline bool ReadCommandLine(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -25,7 +24,7 @@ inline bool ReadCommandLine(CLI::App& app, int argc, char** argv) {
   }
 }
 
-// For check(): CLI11's own Range takes "nan" for a number in it, and prints large ones in full.
+// For check(): CLI11's own Range accepts "nan" and prints large numbers in full.
 inline CLI::Validator FromTo(double low, double high) {
   std::ostringstream range;
   range.precision(10);

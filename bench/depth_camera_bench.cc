@@ -66,7 +66,7 @@ Packets<kWidth> PacketsOf(const PinholeCamera& camera, const Pose3& pose) {
   return packets;
 }
 
-// The frames of kPoses poses an iteration, as RenderFrames.
+// As RenderFrames, the frames of kPoses poses per iteration.
 template <int kWidth>
 void TracePackets(const PinholeCamera& camera, int triangles, RayIsa isa, benchmark::State& state) {
   if (!Runs(isa, state)) return;

@@ -11,8 +11,8 @@
 namespace depthgrid::bench {
 namespace {
 
-// A stretch of a run, the same however long a repetition lasts: adjustments, after 60, 180, 540 and
-// 1,620 frames, take a hundred frames' time.
+// A fixed stretch of a run, whatever a repetition's length: adjustments come after 60, 180, 540 and
+// 1,620 frames and take the time of a hundred frames.
 struct Stretch {
   int before = 0;
   int frames = 0;
@@ -36,7 +36,7 @@ MapperOptions PlainPaper() {
   return options;
 }
 
-// Frames of a walk that goes round for ever, with a drifting prior.
+// Frames of an endlessly repeated walk with a drifting prior.
 class EndlessScans {
  public:
   explicit EndlessScans(int beams) : walk_(LaserWalkOf(beams)) { odometry_.Start(walk_.truth[0]); }
@@ -92,7 +92,7 @@ Loop DepthFrameLoop(const MapperOptions& options, int width_px) {
   };
 }
 
-// Maps `frames` scans; what is timed is that, or only the end.
+// Maps `frames` scans; times the mapping or, with `finish`, only the end.
 Loop RunLoop(const MapperOptions& options, int frames, bool finish) {
   return [=](benchmark::State& state) {
     for (auto _ : state) {

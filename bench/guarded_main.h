@@ -1,5 +1,5 @@
-// The main of a measuring program: a mistake in what it was given is one line and exit code 2, a
-// failure of the run one line and exit code 1, as with depthgrid itself.
+// The main function of a measuring program: bad input gives one line and exit code 2, a failure
+// while running one line and exit code 1, as with depthgrid itself.
 #pragma once
 
 #include <cstdio>

@@ -45,7 +45,7 @@ void AddCellsCase(int beams, int resolution_mm) {
            }});
 }
 
-// All that a frame of the paper's chain inserts: both active submaps.
+// The insertions of a frame in the paper's method: into both active submaps.
 Loop SubmapLoop(int beams, bool plain) {
   return [=](benchmark::State& state) {
     SegmentBuilder builder;

@@ -1,5 +1,5 @@
-// `./dev bench`: all benchmarks interleaved, the best of their repetitions, as tables of ratios
-// beside a committed baseline. It never fails for being slow: load decides too much.
+// `./dev bench`: runs all benchmarks interleaved and prints the ratios of the fastest repetitions
+// next to a committed baseline. Slowness is never a failure, as it depends too much on load.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -54,7 +54,7 @@ class Collector : public benchmark::BenchmarkReporter {
 
 constexpr const char* kDefaultBaseline = "bench/baseline.json";
 
-// A slip is found before anything is measured.
+// Checks the path before anything is measured.
 void RequireFolderOf(const std::string& option, const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (std::filesystem::is_directory(path)) throw InputError(option, "'" + path + "' is a folder");
@@ -62,7 +62,8 @@ void RequireFolderOf(const std::string& option, const std::string& path) {
   throw InputError(option, "'" + path + "': there is no folder " + folder.string());
 }
 
-// What to compare with, if anything. Only the default one may be missing, and what is written anew.
+// The baseline to compare with, if any. It may be missing if it is the default one or is to be
+// written.
 std::optional<Baseline> BaselineOf(const Arguments& arguments) {
   const std::string path = arguments.baseline.value_or(kDefaultBaseline);
   if (arguments.write_baseline) RequireFolderOf("--baseline", path);
@@ -75,7 +76,7 @@ std::optional<Baseline> BaselineOf(const Arguments& arguments) {
   return std::nullopt;
 }
 
-// Ratios of two machines do not stand in one file.
+// A file must not mix ratios of two machines.
 bool IsOfAnother(const std::optional<Baseline>& baseline) {
   return baseline && baseline->machine != ThisMachine();
 }

@@ -1,4 +1,4 @@
-// The mapper that a measuring program is asked for.
+// The mapper's options in a measuring program.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace depthgrid {
 
-// The defaults but for these, KEY=VALUE each, such as "method=paper".
+// The defaults with these settings, KEY=VALUE each, such as "method=paper".
 inline MapperOptions MapperWith(const std::vector<std::string>& sets) {
   Config config;
   for (const std::string& set : sets) config.Set(set);

@@ -86,7 +86,7 @@ void AddSearchCase(const Window& w) {
            w.slow});
 }
 
-// Counts its cases from the start in every repetition, so that all do the same work.
+// Starts with the first case in every repetition, so that all do the same work.
 Loop SolveLoop(int beams, SolverMethod method) {
   return [=](benchmark::State& state) {
     const auto& cases = CasesOf(beams);
@@ -108,7 +108,7 @@ std::string AddCeres(int beams) {
   return name;
 }
 
-// The map is asked twice for each scan: the second time it is cut already.
+// The map is queried twice for each scan; the second time the scan is already cut into surfels.
 void AddSurfelCase(int beams, bool with_cutting) {
   const std::string what = with_cutting ? " beams, with cutting the scan" : " beams, cut before";
   AddCase(

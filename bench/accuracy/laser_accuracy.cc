@@ -26,11 +26,11 @@ using namespace depthgrid;
 
 namespace {
 
-// How far an estimate is off in the plane, metres.
+// Position errors of an estimate in the plane, metres.
 struct Errors {
   double mean = 0.0;
   double max = 0.0;
-  double ate = 0.0;  // root mean square, laid over the truth first
+  double ate = 0.0;  // root mean square after alignment with the truth
 };
 
 Errors ErrorsOf(const std::vector<Pose2>& truth, const std::vector<Pose2>& estimate) {
@@ -44,7 +44,7 @@ Errors ErrorsOf(const std::vector<Pose2>& truth, const std::vector<Pose2>& estim
   return {as_it_is.mean, as_it_is.max, Summarise(TranslationErrorsXy(pairs)).rmse};
 }
 
-// The prior errs from a later frame on only.
+// Odometry that is exact up to frame perfect_frames.
 std::vector<Pose2> PerfectAtFirst(const std::vector<Pose2>& truth,
                                   const std::vector<Pose2>& odometry, int perfect_frames) {
   std::vector<Pose2> later = {truth.front()};
@@ -55,7 +55,7 @@ std::vector<Pose2> PerfectAtFirst(const std::vector<Pose2>& truth,
   return later;
 }
 
-// How the prior errs.
+// Errors of the prior.
 struct PriorOptions {
   OdometryOptions odometry;
   int perfect_frames = 0;  // the first
@@ -148,7 +148,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experime
   return run;
 }
 
-// One a seed, each thread taking every so many.
+// One run per seed, distributed over the threads.
 std::vector<Run> MapAll(const LaserWorld& world, const std::vector<Pose2>& truth,
                         const Experiment& experiment) {
   std::vector<Run> runs(static_cast<std::size_t>(experiment.seeds));

@@ -1,5 +1,5 @@
-// SLAM is lost for seconds and comes back in a new epoch with a pose that is metres off: how well
-// is the run mapped with and without the wide search? (docs/results.md, "Lost and found")
+// Accuracy with and without the wide search when SLAM is lost for seconds and returns in a new
+// epoch with a pose that is metres off (docs/results.md, "Lost and found").
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,8 @@ using namespace depthgrid;
 
 namespace {
 
-// Which frames of the truth are driven: up to `lost_at`, then from `back_at`, backwards if so.
+// The frames of the truth that are driven: up to `lost_at`, then from `back_at` on, optionally
+// backwards.
 struct Drive {
   int lost_at = 0;
   double lost_s = 10.0;
@@ -35,7 +36,7 @@ struct Outcome {
   double worst_ms = 0.0;
 };
 
-// What is driven: `before` the loss, and after it.
+// The driven path: `before` frames before the loss, the rest after it.
 struct Driven {
   std::vector<Pose2> poses;
   std::vector<double> stamps_s;
@@ -59,8 +60,7 @@ Driven DrivenOf(const std::vector<Pose2>& truth, const Drive& drive) {
   return driven;
 }
 
-// Odometry that begins anew after the loss: SLAM believes to be where it was lost, but for an
-// offset.
+// Odometry that restarts after the loss: SLAM assumes the pose where it was lost plus an offset.
 std::vector<Pose2> SlamOf(const Driven& driven, const Drive& drive, int seed) {
   std::vector<Pose2> slam = DisturbOdometry(driven.poses, {}, static_cast<std::uint64_t>(seed));
   RandomStream random(static_cast<std::uint64_t>(seed), RandomStage::kTest, 77);

@@ -1,4 +1,4 @@
-// What the programs that map simulated laser logs share.
+// Shared by the programs that map simulated laser logs.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ inline std::vector<Pose2> ReadPlanarTruth(const std::string& name) {
   return truth;
 }
 
-// What the laser sees there, with the noise of this frame.
+// The laser's scan at this pose with the noise of this frame.
 inline std::shared_ptr<const Scan> SimulatedScan(const LaserWorld& world,
                                                  const Pose2& world_from_base,
                                                  const LaserOptions& laser, int seed, int frame) {

@@ -34,7 +34,7 @@ std::string Csv(const std::vector<Curve>& curves) {
   return csv;
 }
 
-// Rows of the picture share their scale.
+// The common scale of a row of the figure.
 double HighestOf(const std::vector<Curve>& curves, const std::string& score) {
   double highest = 1e-9;
   for (const Curve& curve : curves) {

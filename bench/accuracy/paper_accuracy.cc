@@ -22,7 +22,7 @@ using namespace depthgrid;
 
 namespace {
 
-// A way of mapping: a name and the keys that make it, "name key=value key=value".
+// A mapper configuration: its name and keys, from "name key=value key=value".
 struct Variant {
   std::string name;
   Config keys;
@@ -38,7 +38,7 @@ Variant ParseVariant(const std::string& text) {
 
 struct Row {
   double input_m = 0, input_f1 = 0;  // SLAM's live poses and the map they make
-  double final_m = 0, final_f1 = 0;  // SLAM's own final trajectory and its map: the match off
+  double final_m = 0, final_f1 = 0;  // SLAM's final trajectory and its map (without matching)
   double online_m = 0, output_m = 0, output_ate_m = 0, f1 = 0, thickness_m = 0, us_per_frame = 0;
   int accepted = 0, offered = 0;
 };
@@ -149,7 +149,7 @@ Config OverridesOf(const Choice& choice, const Variant& variant, int seed) {
   return overrides;
 }
 
-// What shares room and images, and so runs together.
+// Groups of cases that share room and images and so run together.
 std::map<std::string, Group> GroupsOf(const Choice& choice) {
   const std::string path = ResolveName(choice.study, ShippedKind::kExperiment);
   const std::string folder = std::filesystem::path(path).parent_path().string();

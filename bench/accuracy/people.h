@@ -1,4 +1,4 @@
-// People in a simulated laser world: what moves while the robot does.
+// People who walk in a simulated laser world while the robot drives.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ enum class People {
 constexpr double kPersonRadiusM = 0.22;
 constexpr double kWalkMps = 1.2;
 constexpr double kFrameRateHz = 30.0;
-constexpr double kPersonAheadM = 1.5;  // of the robot; three who cross are .8 m nearer and farther
+constexpr double kPersonAheadM = 1.5;  // ahead of the robot; the three crossing ones are .8 m apart
 
 inline void AddPerson(const Eigen::Vector2d& at_m, LaserWorld& world) {
   constexpr int kSides = 12;
@@ -36,7 +36,7 @@ inline void AddPerson(const Eigen::Vector2d& at_m, LaserWorld& world) {
   for (int i = 0; i < kSides; ++i) world.walls.push_back({corner(i), corner(i + 1)});
 }
 
-// Where in the robot's axes somebody walks who stays before it; empty where nobody does.
+// Position, in robot axes, of a person who stays ahead of the robot; empty if there is none.
 inline std::optional<Eigen::Vector2d> BeforeRobotM(People people, double at_s) {
   switch (people) {
     case People::kAhead:
@@ -57,7 +57,7 @@ inline std::optional<Eigen::Vector2d> BeforeRobotM(People people, double at_s) {
   return {};
 }
 
-// The world as it is at a frame of this path.
+// The world with the people at a frame of this path.
 inline LaserWorld WithPeople(const LaserWorld& world, People people,
                              const std::vector<Pose2>& world_from_base, std::size_t frame) {
   LaserWorld peopled = world;

@@ -1,6 +1,5 @@
-// Does a second core render depth frames twice as fast? One and two threads in turn; wall-clock
-// time, and how much processor time each second of it got: below 2 for two threads, the cores were
-// not free.
+// Speedup of depth rendering by a second core. Alternates one and two threads; prints wall-clock
+// time and CPU time per second of it (below 2 with two threads: the cores were not free).
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
@@ -44,7 +43,7 @@ void PrintRow(int threads, int frames, const Taken& best, const Taken& one) {
 void Compare(int triangles, int frames, int rounds) {
   const RayScene room(test::ClutteredRoom(triangles));
   const DepthCamera serial(room, PinholeCamera{}, 1), parallel(room, PinholeCamera{}, 2);
-  Render(parallel, frames);  // threads are started, memory is there
+  Render(parallel, frames);  // warm-up: starts threads, allocates memory
   Taken one, two;
   std::vector<double> ratios;
   for (int round = 0; round < rounds; ++round) {

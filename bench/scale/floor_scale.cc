@@ -1,6 +1,6 @@
-// Does time a frame stay flat and memory grow with the area seen? A laser walks through floors of
-// 5 m to 200 m: square rooms of 5 m with doors and a cupboard each, up and down the rows and back.
-// And does the mapper take one of these rooms, which look alike, for another?
+// Checks that time per frame stays constant and memory grows with the area seen. A laser walks
+// through floors of 5 m to 200 m (square rooms of 5 m with doors and a cupboard each), up and down
+// the rows and back. Also checks whether the mapper confuses these similar rooms.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -23,12 +23,12 @@ namespace {
 
 constexpr double kRoomM = 5.0;
 constexpr double kDoorM = 1.2;
-constexpr double kStepM = 0.04;            // a frame: 1.2 m/s at 30 Hz
-constexpr double kWrongM = 0.5;            // a loop that is off by more is of another place
+constexpr double kStepM = 0.04;            // per frame: 1.2 m/s at 30 Hz
+constexpr double kWrongM = 0.5;            // a loop that is off by more is false
 constexpr double kTurnRad = kPi / 2 / 30;  // a frame
-constexpr double kPhaseOfSeed = 2.4;       // where the odometry's bias begins, radians
+constexpr double kPhaseOfSeed = 2.4;       // initial phase of the odometry's bias, radians
 
-// Resident now, not at most: a floor's memory must not hide behind that of the one before.
+// Current resident memory, not the peak, which may be from the previous floor.
 double ResidentMib() {
   std::ifstream file("/proc/self/statm");
   double pages = 0.0;
@@ -36,7 +36,7 @@ double ResidentMib() {
   return pages * 4096.0 / (1 << 20);
 }
 
-// A side of a room: in two parts with a door between them, or whole at the border.
+// A side of a room: two parts with a door between them, or one wall at the border.
 void AddSide(const Eigen::Vector2d& from, const Eigen::Vector2d& to, bool whole,
              PlanarWorld& world) {
   if (whole) {
@@ -94,7 +94,7 @@ class Walker {
     pose_ = {stops_[0].x(), stops_[0].y(), 0.0};
   }
   Pose2 Next() {
-    if (stops_.size() == 2) {  // round and round on the spot
+    if (stops_.size() == 2) {  // turns on the spot endlessly
       pose_.yaw_rad = WrapAngle(pose_.yaw_rad + kTurnRad);
       return pose_;
     }
@@ -156,7 +156,7 @@ std::vector<JudgedLoop> JudgedLoops(const MapperResult& result, const std::vecto
   return judged;
 }
 
-// The most that was ever resident.
+// Peak resident memory.
 double PeakMib() {
   std::ifstream file("/proc/self/status");
   for (std::string word; file >> word;) {
@@ -197,7 +197,7 @@ Walked Walk(const Floor& floor, int frames, const Settings& settings, Incrementa
   const Pace pace(settings.rate_hz);
   for (int k = 0; k < frames; ++k) {
     const Pose2 truth = walker.Next();
-    // Odometry with a slowly varying bias: 1 % of the way, 0.1 degree a metre.
+    // Odometry with a slowly varying bias: 1 % of the distance, 0.1 degree per metre.
     const double swing = settings.drift * std::sin(k / 200.0 + kPhaseOfSeed * (floor.seed - 1));
     odometry =
         k == 0 ? truth
@@ -238,7 +238,7 @@ void PrintWalk(double floor_m, const Walked& walked, double mib) {
   std::fflush(stdout);
 }
 
-// Returns the loops that were taken.
+// Returns the accepted loops.
 std::vector<JudgedLoop> FinishAndPrint(const std::vector<Pose2>& truths, double before_mib,
                                        IncrementalMapper& mapper) {
   const double start_us = ThreadCpuUs();
@@ -263,7 +263,7 @@ std::vector<JudgedLoop> FinishAndPrint(const std::vector<Pose2>& truths, double 
   return loops;
 }
 
-// A row of the table.
+// Prints a row of the table.
 void MeasureFloor(double floor_m, int frames, const Settings& settings) {
   const int columns = static_cast<int>(std::lround(floor_m / kRoomM));
   const Floor floor{columns, settings.rows > 0 ? settings.rows : columns, settings.seed};
@@ -288,7 +288,7 @@ void MeasureFloor(double floor_m, int frames, const Settings& settings) {
 namespace {
 using depthgrid::FromTo;
 
-// One of them alone takes the first of the other's defaults.
+// If only one of them is given, the first defaults of the other are used.
 void RequireAsMany(const CLI::App& app, std::size_t floors, std::size_t frames) {
   const bool too_few = app.count("--floors") > 0 && frames < floors;
   const bool too_many = app.count("--frames") > 0 && frames > floors;

@@ -22,7 +22,7 @@ constexpr double kSameStampS = 1e-3;
 
 enum class EventKind { kCsv, kOrbSlam, kStamped };
 
-// Whether anything in the text is of a loops.csv.
+// Whether any line of the text is from a loops.csv.
 bool LooksLikeCsv(std::string_view text) {
   const auto begins_a_line = [text](std::string_view word) {
     return text.starts_with(word) || text.find("\n" + std::string(word)) != std::string_view::npos;
@@ -32,7 +32,7 @@ bool LooksLikeCsv(std::string_view text) {
          begins_a_line("kind,") || begins_a_line("loop,") || begins_a_line("relocalisation,");
 }
 
-// By the first word. Throws InputError for what is none of them.
+// Detected by the first word. Throws InputError for other files.
 EventKind KindOf(std::string_view text, const std::vector<TextRow>& rows,
                  const std::string& place) {
   if (rows.empty()) throw InputError(place, "is empty, must hold a header or events");
@@ -60,7 +60,7 @@ bool IsHeader(std::string_view row) {
          (row.ends_with(",sigma_rotation_rad") || row.ends_with(",second_stamp_s"));
 }
 
-// The rows of loops.csv whose fields may be empty, which SplitRows does not keep.
+// The rows of loops.csv. Their fields may be empty, which SplitRows would drop.
 std::vector<CsvEvent> CsvRows(std::string_view rest, const std::string& place, RowDamage& damage) {
   std::vector<CsvEvent> events;
   for (int line = 1; !rest.empty(); ++line) {
@@ -83,8 +83,8 @@ std::vector<CsvEvent> CsvRows(std::string_view rest, const std::string& place, R
   return events;
 }
 
-// Frames of loops.csv: by stamp where the recording has these (rows may have been taken out of it
-// since), by number where it has none of them (its clock is another) or the numbers explain more.
+// Finds the frames of loops.csv: by stamp if the recording has these stamps (it may have lost rows
+// since), by number if it has none of them (another clock) or if numbers match more.
 class CsvFrames {
  public:
   CsvFrames(const std::vector<CsvEvent>& events, const FrameNames& frames, double max_difference_s)
@@ -114,7 +114,7 @@ class CsvFrames {
     return frame && frames_.NumberOf(static_cast<std::size_t>(*frame)) == number ? frame
                                                                                  : std::nullopt;
   }
-  // Or the first one after it.
+  // The frame, or the first one after it.
   std::optional<int> From(int number, const std::optional<double>& stamp_s) const {
     std::size_t frame = 0;
     const auto is_before = [&] {
@@ -143,8 +143,8 @@ std::optional<LoopClosure> FindLoop(const CsvEvent& row, int reported_at, const 
   return loop;
 }
 
-// The events with the frames they are of. A loop of a frame that is not there is left out and
-// counted; what SLAM did to its epoch holds from the next frame on.
+// The events with their frames. A loop of a missing frame is left out and counted; a change of
+// epoch at a missing frame takes effect at the next frame.
 std::vector<SlamEvent> FindFrames(const std::vector<CsvEvent>& rows, const FrameNames& frames,
                                   double max_difference_s, int& missing) {
   const CsvFrames names(rows, frames, max_difference_s);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using internal::ShadeImage;
 using internal::ShadeRule;
 
-// Origins are printed with six decimals or more; a smaller offset from the lattice of cells is
+// Origins are printed with six decimals or more, so a smaller offset from the cell lattice is
 // rounding.
 constexpr double kOriginRoundingM = 1e-6;
 constexpr double kMaxOriginCells = 2.1e9;  // so that indices are within int
@@ -46,7 +46,7 @@ struct MapYaml {
 };
 
 MapYaml ReadYaml(const std::string& path) {
-  // Nav2's files may carry keys for other nodes (map_type).
+  // Nav2's files may have keys for other nodes (map_type).
   const Config config = Config::FromFile(path).Only(
       {"image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode"});
   for (const char* key : {"image", "resolution", "origin"}) {
@@ -79,7 +79,7 @@ MapYaml ReadYaml(const std::string& path) {
 }
 
 std::vector<std::string> DoubtsOf(const MapYaml& yaml, const std::string& path) {
-  // Cells of maps to drive by are of centimetres, outdoors of decimetres.
+  // Cells of navigation maps are centimetres in size, outdoors decimetres.
   constexpr double kLargestCellM = 1.0;
   std::vector<std::string> doubts;
   if (yaml.resolution_m > kLargestCellM) {
@@ -113,7 +113,8 @@ void Place(const MapYaml& yaml, MapFile& file) {
   }
 }
 
-// Maps whose origins differ by whole cells are on one lattice, however each is printed.
+// Puts the map on the lattice of `world_from_frame` if the origins differ by whole cells up to
+// rounding.
 void PutInto(const Pose2& world_from_frame, const std::string& yaml_path, MapFile& file) {
   if (world_from_frame == Pose2{}) return;
   GridGeometry& geometry = file.map.geometry;
@@ -139,7 +140,7 @@ void PutInto(const Pose2& world_from_frame, const std::string& yaml_path, MapFil
   if (pose.translation().cwiseAbs().maxCoeff() < kOriginRoundingM) pose = Pose2{};
 }
 
-// The level rectangle around a map that may be turned.
+// The axis-aligned bounding rectangle of a map, which may be rotated.
 GridGeometry AlignedGeometry(const MapFile& file) {
   const GridGeometry& source = file.map.geometry;
   const double r = source.resolution_m;
@@ -158,7 +159,7 @@ GridGeometry AlignedGeometry(const MapFile& file) {
   return {r, min_cell, max_cell.x - min_cell.x + 1, max_cell.y - min_cell.y + 1};
 }
 
-// A long image lies across much that it does not cover.
+// The bounding rectangle of a long rotated image may be too large.
 void RequireAlignable(const MapFile& file, const std::string& yaml_path) {
   const double yaw_rad = file.world_from_grid.yaw_rad;
   const GridGeometry aligned = AlignedGeometry(file);
@@ -185,7 +186,7 @@ MapFile ReadMap(const std::string& yaml_path, const Pose2& world_from_frame) {
   }
   const MapYaml yaml = ReadYaml(yaml_path);
   const fs::path image_path = fs::path(yaml_path).parent_path() / yaml.image;
-  std::error_code ignored;  // such as of a name that is too long
+  std::error_code ignored;  // such as for a name that is too long
   if (!fs::exists(image_path, ignored)) {
     throw InputError(yaml_path, "image is '" + yaml.image + "': no such file");
   }
@@ -215,8 +216,8 @@ OccupancyMap AlignedMap(const MapFile& file) {
   const double r = file.map.geometry.resolution_m;
   OccupancyMap aligned(AlignedGeometry(file));
   const Pose2 grid_from_world = Inverse(file.world_from_grid);
-  // Where origins differ by half a cell, centres lie on boundaries: all of them in the cell above,
-  // not now on one side and now on the other by rounding.
+  // If origins differ by half a cell, centres lie on cell boundaries. All of them then go to the
+  // upper cell, rather than to either by rounding.
   const Eigen::Vector2d above = Eigen::Vector2d::Constant(kOriginRoundingM);
   for (std::size_t i = 0; i < aligned.occupied_prob.size(); ++i) {
     const Eigen::Vector2d centre = CellCentre(aligned.geometry.CellAt(i), r);
@@ -252,7 +253,8 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
   }
   const StateThresholds written = internal::WrittenThresholds(mode);
   const Eigen::Vector2d origin = map.geometry.OriginM();
-  // Fifteen digits: those of a lattice's corner in any place of the earth, without a double's last.
+  // Fifteen digits: enough for a lattice corner anywhere on earth, without a double's rounding
+  // errors.
   WriteFile(image_path.string(), internal::EncodeMapImage(map, mode));
   WriteFile(yaml_path,
             fmt::format("image: {}\nmode: {}\nresolution: {:.15g}\norigin: [{:.15g}, {:.15g}, 0]\n"

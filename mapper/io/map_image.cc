@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWhite = 255.0;
 constexpr double kFullPercent = 100.0;
-// What map_saver writes; 205 lies between the default thresholds.
+// Values written by map_saver; 205 is between the default thresholds.
 constexpr std::uint8_t kOccupiedPixel = 0;
 constexpr std::uint8_t kFreePixel = 254;
 constexpr std::uint8_t kUnknownPixel = 205;
@@ -37,7 +37,7 @@ ShadeImage ShadesOfPng(const RgbaImage& png, MapMode mode) {
     image.opaque.push_back(png.rgba[4 * i + 3] == 255);
     has_alpha = has_alpha || !image.opaque.back();
   }
-  // Nav2 averages the channels, and in trinary mode opacity as a fourth one.
+  // Nav2 averages the channels, in trinary mode including alpha.
   const int channels = has_alpha && mode == MapMode::kTrinary ? 4 : 3;
   for (std::size_t i = 0; i < pixels; ++i) {
     int sum = 0;
@@ -47,7 +47,8 @@ ShadeImage ShadesOfPng(const RgbaImage& png, MapMode mode) {
   return image;
 }
 
-// Each takes about twenty bytes on its way to a map, and few in a packed image.
+// Limits the image's size: each pixel needs about twenty bytes while reading but few in a
+// compressed file.
 void RequireDrawable(int width_px, int height_px, const std::string& path) {
   const GridGeometry geometry{1.0, {}, width_px, height_px};
   if (geometry.size() <= kMaxMapCells) return;
@@ -55,8 +56,8 @@ void RequireDrawable(int width_px, int height_px, const std::string& path) {
                                      kMaxMapCells));
 }
 
-// The pixel nearest to `value` that is read back as a cell of the same state: rounded over a
-// threshold, the cell would become another.
+// The pixel value nearest to `value` that is read back as the same state; plain rounding might
+// cross a threshold.
 std::uint8_t PixelOfState(float occupied_prob, double value, double whole, const ShadeRule& rule) {
   const double nearest = std::round(value);
   const double second = value < nearest ? nearest - 1.0 : nearest + 1.0;
@@ -92,7 +93,7 @@ std::uint8_t PixelOf(float occupied_prob, MapMode mode) {
 
 }  // namespace
 
-// Nav2 stretches the shades between the thresholds, so 0 and 1 give every probability back.
+// Nav2 maps the range between the thresholds to probabilities, so 1 and 0 preserve all of them.
 StateThresholds WrittenThresholds(MapMode mode) {
   return mode == MapMode::kScale ? StateThresholds{1.0, 0.0} : StateThresholds{};
 }

@@ -19,8 +19,8 @@ std::string MatchedPath(const std::string& folder) {
   return (fs::path(folder) / "matched.bin").string();
 }
 
-// A prior map's frames count up to what the new ones leave of the numbers below 0, with one left
-// out between two drives, however many maps they came from.
+// Frames of prior maps get the highest negative numbers in their order, with one skipped between
+// two drives, however many maps they came from.
 std::vector<int> NumbersToStore(const std::vector<MappedFrame>& frames) {
   std::vector<int> numbers(frames.size());
   int next = -1;
@@ -53,7 +53,7 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
     matched.push_back({numbers[i], frame.stamp_s, frame.map_from_base, frame.scan});
     same = same && frame.scan == frame.obstacles;
   }
-  // In this order what is there is a map whenever power fails.
+  // In this order the folder has a valid map at any interruption.
   fs::remove(MatchedPath(folder));
   WriteScans(DrawnPath(folder), drawn);
   if (!same) WriteScans(MatchedPath(folder), matched);

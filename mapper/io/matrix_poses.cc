@@ -17,11 +17,10 @@
 namespace depthgrid {
 namespace {
 
-// Printed digits leave errors of 1e-4; more is another kind of matrix.
+// Rounding of printed digits gives errors of 1e-4; more means another kind of matrix.
 constexpr double kMaxRotationError = 0.02;
 
-// `numbers`: 12 or 16, row by row. Nothing when they say that there is no pose; why goes to
-// `damage`.
+// `numbers`: 12 or 16, row-major. Nothing if they mean "no pose", with the reason in `damage`.
 std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& place,
                             RowDamage& damage) {
   const auto is_finite = [](double number) { return std::isfinite(number); };
@@ -57,7 +56,7 @@ std::optional<Pose3> PoseOf(std::span<const double> numbers, const std::string& 
   return Pose3{Eigen::Quaterniond(nearest).normalized(), translation};
 }
 
-// How a file's matrices are laid out: lines a matrix, numbers a line.
+// The layout of a file's matrices: lines per matrix and numbers per line.
 struct Layout {
   std::size_t lines = 1;
   std::size_t columns = 12;
@@ -84,7 +83,7 @@ Layout LayoutOf(const std::vector<TextRow>& rows, const std::string& place) {
   }
   if (first->fields.size() != 4) return {1, first->fields.size()};
   // Four lines of four when the fourth (or, with that one damaged, the eighth) is 0 0 0 1, which
-  // is no row of a rotation; otherwise three.
+  // cannot be a row of a pose; otherwise three.
   const auto ends_matrix = [&](std::size_t row) {
     return row < rows.size() && IsLastRow(rows[row]);
   };

@@ -27,7 +27,7 @@ std::vector<std::string_view> Split(std::string_view line) {
   }
 }
 
-// "0,5 1,25 3": whole numbers apart, and others in two halves.
+// Detects decimal commas, as in "0,5 1,25 3".
 bool HasDecimalCommas(std::string_view line) {
   int commas = 0, words = 0;
   while (true) {
@@ -98,7 +98,7 @@ void RequireSeconds(double stamp_s, const std::string& place) {
 }
 
 bool IsSameStamp(double a_s, double b_s) {
-  constexpr double kApartS = 2e-6;  // so that few are printed
+  constexpr double kApartS = 2e-6;  // reported from this difference on
   return std::abs(a_s - b_s) < kApartS && fmt::format("{:.6f}", a_s) == fmt::format("{:.6f}", b_s);
 }
 
@@ -124,7 +124,7 @@ void RequireText(const TextRow& row, const std::string& path) {
 }
 
 void RequirePlainColumns(const std::vector<TextRow>& rows, const std::string& path) {
-  constexpr std::size_t kLooksAt = 10;  // a few of which may be damaged, or words
+  constexpr std::size_t kLooksAt = 10;  // a few may be damaged, or words
   const std::size_t looked_at = std::min(kLooksAt, rows.size());
   const auto require_few = [&](bool (*is_so)(std::string_view), const char* what) {
     std::vector<int> lines;

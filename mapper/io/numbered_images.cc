@@ -19,8 +19,9 @@ std::optional<long> TrailingNumber(const std::string& stem) {
   return number;
 }
 
-// Of "12.160407", also behind a word such as "frame_" or "frame-". "1.12" may be the twelfth image
-// of the first camera: a stamp has milliseconds or more, or is a time since 1970.
+// The stamp in a name like "12.160407", also after a word such as "frame_" or "frame-". "1.12" may
+// be the twelfth image of the first camera, so a stamp needs three decimals or must be a time since
+// 1970.
 std::optional<double> StampIn(const std::string& stem) {
   constexpr std::size_t kLeastDigits = 3;
   constexpr double kLeastSince1970S = 1e8;
@@ -35,7 +36,7 @@ std::optional<double> StampIn(const std::string& stem) {
   return is_stamp ? stamp_s : std::nullopt;
 }
 
-// Nothing where one of them is none.
+// Sets the stamps of all images if all names are stamps.
 void TakeStamps(std::vector<NumberedImage>& images) {
   for (NumberedImage& image : images) image.stamp_s = StampIn(image.stem.filename().string());
   const bool all = std::all_of(images.begin(), images.end(),

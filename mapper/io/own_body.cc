@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostViews = 64;
 constexpr double kLastingShare = 0.95;
-// Beams that meet the edge of a part show it now and then.
+// Beams at the edge of a part hit it only sometimes.
 constexpr double kEdgeRad = RadFromDeg(1.0);
 
 }  // namespace

@@ -32,16 +32,16 @@ class Cursor {
     rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
     return value;
   }
-  // What parts the header from a binary raster of so many bytes: one white space, which a text tool
-  // may have made a line end of two bytes.
+  // Skips the single white space between header and binary raster, which a text tool may have made
+  // a two-byte line end.
   void SkipHeaderEnd(std::size_t raster_bytes) {
     constexpr std::string_view kTwoBytes = "\r\n";
     const bool has_both =
         rest_.starts_with(kTwoBytes) && rest_.size() >= kTwoBytes.size() + raster_bytes;
     Skip(has_both ? kTwoBytes.size() : 1);
   }
-  // A line end and further images are the format's; whatever else is there, the pixels may have
-  // been taken from the wrong place.
+  // The format allows a line end and further images at the end; anything else suggests that the
+  // pixels were read from the wrong place.
   void RequireEnd() {
     const std::size_t surplus = rest_.size();
     SkipSpaceAndComments();
@@ -54,7 +54,7 @@ class Cursor {
   std::string_view rest() const { return rest_; }
 
  private:
-  // What stands there, as much of it as an error may show.
+  // The next word, truncated for error messages.
   std::string_view Word() const {
     constexpr std::size_t kMostShown = 20;
     const auto end = std::find_if(rest_.begin(), rest_.end(), IsSpace);
@@ -116,7 +116,7 @@ PgmImage DecodePgm(std::string_view bytes, const std::string& place) {
   }
   const auto pixels =
       static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
-  // Checked before memory is taken: after one white space, a pixel needs at least one byte.
+  // Checked before allocating: after one white space, each pixel needs at least one byte.
   RequireBytes(cursor.rest().size() - std::min<std::size_t>(cursor.rest().size(), 1), pixels,
                place);
   image.values.resize(pixels);

@@ -14,7 +14,8 @@ namespace depthgrid::internal {
 namespace {
 
 // Level 1 with one fixed filter: within 10 % of the best size on depth and rendered colour, and an
-// order of magnitude faster. Fixed also so that the bytes do not depend on libpng's heuristics.
+// order of magnitude faster. The fixed filter also makes the bytes independent of libpng's
+// heuristics.
 constexpr int kCompressionLevel = 1;
 
 // libpng reports errors by longjmp. Everything that owns memory lives in these structs, outside the

@@ -16,32 +16,33 @@ namespace {
 using PoseChange = std::function<Pose3(const Pose3&)>;
 
 constexpr std::size_t kLeastPairs = 6;
-// Of the pairs that have poses as given, those that must have them in another reading.
+// Share of the pairs with poses as given that must have poses in another reading.
 constexpr double kLeastPairShare = 0.75;
-// One pair across a correction of SLAM must not outweigh all others.
+// Cap, so that one pair across a correction of SLAM does not dominate.
 constexpr double kMostMisfit = 0.3;
-// A sum beyond this times its limit is beyond it whatever rounding does.
+// Margin for rounding when a sum is compared with its limit.
 constexpr double kRounding = 1.0 + 1e-9;
-// Another reading must fit this much better. Three shipped rooms with all profiles of SLAM and
-// three recorded SLAM runs: no other reading fitted right poses any better, and the right reading
-// of wrong ones (of quaternions, inverse, half a second off) had 0.06 to 0.32 of their misfit.
-// Cameras with focal lengths 20 % off or more and mounting angles of 15 degrees had 0.1 to 0.55.
+// Another reading must have at most this share of the misfit. In three shipped rooms with all SLAM
+// profiles and in three recorded SLAM runs no other reading fitted correct poses better, and the
+// correct reading of wrong poses (quaternion order, inverse, half a second off) had 0.06 to 0.32 of
+// their misfit. With focal lengths 20 % off or more and mounting angles of 15 degrees it was 0.1 to
+// 0.55.
 constexpr double kClearlyBetter = 0.6;
-// Of readings that fit about alike the one that is tried first, the commoner one.
+// Among readings with similar misfit the one tried first, the more common one, is kept.
 constexpr double kBetterThanAlike = 0.9;
 
-// Right poses have .2 to 1.8 % (docs/formats.md): a reading with more is not how they are meant,
-// however much worse the others fit.
+// Correct poses have 0.2 to 1.8 % (docs/formats.md), so a reading with more is not the intended
+// one, even if the others fit worse.
 constexpr double kMostFitting = 0.02;
-// Wrong ones in no reading that is tried (images in another order, a quaternion that never turns)
-// had 4.8 to 7.5 %; right ones with every profile of SLAM and of depth noise 1.3 % at most.
+// Poses that are wrong in all readings tried (shuffled images, constant quaternions) had 4.8 to 7.5
+// %; correct ones with all SLAM profiles and depth noises at most 1.3 %.
 constexpr double kLeastUnfitting = 0.04;
 
 constexpr double kMostShiftS = 5.0;
 constexpr double kCoarseShiftS = 0.1;
 constexpr double kFineShiftS = 0.01;
-// Shifts that fit so much worse than the best fit alike: while nothing turns and no speed changes,
-// poses of a moment later say the same.
+// Shifts with up to this factor of the best misfit fit equally: during constant straight motion,
+// poses of a moment later give the same relative poses.
 constexpr double kFitsAlike = 1.005;
 constexpr double kMostUnsureS = 1.0;
 
@@ -52,10 +53,10 @@ constexpr double kMostScale = 1e3;
 // Cameras for images of half or twice the size.
 constexpr double kCoarseFocal = 1.06;
 constexpr double kMostFocal = 2.1;
-// Over a few seconds SLAM's own errors look like a camera that is some percent off: 6 % of a right
-// one in two of four runs of three seconds.
+// Over a few seconds SLAM's errors look like a focal length that is some percent off: 6 % with a
+// correct one in two of four runs of three seconds.
 constexpr double kLeastFocal = 1.1;
-// Of the image's width. A centre a quarter of it off is that of an image of half the width.
+// In image widths. A principal point off by a quarter is that of an image of half the width.
 constexpr double kCoarseCentre = 0.04;
 constexpr double kFineCentre = 0.01;
 constexpr double kMostCentre = 0.28;
@@ -64,7 +65,7 @@ constexpr double kLeastCentre = 0.03;
 constexpr double kCoarsePitchRad = RadFromDeg(5.0);
 constexpr double kFinePitchRad = RadFromDeg(0.5);
 constexpr double kMostPitchRad = RadFromDeg(60.0);
-// Found to two degrees; less is a level camera.
+// Pitch is found to two degrees; less counts as level.
 constexpr double kLeastPitchRad = RadFromDeg(2.0);
 
 Pose3 Inverted(const Pose3& pose) { return Inverse(pose); }
@@ -73,7 +74,7 @@ Pose3 FlippedY(const Pose3& pose) { return FlipY(pose); }
 
 const Eigen::Matrix3d kFlipY = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
 
-// How poses and camera may have been meant.
+// An interpretation of poses and camera.
 struct Attempt {
   PoseChange change;
   PinholeCamera camera;
@@ -81,15 +82,15 @@ struct Attempt {
   DepthMeaning meaning = DepthMeaning::kZ;
 };
 
-// The images' relative poses in one reading and how well they fit.
+// Computes how well the image pairs fit their poses in a reading.
 class Fits {
  public:
   Fits(const std::vector<ImagePair>& pairs, const std::vector<SlamPose>& live,
        const RecordingOptions& options)
       : pairs_(pairs), track_(live, Interpolating(options)) {}
 
-  // Nothing when too few pairs have poses, or when it is certainly more than `most`: most readings
-  // of poses are so wrong that the first pairs show it.
+  // Mean misfit. Nothing when too few pairs have poses, or as soon as it must exceed `most`: most
+  // readings are so wrong that the first pairs show it.
   std::optional<double> Misfit(const Attempt& attempt, std::size_t least,
                                double most = kMostMisfit) const {
     const double most_sum = kRounding * most * static_cast<double>(pairs_.size());
@@ -106,8 +107,8 @@ class Fits {
     if (count < least) return {};
     return sum / static_cast<double>(count);
   }
-  // As given, of those pairs alone that show the same by these poses: where a camera turns fast
-  // others show nothing, and are no fault. 0 where these are too few to tell.
+  // Misfit as given, over only the pairs that overlap according to the poses: with a fast turning
+  // camera others do not overlap, which is no fault. 0 if these pairs are too few.
   double MisfitWhereShared(const PinholeCamera& camera) const {
     double sum = 0.0;
     std::size_t count = 0;
@@ -130,7 +131,7 @@ class Fits {
   }
 
  private:
-  // Nothing where a pose is missing, or SLAM corrected itself in between.
+  // Nothing if a pose is missing or SLAM corrected itself in between.
   std::optional<Pose3> RelativeIn(const ImagePair& pair, const Attempt& attempt) const {
     const auto first = track_.At(pair.first_s + attempt.shift_s);
     const auto second = track_.At(pair.second_s + attempt.shift_s);
@@ -148,7 +149,7 @@ class Fits {
   PoseTrack track_;
 };
 
-// Of the readings tried so far the one with which the images fit best; first that as given.
+// The best reading among those tried so far, starting with the poses as given.
 class BestReading {
  public:
   // `least`: pairs that must have poses. `time_offset_s`: RecordingOptions' own.
@@ -162,14 +163,15 @@ class BestReading {
   }
   const PoseDoubt& doubt() const { return best_; }
 
-  // Other meanings of what stands in the file.
+  // Tries other interpretations of the numbers in the file.
   void TryWritten() {
     TryWritten(PoseReading::kWFirst, WithWFirst);
     TryWritten(PoseReading::kInverse, Inverted);
     TryAxes(CameraOf(Pose2{}, 0.0).rotation.inverse().toRotationMatrix());  // a robot's
     TryAxes(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());                 // OpenGL's
   }
-  // Many, of which some fit about as well as the right one where the camera turns about one axis.
+  // Tries all axes. Some fit about as well as the right ones if the camera turns about one axis
+  // only.
   void TryOtherAxes() {
     const std::vector<Eigen::Matrix3d> all = AllSignedAxes();
     for (const Eigen::Matrix3d& axes : all) TryPositions(axes);
@@ -208,7 +210,7 @@ class BestReading {
       return Attempt{AsGiven, OfImageSize(camera_, scale)};
     });
   }
-  // Along one axis after the other, finely about the best of them then.
+  // Searches one axis after the other, then finely around the best.
   void TryCentres() {
     TryCentres(0, kCoarseCentre, kMostCentre);
     TryCentres(1, kCoarseCentre, kMostCentre);
@@ -221,7 +223,7 @@ class BestReading {
   }
 
  private:
-  // `doubt` is what the attempt means if it is the best, at less than `share` of the best before.
+  // Keeps `doubt` if the attempt's misfit is below `share` of the best so far.
   void Try(PoseDoubt doubt, const Attempt& attempt, double share = 1.0) {
     const double less_than = share * best_.better_misfit;
     const auto misfit = fits_.Misfit(attempt, least_, less_than);
@@ -229,7 +231,7 @@ class BestReading {
     doubt.better_misfit = *misfit;
     best_ = doubt;
   }
-  // Of poses as the file has them.
+  // An attempt that changes the poses as written in the file (before FlipY).
   Attempt Written(const PoseChange& change) const {
     const PoseChange as_written = y_up_ ? FlippedY : AsGiven;
     return {[=](const Pose3& pose) { return as_written(change(as_written(pose))); }, camera_};
@@ -288,11 +290,11 @@ class BestReading {
     best_.time_offset_s += 0.5 * (later_s + earlier_s);
     best_.time_unsure_s = 0.5 * (later_s - earlier_s);
   }
-  // Either way: steps, and how far from 1 at most and at least.
+  // Factors to try, both above and below 1: step, and the largest and smallest to accept.
   struct Factors {
     double coarse, most, least;
   };
-  // And by fine ones about the best of them.
+  // Tries coarse factors, then fine ones around the best.
   template <typename AttemptOf>
   void TryFactors(PoseReading reading, const Factors& factors, const AttemptOf& attempt_of) {
     const auto look = [&](double around, double step, double to) {
@@ -346,7 +348,7 @@ class BestReading {
 };
 
 bool AllAlike(const std::vector<SlamPose>& live, double (*apart)(const Pose3&, const Pose3&)) {
-  constexpr double kApart = 1e-6;  // metres and radians: of rounding
+  constexpr double kApart = 1e-6;  // metres and radians, for rounding
   std::optional<Pose3> first;
   for (const SlamPose& pose : live) {
     if (!pose.slam_from_camera) continue;
@@ -356,7 +358,7 @@ bool AllAlike(const std::vector<SlamPose>& live, double (*apart)(const Pose3&, c
   return true;
 }
 
-// Of poses that fit the images in no reading.
+// The result for poses that fit the images in no reading.
 PoseDoubt Unread(PoseDoubt doubt, const std::vector<SlamPose>& live) {
   const bool standing = AllAlike(
       live, [](const Pose3& a, const Pose3& b) { return (a.translation - b.translation).norm(); });
@@ -383,7 +385,7 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   BestReading best(fits, camera, least, *as_given, options.time_offset_s, y_up);
   best.TryWritten();
   best.TryShifts();
-  // With a wrong scale stamps at which the camera moved less fit better too; the scale itself fits
+  // With a wrong scale, time offsets to slower motion fit better too, but the right scale fits
   // best.
   best.TryScales();
   best.TryCameras();

@@ -9,21 +9,20 @@
 namespace depthgrid {
 namespace {
 
-// How far the images of a pair are apart: much of what they show is the same, and the camera has
-// turned by more than SLAM errs.
+// Time between the images of a pair: they overlap much, and the camera's rotation exceeds SLAM's
+// error.
 constexpr std::size_t kCheckedPairs = 24;
 constexpr double kPairApartS = 0.5;
-// Where stamps are the images' numbers (ICL-NUIM), as many seconds as there are images in that.
+// The same if stamps are image numbers (ICL-NUIM): the number of images in that time at 30 Hz.
 constexpr double kPairApartImages = 15.0;
-// Images that are farther apart than so many times that have a pause of the recording between them,
-// and may show different things.
+// Images farther apart than this factor of it are across a pause and may not overlap.
 constexpr double kMostApart = 2.0;
 
-constexpr int kPointsAcross = 40;  // of an image, looked at
-// Fewer points of one image that the other shows say nothing.
+constexpr int kPointsAcross = 40;  // points per image row that are compared
+// A smaller share of common points is not enough.
 constexpr double kLeastShared = 0.2;
 
-// From one image to the next; pauses are few.
+// The typical time between images (a median, as pauses are few).
 double UsualImageStepS(std::span<const RecordedImage> images) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < images.size(); ++i) {

@@ -56,7 +56,7 @@ PoseTrack::Found PoseTrack::Interpolated(double stamp_s) const {
   if (b == 0) return {};
   const std::size_t a = b - 1;
   const double gap_s = stamps_s_[b] - stamps_s_[a];
-  // Nothing lies between the poses of two epochs: SLAM moved the frame they are expressed in.
+  // No interpolation between epochs: SLAM changed the frame of its poses.
   if (!live_[a].slam_from_camera || !live_[b].slam_from_camera ||
       live_[a].epoch != live_[b].epoch || gap_s > options_.max_interpolation_gap_s) {
     return {};

@@ -6,25 +6,25 @@
 namespace depthgrid {
 namespace {
 
-// What a wall is seen at from one place it is not from the next.
+// Distance between places: a wall's ranges differ from one place to the next.
 constexpr double kOtherPlaceM = 0.25;
 constexpr int kFewestPlaces = 10;
 
 constexpr double kBinRatio = 1.0025;
-// Bands of 0.5 to 2 %: of fewer, ranges in whole centimetres make crowds of their own.
+// Bands of 0.5 to 2 %: in narrower ones, ranges rounded to centimetres form clusters.
 constexpr int kNarrowestBins = 2;
 constexpr int kWidestBins = 8;
-// What is beyond the crowd, of its least share.
+// Largest share of readings beyond the cluster, relative to kLeastShare.
 constexpr double kBeyondShare = 0.02;
-// In bands of 0.5 to 2 % lay at most 1.02 times as many readings as in those below them, of some 70
-// simulated logs of a living room and an office; of no-returns written as 6.00 to 6.05 m 50 times
-// as many, 14 % of all readings, and as 6 m with a noise of 1 or 3 cm 10 times as many, 1.1 and 2.6
-// %. Of 50 right logs of ten bare rooms (corridors, halls, a round one) none was told, of 22 whose
-// no-returns varied by 0.8 % all but five with few of them, from 8 times as many on.
+// Measured in bands of 0.5 to 2 %, relative to the bands below: in some 70 simulated logs of a
+// living room and an office at most 1.02 times as many readings; with no-returns written as 6.00 to
+// 6.05 m 50 times (14 % of all readings), as 6 m with 1 or 3 cm of noise 10 times (1.1 and 2.6 %).
+// Of 50 correct logs of ten bare rooms (corridors, halls, a round one) none was reported; of 22
+// whose no-returns varied by 0.8 % all but five with few no-returns were, from 8 times on.
 constexpr double kCrowded = 4.0;
 constexpr double kLeastShare = 0.01;
 constexpr int kBandsBelow = 4;
-// Beside a robot that drives along walls a beam or two on each side read the same all along.
+// While a robot drives along walls, a beam or two on each side have constant readings.
 constexpr double kFewestSectors = 6.0;
 
 int BinOf(double range_m) {
@@ -44,7 +44,7 @@ void RangeCrowdCheck::Add(const Pose2& odom_from_laser, const std::vector<double
   readings_ += static_cast<std::int64_t>(range_m.size());
   for (std::size_t i = 0; i < range_m.size(); ++i) {
     const double reading_m = range_m[i];
-    // Negated for NaN.
+    // Written so that NaN is skipped.
     if (!(reading_m >= least_m && reading_m > 0.0 && reading_m < most_m)) continue;
     Bin& bin = bins_[BinOf(reading_m)];
     bin.shortest_m = bin.count == 0 ? reading_m : std::min(bin.shortest_m, reading_m);
@@ -63,7 +63,7 @@ std::int64_t RangeCrowdCheck::CountOf(int first_bin, int last_bin) const {
   return count;
 }
 
-// How many have as many readings as the mean reading's: 1 where all are of one sector.
+// Effective number of sectors with readings: 1 if all are in one sector.
 double RangeCrowdCheck::SectorsOf(int first_bin, int last_bin) const {
   std::array<double, kSectors> counts{};
   for (auto bin = bins_.lower_bound(first_bin); bin != bins_.end() && bin->first <= last_bin;
@@ -86,7 +86,7 @@ RangeCrowd RangeCrowdCheck::BandOf(int first_bin, int last_bin) const {
   band.longest_m = std::prev(bins_.upper_bound(last_bin))->second.longest_m;
   const int width = last_bin - first_bin + 1;
   const std::int64_t below = CountOf(first_bin - kBandsBelow * width, first_bin - 1);
-  // None below is as many as one.
+  // No reading below counts as one.
   band.times_as_many = static_cast<double>(kBandsBelow * band.count) /
                        static_cast<double>(std::max<std::int64_t>(below, 1));
   return band;
@@ -106,7 +106,7 @@ std::optional<RangeCrowd> RangeCrowdCheck::Found() const {
       const RangeCrowd band = BandOf(first, top->first);
       if (static_cast<double>(band.count) < fewest || band.times_as_many < kCrowded) continue;
       if (SectorsOf(first, top->first) < kFewestSectors) continue;
-      // A band that is too wide takes in what is as thin as below.
+      // The best band is not too wide: readings in excess of the density below decide.
       const double beyond_below =
           static_cast<double>(band.count) * (1.0 - kCrowded / band.times_as_many);
       if (crowd && beyond_below <= most_beyond_below) continue;

@@ -19,10 +19,10 @@
 namespace depthgrid {
 namespace {
 
-// How many images may be unreadable at the start before the folder is refused.
+// The folder is rejected if this many images at the start are unreadable.
 constexpr std::size_t kProbedImages = 10;
 
-// Loops name entries of the SLAM output; frames are counted by the source.
+// Converts loops from entries of the SLAM output to frames of the source.
 std::vector<LoopClosure> LoopsByFrame(const std::vector<LoopClosure>& loops,
                                       const std::vector<PoseTrack::Found>& poses, int& lost_loops) {
   std::vector<LoopClosure> mapped;
@@ -32,7 +32,7 @@ std::vector<LoopClosure> LoopsByFrame(const std::vector<LoopClosure>& loops,
     });
     return static_cast<int>(found - poses.begin());
   };
-  // An event of a frame without an image arrives with the next frame that has one.
+  // An event of a frame without an image is given with the next frame that has one.
   const auto frame_from = [&](int entry) {
     const auto found = std::find_if(poses.begin(), poses.end(), [&](const auto& pose) {
       return pose.entry && *pose.entry >= static_cast<std::size_t>(entry);
@@ -136,7 +136,8 @@ class RecordingSource final : public FrameSource {
     return {recording_.name, fmt::format("no pose within {} s of any image: {}",
                                          options.max_stamp_difference_s, Ranges(slam, options))};
   }
-  // Poses that were given a frame each have its stamps: their file's reader said why.
+  // Explains missing poses. Poses paired with frames in order have the frames' stamps; their reader
+  // already gave the reason.
   std::string WhyWithout(const SlamOutput& slam, const RecordingOptions& options,
                          std::size_t with_pose) const {
     const bool by_frame = std::any_of(slam.live.begin(), slam.live.end(),
@@ -145,15 +146,15 @@ class RecordingSource final : public FrameSource {
     return ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
-    std::vector<double> stamps_s;  // those that were given a frame each may lack a pose
+    std::vector<double> stamps_s;  // entries paired with frames in order may lack a pose
     for (const SlamPose& pose : slam.live) {
       if (pose.slam_from_camera) stamps_s.push_back(pose.stamp_s);
     }
     return StampRanges(NamesOf(recording_, options), stamps_s);
   }
 
-  // A folder whose images cannot be read at all, or do not belong to the camera, is bad input; a
-  // damaged image among many is not.
+  // Rejects a folder if no image can be read or their size is not the camera's; a single damaged
+  // image is tolerated.
   void Probe() const {
     std::exception_ptr first_error;
     const auto images = ImagesOfPart(recording_);
@@ -181,7 +182,7 @@ class RecordingSource final : public FrameSource {
                                 depth.height_px, camera.width_px, camera.height_px));
   }
 
-  // On several threads at once.
+  // Called on several threads at once.
   internal::ReadImage Read(const RecordedImage& image) const {
     internal::ReadImage read;
     try {
@@ -213,7 +214,7 @@ class RecordingSource final : public FrameSource {
   Tally wrong_size_;
   FrozenImages frozen_;
   Tally repeated_;
-  std::optional<internal::ImagesAhead> images_;  // last: its threads read what stands above
+  std::optional<internal::ImagesAhead> images_;  // last member, as its threads use those above
 };
 
 }  // namespace
@@ -262,7 +263,7 @@ void CompleteSize(const Recording& recording, CameraDescription& camera) {
       camera.file.camera.width_px = depth.width_px;
       camera.file.camera.height_px = depth.height_px;
     } catch (const InputError&) {
-      continue;  // OpenRecording says what is wrong when none can be read
+      continue;  // OpenRecording reports the error if none can be read
     }
     Validate(camera.file.camera, "camera of " + image.depth_path);
     return;

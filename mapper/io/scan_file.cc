@@ -35,7 +35,7 @@ void AppendAll(std::string& bytes, std::span<const T> values) {
   bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
-// What is still to come of a file, which is never held whole: a long run's scans are many MB.
+// Reads a file in pieces, as a long run's scans are many MB.
 class Reader {
  public:
   explicit Reader(std::string path) : path_(std::move(path)) {
@@ -64,7 +64,7 @@ class Reader {
     TakeBytes(magic.data(), magic.size());
     if (magic != kMagic) Fail("holds no stored scans (scans.bin)");
   }
-  // Before memory is taken for `count` things that need `bytes_each` in the file.
+  // Call before allocating `count` items that take at least `bytes_each` in the file.
   void RequireRoom(std::uint32_t count, std::size_t bytes_each) const {
     if (rest_ / bytes_each < count) Fail("is truncated");
   }
@@ -85,10 +85,10 @@ class Reader {
   std::uintmax_t rest_ = 0;  // bytes
 };
 
-// Without its beams.
+// Size of a stored scan without its beams.
 constexpr std::size_t kScanBytes = 3 * sizeof(std::uint32_t) + 5 * sizeof(double) + 1;
 
-// Scans one after the other: bearings that stay the same are not repeated.
+// Reads scans in order; repeated bearings are shared.
 class ScanTaker {
  public:
   StoredScan Take(Reader& reader) {

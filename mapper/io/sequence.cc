@@ -22,15 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A given axis farther than this from what the floor says is another one: axes are 90 degrees
-// apart, and a world that is as oblique to all of them has none.
+// A given axis farther than this from the floor's normal is wrong: axes are 90 degrees apart, and
+// an oblique world has no nearest one.
 const double kSureOfAxis = std::cos(RadFromDeg(45.0));
-// The opposite of a level axis, SLAM's tilt and the normals' errors aside.
+// Tolerance for the opposite of the given axis: SLAM's tilt and errors of normals.
 const double kSureOfOpposite = std::cos(RadFromDeg(5.0));
-// A floor this near zero is at zero: truth has it there, and estimates scatter by centimetres.
+// A floor this near to zero is set to zero, where ground truth has it; estimates scatter by
+// centimetres.
 constexpr double kFloorIsZeroM = 0.02;
 
-// How many of the poses that jump are the part's.
+// The number of jumps within the part.
 std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequence,
                         const RecordingOptions& options) {
   const Recording& recording = sequence.recording;
@@ -43,7 +44,7 @@ std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequ
   }));
 }
 
-// A folder's own poses do not say where SLAM corrected itself: it is read off them.
+// Finds SLAM's corrections in a folder's own poses, which do not state them.
 void FindCorrections(const std::string& path, const RecordingOptions& options,
                      DepthSequence& sequence, std::vector<std::string>& notes) {
   SlamOutput& slam = sequence.slam;
@@ -59,7 +60,7 @@ void FindCorrections(const std::string& path, const RecordingOptions& options,
   StartEpochs(jumps, slam.live);
 }
 
-// Whether its poses are what they were read as.
+// Checks the convention of its poses.
 std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
                                     const RecordingOptions& options) {
   std::vector<RecordedImage> chosen = PairsAmong(ImagesOfPart(sequence.recording));
@@ -75,7 +76,7 @@ std::optional<PoseDoubt> CheckPoses(const DepthSequence& sequence,
     }
     return DoubtOfPoses(pairs, *source->Camera(), sequence.slam.live, options, sequence.y_up);
   } catch (const InputError&) {
-    return {};  // what is wrong with the recording is said when the whole of it is opened
+    return {};  // the error is reported when the whole recording is opened
   }
 }
 
@@ -83,7 +84,7 @@ std::optional<Gravity> FindGravity(const DepthSequence& sequence, const Recordin
   return FindGravity(sequence.recording, sequence.slam, sequence.reader, options);
 }
 
-// A given axis is taken whatever the images say.
+// Warns if the images contradict a given axis, which is used anyway.
 void CheckAxis(const DepthSequence& sequence, const SequenceOptions& options, Sequence& result) {
   const auto gravity = FindGravity(sequence, options.recording);
   if (!gravity) return;
@@ -95,7 +96,7 @@ void CheckAxis(const DepthSequence& sequence, const SequenceOptions& options, Se
   }
 }
 
-// Which way is up, and what is to be said about it.
+// Finds up and adds notes about it.
 Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
                        DepthSequence& sequence, Sequence& result) {
   const auto gravity = FindGravity(sequence, options);
@@ -136,7 +137,7 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
                                      name));
 }
 
-// Recordings that would be taken for damaged text.
+// Rejects recordings that would otherwise be taken for damaged text.
 void RefuseOtherSystems(const std::string& path) {
   if (path.ends_with(".bag")) RefuseBag(path, "a ROS bag by its name");
   if (path.ends_with(".db3")) RefuseBag(path, "a ROS 2 bag by its name");
@@ -150,7 +151,7 @@ void RefuseOtherSystems(const std::string& path) {
   }
 }
 
-// What `ros2 bag record` writes.
+// Whether it is a folder as written by `ros2 bag record`.
 bool IsRos2Folder(const std::string& path) {
   std::error_code ignored;
   if (!fs::exists(fs::path(path) / "metadata.yaml", ignored)) return false;
@@ -170,7 +171,7 @@ void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
 }  // namespace
 
 SequenceFormat DetectFormat(const std::string& path) {
-  std::error_code ignored;  // such as of a name that is too long
+  std::error_code ignored;  // such as for a name that is too long
   if (!fs::exists(path, ignored)) throw InputError(path, "no such file or folder");
   if (!fs::is_directory(path)) {
     RefuseOtherSystems(path);

@@ -6,7 +6,7 @@
 namespace depthgrid {
 namespace {
 
-// How many axes come out as others.
+// The number of axes that are changed.
 int Changes(const Eigen::Matrix3d& axes) {
   return static_cast<int>((axes.diagonal().array() != 1.0).count());
 }
@@ -17,7 +17,7 @@ std::vector<Eigen::Matrix3d> AllSignedAxes() {
   std::vector<Eigen::Matrix3d> all;
   std::array<int, 3> of = {0, 1, 2};
   do {
-    for (int negative = 0; negative < 8; ++negative) {  // a bit an axis
+    for (int negative = 0; negative < 8; ++negative) {  // one bit per axis
       Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
       for (int row = 0; row < 3; ++row) {
         axes(row, of[static_cast<std::size_t>(row)]) = (negative >> row) % 2 == 0 ? 1.0 : -1.0;

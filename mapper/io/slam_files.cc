@@ -34,7 +34,7 @@ std::string LoopRow(const LoopClosure& loop, int epoch, const std::vector<SlamPo
                      stamp_s(loop.first_frame), stamp_s(loop.second_frame));
 }
 
-// A loop at this frame is then not all that SLAM corrected.
+// Whether SLAM was found again at this frame, so that a loop here need not be its only correction.
 bool IsFoundAgain(const std::vector<SlamPose>& live, std::size_t frame) {
   return frame > 0 && live[frame].slam_from_camera && !live[frame - 1].slam_from_camera;
 }
@@ -50,14 +50,15 @@ std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
   return StampRanges(frames, stamps_s);
 }
 
-// What was read of a file whose poses have the stamp of no frame that is mapped.
+// The error for a file without a pose at the stamp of any mapped frame.
 InputError NoSharedStamps(const std::string& path, double max_difference_s,
                           const FrameNames& frames, const Trajectory& poses) {
   return {path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
                             RangesOf(frames, poses))};
 }
 
-// Poses that hardly ever have the stamp of a frame are of another clock, unit or recording.
+// Warns if few frames have a pose: the poses may have another clock or unit or be of another
+// recording.
 void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
                const std::string& path, std::vector<std::string>& warnings) {
   const std::size_t count = frames.CountInPart();
@@ -66,8 +67,8 @@ void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory
                                  RangesOf(frames, poses)));
 }
 
-// Poses by the input frames they belong to: of several of one frame the nearest. Those of no frame
-// are counted in the warnings; throws InputError when all are.
+// Assigns poses to input frames, to each the nearest. Poses without a frame are counted in the
+// warnings; throws InputError if all are without.
 std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& frames,
                                      double max_difference_s, const std::string& path,
                                      std::vector<std::string>& warnings) {
@@ -124,7 +125,7 @@ std::vector<SlamPose> LivePoses(const std::vector<FramedPose>& poses,
   return live;
 }
 
-// Our own loops.csv says when SLAM corrected itself; else it is read off the poses.
+// Finds SLAM's corrections in the poses unless loops.csv states the epochs.
 void FindCorrections(const SlamFilePaths& paths, bool epochs_known, const FramePart& part,
                      SlamInput& input) {
   if (epochs_known) return;
@@ -159,7 +160,8 @@ std::size_t PosedOf(const FramePart& part, const std::vector<SlamPose>& live) {
   return posed;
 }
 
-// Each frame's pose from the two nearest, which may be of no frame, by the epochs of the frames.
+// Interpolates each frame's pose between the two nearest poses, which may be of no frame; epochs
+// are those of the frames.
 void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vector<SlamPose>& live) {
   std::vector<SlamPose> all;
   std::size_t next = 0;
@@ -175,7 +177,7 @@ void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vecto
   for (SlamPose& frame : live) frame.slam_from_camera = track.At(frame.stamp_s).slam_from_camera;
 }
 
-// Reads a file of events; its loops, warnings and a note are put into `input`.
+// Reads a file of events and adds its loops, warnings and a note to `input`.
 SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double max_difference_s,
                       SlamInput& input) {
   SlamEvents events = ParseSlamEvents(ReadTextFile(path), path, frames, max_difference_s);
@@ -189,7 +191,7 @@ SlamEvents TakeEvents(const std::string& path, const FrameNames& frames, double 
   return events;
 }
 
-// The others join what is not mapped.
+// Keeps only loops within the part; others join frames that are not mapped.
 void KeepLoopsOf(const FramePart& part, SlamInput& input) {
   const auto left_out =
       std::erase_if(input.slam.loops, [&](const LoopClosure& loop) { return !part.Has(loop); });
@@ -245,7 +247,7 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   SlamEvents events;
   if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
   const Trajectory live = ReadPoseFile(paths.live, frames, input.warnings);
-  std::vector<std::string> unsaid;  // poses of no frame are what is interpolated between
+  std::vector<std::string> unsaid;  // dropped: poses of no frame are needed for interpolation
   const auto framed = PosesByFrame(live, frames, max_difference_s, paths.live,
                                    reading.interpolate ? unsaid : input.warnings);
   slam.live = LivePoses(framed, events.events, frames.stamps_s);

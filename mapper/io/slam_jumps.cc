@@ -14,18 +14,19 @@ namespace {
 
 // Stamps of both trajectories are copies of the images'.
 constexpr double kSameFrameS = 0.005;
-// Steps on each side that say what motion is usual.
+// Steps on each side that define the usual motion.
 constexpr int kStepsAround = 4;
-// So few poses can be far apart in truth.
+// This few poses can really be far apart.
 constexpr std::size_t kFewSpeeds = 3;
-// A loop's two frames: this much path apart, and this near in the revised trajectory.
+// Conditions for the two frames of a loop: least path between them, largest distance and angle in
+// the final trajectory.
 constexpr double kMinPathM = 2.0;
 constexpr double kMaxDistanceM = 1.0;
 constexpr double kMaxAngleRad = RadFromDeg(40.0);
-// A radian of turn is worth this many metres in the choice of the frame.
+// Weight of rotation in the choice of the nearest frame.
 constexpr double kMetresPerRad = 1.0;
-// Of a pose of one frame relative to another in a revised trajectory (final ORB-SLAM2 poses on a
-// rendered room: 0.01-0.02 m).
+// Standard deviations of relative poses in a final trajectory (ORB-SLAM2 in a rendered room:
+// 0.01-0.02 m).
 constexpr double kSigmaTranslationM = 0.03;
 constexpr double kSigmaRotationRad = 0.02;
 
@@ -46,12 +47,12 @@ std::vector<std::optional<Pose3>> FinalOf(const std::vector<SlamPose>& live,
 }
 
 struct Step {
-  int from = 0;  // positions in `live`
+  int from = 0;  // indices in `live`
   int to = 0;
   SlamStep speeds;
 };
 
-// Seconds in a unit of the stamps: ICL-NUIM's are the images' numbers, recorded at 30 Hz.
+// Seconds per unit of the stamps: ICL-NUIM's are image numbers at 30 Hz.
 double StampUnitS(const std::vector<SlamPose>& live) {
   const auto is_number = [](const SlamPose& pose) {
     return pose.stamp_s == std::floor(pose.stamp_s);
@@ -87,7 +88,7 @@ bool IsNoMotion(const std::vector<Step>& steps, std::size_t at) {
   return BreaksMotion(steps[at].speeds, UsualOf(around));
 }
 
-// Lengths along the revised path, a frame without a pose keeping the one before.
+// Lengths along the final path; a frame without a pose has that of the frame before.
 std::vector<double> PathLengths(const std::vector<std::optional<Pose3>>& poses) {
   std::vector<double> lengths;
   double length_m = 0.0;

@@ -12,15 +12,15 @@
 namespace depthgrid {
 namespace {
 
-// So many scans may be lost to keep the others' stamps as they are: what a driver delivers late, a
-// stamp or two that went wrong. A clock that was set back by less costs no more.
+// At most this many scans are dropped to keep the others' stamps: late messages, a wrong stamp or
+// two. A clock set back by less loses no more.
 constexpr std::size_t kFewStamps = 3;
-// Before the clock was set back, to tell how far scans are apart.
+// Number of steps before the clock was set back that define the usual step.
 constexpr std::size_t kStepsLookedAt = 1000;
-// Where nothing tells it.
+// The usual step if it is unknown.
 constexpr double kAnyStepS = 0.1;
 
-// Whether the stamps from here on rise, as far as one looks.
+// Whether the next few stamps from `begin` on increase.
 bool RisesFrom(const std::vector<double>& stamps_s, std::size_t begin) {
   const std::size_t end = std::min(begin + kFewStamps + 2, stamps_s.size());
   return std::is_sorted(stamps_s.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -46,13 +46,13 @@ class Ordering {
   double At(std::size_t i) const { return stamps_s_[i] + behind_s_; }
   double Last() const { return *order_.stamps_s[kept_.back()]; }
 
-  // One that is earlier than the last.
+  // Handles a stamp that is earlier than the last.
   void Mend(std::size_t i) {
     if (!RisesFrom(stamps_s_, i)) return;
-    std::size_t early = 0;  // and those after it, until one is later than the last
+    std::size_t early = 0;  // number of stamps from i on that are earlier than the last
     while (early <= kFewStamps && i + early < stamps_s_.size() && At(i + early) <= Last()) ++early;
     if (early <= kFewStamps) return;
-    std::size_t late = 0;  // and those before it that are later
+    std::size_t late = 0;  // number of kept stamps that are later
     while (late <= kFewStamps && late < kept_.size() &&
            *order_.stamps_s[kept_[kept_.size() - 1 - late]] >= At(i)) {
       ++late;
@@ -74,7 +74,7 @@ class Ordering {
       steps_s.push_back(*order_.stamps_s[kept_[k]] - *order_.stamps_s[kept_[k - 1]]);
     }
     const double usual_s = steps_s.empty() ? kAnyStepS : UpperMedian(std::move(steps_s));
-    // To the millisecond, for whoever wants to take it off again.
+    // Rounded to a millisecond, so that users can subtract it again.
     const double by_s = std::ceil(1e3 * (Last() - At(i) + usual_s) - 1e-3) * 1e-3;
     behind_s_ += by_s;
     order_.set_back.push_back({i, by_s});
@@ -83,7 +83,7 @@ class Ordering {
 
   const std::vector<double>& stamps_s_;
   StampOrder order_;
-  std::vector<std::size_t> kept_;  // whose stamps rise
+  std::vector<std::size_t> kept_;  // indices with increasing stamps
   double behind_s_ = 0.0;
 };
 

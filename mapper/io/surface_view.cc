@@ -7,12 +7,12 @@
 namespace depthgrid::internal {
 namespace {
 
-constexpr int kPatchesAcross = 80;  // an image, whatever its size
+constexpr int kPatchesAcross = 80;  // per image width, whatever its size
 // Half the baseline of a normal as a share of the width: wide enough to average noise, narrow
 // enough for furniture (6 of 640 pixels).
 constexpr double kBaselineShare = 0.0094;
-constexpr double kMaxDepthM = 5.0;    // farther normals are noise on real sensors
-constexpr double kSmoothShare = 0.1;  // depth change over the baseline, of the depth
+constexpr double kMaxDepthM = 5.0;    // farther, normals are too noisy on real sensors
+constexpr double kSmoothShare = 0.1;  // largest relative depth change over the baseline
 
 }  // namespace
 

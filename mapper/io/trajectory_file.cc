@@ -17,7 +17,7 @@
 namespace depthgrid {
 namespace {
 
-// Nothing for a row that says that there is no pose; why goes to `damage`.
+// Nothing for a row that means "no pose", with the reason in `damage`.
 std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place,
                             RowDamage& damage) {
   Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};

@@ -29,7 +29,7 @@ std::string Joined(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
 }
 
-// As TumFolderWriter names an image; `kind`: depth or rgb.
+// The name that TumFolderWriter gives an image; `kind`: depth or rgb.
 std::string ImageName(const std::string& kind, double stamp_s) {
   return fmt::format("{}/{:.6f}.png", kind, stamp_s);
 }
@@ -56,7 +56,7 @@ StampedFileList ReadFileList(const std::string& path) {
   return ParseFileList(ReadTextFile(path), path);
 }
 
-// Each depth image takes the stamp of the colour image nearest in time where poses have those.
+// Gives each depth image the stamp of the nearest colour image, if poses have those stamps.
 void StampByColour(const std::string& folder, const RecordingOptions& options,
                    Recording& recording) {
   const std::string path = Joined(folder, "rgb.txt");
@@ -82,8 +82,8 @@ void StampByColour(const std::string& folder, const RecordingOptions& options,
   }
 }
 
-// Two depth images may pair with one colour image; the first keeps the stamp. One without a colour
-// image may have an earlier one of its own.
+// Two depth images may pair with one colour image; the first keeps the stamp. An image without a
+// colour image keeps its own, possibly earlier, stamp.
 void DropRepeatedStamps(const std::string& folder, Recording& recording) {
   std::vector<RecordedImage> later;
   for (RecordedImage& image : recording.images) {
@@ -142,7 +142,7 @@ StampedFileList ParseFileList(const std::string& text, const std::string& place)
       stamps_s.push_back(*stamp_s);
       lines.push_back(row.line);
     });
-    // It keeps its place behind the row before, for the numbers of those that follow.
+    // A placeholder after the row before, so that later rows keep their numbers.
     if (!good)
       list.files.push_back({list.files.empty() ? kFirstStampS : list.files.back().stamp_s, ""});
   }

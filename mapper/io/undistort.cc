@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-// As in the conversion to scans: less than 3 % apart is one surface up to 86 degrees of incidence.
+// As in the conversion to scans: depths within 3 % are one surface, up to 86 degrees of incidence.
 constexpr float kOneSurfaceShare = 0.03F;
 
 float DepthAt(const DepthImage& image, const Eigen::Vector2f& pixel) {
@@ -24,7 +24,7 @@ float DepthAt(const DepthImage& image, const Eigen::Vector2f& pixel) {
   const float z01 = image.At(u, v + 1), z11 = image.At(u + 1, v + 1);
   const float low = std::min({z00, z10, z01, z11});
   const float high = std::max({z00, z10, z01, z11});
-  // Between infinities there is no surface, and their difference is no number.
+  // No interpolation with infinities, whose difference would be NaN.
   if (!(low > 0.0F) || !std::isfinite(high) || high - low > kOneSurfaceShare * low) {
     return image.At(nearest_u, nearest_v);
   }
@@ -54,7 +54,7 @@ Undistorter::Undistorter(const PinholeCamera& camera) : camera_(camera) {
     for (int u = 0; u < camera.width_px; ++u) {
       const Eigen::Vector3d ray = Unproject(camera, u, v, 1.0);
       Eigen::Vector2f source = DistortedPixel(camera, ray.head<2>()).cast<float>();
-      // Coefficients fitted to the image may throw a corner of the plane anywhere.
+      // Outside the calibrated area the distortion polynomial may diverge.
       if (!source.allFinite() || source.cwiseAbs().maxCoeff() > 1e6F) source.setConstant(-10.0F);
       source_px_.push_back(source);
     }

@@ -12,11 +12,11 @@
 namespace depthgrid {
 namespace {
 
-// A value takes a few hundred bytes once it is in the tree: this is some of a gigabyte at worst.
+// A value takes a few hundred bytes in the tree, so this is below a gigabyte.
 constexpr std::size_t kMaxYamlValues = 1'000'000;
 
-// Looks at the text before a tree is made of it. Aliases are refused and not bounded: through them
-// a list can hold itself, and a few lines can stand for more values than any memory holds.
+// Checks the text before building a tree. Aliases are rejected: with them a list can contain
+// itself, and a few lines can expand to more values than fit in memory.
 class BoundsCheck final : public YAML::EventHandler {
  public:
   explicit BoundsCheck(const std::string& place) : place_(place) {}
@@ -42,8 +42,7 @@ class BoundsCheck final : public YAML::EventHandler {
   }
   void OnMapEnd() override { groups_.pop_back(); }
 
-  // To be called at the text's end: a list that is never closed is taken for a key before the
-  // parser sees that.
+  // Call at the end of the text: an unclosed list looks like a key until the parser reports it.
   void RequirePlainKeys() const {
     if (odd_key_) Fail(*odd_key_, "a key must be a plain word");
   }
@@ -63,7 +62,7 @@ class BoundsCheck final : public YAML::EventHandler {
     groups_.push_back({is_map, is_map, {}});
   }
 
-  // `word` is null for what is no plain word.
+  // `word` is null for a value that is not a plain word.
   void NoteValue(const YAML::Mark& mark, const std::string* word) {
     if (++values_ > kMaxYamlValues) Fail(mark, fmt::format("more than {} values", kMaxYamlValues));
     if (groups_.empty() || !groups_.back().is_map) return;
