@@ -27,7 +27,7 @@ class FrozenScans {
   int count() const { return static_cast<int>(std::count(frozen_.begin(), frozen_.end(), true)); }
 
  private:
-  double stamp_s_ = 0.0;  // this and the following: of the first scan equal to the last one
+  double stamp_s_ = 0.0;  // these three: of the first scan equal to the last one
   Pose2 odom_from_laser_;
   std::vector<double> range_m_;
   std::size_t first_ = 0;

@@ -113,8 +113,8 @@ void Place(const MapYaml& yaml, MapFile& file) {
   }
 }
 
-// Puts the map on the lattice of `world_from_frame` if the origins differ by whole cells up to
-// rounding.
+// Expresses the map in `world_from_frame`, on its lattice if the origins differ by whole cells up
+// to rounding.
 void PutInto(const Pose2& world_from_frame, const std::string& yaml_path, MapFile& file) {
   if (world_from_frame == Pose2{}) return;
   GridGeometry& geometry = file.map.geometry;

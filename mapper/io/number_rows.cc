@@ -98,7 +98,7 @@ void RequireSeconds(double stamp_s, const std::string& place) {
 }
 
 bool IsSameStamp(double a_s, double b_s) {
-  constexpr double kApartS = 2e-6;  // reported from this difference on
+  constexpr double kApartS = 2e-6;  // avoids formatting most pairs
   return std::abs(a_s - b_s) < kApartS && fmt::format("{:.6f}", a_s) == fmt::format("{:.6f}", b_s);
 }
 

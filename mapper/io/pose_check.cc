@@ -22,11 +22,10 @@ constexpr double kLeastPairShare = 0.75;
 constexpr double kMostMisfit = 0.3;
 // Margin for rounding when a sum is compared with its limit.
 constexpr double kRounding = 1.0 + 1e-9;
-// Another reading must have at most this share of the misfit. In three shipped rooms with all SLAM
-// profiles and in three recorded SLAM runs no other reading fitted correct poses better, and the
-// correct reading of wrong poses (quaternion order, inverse, half a second off) had 0.06 to 0.32 of
-// their misfit. With focal lengths 20 % off or more and mounting angles of 15 degrees it was 0.1 to
-// 0.55.
+// Another reading must have at most this share of the misfit. In three rooms with all SLAM profiles
+// and three recorded SLAM runs none fitted correct poses better; the correct reading of wrong poses
+// (quaternion order, inverse, 0.5 s off) had 0.06 to 0.32 of their misfit, with focal lengths 20 %
+// off or 15 degrees of pitch 0.1 to 0.55.
 constexpr double kClearlyBetter = 0.6;
 // Among readings with similar misfit the one tried first, the more common one, is kept.
 constexpr double kBetterThanAlike = 0.9;
@@ -53,8 +52,8 @@ constexpr double kMostScale = 1e3;
 // Cameras for images of half or twice the size.
 constexpr double kCoarseFocal = 1.06;
 constexpr double kMostFocal = 2.1;
-// Over a few seconds SLAM's errors look like a focal length that is some percent off: 6 % with a
-// correct one in two of four runs of three seconds.
+// Over a few seconds SLAM's errors look like a wrong focal length: by 6 % with a correct one in two
+// of four runs of three seconds.
 constexpr double kLeastFocal = 1.1;
 // In image widths. A principal point off by a quarter is that of an image of half the width.
 constexpr double kCoarseCentre = 0.04;
@@ -107,8 +106,8 @@ class Fits {
     if (count < least) return {};
     return sum / static_cast<double>(count);
   }
-  // Misfit as given, over only the pairs that overlap according to the poses: with a fast turning
-  // camera others do not overlap, which is no fault. 0 if these pairs are too few.
+  // Misfit as given, over only the pairs that overlap according to the poses, as in fast turns
+  // others do not overlap, which is no fault. 0 if these pairs are too few.
   double MisfitWhereShared(const PinholeCamera& camera) const {
     double sum = 0.0;
     std::size_t count = 0;
@@ -170,8 +169,7 @@ class BestReading {
     TryAxes(CameraOf(Pose2{}, 0.0).rotation.inverse().toRotationMatrix());  // a robot's
     TryAxes(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());                 // OpenGL's
   }
-  // Tries all axes. Some fit about as well as the right ones if the camera turns about one axis
-  // only.
+  // With a camera that turns about one axis only, several fit about as well as the right ones.
   void TryOtherAxes() {
     const std::vector<Eigen::Matrix3d> all = AllSignedAxes();
     for (const Eigen::Matrix3d& axes : all) TryPositions(axes);

@@ -106,7 +106,7 @@ std::optional<RangeCrowd> RangeCrowdCheck::Found() const {
       const RangeCrowd band = BandOf(first, top->first);
       if (static_cast<double>(band.count) < fewest || band.times_as_many < kCrowded) continue;
       if (SectorsOf(first, top->first) < kFewestSectors) continue;
-      // The best band is not too wide: readings in excess of the density below decide.
+      // Readings in excess of kCrowded times the density below; a band that is too wide gains none.
       const double beyond_below =
           static_cast<double>(band.count) * (1.0 - kCrowded / band.times_as_many);
       if (crowd && beyond_below <= most_beyond_below) continue;
