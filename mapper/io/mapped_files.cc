@@ -53,7 +53,7 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
     matched.push_back({numbers[i], frame.stamp_s, frame.map_from_base, frame.scan});
     same = same && frame.scan == frame.obstacles;
   }
-  // In this order the folder has a valid map at any interruption.
+  // In this order the folder has a readable map at any interruption.
   fs::remove(MatchedPath(folder));
   WriteScans(DrawnPath(folder), drawn);
   if (!same) WriteScans(MatchedPath(folder), matched);

@@ -144,8 +144,7 @@ struct PointTerms {
   Floats slope_x, slope_y;           // gradient of M
   Floats slope_yaw;                  // E^T grad M
   Floats wall_xx, wall_xy, wall_yy;  // C = grad M grad M^T - (1 - M) D^2 M
-  Floats x_yaw, y_yaw,
-      yaw_yaw;  // of E^T C E plus, in yaw_yaw, the point's curved path
+  Floats x_yaw, y_yaw, yaw_yaw;      // of E^T C E; yaw_yaw with the curvature of the point's path
 
   HWY_INLINE PointTerms(const Sample& m, Floats arm_x, Floats arm_y, Floats weight) {
     residual = hn::Mul(weight, hn::Sub(hn::Set(kFloats, 1.0F), m.value));
