@@ -1,4 +1,4 @@
-// The transform that lays an estimated trajectory over its reference before they are compared.
+// The transform that aligns an estimated trajectory with its reference before they are compared.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ enum class Alignment {
   kPlanarOrigin,  // the first poses' bases coincide: xy and heading only
   kSe2,           // least squares over positions in xy, then rotation about z and shift in xy
   kSe3,           // least squares over positions, rigid (evo's --align)
-  kSim3,          // and with scale (evo's --align --correct_scale)
+  kSim3,          // SE(3) with scale (evo's --align --correct_scale)
 };
 
 struct Similarity {
@@ -23,11 +23,12 @@ struct Similarity {
   double scale = 1.0;  // x_reference = scale * R x_estimate + t
 };
 
-// Empty when the positions do not determine the rotation: evo's rule, fewer than dimension - 1
-// singular values of the covariance above machine epsilon (a straight line in 3D, a standstill).
+// Empty when the positions do not determine the rotation, as on a straight line in 3D or at a
+// standstill. evo's rule: fewer than dimension - 1 singular values of the covariance exceed machine
+// epsilon.
 std::optional<Similarity> Align(const std::vector<PosePair>& pairs, Alignment alignment);
 
-// The estimates moved by the transform; rotations turn with it.
+// Applies the transform to the estimates, positions and rotations.
 std::vector<PosePair> Aligned(std::vector<PosePair> pairs, const Similarity& transform);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// Which poses of two trajectories belong together: evo's rule (1.9.1,
+// Pairs the poses of two trajectories by stamp, by evo's rule (1.9.1,
 // `sync.associate_trajectories`).
 #pragma once
 
@@ -16,13 +16,13 @@ struct PosePair {
   StampedPose estimate;
 };
 
-// With rotations of unit length: files print nine digits, and what is left out would reach relative
-// motions as 1e-8 m.
+// Normalises the rotations: files print nine digits, and the rounding would cause errors of 1e-8 m
+// in relative motions.
 PosePair PairOf(StampedPose reference, StampedPose estimate);
 
-// For each pose of the shorter trajectory (the estimate, when both are as long) the pose of the
-// other with the nearest stamp, the first on ties, if it is within the limit; no interpolation. A
-// pose of the longer trajectory may serve twice, as in evo.
+// Pairs each pose of the shorter trajectory (the estimate, when both have the same length) with the
+// pose of the other that has the nearest stamp (the first on ties), if it is within the limit; no
+// interpolation. A pose of the longer trajectory may be used twice, as in evo.
 std::vector<PosePair> Associate(const Trajectory& reference, const Trajectory& estimate,
                                 double max_difference_s = kMaxStampDifferenceS);
 

@@ -1,4 +1,5 @@
-// Whether a cell said to be a wall with probability p is one in a share p of the cases.
+// Calibration of a map's probabilities: of the cells said to be occupied with probability p, a
+// share p should be occupied.
 #pragma once
 
 #include <array>
@@ -13,11 +14,11 @@ constexpr int kReliabilityBins = 10;
 
 struct ReliabilityBin {
   int cells = 0;
-  double mean_prob = 0.0;       // what was said; 0 for no cells
-  double occupied_share = 0.0;  // what was true; 0 for no cells
+  double mean_prob = 0.0;       // of the estimate; 0 for no cells
+  double occupied_share = 0.0;  // in truth; 0 for no cells
 };
 
-// Over the scored cells whose truth is free or occupied and of which the estimate says something.
+// Over the scored cells that are known both in the truth and in the estimate.
 struct Calibration {
   int cells = 0;
   double brier = 0.0;     // mean squared difference of probability and truth
@@ -27,10 +28,11 @@ struct Calibration {
   std::array<ReliabilityBin, kReliabilityBins> bins;  // [0, 0.1), [0.1, 0.2) ... [0.9, 1]
 };
 
-// Probabilities are held inside this for the logarithm, so that one sure error is not infinite.
+// For the logarithm, probabilities are clamped to [this, 1 - this], so that one wrong cell with
+// probability 0 or 1 does not make the loss infinite.
 constexpr double kLeastProb = 1e-3;
 
-// Empty when no cell counts. Truth and scored set share a geometry.
+// Empty when no cell counts. Truth and scored set have the same geometry.
 std::optional<Calibration> Calibrate(const StateMap& truth, const OccupancyMap& estimate,
                                      const CellSet& scored);
 

@@ -31,7 +31,7 @@ StateMap Coarsened(const StateMap& map, int times, double resolution_m) {
                                max_cell.y - min_cell.y + 1});
   for (std::size_t i = 0; i < map.states.size(); ++i) {
     CellState& state = coarse.states[coarse.geometry.Index(coarse_of(fine.CellAt(i)))];
-    state = std::max(state, map.states[i]);  // unknown, free, occupied
+    state = std::max(state, map.states[i]);  // in the order unknown < free < occupied
   }
   return coarse;
 }

@@ -1,4 +1,4 @@
-// Maps laid on one lattice, and the sets of cells in them.
+// Maps resampled to one geometry, and sets of cells in them.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace depthgrid {
 
-// The same map on another rectangle; what was outside is unknown, and not a member.
+// The same cells on another rectangle; cells that were outside are unknown, or not members.
 StateMap OnGeometry(const StateMap& map, const GridGeometry& geometry);
 CellSet OnGeometry(const CellSet& set, const GridGeometry& geometry);
 
@@ -23,7 +23,7 @@ CellSet KnownCells(const StateMap& map);
 CellSet InBoth(CellSet a, const CellSet& b);
 
 // Truth and estimate on the rectangle that holds both, with the cells to be scored: the observable
-// ones, or those whose truth is known when nothing was said about what is observable.
+// ones or, without an observable set, those whose truth is known.
 struct ScoredMaps {
   StateMap truth;
   StateMap estimate;
@@ -35,7 +35,8 @@ ScoredMaps OnOneGeometry(const StateMap& truth, const StateMap& estimate,
 // Cell centres in metres, in the order of the cells.
 std::vector<Eigen::Vector2d> CentresOf(const CellSet& set);
 
-// Of a limit on how far centres are apart: a whole number of cells comes out a rounding error off.
+// Tolerance for limits on the distance between centres: even a whole number of cells has a rounding
+// error.
 constexpr double kCentreSlackM = 1e-6;
 
 std::optional<double> Ratio(double part, double whole);  // empty when the whole is not positive

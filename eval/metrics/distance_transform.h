@@ -1,4 +1,4 @@
-// Exact distances from every cell to the nearest member of a set, and sets grown by whole cells.
+// Exact distances from every cell to the nearest member of a set, and dilation of sets.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace depthgrid {
 // everywhere for an empty set. Felzenszwalb and Huttenlocher 2012, linear in the number of cells.
 std::vector<double> SquaredDistances(const CellSet& mask);
 
-// Every cell of the same rectangle within `radius_cells` of a member, Chebyshev distance (diagonal
-// steps count one).
+// Dilation: every cell of the same rectangle within `radius_cells` of a member, Chebyshev distance
+// (diagonal steps count one).
 CellSet Grown(const CellSet& mask, int radius_cells);
 
 }  // namespace depthgrid

@@ -32,7 +32,7 @@ bool CanStep(const CellSet& passable, const Cell& cell, const Step& step) {
 
 }  // namespace
 
-// Dijkstra's algorithm; of equally long ways the one whose cell has the smaller index goes first.
+// Dijkstra's algorithm; of equally distant cells the one with the smaller index is settled first.
 GridPaths::GridPaths(const CellSet& passable, const Cell& start,
                      const std::vector<Cell>& stop_after)
     : geometry_(passable.geometry),

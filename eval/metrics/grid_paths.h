@@ -1,4 +1,4 @@
-// Shortest ways over a grid's cells.
+// Shortest paths over a grid's cells.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace depthgrid {
 
-// Shortest ways from one cell to all others over passable cells: eight neighbours, a diagonal step
-// being sqrt(2) cells long and taken only where both cells beside it are passable.
+// Shortest paths from one cell to all others over passable cells, with eight neighbours. A diagonal
+// step is sqrt(2) cells long and allowed only where both cells beside it are passable.
 class GridPaths {
  public:
-  // Nothing is reached from a cell that is not passable. `stop_after` ends the search when these
-  // cells are all decided; empty for all that can be reached.
+  // From an impassable start nothing is reached. The search ends when all cells of `stop_after` are
+  // settled; if that is empty, when all reachable cells are.
   GridPaths(const CellSet& passable, const Cell& start, const std::vector<Cell>& stop_after = {});
 
   std::optional<double> LengthCells(const Cell& goal) const;

@@ -11,7 +11,7 @@ namespace {
 
 struct StraightRun {
   int length_cells = 0;
-  bool goes_on = false;  // at either end a run in a row beside it
+  bool goes_on = false;  // at either end, in a row beside it
 };
 
 Cell Plus(const Cell& cell, const Cell& step, int times) {
@@ -30,7 +30,7 @@ StraightRun RunThrough(const CellSet& walls, const Cell& cell, const Cell& along
     }
     for (const int side : {-1, 1}) {
       const Cell next = Plus(Plus(end, along, way), across, side);
-      // The second cell tells a step of the wall from a corner.
+      // The second cell distinguishes a step of the wall from a corner.
       if (walls.Has(next) && walls.Has(Plus(next, along, way))) run.goes_on = true;
     }
   }
@@ -40,7 +40,7 @@ StraightRun RunThrough(const CellSet& walls, const Cell& cell, const Cell& along
 }  // namespace
 
 bool LieAlongLattice(const CellSet& walls) {
-  // Steps of walls turned by more than 18 degrees are shorter.
+  // Walls at more than 18 degrees to the grid have shorter steps.
   constexpr int kLeastRunCells = 3;
   constexpr std::array<Cell, 2> kAxes = {{{1, 0}, {0, 1}}};
   int along = 0;
@@ -63,12 +63,13 @@ Pose2 OntoLattice(const CellSet& true_walls, const std::vector<Eigen::Vector2d>&
   const double resolution_m = true_walls.geometry.resolution_m;
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : centres_m) middle += p / static_cast<double>(centres_m.size());
-  // Quarter turns about a corner of cells lay centres over centres.
+  // Only quarter turns about a corner of cells map centres onto centres.
   const Pose2 turn{0.0, 0.0,
                    WrapAngle(0.5 * kPi * std::round(truth_from_cells.yaw_rad / (0.5 * kPi)))};
   const Eigen::Vector2d shift_cells = (truth_from_cells * middle - turn * middle) / resolution_m;
   Pose2 best;
-  std::pair<int, double> best_score{-1, 0.0};  // cells laid over walls; of as many the nearest
+  std::pair<int, double> best_score{
+      -1, 0.0};  // number of cells on walls; on ties, minus the distance from `truth_from_cells`
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       const Eigen::Vector2d whole(std::round(shift_cells.x()) + dx,

@@ -1,4 +1,5 @@
-// What whole cells know of where a map lies: of walls along the lattice, only which cells they are.
+// Registration by whole cells, for maps whose walls run along the grid: their cells do not tell
+// where within a cell a wall lies.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,12 +10,13 @@
 
 namespace depthgrid {
 
-// Whether most wall cells are of walls along the rows or columns: of straight runs that do not go
-// on in the next row, as a wall across the lattice does, whose steps tell its place within a cell.
+// Whether most wall cells belong to walls along the rows or columns, that is, to straight runs that
+// do not continue in the next row. A wall at an angle to the grid does continue there, and its
+// steps tell its position within a cell.
 bool LieAlongLattice(const CellSet& walls);
 
-// The pose near `truth_from_cells` that lays cells of one lattice over cells of the other: of the
-// nine about it the one that lays most of the cells at `centres_m` over true walls.
+// Of the nine poses around `truth_from_cells` that map cells of one grid onto cells of the other,
+// the one that maps most of the cells at `centres_m` onto true walls.
 Pose2 OntoLattice(const CellSet& true_walls, const std::vector<Eigen::Vector2d>& centres_m,
                   const Pose2& truth_from_cells);
 

@@ -1,12 +1,12 @@
 // How well an estimated map agrees with the true one, cell by cell and by distance.
 //
-// Both maps are read in three states on one lattice of cells. Scores come over the observable cells
+// Both maps are compared in three states on one grid. Scores are given over the observable cells
 // and over all cells of both maps:
 //  - precision counts estimated cells of a state that lie in the scored set; each is right if a
-//    true cell of that state, anywhere, is within the tolerance;
+//    true cell of that state, anywhere, is within the tolerance,
 //  - recall counts true cells of that state that lie in the scored set; each is found if an
-//    estimated cell of that state, anywhere, is within the tolerance.
-// So an estimated wall in an unobservable cell counts against precision only in the "all" score.
+//    estimated cell of that state, anywhere, is within the tolerance. So an estimated wall in an
+//    unobservable cell counts against precision only in the "all" score.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace depthgrid {
 
 constexpr int kMaxToleranceCells = 2;
-// The tolerance of the figures without one in their name (docs/conventions.md).
+// Tolerance of the scores that have none in their name (docs/conventions.md).
 constexpr int kDefaultToleranceCells = 1;
 
 struct StateScore {
@@ -40,8 +40,8 @@ struct CellScores {
   std::array<StateScore, kMaxToleranceCells + 1> free;
   // [truth][estimate], indexed by CellState.
   std::array<std::array<int, 3>, 3> confusion = {};
-  // Matthews' correlation of "is occupied" and of "is free" with the truth, exact cells; empty when
-  // one side never or always says so.
+  // Matthews' correlation coefficient of "is occupied" and of "is free" with the truth, at
+  // tolerance 0; empty when it is constant in either map.
   std::optional<double> occupied_mcc;
   std::optional<double> free_mcc;
   // Between occupied cell centres; empty when either map has none. The directed distances are from
@@ -51,22 +51,21 @@ struct CellScores {
   std::optional<double> estimate_to_truth_m;  // directed mean
   std::optional<double> truth_to_estimate_m;  // directed mean
   std::optional<double> hausdorff95_m;        // larger of the two directed 95th percentiles
-  // Of the scored cells whose truth is known, those known in the estimate; for observable cells of
-  // all observable cells.
+  // Share of the scored cells with known truth that are known in the estimate; for the observable
+  // score, share of all observable cells.
   std::optional<double> coverage;
   int scored_cells = 0;
 };
 
 struct MapScore {
-  std::optional<CellScores> observable;  // empty when nothing was said about what is observable
+  std::optional<CellScores> observable;  // empty without an observable set
   CellScores all;
-  std::optional<MapQuality> quality;  // ScoreMapQuality's; ScoreMap leaves it out
-  // Of the cells that were compared, where one of the maps has smaller ones; ScoreMap leaves it
-  // out.
+  std::optional<MapQuality> quality;  // by ScoreMapQuality(); not set by ScoreMap()
+  // Size of the compared cells, where one of the maps has smaller ones; not set by ScoreMap().
   std::optional<double> compared_cell_m;
 };
 
-// Same resolution required of all three.
+// All three must have the same resolution.
 MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
                   const std::optional<CellSet>& observable);
 

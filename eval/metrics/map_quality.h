@@ -1,4 +1,4 @@
-// What else is said of a map beside cell scores (docs/metrics.md, "Maps").
+// Map scores beyond the cell scores (docs/metrics.md, "Maps").
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace depthgrid {
 
-// The dear ones can be switched off.
+// The expensive ones can be switched off.
 struct MetricsOptions {
   bool registration = true;
   bool ssim = true;
@@ -24,26 +24,26 @@ struct MetricsOptions {
 };
 
 struct MapQuality {
-  WallDistanceScore walls;                      // as the map lies
+  WallDistanceScore walls;                      // without registration
   std::optional<MapRegistration> registration;  // empty: no walls, or switched off
-  std::optional<WallDistanceScore> registered;  // the walls moved by it
+  std::optional<WallDistanceScore> registered;  // with the walls moved by `registration`
   std::optional<WallThickness> thickness;
   std::optional<WallThickness> true_thickness;
   std::optional<double> double_wall_rate;
   std::optional<Calibration> calibration;
   std::optional<double> ssim;
   TruthlessScore truthless;
-  TruthlessScore truthless_of_truth;  // what a perfect map would get
+  TruthlessScore truthless_of_truth;  // that of a perfect map
   std::optional<Navigability> navigability;
 };
 
-// Whether walls moved by the registration's motion lie farther from the true ones than as they lie,
-// by the chamfer distance and by F1 at 5 cm: then the motion is no error of the map.
+// Whether the registration's motion moves the walls farther from the true ones, both by chamfer
+// distance and by F1 at 5 cm: then the motion is not an error of the map.
 bool FitsBetterAsItLies(const MapQuality& quality);
 
-// Over the observable cells, or those whose truth is known when nothing was said about what is
-// observable. Same resolution required of all three. `own_walls`: those of an estimate that was
-// redrawn on the truth's lattice, as it had them.
+// Over the observable cells or, without an observable set, those whose truth is known. All three
+// must have the same resolution. `own_walls`: if the estimate was resampled to the truth's grid,
+// its walls before that.
 MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
                            const std::optional<CellSet>& observable, const MetricsOptions& options,
                            const std::optional<PlacedWalls>& own_walls = std::nullopt);

@@ -33,7 +33,7 @@ Eigen::Vector2d MiddleOf(const CellSet& walls) {
 
 std::optional<MapTurn> TurnOf(const StateMap& truth, const PlacedWalls& estimate,
                               const CellSet& scored, double registered_f1_10cm) {
-  // Chosen, of no measurement.
+  // Chosen, not measured.
   constexpr double kLiesOver = 0.7;
   constexpr double kTimesBetter = 1.5;
   const CellSet true_walls = CellsIn(truth, CellState::kOccupied);

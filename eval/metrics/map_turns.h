@@ -1,4 +1,4 @@
-// A map whose walls lie nowhere near the true ones may be turned or mirrored.
+// Whether a map whose walls are nowhere near the true ones is rotated or mirrored.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 namespace depthgrid {
 
 struct MapTurn {
-  int quarters = 0;       // that the estimate is to be turned by to lie over the truth, 0..3
-  bool mirrored = false;  // before that, left and right
+  int quarters = 0;       // to rotate the estimate by, 0..3
+  bool mirrored = false;  // left and right swapped, before that
 };
 
-// The quarter turns and mirror images of the estimate, each laid with its middle on the truth's and
-// registered from there: the one that lies over the truth's walls where the map as it is, whose F1
-// at 10 cm after its own registration is given, does not. Geometries as of RegisterWalls().
+// Tries the quarter turns and mirror images of the estimate, each centred on the truth and
+// registered from there. Returns the one that fits the true walls, if the unturned map does not:
+// `registered_f1_10cm` is its F1 at 10 cm after registration. Geometries as for RegisterWalls().
 std::optional<MapTurn> TurnOf(const StateMap& truth, const PlacedWalls& estimate,
                               const CellSet& scored, double registered_f1_10cm);
 

@@ -12,7 +12,7 @@
 namespace depthgrid {
 namespace {
 
-// Free cells whose centre is at least so far from every wall cell's centre.
+// Free cells whose centre is at least `clearance_m` from every wall cell's centre.
 CellSet Passable(const StateMap& map, double clearance_m) {
   const std::vector<double> squared_cells = SquaredDistances(CellsIn(map, CellState::kOccupied));
   const double least_cells = std::max(0.0, clearance_m - kCentreSlackM) / map.geometry.resolution_m;
@@ -29,8 +29,8 @@ struct Errand {
   std::vector<Cell> goals;
 };
 
-// For each start, goals that the true map leads to. Starts from which there is nothing far enough
-// are drawn anew, a limited number of times.
+// For each start, goals reachable in the true map. Starts without a goal that is far enough are
+// drawn again, a limited number of times.
 std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
                                 const NavigabilityOptions& options) {
   std::vector<Cell> cells;
@@ -53,7 +53,7 @@ std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
          ++i) {
       const Cell goal = draw();
       const double apart_cells = std::hypot(goal.x - errand.start.x, goal.y - errand.start.y);
-      // No way leads from a cell to itself.
+      // A cell is no goal of itself.
       if (apart_cells >= std::max(1.0, least_cells)) errand.goals.push_back(goal);
     }
     if (!errand.goals.empty()) errands.push_back(std::move(errand));

@@ -1,4 +1,4 @@
-// Grey pictures of maps and their smoothing, for the metrics that look at maps as pictures.
+// Grey-scale pictures of maps and their smoothing, for metrics from image processing.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace depthgrid {
 
-// Row by row, as the cells of a grid.
+// Row by row, in the order of a grid's cells.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -21,7 +21,7 @@ struct Picture {
   }
 };
 
-// A value a state, unknown cells for `margin_cells` all around.
+// The grey value of each state.
 struct Shades {
   double unknown = 0.5;
   double free = 0.0;
@@ -33,8 +33,8 @@ Picture PictureOfStates(const StateMap& map, const Shades& shades, int margin_ce
 constexpr double kWindowSigmaPx = 1.5;
 constexpr int kWindowRadiusPx = 5;
 
-// Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; beyond its
-// edge the picture goes on as it is there.
+// Smoothed with a Gaussian window of 2 radius + 1 pixels whose weights add up to one; beyond the
+// edge the edge pixels are repeated.
 Picture Smoothed(const Picture& picture, double sigma_px, int radius_px);
 
 // Pixel by pixel.

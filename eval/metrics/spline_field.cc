@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTaps = 4;
 
-// The four cubic B-splines that reach a point `t` in [0, 1) past the second of their centres, with
+// The four cubic B-splines that are nonzero at `t` in [0, 1) past the second one's centre, with
 // first and second derivatives (de Boor 1978).
 struct Weights {
   std::array<double, kTaps> value, first, second;

@@ -1,5 +1,4 @@
-// A set of cells as a smooth hill over the plane, so that it can be compared at a fraction of a
-// cell.
+// A set of cells as a smooth function on the plane, for registration to a fraction of a cell.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +15,14 @@ struct SplineSample {
   Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
 };
 
-// The sum of one bicubic B-spline bump a member, centred on its cell. The bumps of a row of cells
-// add up to a ridge without ripples (they are a partition of unity), so nothing pulls towards whole
-// cells. With a radius the set is first smoothed by three box filters of 2 radius + 1 cells.
+// The sum of bicubic B-splines, one centred on each member. Along a row of cells they add up to a
+// constant (partition of unity), so registration is not biased towards whole cells. With a radius
+// the set is first smoothed by three box filters of 2 radius + 1 cells.
 class SplineField {
  public:
   SplineField(const CellSet& set, int smoothing_radius_cells);
 
-  // Anywhere on the plane; `position_cells` is in cells of the lattice, a cell's centre at + 0.5.
+  // Anywhere on the plane; `position_cells` is in cells; a cell's centre is at its index + 0.5.
   SplineSample At(const Eigen::Vector2d& position_cells) const;
 
  private:

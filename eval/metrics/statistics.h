@@ -1,4 +1,4 @@
-// A list of errors as the numbers papers print.
+// Summary statistics of a list of errors.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct Statistics {
   double sse = 0.0;  // sum of squared errors
 };
 
-// Requires at least one value.
+// At least one value.
 Statistics Summarise(const std::vector<double>& values);
 
 // NumPy's default percentile (linear between order statistics); `fraction` in [0, 1], at least one

@@ -8,12 +8,12 @@
 namespace depthgrid {
 namespace {
 
-// `along` grows from pair to pair.
+// `along` (seconds or metres, one per pair) increases.
 std::optional<Drift> DriftAlong(const std::vector<PosePair>& pairs,
                                 const std::vector<double>& along, double over) {
-  // Stamps and paths of exactly the wanted length come out a rounding error short.
+  // Stamps and paths of exactly the wanted length may be short by a rounding error.
   constexpr double kSlack = 1e-9;
-  constexpr double kLongest = 1.5;  // times what is wanted: across gaps it is another thing
+  constexpr double kLongest = 1.5;  // times what is wanted; motions across gaps are not comparable
   std::vector<RelativeStep> steps;
   double total = 0.0;
   for (std::size_t from = 0; from < pairs.size(); ++from) {

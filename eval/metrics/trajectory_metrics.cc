@@ -32,7 +32,7 @@ std::optional<Statistics> SummariseIfAny(const std::vector<double>& values) {
   return Summarise(values);
 }
 
-// The first pair always determines it.
+// Never empty: the first pair determines these alignments.
 std::vector<PosePair> AlignedAtOrigin(const std::vector<PosePair>& pairs, Alignment alignment) {
   return Aligned(pairs, *Align(pairs, alignment));
 }

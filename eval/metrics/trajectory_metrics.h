@@ -1,5 +1,5 @@
-// How far an estimated trajectory is from its reference. Conventions are evo's (1.9.1); what is
-// planar (xy, SE(2)) is ours and named so.
+// Errors of an estimated trajectory against its reference. Conventions are evo's (1.9.1), except
+// for planar errors (xy, SE(2)), which evo does not have.
 #pragma once
 
 #include <optional>
@@ -11,42 +11,43 @@
 
 namespace depthgrid {
 
-// Absolute pose errors, one a pair, with the pairs as they are (align them first).
+// Absolute pose errors, one per pair. The pairs are not aligned here.
 std::vector<double> TranslationErrorsXy(const std::vector<PosePair>& pairs);   // metres, in xy
 std::vector<double> TranslationErrorsXyz(const std::vector<PosePair>& pairs);  // metres
 std::vector<double> RotationErrors(const std::vector<PosePair>& pairs);        // radians, 0..pi
-// Of the bases alone, whatever the cameras' tilt: radians, 0..pi.
+// Of the bases, regardless of the cameras' tilt: radians, 0..pi.
 std::vector<double> HeadingErrors(const std::vector<PosePair>& pairs);
 
-// Pairs of pairs between which relative motion is compared, consecutive: 0, d, 2d, ...
+// Indices of two pairs between which relative motion is compared. Steps are consecutive: 0, d, 2d,
+// ...
 struct RelativeStep {
   std::size_t from = 0;
   std::size_t to = 0;
 };
 std::vector<RelativeStep> StepsOfFrames(std::size_t pair_count, std::size_t delta_frames);
-// By the estimate's path length: a point is set each time the path since the last one reaches the
-// delta, so the first point is not the first pose (evo's rule).
+// By the estimate's path length: a step ends each time the path since the last end reaches
+// `delta_m`, so the first step does not begin at the first pose (evo's rule).
 std::vector<RelativeStep> StepsOfPath(const std::vector<PosePair>& pairs, double delta_m);
 
-// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), Q the reference, P the estimate: length of its shift and angle
-// of its rotation.
+// E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), with Q the reference and P the estimate: norm of its
+// translation and angle of its rotation.
 struct RelativeErrors {
   std::vector<double> translation_m;
   std::vector<double> rotation_rad;
 };
 RelativeErrors ErrorsOf(const std::vector<PosePair>& pairs, const std::vector<RelativeStep>& steps);
 
-// All of it for one estimate. A part is empty where the positions do not determine the alignment or
+// All scores of one estimate. A part is empty where the positions do not determine the alignment or
 // the trajectory is too short for one step.
 struct TrajectoryScore {
   int reference_poses = 0;
   int estimate_poses = 0;
   int matched_poses = 0;
-  bool by_row = false;            // rows paired in order: a file had no stamps
+  bool by_row = false;            // paired by row, because a file had no stamps
   double reference_path_m = 0.0;  // over the matched poses
   double time_coverage = 0.0;     // TimeCoverage() of the reference
-  Statistics xy_unaligned;        // metres; its mean is the paper's Table 1 as we read it
-  Statistics xy_origin;           // first bases laid over each other
+  Statistics xy_unaligned;        // metres; we take its mean to be that of the paper's Table 1
+  Statistics xy_origin;           // Alignment::kPlanarOrigin
   std::optional<Statistics> xy_se2;
   Statistics xyz_unaligned;
   Statistics xyz_origin;
@@ -61,12 +62,12 @@ struct TrajectoryScore {
   std::optional<Statistics> rpe_frame_rotation;     // radians
   std::optional<Statistics> rpe_metre_translation;  // metres, delta 1 m of path
   std::optional<Statistics> rpe_metre_rotation;
-  std::vector<Drift> drift_over_time;  // those of kDriftLagsS and
-  std::vector<Drift> drift_over_path;  // of kDriftLengthsM that the trajectory is long enough for
+  std::vector<Drift> drift_over_time;  // at those of kDriftLagsS
+  std::vector<Drift> drift_over_path;  // at those of kDriftLengthsM
 };
 
-// The share of the reference's poses that are matched or between matched ones no further apart than
-// a second, or three of their own steps (the median) where those are longer.
+// Share of the reference's poses that are matched, or that lie between matched ones at most a
+// second apart (or three times the matched poses' median step, if that is longer).
 double TimeCoverage(const Trajectory& reference, const std::vector<PosePair>& pairs);
 
 // Empty when no stamps are shared.

@@ -10,9 +10,9 @@
 namespace depthgrid {
 namespace {
 
-constexpr int kApartPx = 2;  // a corner is the strongest within so many cells
+constexpr int kApartPx = 2;  // radius within which only the strongest response counts
 
-// Half the difference of the neighbours along x (dx = 1) or y (dy = 1); zero at the edge.
+// Central difference along x (dx = 1) or y (dy = 1); zero at the edge.
 Picture Slope(const Picture& picture, int dx, int dy) {
   Picture slope = picture;
   for (int y = 0; y < picture.height; ++y) {
@@ -45,7 +45,7 @@ Picture CornerResponse(const StateMap& map) {
   return response;
 }
 
-// Of equals the first in reading order.
+// Of equal responses the first in row order counts.
 bool IsStrongest(const Picture& response, int x, int y) {
   const double here = response.At(x, y);
   for (int j = -kApartPx; j <= kApartPx; ++j) {
@@ -59,8 +59,8 @@ bool IsStrongest(const Picture& response, int x, int y) {
 }
 
 int CountCorners(const StateMap& map) {
-  // Of walls one cell thick, along the axes: an end responds with 2.4e-5, a bend with 5.3e-5, a
-  // junction with 7.6e-5; the steps of slanted walls and single cells stay below zero.
+  // Responses of walls one cell thick along the axes: 2.4e-5 at an end, 5.3e-5 at a bend, 7.6e-5 at
+  // a junction. Steps of slanted walls and single cells are below zero.
   constexpr double kLeastResponse = 2e-5;
   const Picture response = CornerResponse(map);
   int corners = 0;
@@ -73,7 +73,8 @@ int CountCorners(const StateMap& map) {
   return corners;
 }
 
-// Marks all cells joined to `start` over edges that are no walls; whether they reach the border.
+// Marks all cells connected to `start` without crossing walls; returns whether they reach the
+// border.
 bool FloodReachesBorder(const StateMap& map, std::size_t start, std::vector<std::uint8_t>& seen) {
   constexpr std::array<Cell, 4> kNeighbours = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   const GridGeometry& g = map.geometry;

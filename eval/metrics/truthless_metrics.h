@@ -1,4 +1,4 @@
-// Maps judged without any truth, by what blurred and doubled walls look like.
+// Map scores without ground truth, which react to blurred and doubled walls.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,11 @@
 
 namespace depthgrid {
 
-// Filatov et al. 2017, measures that need no truth; blurred and doubled walls raise each of them.
+// Measures of Filatov et al. 2017. Blurred and doubled walls raise each of them.
 struct TruthlessScore {
   std::optional<double> occupied_share;  // occupied cells of all known ones
   int corners = 0;                       // where walls end, meet or bend (Harris)
-  int enclosed_areas = 0;  // patches of cells that walls shut off from the rest of the plane
+  int enclosed_areas = 0;  // connected areas that walls separate from the map's border
 };
 TruthlessScore ScoreWithoutTruth(const StateMap& map);
 

@@ -10,7 +10,7 @@ std::vector<PosePair> AssociateAsTum(const Trajectory& reference, const Trajecto
                                      double max_difference_s) {
   using Candidate = std::tuple<double, std::size_t, std::size_t>;  // difference, two indices
   std::vector<Candidate> candidates;
-  std::size_t first = 0;  // of the estimate: both are sorted
+  std::size_t first = 0;  // first estimate within the limit; both are sorted
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const double stamp_s = reference[i].stamp_s;
     while (first < estimate.size() && estimate[first].stamp_s <= stamp_s - max_difference_s) {

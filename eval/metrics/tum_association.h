@@ -1,5 +1,5 @@
-// Which poses belong together by the rule of the TUM RGB-D benchmark's own scripts (associate.py,
-// Sturm et al. 2012).
+// Pairs the poses of two trajectories by the rule of the TUM RGB-D benchmark's scripts
+// (associate.py, Sturm et al. 2012).
 #pragma once
 
 #include <vector>
@@ -11,9 +11,8 @@ namespace depthgrid {
 // The scripts' default.
 constexpr double kTumMaxStampDifferenceS = 0.02;
 
-// Of all pairs of stamps nearer than the limit, the nearest first, each pose once; in the order of
-// the reference's stamps. Of equally near ones the earlier reference goes first, then the earlier
-// estimate.
+// Takes pairs with stamps nearer than the limit, nearest first, each pose once. On ties the earlier
+// reference is taken first, then the earlier estimate. Returned in the order of the reference.
 std::vector<PosePair> AssociateAsTum(const Trajectory& reference, const Trajectory& estimate,
                                      double max_difference_s = kTumMaxStampDifferenceS);
 

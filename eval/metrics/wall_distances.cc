@@ -12,7 +12,7 @@
 namespace depthgrid {
 namespace {
 
-// Targets sorted into square buckets; the nearest is looked for in growing squares of them.
+// Targets sorted into square buckets; the nearest is searched in square rings of growing size.
 class Buckets {
  public:
   Buckets(const std::vector<Eigen::Vector2d>& targets, double size_m) : size_m_(size_m) {
@@ -28,7 +28,7 @@ class Buckets {
   double DistanceFrom(const Eigen::Vector2d& point) const {
     const Cell centre = CellOf(point, size_m_);
     double best_squared = std::numeric_limits<double>::infinity();
-    // Beyond ring k + 1 everything is at least k buckets away.
+    // Everything from ring k + 1 on is at least k buckets away.
     for (int ring = 0;; ++ring) {
       const double reach_m = (ring - 1) * size_m_;
       if (ring > 0 && best_squared <= reach_m * reach_m) return std::sqrt(best_squared);
@@ -64,8 +64,7 @@ double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
 
 constexpr double kBucketCells = 4.0;
 
-// From each map's points, of which those in scored cells count, to what the other's points are
-// measured against.
+// Distances from each map's points in scored cells to the other map's targets.
 struct BothWays {
   std::vector<double> forth_m;  // from the estimate
   std::vector<double> back_m;
@@ -90,7 +89,7 @@ BothWays DistancesOf(const CellSet& true_walls, const std::vector<Eigen::Vector2
           NearestDistances(CentresOf(InBoth(true_walls, scored)), targets, bucket_m)};
 }
 
-// Centres, and points on the way from each to those of its neighbours.
+// Centres, and points on the lines from each to those of its neighbours.
 std::vector<Eigen::Vector2d> LinesThrough(const CellSet& walls) {
   constexpr std::array<double, 3> kOnTheWay = {0.25, 0.5, 0.75};
   constexpr std::array<Cell, 4> kHalfOfNeighbours = {{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};

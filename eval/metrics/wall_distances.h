@@ -1,5 +1,5 @@
-// Walls compared as points, without cells: distances between wall cells' centres after a motion of
-// the estimate.
+// Walls compared as points: distances between the centres of wall cells, after a motion of the
+// estimate.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@
 namespace depthgrid {
 
 // Euclidean distance from each point to the nearest of the targets, exact, in metres; at least one
-// target. The targets are sorted into squares of `spacing_m`, which only changes the time it takes.
+// target. The targets are sorted into squares of `spacing_m`, which affects only the run time.
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
                                      const std::vector<Eigen::Vector2d>& targets, double spacing_m);
 
@@ -28,8 +28,9 @@ struct WallDistanceScore {
   std::optional<double> f1_10cm;
 };
 
-// The estimate's walls, on a lattice of their own if need be, are moved first; those that then lie
-// in scored cells count, and the true ones in scored cells, which are on one lattice.
+// The estimate's walls, which may have their own geometry, are moved first. Counted are those that
+// then lie in scored cells, and the true walls in scored cells. `true_walls` and `scored` have the
+// same geometry.
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate = {});
 
@@ -38,9 +39,9 @@ struct LineDistances {
   double truth_to_estimate_m = 0.0;
 };
 
-// Mean distances from wall cells, as above, to the other map's walls drawn through as lines from
-// centre to centre: unlike the distance between centres they do not grow when a wall is moved along
-// itself off the lattice. Empty where a direction has none.
+// Mean distances from wall cells, as above, to lines between the centres of the other map's
+// neighbouring wall cells. Unlike distances between centres, they do not grow when a wall is moved
+// along itself by part of a cell. Empty when no wall counts in one of the directions.
 std::optional<LineDistances> DistancesToWallLines(const CellSet& true_walls, const CellSet& walls,
                                                   const CellSet& scored,
                                                   const Pose2& truth_from_estimate = {});

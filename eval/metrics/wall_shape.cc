@@ -42,15 +42,15 @@ double ThicknessCells(const CellSet& walls, const Cell& cell) {
   return thinnest;
 }
 
-// From the first to the last wall among the cells `from` to `to` steps away, both counted.
+// Cells from the first to the last wall, both included, among those `from` to `to` steps away.
 int ExtentBetween(const CellSet& walls, const Cell& cell, const Direction& d, int from, int to) {
   while (from <= to && !walls.Has(Moved(cell, d, from))) ++from;
   while (from <= to && !walls.Has(Moved(cell, d, to))) --to;
   return to - from + 1;
 }
 
-// Whether the estimate has a second wall on this side that the truth does not explain, be it by two
-// walls or by the two faces of something solid.
+// Whether the estimate has a second wall on this side that the truth does not explain, either by
+// two walls or by the two faces of a solid object.
 bool IsDoubled(const CellSet& true_walls, const CellSet& walls, const Cell& cell,
                const Direction& d, int reach_cells) {
   const int own_end = RunAhead(walls, cell, d);
