@@ -30,7 +30,7 @@ std::vector<ChiSquareSample> MotionSamples(const std::vector<FrameReport>& repor
   std::vector<ChiSquareSample> samples;
   for (std::size_t i = 0; i + 1 < reports.size(); ++i) {
     const FrameReport& after = reports[i];
-    // A stretch is whole where the next one begins.
+    // A stretch is complete at the frame where the next one begins.
     if (after.motion_from < 0 || after.motion_from == after.index) continue;
     if (reports[i + 1].motion_from != after.index) continue;
     const FrameReport& before = *report_of_index.at(after.motion_from);

@@ -1,4 +1,4 @@
-// Whether a run's errors are as large as the mapper said at the time (docs/metrics.md).
+// Whether a run's errors are consistent with the covariances of the mapper (docs/metrics.md).
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace depthgrid {
 
-// NIS: each match's innovation against the covariance of prediction and match together. A match
-// that does not see every direction has as many degrees of freedom as it sees.
+// NIS: each match's innovation, weighted by the inverse covariance of prediction and match
+// together. A match has as many degrees of freedom as directions that it constrains.
 std::vector<ChiSquareSample> InnovationSamples(const std::vector<FrameReport>& reports);
 int DirectionsSeen(const MatchResult& match);
 
-// NEES: the motion of the online estimate over each whole stretch that the mapper told
-// (FrameReport::motion_from) against that of the poses of `truth` with the same stamps.
+// NEES: error of the online estimate's motion over each complete stretch
+// (FrameReport::motion_from), against the poses of `truth` with the same stamps.
 std::vector<ChiSquareSample> MotionSamples(const std::vector<FrameReport>& reports,
                                            const Trajectory& truth);
 

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Counts up whenever the depth camera may give other bits for the same input, or the layout below
-// changes.
+// Incremented whenever the depth camera may give different bits for the same input, or the layout
+// below changes.
 constexpr std::uint32_t kFormat = 1;
 constexpr std::uint32_t kMagic = 0x43474444;  // "DDGC"
 constexpr const char* kExtension = ".depth";
@@ -78,14 +78,14 @@ bool IsEntry(const fs::path& path) {
   return ContentHash::IsHex(name);
 }
 
-// The user chose the folder, and may keep files of this ending in it as well (ICL-NUIM's are called
-// so): none but those that a cache wrote may ever be removed.
+// The user chose the folder and may keep other files with this extension in it (ICL-NUIM's have
+// it): only files that a cache wrote may be removed.
 std::vector<Entry> EntriesIn(const fs::path& root) {
   std::vector<Entry> entries;
   std::error_code error;
   for (auto it = fs::recursive_directory_iterator(root, error);
        !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
-    std::error_code vanished;  // another program may be cleaning up
+    std::error_code vanished;  // another program may have removed it
     if (it.depth() == 0) {
       if (!ContentHash::IsHex(it->path().filename().string())) it.disable_recursion_pending();
       continue;
@@ -132,11 +132,11 @@ void DepthCache::MakeRoomFor(const Trajectory& world_from_camera, bool with_inci
   for (const StampedPose& pose : world_from_camera) {
     missing.insert(EntryOf(pose.world_from_camera, with_incidence));
   }
-  // What is about to be loaded neither goes nor asks for room.
+  // Frames that are already stored are neither removed nor need room.
   std::vector<Entry> entries = EntriesIn(root_);
   std::erase_if(entries, [&](const Entry& entry) { return missing.erase(entry.path) > 0; });
   const std::uint64_t wanted = missing.size() * BytesOf(with_incidence);
-  // Those of this scene and camera last: the next run is likely one of them.
+  // Entries of this scene and camera are removed last, because the next run likely needs them.
   std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
     const bool a_here = a.path.parent_path() == folder_;
     const bool b_here = b.path.parent_path() == folder_;
@@ -184,7 +184,8 @@ void DepthCache::Store(const Pose3& world_from_camera, const DepthFrame& frame) 
   header.with_incidence = with_incidence ? 1 : 0;
   header.checksum = ChecksumOf(frame);
   const fs::path path = EntryOf(world_from_camera, with_incidence);
-  // Beside, then renamed: a reader never sees a part. The name is one thread's of one process.
+  // Written to a temporary file, then renamed, so that readers never see a partial file. The name
+  // is unique to process and thread.
   const std::size_t thread = std::hash<std::thread::id>{}(std::this_thread::get_id());
   const fs::path partial =
       path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(thread);

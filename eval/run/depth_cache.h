@@ -1,5 +1,5 @@
-// Rendered depth kept on disk between runs. Each frame is stored under everything that shapes it,
-// so an entry is either exactly what would be rendered or not found.
+// Cache of rendered depth on disk. The key of a frame contains everything that affects it, so an
+// entry is either exactly what would be rendered or not found.
 #pragma once
 
 #include <atomic>
@@ -20,16 +20,17 @@ constexpr std::uint64_t kDefaultCacheBytes = std::uint64_t{8} << 30U;
 class DepthCache {
  public:
   // Frames of one scene seen by one camera, in `folder`, which several programs may use at once.
-  // With `size_limit_bytes` all entries of the folder count; the longest unused go first.
+  // All entries of the folder count towards `size_limit_bytes`; the least recently used are removed
+  // first.
   DepthCache(const std::string& folder, const std::string& scene_hash, const PinholeCamera& camera,
              RayIsa isa, std::uint64_t size_limit_bytes = kDefaultCacheBytes);
 
-  // Removes old entries until all frames of the path fit, or none but theirs is left.
+  // Removes old entries until all frames of the path fit, or only their entries are left.
   void MakeRoomFor(const Trajectory& world_from_camera, bool with_incidence);
 
-  // Nothing when the frame is not there, or is damaged. Thread-safe.
+  // Empty when the frame is missing or damaged. Thread-safe.
   std::optional<DepthFrame> Load(const Pose3& world_from_camera, bool with_incidence) const;
-  // Does nothing when the limit is reached or the disk refuses: a cache may only save time.
+  // Does nothing when the limit is reached or writing fails, because a cache is optional.
   // Thread-safe.
   void Store(const Pose3& world_from_camera, const DepthFrame& frame) const;
 

@@ -1,4 +1,4 @@
-// One experiment from the room to the scores, in memory.
+// Runs one experiment in memory, from the room to the scores.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace depthgrid {
 
 struct RunScores {
   std::optional<TrajectoryScore> slam;    // the input, live
-  std::optional<TrajectoryScore> online;  // the estimate as known at the time
-  std::optional<TrajectoryScore> est;     // the estimate at the end
+  std::optional<TrajectoryScore> online;  // the mapper's estimate at each frame
+  std::optional<TrajectoryScore> est;     // the mapper's final estimate
   MapScore map;
   ConsistencyScores consistency;
 };
@@ -25,7 +25,7 @@ struct RunScores {
 RunScores Score(const MappingRun& run, const TruthRecord& truth,
                 const MetricsOptions& options = {});
 
-// What decides how fast, and nothing else.
+// Affects only the speed.
 struct RunContext {
   int threads = 1;
   std::string cache_folder;  // of rendered depth; empty for none
@@ -33,7 +33,7 @@ struct RunContext {
 };
 
 struct ExperimentRun {
-  ExperimentOptions options;  // as they took effect
+  ExperimentOptions options;  // as completed
   World world;
   SlamOutput slam;
   MappingRun mapping;
@@ -41,11 +41,11 @@ struct ExperimentRun {
   RunScores scores;
 };
 
-// The options with what follows from the scene filled in: the height of its floor.
+// Fills in what follows from the scene: the height of its floor.
 ExperimentOptions Completed(ExperimentOptions options, const Scene& scene);
 
-// For fusion.mode `oracle`. The surrogate's frame is the true world's, so the true pose of a frame
-// is its pose in the map. Borrows the truth.
+// For fusion.mode `oracle`. The surrogate's coordinate frame is the true world's, so a frame's true
+// pose is its pose in the map. `truth` must outlive the result.
 GainOracle OracleOf(const Trajectory& truth);
 
 // The mapping of an experiment whose frames come from `source`.

@@ -1,4 +1,4 @@
-// The map that SLAM's poses alone make of a run's scans: what mapping has to better.
+// The map of a run's scans at SLAM's own poses, as a baseline.
 #pragma once
 
 #include "eval/run/mapping_run.h"
@@ -7,7 +7,7 @@
 
 namespace depthgrid {
 
-// Drawn at SLAM's live poses: the input, as a map.
+// Drawn at SLAM's live poses, the mapper's input.
 OccupancyMap InputPoseMap(const MappingRun& run, const GridOptions& options);
 
 }  // namespace depthgrid

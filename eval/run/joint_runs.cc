@@ -18,7 +18,7 @@ std::string SharedPart(const ExperimentOptions& options) {
   shared.slam = {};
   shared.mapper = {};
   shared.metrics = {};
-  // The truth is that of what the map is a map of (MakeTruth).
+  // The true map depends on these (MakeTruth).
   shared.mapper.grid.resolution_m = options.mapper.grid.resolution_m;
   shared.mapper.scan.band_low_m = options.mapper.scan.band_low_m;
   shared.mapper.scan.band_high_m = options.mapper.scan.band_high_m;
@@ -29,7 +29,7 @@ std::string SharedPart(const ExperimentOptions& options) {
 
 namespace {
 
-// Each image is made once, and given to the mapper of each run with that run's poses.
+// Makes each image once and gives it to each run's mapper, with that run's poses.
 void MapAll(const World& world, const RunContext& context, std::vector<JointRun>& runs) {
   const SyntheticSensor sensor(world, runs.front().options, context.cache_folder);
   std::vector<SlamPlayback> playbacks(runs.size());

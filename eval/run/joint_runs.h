@@ -1,5 +1,5 @@
-// Experiments that see the same room through the same camera and differ in what SLAM says and how
-// it is mapped: the images are made once and handed to all of them.
+// Runs experiments that have the same room and camera and differ in SLAM and mapper: the images are
+// made once and shared.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace depthgrid {
 
 struct JointRun {
-  ExperimentOptions options;  // as they took effect
+  ExperimentOptions options;  // as completed
   SlamOutput slam;
   MappingRun mapping;
   RunScores scores;
@@ -22,11 +22,11 @@ struct JointRuns {
   std::vector<JointRun> runs;
 };
 
-// Everything that experiments must have in common to run jointly, as text.
+// The options that must be equal for experiments to run jointly, as text.
 std::string SharedPart(const ExperimentOptions& options);
 
-// One run an entry of `options`, which have one SharedPart and are not empty. Each comes out as it
-// would alone.
+// One run per entry of `options`, which is not empty and whose SharedPart() must be equal. Results
+// are the same as of separate runs.
 JointRuns RunJointly(const std::vector<ExperimentOptions>& options, const RunContext& context);
 
 }  // namespace depthgrid

@@ -15,7 +15,7 @@
 namespace depthgrid {
 namespace {
 
-// How many frames are kept whole for the report, evenly spread.
+// Number of frames whose images are kept for the report, evenly spread.
 constexpr int kSampleFrames = 5;
 
 bool IsSample(int position, int count) {
@@ -27,7 +27,7 @@ bool IsSample(int position, int count) {
   return false;
 }
 
-// As the source stated it.
+// The planar pose of the base as the source gave it.
 Pose3 PlanarBase(const Pose3& map_from_camera, const Pose2& base_from_laser) {
   const Pose2 map_from_laser = BaseOf(map_from_camera);
   if (base_from_laser == Pose2{}) return Lift(map_from_laser);

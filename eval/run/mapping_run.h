@@ -1,4 +1,4 @@
-// A sequence mapped from front to back, whatever it came from, and all that is worth keeping of it.
+// Maps a whole sequence from any source and collects the results.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 
 namespace depthgrid {
 
-// Told after each frame; may throw to stop.
+// Called after each frame; may throw to stop.
 using Progress = std::function<void(int done, int total)>;
 
 // A frame kept whole for the report.
@@ -27,31 +27,30 @@ struct SampleFrame {
 };
 
 struct MappingRun {
-  std::vector<FrameReport> reports;  // one an input frame
+  std::vector<FrameReport> reports;  // one per input frame
   MapperResult result;
-  std::vector<LoopClosure> loops;  // SLAM's events as they came in
+  std::vector<LoopClosure> loops;  // as reported by SLAM, in order
   std::optional<PinholeCamera> camera;
-  // Of sources without a camera, whose frames are a laser's: trajectories are the base's.
+  // For sources without a camera, whose frames are a laser's; their trajectories are the base's.
   Pose2 base_from_laser;
   std::vector<SampleFrame> samples;
   std::vector<std::string> warnings;
   double wall_s = 0.0;
-  double cpu_s = 0.0;  // of the mapper's thread, sources excluded where they have their own
+  double cpu_s = 0.0;  // of the mapper's thread; includes the source unless it has its own threads
 };
 
-// Maps a sequence whose frames are handed over one by one.
+// Maps a sequence whose frames are added one by one.
 class FrameRecorder {
  public:
-  // `oracle` is asked by fusion.mode `oracle` only, `match_oracle` for every match when it is
-  // given.
+  // `oracle` is used by fusion.mode `oracle` only, `match_oracle`, if given, for every match.
   FrameRecorder(const MapperOptions& options, const std::optional<PinholeCamera>& camera,
                 int frame_count, const GainOracle& oracle = {},
                 const MatchOracle& match_oracle = {});
 
-  // Before the first frame: the run goes on in a finished map.
+  // Continues in a finished map. Call it before the first frame.
   void StartFrom(const PriorMap& prior) { mapper_.StartFrom(prior); }
   void Add(const Frame& frame);
-  // `final_poses`: SLAM's own final trajectory, empty if there is none. Once, at the end.
+  // `final_poses`: SLAM's own final trajectory, empty if there is none. Call it once, at the end.
   MappingRun Finish(const Trajectory& final_poses);
 
  private:
@@ -65,28 +64,28 @@ class FrameRecorder {
   MappingRun run_;
 };
 
-// CPU time a frame, of those with a pose: the others are not mapped.
+// CPU time of each frame with a pose; others are not mapped.
 std::vector<double> TimesOfMappedFrames(const MappingRun& run);
 
-// What the mapper did about poses that were wrong, a line each: slips and losses of SLAM.
+// How the mapper corrected wrong poses, one line each: slips and losses of SLAM.
 std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 
-// The first frame (Frame::index) after a loss of SLAM whose place to what was mapped before is a
-// guess to the end: nothing seen since confirmed it, and no loop joins the two.
+// The first frame (Frame::index) after a loss of SLAM from which the position relative to the
+// earlier map remained a guess until the end: no match confirmed it, and no loop links the two
+// parts.
 std::optional<int> GuessedFrom(const MappingRun& run);
 
-// The whole of a source, front to back.
-// `final_poses`: SLAM's own final trajectory, empty if there is none. `oracle` is asked by
-// fusion.mode `oracle` only, `match_oracle` for every match when it is given. With `prior` the run
-// goes on in a finished map.
+// Maps all frames of a source. `final_poses`: SLAM's own final trajectory, empty if there is none.
+// `oracle` and `match_oracle` as for FrameRecorder. With `prior` the run continues in a finished
+// map.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
                      const Trajectory& final_poses, const Progress& progress,
                      const GainOracle& oracle = {}, const MatchOracle& match_oracle = {},
                      const std::optional<PriorMap>& prior = {});
 
-// Poses as the run's trajectory files have them; frames without a pose are absent. Those of a
-// source without a camera are planar (x, y, yaw about z, at height 0), as a laser log's own
-// odometry is, and of what that is of: of the base.
+// Poses as in the run's trajectory files; frames without a pose are absent. Those of a source
+// without a camera are planar poses of the base (x, y, yaw about z, at height 0), as in a laser
+// log's odometry.
 Trajectory SlamTrajectory(const MappingRun& run);    // the input, live
 Trajectory OnlineTrajectory(const MappingRun& run);  // estimates as known at the time
 Trajectory FinalTrajectory(const MappingRun& run);   // estimates after all corrections

@@ -74,7 +74,7 @@ Json ToJson(const std::vector<Drift>& drifts, const char* over) {
   return rows;
 }
 
-// Mean drift a unit, from the motions over so much of it.
+// Mean drift per unit, from the motions over `over` units.
 Json DriftAt(const std::vector<Drift>& drifts, double over) {
   for (const Drift& drift : drifts) {
     if (drift.over == over) return drift.PerUnit();
@@ -217,7 +217,7 @@ Json ToJson(const MapScore& score) {
   return json;
 }
 
-// A degree of freedom; `low` to `high` is where the mean lies with 95 %.
+// Per degree of freedom; `low` to `high` is the 95 % interval of the mean.
 Json ToJson(const std::optional<Consistency>& consistency) {
   const auto value = [&](double Consistency::*member) {
     return consistency ? Json((*consistency).*member) : Json(nullptr);

@@ -1,5 +1,6 @@
-// Work on the frames of a sequence that may run ahead on several threads, taken in order. Each item
-// is a pure function of its index, so the results do not depend on the number of threads.
+// Computes items for the frames of a sequence ahead of time on several threads and returns them in
+// order. Each item is a pure function of its index, so the results do not depend on the number of
+// threads.
 #pragma once
 
 #include <condition_variable>
@@ -18,14 +19,14 @@ namespace depthgrid {
 template <typename Item>
 class OrderedFrames {
  public:
-  // `make(i)` for i in [0, count), called from `threads` threads in all: threads - 1 of our own,
-  // and the caller of Next(), which helps instead of waiting. One thread makes each item when it is
-  // asked for.
+  // `make(i)` for i in [0, count), called from `threads` threads: threads - 1 workers, and the
+  // caller of Next(), which makes items itself instead of waiting. With one thread each item is
+  // made on demand.
   OrderedFrames(int count, int threads, std::function<Item(int)> make)
       : count_(count), window_(kItemsAheadPerThread * threads), make_(std::move(make)) {
     try {
       for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Work(); });
-    } catch (const std::system_error&) {  // the machine gives no more threads: fewer do as well
+    } catch (const std::system_error&) {  // no more threads available: continue with fewer
     }
   }
   ~OrderedFrames() {
@@ -39,7 +40,7 @@ class OrderedFrames {
   OrderedFrames(const OrderedFrames&) = delete;
   OrderedFrames& operator=(const OrderedFrames&) = delete;
 
-  // The next item, or nothing at the end. Throws what `make` threw for it.
+  // The next item; empty at the end. Rethrows what `make` threw for it.
   std::optional<Item> Next() {
     std::unique_lock lock(mutex_);
     if (taken_ == count_) return std::nullopt;
@@ -59,7 +60,7 @@ class OrderedFrames {
   }
 
  private:
-  // Enough that a worker need not wait while the caller is busy with an item; bounds memory.
+  // Enough that workers need not wait while the caller is busy with an item; bounds memory.
   static constexpr int kItemsAheadPerThread = 4;
 
   struct Slot {

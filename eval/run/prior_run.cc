@@ -20,20 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The floor's height is that of a room.
+// The floor's height belongs to the room, not to the mapper's settings.
 bool ShapesMap(const std::string& key, bool images) {
   if (key == "mapper.method" || key.starts_with("mapper.grid.")) return true;
   return images && key.starts_with("mapper.scan.") && key != "mapper.scan.floor_z_m";
 }
 
-// A run.yaml's part.
+// The part of run.yaml that is checked here.
 struct MapperSettings {
   MapperOptions mapper;
 
   void Visit(OptionsVisitor& v) { v.Group("mapper", mapper, "the mapper"); }
 };
 
-// Keys of other versions are passed over.
+// Keys of other versions are ignored.
 void RequirePossible(const Config& run) {
   Config known;
   for (const std::string& key : KeyPathsOf(MapperSettings{})) {

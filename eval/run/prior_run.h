@@ -1,4 +1,4 @@
-// A run's folder as the map that another run goes on from.
+// Reads a run's folder as the prior map of another run.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,24 @@
 
 namespace depthgrid {
 
-// Setting `submap.scans` of a run that goes on in a map: the last two submaps hold all of it.
+// Value of `submap.scans` for a run that continues in a map, so that the last two submaps hold all
+// scans.
 constexpr int kAllScansInOneSubmap = 1'000'000;
 
-// The stored scans of a folder that `run` or `map` wrote, numbered from below 0. Throws InputError,
-// also for settings in its run.yaml that no map can have been made with.
+// The stored scans of a folder that `run` or `map` wrote, with negative frame numbers. Throws
+// InputError, also for impossible settings in its run.yaml.
 PriorMap ReadPriorRun(const std::string& folder);
 
-// Of the scans of that folder: what a run that goes on from there depends on.
+// Hash of the scans of that folder, on which a run that continues from it depends.
 std::string HashOfPriorRun(const std::string& folder);
 
-// Where that run's map was made with other settings than it goes on with: the mapper's method, its
-// grid, and with `images` the scans; others may differ.
+// A warning if that run's map was made with settings other than `options`: the mapper's method, its
+// grid and, with `images`, the scans. Others may differ.
 std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperOptions& options,
                                         bool images);
 
-// How high the camera was above the floor in the median frame of the last drive that added to the
-// map; none of a laser's, of a run that was only localised, and where the folder does not tell.
+// Median height of the camera above the floor in the last run that added to the map. Empty for
+// lasers, for runs that were only localised, and where the folder does not contain it.
 std::optional<double> CameraHeightOfPrior(const std::string& folder);
 
 }  // namespace depthgrid

@@ -10,19 +10,20 @@
 namespace depthgrid {
 namespace {
 
-// Chosen, of no measurement; a cut value comes back to the last bit but for an image's units.
+// Chosen, not measured. A clipped value is always the same, except for rounding to an image's
+// units.
 constexpr float kSameM = 1e-3F;
 constexpr double kShare = 0.01;
 constexpr double kTurnRad = RadFromDeg(10.0);
 constexpr int kFewFrames = 10;
 
-// The largest finite value, 0 where none is greater. Every pixel of every image is looked at: four
-// maxima that do not wait for each other take a quarter of the time of one.
+// The largest finite value, 0 where none is greater. Runs over every pixel of every image: four
+// independent maxima take a quarter of the time of one.
 float LargestOf(const std::vector<float>& z_m) {
   float a = 0.0F, b = 0.0F, c = 0.0F, d = 0.0F;
   std::size_t i = 0;
   for (; i + 4 <= z_m.size(); i += 4) {
-    a = z_m[i] > a ? z_m[i] : a;  // not where it is NaN
+    a = z_m[i] > a ? z_m[i] : a;  // false for NaN
     b = z_m[i + 1] > b ? z_m[i + 1] : b;
     c = z_m[i + 2] > c ? z_m[i + 2] : c;
     d = z_m[i + 3] > d ? z_m[i + 3] : d;

@@ -1,5 +1,5 @@
-// Depth images that hold one largest value wherever the room is farther: a simulator's or driver's
-// cut. Taken for walls, its pixels are arcs that go along with the camera.
+// Detects depth images clipped to a maximum by a simulator or driver, instead of marking farther
+// pixels as invalid. Taken for walls, these pixels become arcs that move with the camera.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,13 @@ class SaturationCheck {
     float z_m = 0.0F;
     int frames = 0;
   };
-  // The largest depth of all images, where at least a hundredth of the pixels of several hold it
-  // although the camera turned: no wall has one depth from two sides.
+  // The largest depth of all images, if in several of them at least 1 % of the pixels have it
+  // although the camera turned: a wall does not have the same depth from two directions.
   std::optional<Saturation> Found() const;
 
  private:
   float largest_m_ = 0.0F;
-  std::optional<Pose3> first_;  // that holds so much of it
+  std::optional<Pose3> first_;  // first pose with so many such pixels
   bool turned_ = false;
   int frames_ = 0;
 };

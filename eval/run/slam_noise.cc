@@ -7,7 +7,7 @@
 namespace depthgrid {
 namespace {
 
-// Of one axis: variance of a single pose, and variance a second.
+// For one axis: variance of a single pose, and growth of the variance per second.
 struct AxisNoise {
   double jitter2 = 0.0;
   double walk2_per_s = 0.0;
@@ -16,8 +16,8 @@ struct AxisNoise {
 AxisNoise AxisNoiseOf(const SlamOptions& slam, double jitter, double bias, double walk,
                       double drift_rate, double jump) {
   const auto square = [](double value) { return value * value; };
-  // Ornstein-Uhlenbeck: the integral of the rate grows by 2 sigma^2 tau a second once its
-  // correlation is over; a bias parts from its old value by 2 sigma^2 / tau a second.
+  // Ornstein-Uhlenbeck: the variance of the integrated rate grows by 2 sigma^2 tau per second at
+  // times beyond tau; that of the change of a bias by 2 sigma^2 / tau per second.
   const double walk2 =
       square(slam.drift_scale) * (square(walk) + 2.0 * square(drift_rate) * slam.drift_time_s);
   return {square(jitter),
@@ -34,7 +34,7 @@ SlamNoiseOptions NoiseOf(const SlamOptions& slam) {
       AxisNoiseOf(slam, RadFromDeg(slam.jitter_rotation_deg), RadFromDeg(slam.bias_rotation_deg),
                   RadFromDeg(slam.walk_rotation_deg), RadFromDeg(slam.drift_turn_dps),
                   RadFromDeg(slam.jump_rotation_deg));
-  // A turn about the pivot shifts the camera to the left, not forward.
+  // Rotation about the pivot shifts the camera sideways, not forward.
   const double pivot2 = 0.5 * slam.pivot_m * slam.pivot_m;
   SlamNoiseOptions noise;
   noise.source = SlamNoiseSource::kProfile;

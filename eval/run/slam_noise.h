@@ -1,4 +1,4 @@
-// What a Kalman filter should know of a disturbed SLAM system (docs/math.md, "Fusion").
+// Noise parameters of a simulated SLAM system for the Kalman filter (docs/math.md, "Fusion").
 #pragma once
 
 #include "mapper/fuse/fusion_options.h"
@@ -6,8 +6,8 @@
 
 namespace depthgrid {
 
-// Jitter as it is. All that grows with time becomes a random walk that grows as fast in the long
-// run: walk, drift of the rate, bias, jumps. Position is the mean of forward and left.
+// Jitter is taken unchanged. All errors that grow with time (walk, drift of the rate, bias, jumps)
+// become one random walk with the same long-term growth. Position is the mean of forward and left.
 SlamNoiseOptions NoiseOf(const SlamOptions& slam);
 
 }  // namespace depthgrid

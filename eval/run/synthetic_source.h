@@ -1,5 +1,5 @@
-// The simulated sensor as a frame source: depth images rendered (or taken from the cache),
-// disturbed and quantised as a PNG would, ahead of the mapper on several threads.
+// The simulated sensor as a frame source: depth images rendered (or taken from the cache), with
+// noise and quantised as in a PNG, ahead of the mapper on several threads.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace depthgrid {
 // Frame i of the sensor: a pure function of the world, the options and i.
 class SyntheticSensor {
  public:
-  // Clean depth of what stands comes from the cache where it can; the folder "" is none.
+  // Noise-free depth of the static scene comes from the cache if it is there; folder "": no cache.
   SyntheticSensor(const World& world, const ExperimentOptions& options,
                   const std::string& cache_folder);
 
@@ -44,7 +44,7 @@ class SyntheticSensor {
   std::optional<DepthCache> cache_;
 };
 
-// What SLAM says, frame by frame; the depth side is left empty.
+// SLAM's output frame by frame, without depth images.
 class SlamPlayback {
  public:
   // The frame at position `index` of `slam`, with the loops reported since the last call.
@@ -56,7 +56,7 @@ class SlamPlayback {
 
 class SyntheticSource final : public FrameSource {
  public:
-  // `slam.live` has one entry a frame.
+  // `slam.live` has one entry per frame.
   SyntheticSource(const SyntheticSensor& sensor, SlamOutput slam, int threads);
 
   std::optional<Frame> Next() override;

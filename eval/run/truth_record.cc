@@ -19,7 +19,7 @@ StateMap AsStates(const CellSet& cells) {
 }  // namespace
 
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads) {
-  DepthToScan(world.camera, options.scan);  // refuses settings that contradict each other
+  DepthToScan(world.camera, options.scan);  // throws if settings contradict each other
   const TruthGridOptions band = {options.grid.resolution_m, options.scan.band_low_m,
                                  options.scan.band_high_m};
   ObservableOptions seen;

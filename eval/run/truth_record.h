@@ -1,4 +1,4 @@
-// What is known of the true world of a run.
+// Ground truth of a run.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct TruthRecord {
   std::optional<CellSet> observable;
 };
 
-// Band, ranges and resolution are the mapper's settings: they say what the map is a map of.
-// `threads` only changes the speed. Throws InputError for settings of the scans that contradict
-// each other, naming the keys, and for a path that makes the map absurdly large.
+// Band, ranges and resolution are the mapper's settings: they define what the map shows. `threads`
+// affects only the speed. Throws InputError for settings of the scans that contradict each other,
+// naming the keys, and for a path that makes the map absurdly large.
 TruthRecord MakeTruth(const World& world, const MapperOptions& options, int threads);
 
 // truth_map.yaml/.pgm and observable.yaml/.pgm, the latter's free cells being the observable ones.

@@ -35,7 +35,7 @@ std::string HashOf(const Scene& scene) {
   return hash.Hex();
 }
 
-// Where nothing moves that of the room alone.
+// Without movers, the hash of the room.
 std::string HashWithMovers(const Scene& scene) {
   std::string room = HashOf(scene);
   if (scene.movers.empty()) return room;
@@ -50,7 +50,7 @@ std::string HashWithMovers(const Scene& scene) {
   return hash.Hex();
 }
 
-// The scene as the experiment has it.
+// The scene with the experiment's movers.
 Scene SceneOf(const ExperimentOptions& options) {
   Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
   KeepMovers(options.movers, scene.movers);
@@ -102,7 +102,7 @@ void RequireTrajectoryFile(const ExperimentOptions& options) {
   throw InputError(options.trajectory_place, options.trajectory + ": no such file");
 }
 
-// The line of a trajectory's file that gives this stamp first.
+// The first line of a trajectory's file with this stamp.
 std::string PlaceOfStamp(const std::string& path, double stamp_s) {
   const std::string text = ReadFile(path);
   for (const TextRow& row : SplitRows(text)) {
@@ -112,8 +112,8 @@ std::string PlaceOfStamp(const std::string& path, double stamp_s) {
   return path;
 }
 
-// A pose in other units makes the true map, which holds the whole path, larger than memory; frames
-// are named by their stamps.
+// Poses in wrong units would make the true map, which contains the whole path, larger than memory.
+// Stamps must differ because frames are named by them.
 void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedBox3d& scene,
                              const std::string& path) {
   double before_s = -std::numeric_limits<double>::infinity();
@@ -137,7 +137,7 @@ void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedB
   }
 }
 
-// A camera that is moved gives several frames a second: stamps of other units are told by that.
+// A moving camera gives several frames per second, so larger steps mean stamps in other units.
 void RequireSecondsBetweenFrames(const Trajectory& trajectory, const std::string& path) {
   constexpr double kMostStepS = 5.0;
   if (trajectory.size() < 2) return;
@@ -180,7 +180,7 @@ Trajectory FromFile(const ExperimentOptions& options, const Eigen::AlignedBox3d&
   return trajectory;
 }
 
-// A camera's own housing keeps its middle this far from everything.
+// A camera's housing keeps its centre at least this far from everything.
 constexpr double kLeastClearanceM = 0.05;
 
 Occlusion OcclusionIn(const RayScene& rays) {
@@ -257,7 +257,8 @@ void RequireNames(const ExperimentOptions& options) {
   PathIn(options, warnings);
 }
 
-// DistanceToSurface works in floats: a distance of exactly the limit may come back a hair short.
+// DistanceToSurface works in floats: a distance of exactly the limit may be returned slightly too
+// short.
 constexpr double kFloatSlackM = 1e-5;
 
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
@@ -276,7 +277,7 @@ void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, co
   if (near) throw InputError(path.place, *near);
 }
 
-// Movers that were asked for by name; of `all`, when none of them is seen.
+// Warns of movers given by name that are never seen; for `all`, only if none is seen.
 void AddDoubtOfMovers(const ExperimentOptions& options, const World& world,
                       std::vector<std::string>& doubts) {
   std::vector<std::string> unseen =

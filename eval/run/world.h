@@ -1,4 +1,4 @@
-// The true side of an experiment: the room, the camera and where the camera went.
+// The true world of an experiment: room, camera and camera path.
 #pragma once
 
 #include <string>
@@ -13,49 +13,51 @@
 
 namespace depthgrid {
 
-// Others when any of the files was changed.
+// Hashes of the contents; they change when any of the files does.
 struct WorldHashes {
-  std::string room;        // of triangles: what stands
-  std::string scene;       // and of the movers that are there: what the depth camera can see
-  std::string trajectory;  // of the path as the scene or its file gives it, whatever is cut off it
+  std::string room;        // of the triangles of the static scene
+  std::string scene;       // and of the movers in it: all that the depth camera can see
+  std::string trajectory;  // of the whole path in the scene or its file, even if the experiment
+                           // uses only part of it
 };
 
 struct World {
-  Scene scene;  // with those movers alone that the experiment names
+  Scene scene;  // only with the movers that the experiment names
   WorldHashes hashes;
-  RayScene rays;  // of what stands
+  RayScene rays;  // of the static scene
   MoverScene movers;
   PinholeCamera camera;
   DepthRange depth_range;
   Trajectory trajectory;
-  // What is amiss with a path that was read from a file, which each names (those of scenes are
-  // refused), and movers that it never sees.
+  // Warnings about a path from a file, with its name (a scene's own path is rejected instead), and
+  // about movers that are never seen.
   std::vector<std::string> path_doubts;
 };
 
-// Of the room and the path that an experiment names. Throw InputError when they cannot be read.
+// Hashes of the room and the path that an experiment names. Throw InputError when they cannot be
+// read.
 WorldHashes HashesOf(const ExperimentOptions& options);
-std::string HashOfPathFile(const ExperimentOptions& options);  // of a path from a file, alone
-std::string WorldHash(const ExperimentOptions& options);       // both as one
+std::string HashOfPathFile(const ExperimentOptions& options);  // only of a path from a file
+std::string WorldHash(const ExperimentOptions& options);       // of both together
 
-// That the scene can be read and has the movers and the path that are named, or the path's file can
-// be read. Throws InputError; quicker than LoadWorld, which asks more of them.
+// Checks that the scene can be read and has the named movers and path, or that the path's file can
+// be read. Throws InputError. Faster than LoadWorld, which checks more.
 void RequireNames(const ExperimentOptions& options);
 
-// Where the path is written: its file, or the scene's line that names it.
+// Where the path is defined, for error messages: its file, or its line in the scene's file.
 std::string PlaceOfPath(const Scene& scene, const ExperimentOptions& options);
 
-// That this path, which the scene's options gave, lies within the scene and keeps its clearance.
+// Checks that a path made from the scene's options is within the scene and keeps its clearance.
 // Throws InputError.
 void CheckPath(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
                const RayScene& rays);
 
-// That none of the scene's movers comes nearer to it than its clearance. Throws InputError.
+// Checks that no mover of the scene comes nearer to the path than its clearance. Throws InputError.
 void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, const Scene& scene,
                  const MoverScene& movers);
 
-// Loads and checks all of it. `build_threads` only changes the speed. Throws InputError, also for a
-// path that comes too near to geometry, and for one of a file that leads out of all reach.
+// Loads and checks all of it. `build_threads` affects only the speed. Throws InputError, also for a
+// scene's path too near to geometry, and for a path from a file too far from the scene.
 World LoadWorld(const ExperimentOptions& options, int build_threads);
 
 }  // namespace depthgrid

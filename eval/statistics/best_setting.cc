@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// So that smaller is always better.
+// Smaller is always better.
 double Loss(double value, Better better) { return better == Better::kLower ? value : -value; }
 
 std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::uint32_t> seeds,
@@ -20,7 +20,7 @@ std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::ui
   for (std::size_t k = 0; k < runs.size(); ++k) {
     double sum = 0.0;
     for (const std::uint32_t seed : seeds) sum += Loss(runs[k].by_seed[seed], better);
-    // Of sums that differ by rounding alone the first is best.
+    // Of sums that differ only by rounding the first is best.
     if (k == 0 || best_sum - sum > kRoundingShare * std::abs(best_sum)) {
       best_sum = sum;
       best = k;
@@ -35,7 +35,7 @@ std::size_t BestOfAll(const std::vector<SettingRuns>& runs, Better better) {
   return BestAt(runs, seeds, better);
 }
 
-// Quantiles that are members of the list: the one below at the low end, the one above at the high.
+// Quantiles rounded outwards to members of the list.
 ConfidenceInterval IntervalOfMembers(std::vector<double> settings, double confidence) {
   std::sort(settings.begin(), settings.end());
   const auto last = static_cast<double>(settings.size() - 1);

@@ -14,8 +14,9 @@ constexpr double kShare = 0.95;
 
 }  // namespace
 
-// The regularised incomplete gamma function P(a, x), a = degrees / 2, x = value / 2: its series
-// below a + 1, 1 less Lentz's continued fraction above (Abramowitz & Stegun 6.5.29 and 6.5.31).
+// The regularised incomplete gamma function P(a, x), a = degrees / 2, x = value / 2: by its series
+// for x < a + 1, else 1 minus the continued fraction by Lentz's method (Abramowitz & Stegun 6.5.29
+// and 6.5.31).
 double ChiSquareCdf(double value, double degrees) {
   Require(degrees > 0.0, "degrees of freedom are above 0");
   if (value <= 0.0) return 0.0;
@@ -63,7 +64,7 @@ double ChiSquareQuantile(double probability, double degrees) {
 
 std::optional<Consistency> ConsistencyOf(const std::vector<ChiSquareSample>& samples) {
   constexpr std::size_t kMostDegrees = 8;
-  std::array<double, kMostDegrees> limit{};  // asked for once each
+  std::array<double, kMostDegrees> limit{};  // computed once per degree
   Consistency result;
   double sum = 0.0;
   double degrees = 0.0;

@@ -1,4 +1,5 @@
-// Whether errors are as large as their covariances say: e^T C^-1 e of each is a chi-square value.
+// Tests whether errors are consistent with their covariances: e^T C^-1 e of each is a chi-square
+// value.
 #pragma once
 
 #include <optional>
@@ -6,9 +7,9 @@
 
 namespace depthgrid {
 
-// P(X <= value) for a chi-square variable; good to 1e-7.
+// P(X <= value) for a chi-square variable; accurate to 1e-7.
 double ChiSquareCdf(double value, double degrees);
-// The value with that probability, in (0, 1).
+// The inverse of ChiSquareCdf(); probability in (0, 1).
 double ChiSquareQuantile(double probability, double degrees);
 
 struct ChiSquareSample {
@@ -16,14 +17,15 @@ struct ChiSquareSample {
   int degrees = 0;
 };
 
-// Of many such values, a degree of freedom: 1 is expected, more is over-confident.
+// Of many such values, divided by their degrees of freedom: 1 is expected, more means that the
+// covariances are too small.
 struct Consistency {
   int count = 0;
   double mean = 0.0;
-  // Within these the mean lies with 95 % if the values are independent and the covariances right.
+  // 95 % interval of the mean if the values are independent and the covariances correct.
   double low = 0.0;
   double high = 0.0;
-  double share_within_95 = 0.0;  // of the values, below their own 95 % quantile
+  double share_within_95 = 0.0;  // of the values, at most their own 95 % quantile
 };
 
 // Samples without degrees are left out; empty when none are left.

@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// Logarithm of the density of S, S^2 a chi-square over its degrees.
+// Logarithm of the density of S, where S^2 is a chi-square variable over its degrees.
 double LogDensity(double s, double degrees) {
   const double half = 0.5 * degrees;
   return std::log(2.0) + half * std::log(half) - LogGamma(half) + (degrees - 1.0) * std::log(s) -
@@ -38,12 +38,13 @@ double StudentTCdf(double t, double degrees, double noncentrality) {
   Require(degrees >= 1.0, "degrees of freedom are at least 1");
   if (noncentrality == 0.0 && degrees == 1.0) return 0.5 + std::atan(t) / kPi;
   if (noncentrality == 0.0 && degrees == 2.0) return 0.5 + 0.5 * t / std::sqrt(2.0 + t * t);
-  // S has a standard deviation below 1 / sqrt(2 degrees); nine times sqrt(2) of it leave nothing.
+  // S has a standard deviation below 1 / sqrt(2 degrees); beyond 9 sqrt(2) of these the density is
+  // negligible.
   const double reach = 9.0 / std::sqrt(degrees);
   const double low = std::max(1e-12, 1.0 - reach);
   const double high = 1.0 + reach;
-  // The normal distribution rises within 9 of its own standard deviations, which for a large t are
-  // narrow beside those of S: that part has intervals of its own.
+  // The normal distribution rises within 9 of its standard deviations, which for a large t are
+  // narrow compared to those of S: that part is integrated separately.
   constexpr double kLargeT = 10.0;
   if (std::abs(t) < kLargeT)
     return std::clamp(Integral(t, degrees, noncentrality, low, high), 0.0, 1.0);
@@ -58,7 +59,7 @@ double StudentTCdf(double t, double degrees, double noncentrality) {
 
 double StudentTQuantile(double probability, double degrees) {
   Require(probability > 0.0 && probability < 1.0, "a probability is between 0 and 1");
-  constexpr double kFarthest = 1e12;  // where the integral's own error would end the search
+  constexpr double kFarthest = 1e12;  // beyond this the integral's error dominates
   double low = -1.0;
   double high = 1.0;
   while (low > -kFarthest && StudentTCdf(low, degrees) > probability) low *= 2.0;

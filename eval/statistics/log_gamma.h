@@ -1,5 +1,5 @@
-// The logarithm of the gamma function, for several threads at once: std::lgamma also writes a
-// global variable, the sign.
+// The logarithm of the gamma function, thread-safe: std::lgamma writes the sign to a global
+// variable.
 #pragma once
 
 #include <math.h>

@@ -9,7 +9,7 @@
 namespace depthgrid {
 namespace {
 
-// Whether one of the parts of a text between separators is among these words.
+// Whether one of the separated parts of `text` is among these words.
 bool HasAny(std::string_view text, char separator, std::span<const std::string_view> words) {
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t end = std::min(text.find(separator, from), text.size());
@@ -32,7 +32,7 @@ bool IsDescription(std::string_view metric, std::string_view last) {
 }  // namespace
 
 std::optional<double> TargetOf(std::string_view metric) {
-  // A planned way shorter than the shortest true one leads through walls.
+  // length_ratio: a planned path shorter than the shortest true one leads through walls.
   constexpr std::array<std::pair<std::string_view, double>, 8> kTargets = {
       {{"nis.mean", 1.0},
        {"nees.mean", 1.0},

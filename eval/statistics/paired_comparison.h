@@ -1,4 +1,4 @@
-// Two settings over the same seeds: which is better, by how much, and how sure that is.
+// Compares two settings over the same seeds: which is better, by how much, and how significantly.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,15 @@ struct PairedComparison {
   double mean_b = 0.0;
   double mean_difference = 0.0;                     // b - a
   double median_difference = 0.0;                   // b - a
-  double std_difference = 0.0;                      // of the sample; 0 for one pair
+  double std_difference = 0.0;                      // sample standard deviation; 0 for one pair
   std::optional<ConfidenceInterval> mean_interval;  // of the mean difference; empty for one pair
-  int a_wins = 0;  // pairs in which a is better; none where neither is
+  int a_wins = 0;  // pairs in which a is better; 0 for Better::kNeither
   int b_wins = 0;
   WilcoxonResult wilcoxon;  // of b - a
 };
 
-// a[i] and b[i] are of the same seed (and whatever else the pair shares); at least one. What
-// differs by rounding alone is equal, and won by neither.
+// a[i] and b[i] have the same seed (and whatever else the pair shares); at least one pair. Values
+// that differ only by rounding are equal, and neither wins.
 PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<double>& b,
                                Better better, const Resamples& resamples);
 

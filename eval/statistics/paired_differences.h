@@ -1,23 +1,23 @@
-// Differences of scores that make pairs, without what rounding leaves of equal ones.
+// Differences of paired scores, with those that are only rounding errors set to 0.
 #pragma once
 
 #include <vector>
 
 namespace depthgrid {
 
-// Of the larger score: scores that differ by less are the same, and differences that do are equally
-// large. Doubles err by 1e-16 of themselves and means of many by some 1e-14, so equal scores (a
-// share of the same plans, a distance between the same cells) come out that far apart; nothing is
-// measured to 1e-9 of itself.
+// Relative tolerance, of the larger score: scores that differ by less are equal, and so are
+// differences. Doubles have relative errors of 1e-16 and means of many about 1e-14, so scores that
+// should be equal (a share of the same plans, a distance between the same cells) differ by that
+// much. No score is accurate to 1e-9.
 constexpr double kRoundingShare = 1e-9;
 
 struct PairedDifferences {
-  std::vector<double> values;    // b - a; 0 where both are the same but for rounding
-  std::vector<double> rounding;  // how far each may be off
+  std::vector<double> values;    // b - a; 0 where both are equal up to rounding
+  std::vector<double> rounding;  // possible error of each
 };
 
-// As many on both sides. Sizes are those of each pair: one run that went far astray leaves the
-// differences of the others as they are.
+// `a` and `b` have the same length. The tolerance depends on each pair alone, so that one run with
+// huge errors does not affect the other differences.
 PairedDifferences DifferencesOf(const std::vector<double>& a, const std::vector<double>& b);
 
 }  // namespace depthgrid

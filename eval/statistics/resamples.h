@@ -1,5 +1,5 @@
-// Samples drawn again from a sample, with replacement (Efron 1979): the bootstrap. One table serves
-// every figure over the same seeds, so that paired figures are resampled in pairs.
+// The bootstrap (Efron 1979): samples drawn with replacement from a sample. One table is used for
+// all statistics over the same seeds, so that paired values are resampled in pairs.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace depthgrid {
 
 struct BootstrapOptions {
-  // At 10,000 the ends of a 95 % interval wander by about 1 % of its width from seed to seed.
+  // With 10,000 the ends of a 95 % interval vary by about 1 % of its width from seed to seed.
   int resamples = 10000;
   double confidence = 0.95;
   std::uint64_t seed = 1;
@@ -25,13 +25,13 @@ struct ConfidenceInterval {
 
 class Resamples {
  public:
-  // Of a sample of `size` values, at least one.
+  // For a sample of `size` values, at least one.
   explicit Resamples(std::size_t size, const BootstrapOptions& options = {});
 
   std::size_t size() const { return size_; }
   int count() const { return options_.resamples; }
   double confidence() const { return options_.confidence; }
-  // The indices that make up resample `index`.
+  // The indices drawn for resample `index`.
   std::span<const std::uint32_t> operator[](int index) const;
 
  private:
@@ -40,17 +40,17 @@ class Resamples {
   std::vector<std::uint32_t> indices_;  // one resample after the other
 };
 
-// A figure of the values at these indices.
+// A statistic of the values at these indices.
 using ResampledFigure = std::function<double(std::span<const std::uint32_t> indices)>;
 
-// The figure of each resample, in the order of the resamples.
+// The statistic of each resample, in order.
 std::vector<double> FiguresOf(const Resamples& resamples, const ResampledFigure& figure);
 
-// The percentile interval: the quantiles (1 - confidence) / 2 and (1 + confidence) / 2 of the
-// figures, interpolated as NumPy does.
+// The percentile interval: the quantiles (1 - confidence) / 2 and (1 + confidence) / 2 of
+// `figures`, interpolated as NumPy does.
 ConfidenceInterval PercentileInterval(const std::vector<double>& figures, double confidence);
 
-// Empty for fewer than two values, of which nothing can be said.
+// Interval of the mean; empty for fewer than two values.
 std::optional<ConfidenceInterval> MeanInterval(const std::vector<double>& values,
                                                const Resamples& resamples);
 

@@ -1,4 +1,4 @@
-// One grid point of a sweep in a few numbers: a metric over the seeds.
+// Summary of a metric over the seeds of one grid point of a sweep.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct SampleSummary {
   std::optional<ConfidenceInterval> mean_interval;  // bootstrap; empty for one value
 };
 
-// Finite values, at least one, as many as the resamples are of.
+// Finite values, at least one, as many as Resamples::size().
 SampleSummary SummariseSample(const std::vector<double>& values, const Resamples& resamples);
 
 }  // namespace depthgrid

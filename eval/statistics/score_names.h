@@ -1,6 +1,6 @@
-// Scores by their names, which are paths in metrics.json (docs/metrics.md, "Scores as columns"):
-// which of them are columns, and which come first where all would be too many. What is wanted of a
-// score is in metric_direction.h.
+// Scores by name, which is their path in metrics.json (docs/metrics.md, "Scores as columns"): which
+// are columns, and which are shown where all would be too many. Which direction is better is in
+// metric_direction.h.
 #pragma once
 
 #include <span>
@@ -8,19 +8,19 @@
 
 namespace depthgrid {
 
-// Whether what stands there, a number or a group of them, only breaks a figure down and is no
-// column: full statistics of an error, other tolerances, confusion, counts of cells and poses, the
-// band of a consistency.
+// Whether the number or group at `path` is only the detail of a score and is not a column: full
+// statistics of an error, other tolerances, confusion, counts of cells and poses, the interval of a
+// consistency.
 bool IsBreakdown(std::string_view path);
 
-// Whether what stands there is a group of scores, of which a map or a trajectory that shows nothing
-// has none: null in the place of the group is no score.
+// Whether `path` is a group of scores that is null as a whole where they are undefined, as for an
+// empty map or trajectory: that null is not a score.
 bool IsGroupOfScores(std::string_view path);
 
-// The first of them that a sweep has is what its page opens with.
+// A sweep's page initially shows the first of these that the sweep has.
 std::span<const std::string_view> ScoresOfASweepsPage();
-// What is compared when nothing is asked for: one or two figures of each kind, those first that
-// should be tested where there are pairs for a few only.
+// Compared by default: one or two scores of each kind. The first ones are tested where there are
+// enough pairs for a few tests only.
 std::span<const std::string_view> ScoresToCompare();
 std::span<const std::string_view> ScoresOfAnAblation();
 

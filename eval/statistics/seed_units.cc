@@ -12,7 +12,7 @@
 namespace depthgrid {
 namespace {
 
-// The different seeds of an axis by number, and which of them each run has.
+// The distinct seeds of an axis, numbered, and each run's number.
 struct Levels {
   std::size_t axis = 0;
   std::size_t count = 0;
@@ -29,7 +29,7 @@ Levels LevelsOf(const std::vector<std::vector<std::string>>& seeds, std::size_t 
   return levels;
 }
 
-// Whether a seed of `fine` comes with one seed of `coarse` only.
+// Whether each seed of `fine` occurs with only one seed of `coarse`.
 bool Decides(const Levels& fine, const Levels& coarse) {
   std::set<std::pair<std::size_t, std::size_t>> together;
   for (std::size_t run = 0; run < fine.of_run.size(); ++run) {
@@ -38,8 +38,8 @@ bool Decides(const Levels& fine, const Levels& coarse) {
   return together.size() == fine.count;
 }
 
-// Those that vary, less those that decide another one: their runs share the other's seed. Of two
-// that decide each other the first.
+// The axes that vary, without those that determine another one, because their runs share the
+// other's seed. Of two that determine each other the first is kept.
 std::vector<Levels> AxesThatCount(const std::vector<std::vector<std::string>>& seeds) {
   std::vector<Levels> axes;
   for (std::size_t axis = 0; axis < seeds.front().size(); ++axis) {
@@ -62,10 +62,11 @@ struct Mean {
     sum += value;
     ++count;
   }
-  double Value() const { return sum / count; }  // NaN of nothing
+  double Value() const { return sum / count; }  // NaN if there are none
 };
 
-// Units of different sizes count as equals, so their mean may be off that of all runs.
+// Units with different numbers of runs count equally, so their mean may differ from that of all
+// runs.
 void MoveMeanTo(double mean, std::vector<double>& figures) {
   Mean units;
   for (const double figure : figures) {
@@ -74,7 +75,7 @@ void MoveMeanTo(double mean, std::vector<double>& figures) {
   for (double& figure : figures) figure += mean - units.Value();
 }
 
-// Means of `size` that cancel, as where most scores are 0, leave no more than their rounding.
+// Where means of about `size` cancel, as when most scores are 0, only rounding remains.
 double WithoutRounding(double figure, double size) {
   constexpr double kRounding = 1e-12;
   return std::abs(figure) < kRounding * size ? 0.0 : figure;

@@ -11,9 +11,8 @@
 namespace depthgrid {
 namespace {
 
-// Twice the ranks of the sizes of differences, in their order: mean ranks of ties are halves, so
-// these are whole numbers. Also the tie correction: the sum of t^3 - t over groups of t equal
-// sizes.
+// Doubled ranks of the differences' sizes, in the order given; mean ranks of ties may be halves, so
+// these are integers. Also the tie correction: the sum of t^3 - t over groups of t ties.
 struct Ranks {
   std::vector<int> doubled;
   double tie_sum = 0.0;
@@ -33,7 +32,7 @@ Ranks RanksOf(const PairedDifferences& differences) {
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
     while (end < order.size() && are_tied(order[first], order[end])) ++end;
-    // Ranks first + 1 .. end: twice their mean.
+    // Twice the mean of the ranks first + 1 .. end.
     for (std::size_t i = first; i < end; ++i) {
       ranks.doubled[order[i]] = static_cast<int>(first + 1 + end);
     }
@@ -44,8 +43,8 @@ Ranks RanksOf(const PairedDifferences& differences) {
   return ranks;
 }
 
-// The share of all sign patterns whose doubled W+ is at most `limit`: the distribution is built by
-// adding one rank after the other.
+// The share of all sign patterns whose doubled W+ is at most `limit`. The distribution is computed
+// by adding one rank after the other.
 double ShareUpTo(const std::vector<int>& doubled_ranks, int limit) {
   const int total = std::accumulate(doubled_ranks.begin(), doubled_ranks.end(), 0);
   std::vector<double> share(static_cast<std::size_t>(total) + 1, 0.0);
@@ -81,7 +80,7 @@ WilcoxonResult Test(const PairedDifferences& differences, WilcoxonMethod method)
   result.zeros = static_cast<int>(differences.values.size() - ranked.values.size());
   if (ranked.values.empty()) return result;
   const Ranks ranks = RanksOf(ranked);
-  // Of 46,341 pairs and more the sums exceed an int.
+  // A double, because from 46,341 pairs on the sums exceed an int.
   double plus = 0.0;
   for (std::size_t i = 0; i < ranked.values.size(); ++i) {
     plus += ranked.values[i] > 0.0 ? ranks.doubled[i] : 0;

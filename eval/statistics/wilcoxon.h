@@ -9,7 +9,7 @@ namespace depthgrid {
 
 enum class WilcoxonMethod {
   kAuto,   // exact up to kWilcoxonExactPairs differences that are not zero
-  kExact,  // all 2^n signs of the ranks at hand, ties included
+  kExact,  // over all 2^n signs of the ranks, with ties
   kNormal  // the normal approximation, corrected for ties, without a continuity correction (SciPy)
 };
 
@@ -27,14 +27,14 @@ struct WilcoxonResult {
   double rank_biserial = 0.0;
 };
 
-// The smallest p-value that so many differences can give: all of one sign, 2 of 2^n.
+// The smallest possible p-value of `pairs` differences: all of one sign, 2 of 2^n.
 double LeastWilcoxonP(int pairs);
 
-// Differences as they are: those that are exactly zero or equally large are zeros and ties.
+// Only differences that are exactly zero or exactly equal in size count as zeros and ties.
 WilcoxonResult Wilcoxon(const std::vector<double>& differences,
                         WilcoxonMethod method = WilcoxonMethod::kAuto);
-// Sizes that differ by no more than rounding are ties. So that being tied is one thing for all, a
-// group of ties reaches from its smallest size as far as rounding does, and no further.
+// Sizes that differ only by rounding are ties. A group of ties extends by the rounding error from
+// its smallest size and no further, so that the groups are disjoint.
 WilcoxonResult WilcoxonOfPairs(const PairedDifferences& differences);
 
 }  // namespace depthgrid
