@@ -1,4 +1,4 @@
-// Independent tasks on several threads. What a task gives must depend on its index alone.
+// Runs independent tasks on several threads. A task's result must depend only on its index.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace depthgrid {
 
-// Calls task(i) for i in [0, count), in any order, from `threads` threads of which the caller is
-// one. The first exception stops the rest and is thrown here.
+// Calls task(i) for i in [0, count), in any order, from `threads` threads, one of which is the
+// caller. After the first exception no more tasks are started, and it is rethrown here.
 template <typename Task>
 void ForEachIndex(std::size_t count, int threads, const Task& task) {
   std::atomic<std::size_t> next = 0;
@@ -36,7 +36,7 @@ void ForEachIndex(std::size_t count, int threads, const Task& task) {
     for (int i = 1; i < threads && static_cast<std::size_t>(i) < count; ++i) {
       helpers.emplace_back(work);
     }
-  } catch (const std::system_error&) {  // no more threads to be had: fewer do it
+  } catch (const std::system_error&) {  // no more threads available: continue with fewer
   }
   work();
   for (std::thread& helper : helpers) helper.join();

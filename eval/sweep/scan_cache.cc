@@ -19,7 +19,7 @@ constexpr const char* kScansExtension = ".scans";
 constexpr std::uint32_t kScansMagic = 0x32534744;  // "DGS2"
 constexpr int kNumbersABeam = 5;
 
-// Values of this machine's own layout, one behind the other: the key holds the instruction set.
+// Concatenates values in this machine's own layout; the key contains the instruction set.
 class ByteWriter {
  public:
   template <typename T>
@@ -127,7 +127,7 @@ std::optional<std::vector<FrameScans>> ScanCache::Load(const std::string& key) c
     std::error_code ignored;
     fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
     return scans;
-  } catch (const InputError&) {  // truncated, or gone meanwhile
+  } catch (const InputError&) {  // truncated, or removed meanwhile
     return std::nullopt;
   }
 }
@@ -166,9 +166,9 @@ void ScanCache::MakeRoom(std::uint64_t bytes) const {
   std::uint64_t total = bytes;
   for (auto it = fs::directory_iterator(folder_, error); !error && it != fs::directory_iterator();
        it.increment(error)) {
-    std::error_code vanished;  // another program may be cleaning up
+    std::error_code vanished;  // another program may have removed it
     if (it->path().extension() != kScansExtension) continue;
-    if (!ContentHash::IsHex(it->path().stem().string())) continue;  // the user's own
+    if (!ContentHash::IsHex(it->path().stem().string())) continue;  // not written by a cache
     Entry entry{it->last_write_time(vanished), it->path(), it->file_size(vanished)};
     if (vanished) continue;
     total += entry.bytes;

@@ -1,4 +1,4 @@
-// Scan sets kept on disk between sweeps and after a kill, under everything that shapes them.
+// Cache of scan sets on disk. The key contains everything that affects the scans.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@ constexpr std::uint64_t kDefaultScanCacheBytes = std::uint64_t{4} << 30U;
 
 class ScanCache {
  public:
-  // Files in `folder`, which several programs may use at once. The longest unused go when a new
-  // one would not fit into the limit. Throws InputError when the folder cannot be made.
+  // Files in `folder`, which several programs may use at once. The least recently used are removed
+  // when a new one would exceed the limit. Throws InputError when the folder cannot be made.
   ScanCache(const std::string& folder, std::uint64_t size_limit_bytes = kDefaultScanCacheBytes);
 
-  // Nothing when the set is not there, is damaged, or is larger than the limit: what Store() may
-  // write is read, however large other files may be.
+  // Empty when the set is missing, damaged, or larger than the limit; the limit also applies here,
+  // so that every set that Store() writes can be read.
   std::optional<std::vector<FrameScans>> Load(const std::string& key) const;
-  // Does nothing when the set is larger than the limit or the disk refuses: a cache may only save
-  // time.
+  // Does nothing when the set is larger than the limit or writing fails, because a cache is
+  // optional.
   void Store(const std::string& key, const std::vector<FrameScans>& scans) const;
 
  private:

@@ -14,16 +14,16 @@ namespace depthgrid {
 namespace {
 
 constexpr const char* kScanFolder = "/scans";  // below the cache folder
-constexpr int kImagesPerThread = 8;            // held at a time: 1.2 MB each
+constexpr int kImagesPerThread = 8;            // images in memory at a time, 1.2 MB each
 
-// Sets read from the same depth images.
+// Sets that use the same depth images.
 struct DepthJob {
   std::unique_ptr<SyntheticSensor> sensor;
   std::vector<ScanSet*> sets;
-  std::vector<FrameScanner> scanners;  // one a set
+  std::vector<FrameScanner> scanners;  // one per set
 };
 
-// Reads what is on disk; the rest is left to make.
+// Loads the sets that are on disk and returns the others.
 std::vector<ScanSet*> Missing(const std::vector<ScanSet*>& sets,
                               const std::optional<ScanCache>& cache,
                               const ScanMakerContext& context) {
@@ -69,8 +69,8 @@ std::vector<DepthJob> JobsOf(const std::vector<ScanSet*>& sets, const std::strin
   return jobs;
 }
 
-// Images are made in any order, some at a time; each set reads them in the order of time, because
-// the floor is followed from frame to frame.
+// A block of images is made in any order. Each set then reads them in order of time, because the
+// floor is tracked from frame to frame.
 void ScanBlock(DepthJob& job, int first, int count, int threads) {
   std::vector<std::shared_ptr<const DepthImage>> images(static_cast<std::size_t>(count));
   ForEachIndex(images.size(), threads, [&](std::size_t k) {

@@ -1,5 +1,5 @@
-// Makes the scans of many sets at once: each depth image is rendered and disturbed once, whatever
-// the number of SLAM trajectories it is read with.
+// Makes the scans of many sets together: each depth image is rendered and given noise once, however
+// many SLAM trajectories it is used with.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@ namespace depthgrid {
 struct ScanMakerContext {
   int threads = 1;
   std::string cache_folder;    // of rendered depth and of scans; empty for none
-  std::function<void()> tick;  // called often from one thread at a time; may throw to stop
+  std::function<void()> tick;  // called often, by one thread at a time; may throw to stop
 };
 
-// Throws InputError when such a folder can be no cache, before any set fails by it.
+// Throws InputError when the folder cannot be used as a cache, before the first set is made.
 void RequireUsableCache(const std::string& cache_folder);
 
-// Fills `scans` of each set, or `failure`. Sets that have a failure already are left alone.
+// Fills `scans` or `failure` of each set, except of those that already have a failure.
 void MakeScans(const std::vector<ScanSet*>& sets, const ScanMakerContext& context);
 
 }  // namespace depthgrid

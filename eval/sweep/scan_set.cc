@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-// Counts up whenever the same input may give other scans.
+// Incremented whenever the same input may give other scans.
 constexpr int kScanFormat = 6;
 
 void Add(ContentHash& hash, const Pose3& pose) {
@@ -26,7 +26,7 @@ ContentHash DepthHash(const ScanSet& set) {
   hash.Value(set.options.DepthSeed());
   hash.Value(set.world->trajectory.size());
   for (const StampedPose& pose : set.world->trajectory) {
-    hash.Value(pose.stamp_s);  // places what moves
+    hash.Value(pose.stamp_s);  // it determines where the movers are
     Add(hash, pose.world_from_camera);
   }
   return hash;

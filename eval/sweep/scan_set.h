@@ -1,5 +1,5 @@
-// The scans of one sequence as one depth sensor and one SLAM system see it: all that a run needs of
-// its frames. Runs that differ in the mapper alone share one.
+// The scans of one sequence, for one depth sensor and one SLAM system: all that a run needs of its
+// frames. Runs that differ only in the mapper share one set.
 #pragma once
 
 #include <memory>
@@ -13,28 +13,28 @@
 namespace depthgrid {
 
 struct ScanSet {
-  ExperimentOptions options;  // of any of its runs, completed; the mapper's own differ
+  ExperimentOptions options;  // of any of its runs, completed; the runs' mapper options differ
   std::shared_ptr<const World> world;
   SlamOutput slam;
-  std::vector<FrameScans> scans;  // one a frame; null where SLAM is lost
-  std::string failure;            // why there are none; empty when there are
+  std::vector<FrameScans> scans;  // one per frame; null where SLAM is lost
+  std::string failure;            // why there are no scans; else empty
 };
 
 // A set without its scans.
 ScanSet MakeSet(const ExperimentOptions& options, std::shared_ptr<const World> world);
 
-// Names the content of the scans: everything that shapes it, and nothing else.
+// Key of the scans' content: everything that affects it, and nothing else.
 std::string ContentKey(const ScanSet& set);
-// Names the depth images they are made from.
+// Key of the depth images that the scans are made from.
 std::string DepthKey(const ScanSet& set);
 
-// How much memory the scans take, about.
+// Approximate memory that the scans take.
 std::size_t BytesOf(const ScanSet& set);
 
-// The frames of a set from front to back.
+// Returns the frames of a set in order.
 class ScannedSource final : public FrameSource {
  public:
-  // The set outlives the source.
+  // The set must outlive the source.
   explicit ScannedSource(const ScanSet& set) : set_(set) {}
 
   std::optional<Frame> Next() override;

@@ -1,4 +1,4 @@
-// Things that several runs share, made once and kept while they are used.
+// A cache in memory of items that several runs share.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace depthgrid {
 template <typename Item>
 class Shelf {
  public:
-  // Keeps the `capacity` items asked for last; those in use elsewhere live on.
+  // Keeps the `capacity` most recently used items; others live on only while callers hold them.
   explicit Shelf(std::size_t capacity) : capacity_(capacity) {}
 
-  // The item of that key; `make()` when it is not there. Others who ask meanwhile wait.
+  // The item of that key, made by `make()` if it is not there. Other callers wait meanwhile.
   std::shared_ptr<const Item> Get(const std::string& key, const std::function<Item()>& make) {
     const std::lock_guard lock(mutex_);
     const auto found = std::find_if(items_.begin(), items_.end(),
@@ -34,7 +34,8 @@ class Shelf {
  private:
   std::size_t capacity_;
   std::mutex mutex_;
-  std::list<std::pair<std::string, std::shared_ptr<const Item>>> items_;  // newest first
+  std::list<std::pair<std::string, std::shared_ptr<const Item>>>
+      items_;  // most recently used first
 };
 
 }  // namespace depthgrid

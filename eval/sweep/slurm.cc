@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kPollInterval{2};
-constexpr std::chrono::minutes kLongestSilence{5};  // a controller that is started again
+constexpr std::chrono::minutes kLongestSilence{5};  // enough to restart Slurm's controller
 constexpr int kMostFruitlessStarts = 3;
 
 struct CommandOutput {
@@ -47,10 +47,10 @@ CommandOutput OutputOf(const std::string& command) {
 
 std::string JobList(const std::string& folder) { return folder + "/slurm/jobs.txt"; }
 
-// Asks Slurm, which may be away for a while.
+// Queries Slurm's queue; tolerates temporary failures.
 class Queue {
  public:
-  // Parts of these jobs that Slurm still has before it. Nothing when it cannot be asked just now.
+  // Parts of these jobs that are queued or running. Empty when squeue fails temporarily.
   std::optional<std::set<int>> Parts(const std::set<std::string>& job_ids);
 
  private:
@@ -59,7 +59,7 @@ class Queue {
 
 std::optional<std::set<int>> Queue::Parts(const std::set<std::string>& job_ids) {
   const auto now = std::chrono::steady_clock::now();
-  // Job of the array, number in it, state; one line a task. Completing tasks have ended.
+  // One line per task: job id of the array and index in it. Completing tasks count as ended.
   const CommandOutput queue = OutputOf(
       "squeue --noheader --array --me --states=PENDING,RUNNING,CONFIGURING,SUSPENDED "
       "--format='%F %K'");
@@ -85,7 +85,7 @@ class Submission {
                                     "#SBATCH --cpus-per-task={}\n"
                                     "exec {}\n",
                                     job.cpus_per_task, job.command));
-    // Jobs of a coordinator that was killed may be running still.
+    // Jobs submitted by an earlier, killed process may still be running.
     if (HasSlurmJobs(job.folder)) {
       const std::string text = ReadFile(JobList(job.folder));
       for (const TextRow& row : SplitRows(text)) job_ids_.emplace(row.fields[0]);
@@ -93,8 +93,8 @@ class Submission {
   }
 
   void Submit(const std::set<int>& parts) {
-    const EndDelay whole;  // a job that is in no list would be submitted again
-    // Names as words of the shell: sbatch's own lines in the script would end at a space.
+    const EndDelay whole;  // a job missing from the list would be submitted again
+    // Names are given on the command line because #SBATCH lines in the script end at a space.
     const CommandOutput sbatch =
         OutputOf(fmt::format("sbatch --parsable --array={} --job-name={} --output={} {} {}",
                              ArrayText(parts), ShellWord("depthgrid-" + job_.title),
@@ -114,7 +114,7 @@ class Submission {
 
  private:
   std::string Script() const { return folder_ + "/job.sh"; }
-  // Job of the array and number in it; a percent sign of the folder's name stands for itself.
+  // %A is the array's job id, %a the index in it; percent signs in the folder's name are escaped.
   std::string LogPattern() const {
     std::string pattern;
     for (const char c : folder_) pattern += c == '%' ? "%%" : std::string(1, c);
@@ -126,7 +126,7 @@ class Submission {
   std::set<std::string> job_ids_;
 };
 
-// What the parts' folders say.
+// Progress as read from the parts' folders.
 struct State {
   SweepProgress sum;
   std::set<int> unfinished;
@@ -170,12 +170,12 @@ std::string ArrayText(const std::set<int>& parts) {
 void RunOnSlurm(const SlurmJob& job) {
   Submission submission(job);
   Queue queue;
-  std::map<int, int> fruitless;      // starts of a part since it last got on
-  std::map<int, int> done_at_start;  // its runs then
+  std::map<int, int> fruitless;      // starts of each part since its last progress
+  std::map<int, int> done_at_start;  // finished runs at the last start
   for (State state = StateOf(job); !state.unfinished.empty(); state = StateOf(job)) {
     const auto queued = queue.Parts(submission.job_ids());
     if (queued) {
-      // Again from the folders: a part may have finished between the two looks.
+      // Read the folders again: a part may have finished before squeue was called.
       std::set<int> ended = StateOf(job).unfinished;
       for (const int part : *queued) ended.erase(part);
       for (const int part : ended) {

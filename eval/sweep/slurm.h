@@ -1,5 +1,5 @@
-// The parts of a sweep as tasks of Slurm array jobs (docs/sweeps.md, "Slurm"). What counts as done
-// is what the parts' own folders say, never what Slurm remembers of its tasks.
+// Runs the parts of a sweep as tasks of Slurm array jobs (docs/sweeps.md, "Slurm"). Whether a part
+// is done is read from its folder, never from Slurm's accounting.
 #pragma once
 
 #include <functional>
@@ -21,16 +21,16 @@ struct SlurmJob {
 // The folder of a part.
 std::string PartFolder(const std::string& folder, int part);
 
-// Writes the job, submits the parts that are not finished, waits, submits again what ended without
-// being finished, and returns when all parts are. Throws std::runtime_error when Slurm refuses,
-// when it cannot be asked at first or for five minutes, or when a part ends three times without
-// getting on.
+// Writes the job script, submits the unfinished parts, waits, resubmits those that ended
+// unfinished, and returns when all are finished. Throws std::runtime_error when sbatch fails, when
+// squeue fails the first time or for five minutes, or when a part ends three times without
+// progress.
 void RunOnSlurm(const SlurmJob& job);
 
-// Whether jobs were submitted from the folder of a sweep: they may be running still.
+// Whether jobs were submitted from the folder of a sweep; they may still be running.
 bool HasSlurmJobs(const std::string& folder);
 
-// "1-3,7" of {1, 2, 3, 7}.
+// "1-3,7" for {1, 2, 3, 7}.
 std::string ArrayText(const std::set<int>& parts);
 
 }  // namespace depthgrid

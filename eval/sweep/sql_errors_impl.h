@@ -1,4 +1,4 @@
-// What SQLite fails with, as errors that name the file.
+// Converts SQLite's exceptions to errors that name the file.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -12,7 +12,7 @@
 
 namespace depthgrid {
 
-// What `work` gives. Damage may lie anywhere in the file, and show when that is read.
+// Returns the result of `work`. Damage may be anywhere in the file and is found only when read.
 template <typename Work>
 auto Reading(const std::string& path, const Work& work) {
   try {
@@ -22,7 +22,7 @@ auto Reading(const std::string& path, const Work& work) {
   }
 }
 
-// A full disk, a folder that may not be written: no bad input, unless the file is damaged.
+// Failures such as a full disk or a read-only folder are not bad input, except a damaged file.
 template <typename Work>
 void Writing(const std::string& path, const Work& work) {
   try {

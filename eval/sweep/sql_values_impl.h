@@ -1,4 +1,4 @@
-// Names and values as SQLite holds those of a sweep.
+// Conversion of a sweep's names and values to and from SQLite.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -8,11 +8,11 @@
 
 namespace depthgrid {
 
-// In double quotes, those within doubled: SQL's names, CSV's cells.
+// In double quotes, with those inside doubled: for names in SQL and cells in CSV.
 std::string Quoted(const std::string& text);
 
-// What is the shortest text of a number goes in as that number, so that SQL and pandas see it as
-// such, and comes out as the same text.
+// If `text` is the shortest form of a number, it is stored as a number, so that SQL and pandas read
+// it as one; YamlOf() returns the same text.
 void BindYaml(SQLite::Statement& statement, int index, const std::string& text);
 std::string YamlOf(const SQLite::Column& column);
 

@@ -18,7 +18,8 @@ const char* NameOf(SweepMode mode) {
   return mode == SweepMode::kGrid ? "grid" : mode == SweepMode::kZip ? "zip" : "random";
 }
 
-// Values are YAML but for those that would end in a list: names of files may hold anything.
+// Values are already YAML, except those that a list would split or change: names of files may
+// contain any character.
 std::string InList(const std::string& text) {
   const bool is_plain = text.starts_with("[") ||
                         (!text.empty() && text.find_first_of(" ,:#{}[]&*!|>'\"%@`\\") == text.npos);

@@ -1,4 +1,4 @@
-// A sweep as a file of its own, to do it again elsewhere.
+// Writes a sweep as a file with which it can be repeated elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace depthgrid {
 
-// A sweep's file that, beside the experiment.yaml of a sweep's folder, asks for the runs of `plan`:
-// axes written out, names of files whole. `samples` and `sample_seed`: of a random sweep.
+// A sweep's file that, placed beside the experiment.yaml of a sweep's folder, defines the runs of
+// `plan`: values of axes are listed, paths of files are absolute. `samples` and `sample_seed`: of a
+// random sweep.
 std::string SweepAgainText(const SweepPlan& plan, SweepMode mode, int samples,
                            std::uint64_t sample_seed);
 

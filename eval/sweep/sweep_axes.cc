@@ -17,7 +17,7 @@
 namespace depthgrid {
 namespace {
 
-// What an axis may say instead of listing its values.
+// The range of an axis that does not list its values.
 struct RangeOptions {
   double from = 0.0;
   double to = 0.0;
@@ -60,8 +60,8 @@ void ReadSeeds(const Config& map, SweepAxis& axis) {
   }
 }
 
-// The short number that only rounding has parted from `value`: 10 of 9.999999999999998, a value
-// that nobody asks for and no `--where` would find.
+// Removes rounding errors: 10 instead of 9.999999999999998, which nobody wants and no `--where`
+// would find.
 double WithoutRounding(double value) {
   const double plain = *ParseNumber(fmt::format("{:.12g}", value));
   constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
@@ -132,7 +132,7 @@ SweepAxis ReadAxis(const ConfigEntry& entry) {
   std::set<std::vector<std::string>> seen;
   for (const auto& value : axis.values) {
     if (seen.insert(value).second) continue;
-    // Of a range of whole numbers each step goes to the nearest one.
+    // In a range of whole numbers, steps are rounded to the nearest one.
     throw InputError(entry.place, fmt::format("axis '{}' has the value {} twice{}", entry.key,
                                               fmt::join(value, ", "),
                                               entry.map ? ": give a smaller count" : ""));
@@ -175,7 +175,7 @@ std::vector<SweepAxis> ReadAxes(const Config& axes) {
 }
 
 std::string ShortestYaml(const std::string& text) {
-  constexpr double kExactIntegers = 9007199254740992.0;  // 2^53: larger seeds stay as they stand
+  constexpr double kExactIntegers = 9007199254740992.0;  // 2^53: larger seeds are kept as text
   const auto number = ParseNumber(text);
   const bool is_exact = number && std::isfinite(*number) && std::abs(*number) < kExactIntegers;
   if (!is_exact || HasLeadingZero(text)) return text;

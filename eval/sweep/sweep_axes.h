@@ -9,8 +9,8 @@
 
 namespace depthgrid {
 
-// Of one sweep, and so of one axis: more is a slip of the pen, or several sweeps. Reading the plan
-// of so many takes seconds.
+// Limit for a sweep and thus for an axis: more is probably a typing error. Reading the plan of so
+// many takes seconds.
 constexpr int kMostSweepRuns = 100'000;
 
 enum class RangeScale { kLinear, kLog };
@@ -20,31 +20,31 @@ struct AxisRange {
   double from = 0.0;
   double to = 0.0;
   RangeScale scale = RangeScale::kLinear;
-  bool whole = false;  // the key takes whole numbers alone
+  bool whole = false;  // the key takes only whole numbers
 
-  // At `share` of the way, 0 to 1, to the nearest whole number if need be; the ends are exact.
+  // The value at `share` (0 to 1) of the range, rounded if `whole`; the ends are exact.
   double At(double share) const;
-  // The same for random shares: of whole numbers on a linear scale each is drawn as often as its
-  // neighbours, the ends too.
+  // The same for uniform random shares: on a linear scale all whole numbers, ends included, are
+  // equally likely.
   double Drawn(double share) const;
 };
 
 struct SweepAxis {
-  std::vector<std::string> keys;                 // several: their values change together
+  std::vector<std::string> keys;                 // if several, their values change together
   std::vector<std::vector<std::string>> values;  // [value][key], YAML in its shortest form
-  std::optional<AxisRange> range;                // of a random sweep, instead of values
-  bool is_lone = false;                          // one value that is no list
+  std::optional<AxisRange> range;                // in a random sweep, instead of values
+  bool is_lone = false;                          // a single value, not given as a list
   std::string place;
 
-  // Seeds repeat each grid point instead of making others.
+  // A seed axis repeats each grid point instead of adding points.
   bool IsSeed() const;
 };
 
-// `axes` is the map of that name. Throws InputError for an axis without values, a range that is
-// none, or an axis twice.
+// `axes` is the map of that name. Throws InputError for an axis without values, an invalid range,
+// or an axis that occurs twice.
 std::vector<SweepAxis> ReadAxes(const Config& axes);
 
-// Numbers in their shortest form, anything else as it stands.
+// Numbers in their shortest form; other text unchanged.
 std::string ShortestYaml(const std::string& text);
 
 }  // namespace depthgrid

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kHexDigits = 16;
 
 // HEX.depth and HEX-incidence.depth (eval/run/depth_cache.cc), HEX.scans
-// (eval/sweep/scan_cache.cc), and what they are called while they are written.
+// (eval/sweep/scan_cache.cc), and their temporary names.
 bool IsCacheFile(const std::string& name) {
   if (!ContentHash::IsHex(std::string_view(name).substr(0, kHexDigits))) return false;
   std::string_view ending = std::string_view(name).substr(kHexDigits);
@@ -24,7 +24,7 @@ bool IsCacheFile(const std::string& name) {
   for (const std::string_view own : {".depth", ".scans"}) {
     if (ending == own) return true;
     if (!ending.starts_with(own)) continue;
-    // The writer's numbers follow.
+    // Followed by the writer's process and thread numbers.
     const std::string_view rest = ending.substr(own.size());
     return rest.starts_with('.') &&
            (rest.ends_with(".tmp") || rest.find_first_not_of("-.0123456789") == rest.npos);
@@ -40,7 +40,7 @@ std::vector<fs::directory_entry> EntriesOf(const fs::path& folder) {
 }  // namespace
 
 void RemoveSweepCache(const std::string& folder) {
-  std::error_code ignored;  // a folder that is not empty, or what is gone already
+  std::error_code ignored;  // such as: folder not empty, or already removed
   for (const fs::directory_entry& part : EntriesOf(folder)) {
     const std::string name = part.path().filename().string();
     const bool own = (name == "scans" || ContentHash::IsHex(name)) && !part.is_symlink(ignored);

@@ -1,12 +1,12 @@
-// What a sweep keeps beside its results while it runs, when nobody named another place for it.
+// The default cache of a sweep, which is in its folder while it runs.
 #pragma once
 
 #include <string>
 
 namespace depthgrid {
 
-// Removes the cache's files, also halves that a killed program left, and the folders that are empty
-// then. What a user put there, or links to, stays.
+// Removes the cache's files, including partial ones of a killed program, and folders that are then
+// empty. Other files, and whatever is behind links, remain.
 void RemoveSweepCache(const std::string& folder);
 
 }  // namespace depthgrid

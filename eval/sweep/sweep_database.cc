@@ -25,11 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// Another program may be reading the table; it never takes this long.
+// Another program may be using the database, but never for this long.
 constexpr int kBusyTimeoutMs = 60'000;
-// Rows and columns of the tables below; another number is another layout.
+// Version of the tables' layout below.
 constexpr const char* kSchema = "1";
-// Endings: of a database that is not whole yet, and of SQLite's own file beside it.
+// Suffixes of an incomplete database and of SQLite's journal beside it.
 constexpr const char* kPartial = ".partial";
 constexpr const char* kJournal = "-journal";
 
@@ -46,7 +46,7 @@ std::string DatabasePath(const std::string& folder) {
   return (fs::path(folder) / kSweepDatabaseName).string();
 }
 
-// Why not; empty where it may be.
+// Why the database cannot be written; empty if it can.
 std::string RefusalToWrite(const std::string& folder) {
   for (const std::string& path : {folder, DatabasePath(folder)}) {
     if (::access(path.c_str(), W_OK) != 0) return std::generic_category().message(errno);
@@ -59,7 +59,7 @@ void RequireSweep(const std::string& folder) {
   throw InputError(folder, fmt::format("is no sweep's folder: it has no {}", kSweepDatabaseName));
 }
 
-// As the path stands in a URI: RFC 3986's unreserved characters and slashes as they are.
+// The path in a URI: percent-encoded except for RFC 3986's unreserved characters and slashes.
 std::string UriPath(const fs::path& path) {
   std::string uri;
   for (const char c : path.string()) {
@@ -81,7 +81,7 @@ struct SweepDatabase::Impl {
       : folder(of_folder),
         database(std::make_unique<SQLite::Database>(path, flags, kBusyTimeoutMs)) {}
 
-  // One row of a table with a column a name, which it gets when it is new.
+  // Inserts a row into a table with one column per name; missing columns are added.
   void InsertWide(const std::string& table, int run, const NamedValues& values) {
     std::string names = "run";
     std::string marks = "?";
@@ -222,7 +222,7 @@ SweepDatabase SweepDatabase::Create(const std::string& folder,
                                     const std::vector<std::string>& parameter_keys,
                                     const std::vector<PlannedRun>& plan,
                                     const std::vector<RunOutcome>& outcomes) {
-  // Under another name until it is whole: a kill in between leaves no half plan.
+  // Under another name until it is complete, so that a kill leaves no partial plan.
   const std::string partial = DatabasePath(folder) + kPartial;
   fs::remove(partial);
   fs::remove(partial + kJournal);
@@ -256,7 +256,7 @@ SweepDatabase SweepDatabase::Open(const std::string& folder) {
     throw InputError(DatabasePath(folder), "cannot be written: " + why);
   }
   SweepDatabase opened = Opened(folder, DatabasePath(folder), SQLite::OPEN_READWRITE);
-  // A kill of the program loses nothing either way; a write-ahead log commits ten times faster.
+  // A killed program loses nothing in either mode; a write-ahead log commits ten times faster.
   Writing(DatabasePath(folder), [&] {
     opened.impl_->database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
   });
@@ -265,7 +265,7 @@ SweepDatabase SweepDatabase::Open(const std::string& folder) {
 
 SweepDatabase SweepDatabase::OpenToRead(const std::string& folder) {
   RequireSweep(folder);
-  // With a write-ahead log even readers write, beside the database.
+  // With a write-ahead log even readers write files beside the database.
   if (RefusalToWrite(folder).empty()) return Open(folder);
   std::error_code missing;
   const std::string log = DatabasePath(folder) + "-wal";
@@ -312,7 +312,7 @@ void SweepDatabase::Record(const std::vector<RunOutcome>& outcomes) {
       for (const RunOutcome& outcome : outcomes) impl_->Insert(outcome);
       transaction.commit();
     });
-  } catch (...) {  // columns that were added with it are gone with it
+  } catch (...) {  // columns added in the transaction are rolled back as well
     impl_->known_columns.clear();
     throw;
   }
@@ -366,7 +366,7 @@ std::vector<double> SweepDatabase::MetricOf(const std::string& name,
 
 SweepResults SweepDatabase::Results() const {
   return Reading(DatabasePath(impl_->folder), [&] {
-    // One view of the table, whoever writes meanwhile.
+    // A consistent view, even while others write.
     const SQLite::Transaction snapshot(*impl_->database);
     SweepResults results;
     results.folder = impl_->folder;

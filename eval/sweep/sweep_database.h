@@ -1,6 +1,6 @@
-// The one file that holds a sweep: what was planned, what came out, what failed, where
-// (docs/sweeps.md, "The database"). Every call is one transaction, so that a sweep killed at any
-// moment has each run either whole or not at all.
+// The database file of a sweep: plan, results, failures and environment (docs/sweeps.md, "The
+// database"). Every call is one transaction, so that after a kill each run is either complete or
+// absent.
 #pragma once
 
 #include <map>
@@ -16,12 +16,12 @@ namespace depthgrid {
 struct PlannedRun {
   int run = 0;
   int point = 0;
-  std::vector<std::string> values;  // one a parameter key, YAML
+  std::vector<std::string> values;  // one per parameter key, YAML
 };
 
-using NamedValues = std::vector<std::pair<std::string, double>>;  // NaN: not defined
+using NamedValues = std::vector<std::pair<std::string, double>>;  // NaN: undefined
 
-// What a finished run leaves.
+// The outcome of a finished run.
 struct RunOutcome {
   int run = 0;
   std::string failure;  // the reason; empty when it succeeded
@@ -32,27 +32,26 @@ struct RunOutcome {
 class SweepDatabase {
  public:
   static bool Exists(const std::string& folder);
-  // Whether a file of this name is what a Create() leaves that is killed.
+  // Whether a killed Create() leaves a file of this name.
   static bool IsUnfinished(const std::string& file_name);
-  // All of the plan and of what is known already, or nothing, is in the file afterwards.
+  // Afterwards the file contains either the whole plan and all `outcomes`, or does not exist.
   static SweepDatabase Create(const std::string& folder,
                               const std::map<std::string, std::string>& environment,
                               const std::vector<std::string>& parameter_keys,
                               const std::vector<PlannedRun>& plan,
                               const std::vector<RunOutcome>& outcomes = {});
-  // Throws InputError when there is none or it is something else.
+  // Throws InputError when there is none or it is not a sweep's.
   static SweepDatabase Open(const std::string& folder);
-  // The same where it may not be written, on a read-only disk or in somebody else's folder; nothing
-  // may be recorded then.
+  // The same for reading only; also works on a read-only disk or in a folder of another user.
   static SweepDatabase OpenToRead(const std::string& folder);
   SweepDatabase(SweepDatabase&&) noexcept;
   SweepDatabase& operator=(SweepDatabase&&) noexcept;
   ~SweepDatabase();
 
   std::map<std::string, std::string> Environment() const;
-  // Replaces what the environment says of `key`.
+  // Sets the value of `key` in the environment.
   void Note(const std::string& key, const std::string& value);
-  // Numbers of the runs that are done or failed, ascending.
+  // Numbers of the runs that succeeded or failed, ascending.
   std::vector<int> FinishedRuns() const;
   // Numbers of the others, ascending.
   std::vector<int> UnfinishedRuns() const;
@@ -61,9 +60,9 @@ class SweepDatabase {
   void Record(const RunOutcome& outcome);
   // All outcomes in one transaction.
   void Record(const std::vector<RunOutcome>& outcomes);
-  // Failed runs are planned again: what made them fail may be gone. How many they were.
+  // Plans failed runs again, because the cause may be gone. Returns their number.
   int PlanFailedAgain();
-  // Takes these runs out of the plan, with what they gave.
+  // Removes these runs and their results from the plan.
   void Drop(const std::vector<int>& runs);
   // One metric of some runs, in their order; NaN where it is missing.
   std::vector<double> MetricOf(const std::string& name, const std::vector<int>& runs) const;

@@ -17,7 +17,7 @@
 namespace depthgrid {
 namespace {
 
-// Reading the settings of a run takes a tenth of a millisecond.
+// Reading the settings of a run takes 0.1 ms.
 constexpr std::size_t kMostRuns = 5000;
 
 IdleSettingList IdleInEveryRun(const SweepPlan& plan) {
@@ -30,7 +30,8 @@ IdleSettingList IdleInEveryRun(const SweepPlan& plan) {
   return idle;
 }
 
-// A profile or scenario under `set` of an experiment that states all it would set, as a run.yaml.
+// Warns of a profile or scenario under `set` whose settings the experiment already gives
+// explicitly, as a run.yaml does.
 std::vector<std::string> DoubtsOfFixedPresets(const SweepPlan& plan, const SweepLayers& layers,
                                               const std::string& with) {
   std::vector<std::string> doubts;
@@ -54,7 +55,7 @@ std::vector<std::string> DoubtsOfFixedPresets(const SweepPlan& plan, const Sweep
 std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
                                         bool is_shipped) {
   IdleSettingList idle = IdleInEveryRun(plan);
-  // Of axes that do nothing it is said which runs repeat another.
+  // For axes without effect DoubtOfRepeats() names the repeated runs.
   std::erase_if(idle, [&](const IdleSetting& setting) {
     const auto& axes = plan.parameter_keys;
     return std::find(axes.begin(), axes.end(), setting.key) != axes.end();
@@ -98,7 +99,7 @@ std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan) {
     }
   }
   if (repeats == 0) return {};
-  // Random sweeps draw a point twice where all their axes are lists.
+  // Random sweeps may draw a point twice where all axes are lists.
   const std::string why = idle_keys.empty()
                               ? "the same values are drawn again"
                               : fmt::format("there {} {} no effect", fmt::join(idle_keys, ", "),
@@ -115,7 +116,7 @@ std::optional<std::string> DoubtOfCameras(const SweepPlan& plan) {
         const bool is_new = std::find(found.begin(), found.end(), doubt) == found.end();
         if (is_new) found.push_back(std::move(doubt));
       }
-    } catch (const InputError&) {  // no camera: the run fails and says why
+    } catch (const InputError&) {  // invalid camera: the run fails with its reason
     }
   }
   if (found.empty()) return {};
@@ -173,7 +174,7 @@ std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& f
   return doubts;
 }
 
-// Runs end in any order; the first is that of the plan.
+// Runs end in any order; the first in the plan's order is kept.
 void RunDoubts::Kind::Add(int run, const std::string& doubt) {
   if (runs++ > 0 && run > first) return;
   first = run;

@@ -1,4 +1,4 @@
-// What of a sweep is likely not meant, found before its first run.
+// Warnings about a sweep that is probably not as intended.
 #pragma once
 
 #include <functional>
@@ -11,40 +11,42 @@
 
 namespace depthgrid {
 
-// Runs that must give what an earlier one gives, as the settings in which they differ have no
-// effect there: one line, nothing when all differ. Of very many runs the first ones are looked at.
+// Warns of runs that must give the same result as an earlier one because the settings in which they
+// differ have no effect. One line; empty when all differ. Of very many runs only the first are
+// checked.
 std::optional<std::string> DoubtOfRepeats(const SweepPlan& plan);
 
-// Axes of seeds with one number, by which so many seeds were most likely meant: a line each.
+// Warns of seed axes with a single number, which was probably meant as the number of seeds: one
+// line each.
 std::vector<std::string> DoubtsOfLoneSeeds(const std::vector<SweepAxis>& axes);
 
-// A `stop`, which stands at `place`, for which the points have too few seeds.
+// Warns if the points have too few seeds for `stop`, which is at `place`.
 std::optional<std::string> DoubtOfStop(const SweepPlan& plan, const std::string& place);
 
-// What the sweep's file (`fixed`) or --set gives of the keys of an axis, whose values take its
-// place in every run: a line each.
+// Warns of keys given in the sweep's file (`fixed`) or by --set that an axis overrides in every
+// run: one line each.
 std::vector<std::string> DoubtsOfAxisKeys(const SweepPlan& plan, const Config& fixed,
                                           const std::vector<std::string>& set);
 
-// Cameras of runs that are likely not meant: the first, and how many there are.
+// Warns of probably unintended cameras: the first, and their number.
 std::optional<std::string> DoubtOfCameras(const SweepPlan& plan);
 
-// Where a sweep's settings come from, the later before the earlier.
+// The sources of a sweep's settings; later ones override earlier ones.
 struct SweepLayers {
   const Config& experiment;  // the file
   const Config& fixed;       // what the sweep's file sets
   const std::vector<std::string>& set;
-  // The experiment with what is fixed and some of `set`.
+  // The experiment with `fixed` and some of `set`.
   std::function<Config(const std::vector<std::string>& set)> base_with;
 };
 
-// Settings that have no effect in any run, a line each; of the experiment's file only where it is
-// the user's (`is_shipped`: it is not).
+// Warns of settings without effect in any run, one line each; for the experiment's file only if it
+// is the user's own (not `is_shipped`).
 std::vector<std::string> DoubtsOfLayers(const SweepPlan& plan, const SweepLayers& layers,
                                         bool is_shipped);
 
-// What runs showed to be likely not meant, once however many do: a true map without a free cell or
-// in which most of the path lies in others, and maps without a free cell.
+// Warnings from the runs' results, each given once for all runs: true maps without a free cell or
+// with most of the path outside free cells, and maps without a free cell.
 class RunDoubts {
  public:
   void Add(const PlannedRun& run, const OccupancyMap& map, const TruthRecord& truth,
@@ -63,8 +65,8 @@ class RunDoubts {
   Kind map_;
 };
 
-// Settings that the experiment's file holds for its own slam.profile, and that stay when `fixed` or
-// an axis chooses another: one line.
+// Warns of settings that the experiment's file has for its own slam.profile and that remain when
+// `fixed` or an axis selects another: one line.
 std::optional<std::string> DoubtOfProfiles(const std::string& name, const Config& experiment,
                                            const Config& fixed, const std::vector<SweepAxis>& axes);
 

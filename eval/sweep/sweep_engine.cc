@@ -20,11 +20,11 @@
 namespace depthgrid {
 namespace {
 
-// Scans are held for as many groups at once as fit in here: enough that threads seldom wait for
-// each other at the end of a batch (20 sets of 900 frames), little beside what a laptop has.
+// Scans of a batch of groups are held in memory up to this size: enough that threads seldom wait
+// for each other at the end of a batch (20 sets of 900 frames), and little for a laptop.
 constexpr std::size_t kBatchBytes = std::size_t{512} << 20U;
-// Or for so many, where the next one is of other images: runs are recorded when a batch has its
-// scans, and a kill loses what was not.
+// A batch also ends after this many groups if the next one uses other images: runs are recorded
+// only once a batch has its scans, and a kill loses the rest.
 constexpr std::size_t kBatchGroups = 16;
 
 using Clock = std::chrono::steady_clock;
@@ -55,7 +55,7 @@ class Engine {
   Engine(const SweepPlan& plan, SweepDatabase& database, const SweepContext& context)
       : plan_(plan), database_(database), context_(context), inputs_(context.threads) {}
 
-  // A batch of groups at a time; those that are read from the same images one after the other.
+  // Does a batch of groups at a time, with groups that use the same images next to each other.
   void Do(const std::vector<const PlannedRun*>& runs, const std::vector<int>& group_of_run) {
     std::map<int, Group> groups;
     for (const PlannedRun* run : runs) {
@@ -94,7 +94,7 @@ class Engine {
     if (context_.progress) context_.progress(done_, total_);
   }
 
-  // A run that is stopped has not failed.
+  // Remembers a stop, because a stopped run has not failed.
   void TickInRun() {
     const std::lock_guard lock(mutex_);
     try {
@@ -105,7 +105,7 @@ class Engine {
     }
   }
 
-  // The set without its scans; what is wrong with it is the failure of each of its runs.
+  // Makes the set without its scans; an error is the failure of each of its runs.
   void Prepare(Group& group) {
     try {
       NamingPlaces(plan_.PlaceOfKey(), [&] {
@@ -118,8 +118,8 @@ class Engine {
     Tick();
   }
 
-  // Groups whose scans are made from the same images, in the order of the first of each. Their
-  // poses are not held meanwhile: there may be thousands.
+  // Collects groups that use the same images, in order of their first group. The sets are released
+  // meanwhile, because there may be thousands.
   std::vector<std::vector<Group*>> ByImages(std::map<int, Group>& groups) {
     std::map<std::string, std::size_t> position;
     std::vector<std::vector<Group*>> alike;
@@ -159,7 +159,8 @@ class Engine {
     try {
       NamingPlaces(plan_.PlaceOfKey(), [&] {
         ExperimentOptions options = plan_.OptionsOf(run);
-        RequireSound(options, plan_.PlaceOfKey());  // says more than what fails of it later
+        RequireSound(options,
+                     plan_.PlaceOfKey());  // its message is more helpful than a later failure
         if (!scans.failure.empty()) throw InputError("", scans.failure);
         options = Completed(options, scans.world->scene);
         const auto truth = inputs_.TruthOf(options);
@@ -197,7 +198,7 @@ std::vector<const PlannedRun*> Unfinished(const SweepPlan& plan, const SweepData
   return runs;
 }
 
-// What the seeds of each point count as, in the order of its runs.
+// The units of a point's runs, in the order of its runs.
 SeedUnits SeedUnitsOf(const SweepPlan& plan, std::size_t runs_of_point) {
   std::vector<std::vector<std::string>> seeds(runs_of_point);
   for (std::size_t k = 0; k < plan.parameter_keys.size(); ++k) {
@@ -207,8 +208,8 @@ SeedUnits SeedUnitsOf(const SweepPlan& plan, std::size_t runs_of_point) {
   return SeedUnits(seeds);
 }
 
-// Whether the mean over a point's first runs is sure enough. A failed run says nothing and counts
-// as none; runs of crossed seeds count as many as there are of the seed that varied least so far.
+// Whether the mean over a point's first runs is accurate enough. Failed runs do not count. Runs
+// with crossed seeds count as the number of units seen so far (SeedUnits).
 bool IsSure(const StopOptions& stop, const SeedUnits& units, std::size_t runs_of_point,
             std::vector<double> values) {
   if (units.count() < runs_of_point) {
@@ -221,9 +222,10 @@ bool IsSure(const StopOptions& stop, const SeedUnits& units, std::size_t runs_of
   return interval && interval->high - interval->low < stop.width;
 }
 
-// Points may stop: all points are run with one seed after the other, and after each seed those that
-// are sure lose what is left of their plan. The decision looks at all seeds up to that one and at
-// nothing else, so it is the same however the runs are spread over threads, kills and machines.
+// For sweeps whose points may stop early: all points are run with one seed after the other, and
+// after each seed the remaining runs of points that are accurate enough are dropped. The decision
+// depends only on the seeds so far, so it is the same whatever the threads, interruptions and
+// machines.
 void DoRunsBySeed(const SweepPlan& plan, SweepDatabase& database, Engine& engine,
                   const std::vector<int>& groups) {
   const auto seeds = static_cast<int>(plan.runs.size()) / plan.point_count;

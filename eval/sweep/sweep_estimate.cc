@@ -13,21 +13,21 @@
 namespace depthgrid {
 namespace {
 
-// What a run costs however short it is, and what each frame adds, told apart by two runs; a second
-// to make.
+// Frames of two test runs, which separate the fixed cost of a run from the cost per frame; together
+// they take about a second.
 constexpr std::size_t kShortFrames = 24;
 constexpr std::size_t kLongFrames = 60;
-// A sweep whose first points all fail is not worth more.
+// Give up when this many points have failed.
 constexpr std::size_t kMostTries = 8;
 
 // CPU seconds of parts of a run.
 struct PilotTimes {
   std::size_t frames = 0;  // of the whole run
-  double scan_s = 0.0;     // a frame, made for all runs of a group
+  double scan_s = 0.0;     // per frame, once for all runs of a group
   double run_s = 0.0;      // mapping and scores of all frames
 };
 
-// Of a run that ends after so many frames.
+// CPU seconds of a run that ends after `frames` frames.
 double RunS(const ScanSet& whole, std::size_t frames, const TruthRecord& truth) {
   ScanSet set = whole;
   set.slam.live.resize(frames);
@@ -61,7 +61,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   }
   times.scan_s = (ProcessCpuS() - before_s) / static_cast<double>(pilot);
   const std::size_t few = std::min(pilot, kShortFrames);
-  RunS(set, few, *truth);  // the first pays for what later ones find ready
+  RunS(set, few, *truth);  // warm-up: the first run also pays one-time costs
   const double few_s = RunS(set, few, *truth);
   times.run_s = few_s;
   if (pilot > few) {
@@ -72,10 +72,10 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   return times;
 }
 
-// Of the first run that does not fail: what is wrong with those before they will say themselves.
+// Of the first run that does not fail; earlier ones report their failures when they are run.
 struct Pilot {
   std::optional<PilotTimes> times;
-  std::string failure;  // of the first run that was tried and failed
+  std::string failure;  // of the first run tried that failed
 };
 
 Pilot PilotOf(const SweepPlan& plan, const std::vector<int>& runs, const SweepContext& context) {

@@ -16,11 +16,11 @@ ExperimentFile ReadExperimentFile(const std::string& name, const std::string& pl
                                   const std::string& sweep_folder) {
   ExperimentFile file;
   file.path = ResolveNameAt(place, name, ShippedKind::kExperiment, sweep_folder);
-  // A shipped one names no files; those of the sweep are its author's.
+  // A shipped experiment names no files, so the names are those in the sweep's file.
   file.folder = IsFileName(name) ? fs::path(file.path).parent_path().string() : sweep_folder;
   file.config = Config::FromFile(file.path);
   file.record = file.config.Take("provenance");
-  // So that its own errors name its own file; a copy would not know its lines.
+  // Read here so that errors name this file and its lines, which a copy does not have.
   ReadExperiment(Config::FromFile(file.path), file.folder);
   return file;
 }

@@ -1,4 +1,4 @@
-// The experiment that a sweep runs many times over, and what the sweep changes of it.
+// The experiment that a sweep repeats, and the sweep's changes to it.
 #pragma once
 
 #include <map>
@@ -12,23 +12,24 @@ namespace depthgrid {
 
 struct ExperimentFile {
   std::string path;
-  std::string folder;  // where its file names start
+  std::string folder;  // to which its file names are relative
   Config config;
   Config record;  // `provenance`, of a run.yaml
 };
 
-// `place`: where the sweep names it. Throws InputError.
+// `place`: where the sweep's file names it, for errors. Throws InputError.
 ExperimentFile ReadExperimentFile(const std::string& name, const std::string& place,
                                   const std::string& sweep_folder);
 
-// With what the sweep's file sets in all runs, and --set after it.
+// Applies what the sweep's file sets in all runs, then --set.
 Config Changed(Config config, const Config& fixed, const std::vector<std::string>& set);
 
-// Where each key that is given stands: on an axis, else in `changes`, else in the experiment.
+// The place of each key that is given: on an axis, else in `changes`, else in the experiment.
 std::map<std::string, std::string> PlacesOf(const Config& experiment, const Config& changes,
                                             const std::vector<SweepAxis>& axes);
 
-// The lines of SweepPlan::given_text: of the `effective` keys below `prefix` those that `base` has.
+// The lines of SweepPlan::given_text: the `effective` values of those keys below `prefix` that
+// `base` has.
 std::string GivenText(const Config& effective, const Config& base, const std::string& prefix = "");
 
 }  // namespace depthgrid

@@ -27,13 +27,13 @@ constexpr const char* kLockName = "/.lock";
 
 using Environment = std::map<std::string, std::string>;
 
-// Whether a value of an axis is a file's name, which is relative to the experiment's folder.
+// Whether a value of an axis is a file name, which is relative to the experiment's folder.
 bool HasFilesOnAxes(const SweepPlan& plan) {
   const auto& keys = plan.parameter_keys;
   return std::any_of(keys.begin(), keys.end(), IsFileKey);
 }
 
-// "" is the working folder, as in a file's name without a slash.
+// "" is the current folder, as for a file name without a slash.
 std::string AbsoluteFolder(const std::string& folder) {
   return (folder.empty() ? fs::current_path() : fs::absolute(folder)).string();
 }
@@ -58,8 +58,7 @@ bool HasLine(const std::string& text, const std::string& line) {
   return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
 }
 
-// The first line in which two texts differ, for people. Where only one has it, nothing stands
-// against it.
+// Describes the first line in which two texts differ; the line may be missing in one of them.
 std::string Difference(const std::string& a, const std::string& b) {
   std::istringstream lines_a(a);
   std::istringstream lines_b(b);
@@ -78,12 +77,13 @@ std::string Difference(const std::string& a, const std::string& b) {
   }
 }
 
-// `there` must be what `here` is, in these respects.
+// Throws if `there` and `here` differ in one of `respects`.
 void RequireSame(const std::string& place, const Environment& there, const Environment& here,
                  const std::vector<std::string>& respects, const char* remedy) {
   for (const std::string& respect : respects) {
     const auto there_is = there.find(respect), here_is = here.find(respect);
-    if (there_is == there.end() || here_is == here.end()) continue;  // of an earlier version
+    if (there_is == there.end() || here_is == here.end())
+      continue;  // written by an earlier version
     if (there_is->second == here_is->second) continue;
     const std::string what = respect == "sweep"        ? "another sweep"
                              : respect == "experiment" ? "a sweep of another experiment"
@@ -96,7 +96,7 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
   }
 }
 
-// One in which a sweep was killed before its plan was whole is as good as empty.
+// A folder with nothing but an incomplete plan of a killed sweep counts as empty.
 bool IsEmptyFolder(const std::string& folder) {
   return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& entry) {
@@ -155,7 +155,7 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
   }
 }
 
-// "A, B" of all that worked in it; an earlier version did not say.
+// The list "A, B" of `key`; empty if an earlier version did not write it.
 std::string ListIn(const Environment& environment, const std::string& key) {
   const auto found = environment.find(key);
   return found != environment.end() ? found->second : "unknown";
@@ -196,7 +196,7 @@ void RequireSweepNamesFree(const std::string& folder) {
   RequireNoOtherResult(folder, ResultKind::kSweep);
   std::vector<std::string> names = {"results.csv",      "report.html",  "experiment.yaml",
                                     "sweep_again.yaml", "progress.txt", "cache"};
-  // A sweep that Slurm does has these two, and its lock, before it has a database.
+  // A sweep on Slurm has these two and its lock before it has a database.
   if (!fs::exists(folder + kLockName)) names.insert(names.end(), {"slurm", "shards"});
   for (const std::string& name : names) {
     const fs::path file = fs::path(folder) / name;

@@ -1,4 +1,4 @@
-// The folder of a sweep: started, gone on with, finished, joined from parts.
+// The folder of a sweep: creating, resuming, finishing and merging it from parts.
 #pragma once
 
 #include <map>
@@ -11,7 +11,8 @@
 
 namespace depthgrid {
 
-// Held while a program works in a sweep's folder; another one is refused with an InputError.
+// Locks a sweep's folder while a program works in it; for another program the constructor throws
+// InputError.
 class SweepLock {
  public:
   explicit SweepLock(const std::string& folder);
@@ -23,30 +24,31 @@ class SweepLock {
   int file_ = -1;
 };
 
-// Of a folder without a sweep: throws InputError when it holds another result with a report.html of
-// its own, or a file or folder of a name that a sweep would overwrite or remove.
+// For a folder without a sweep. Throws InputError when it contains another result with a
+// report.html, or a file or folder that a sweep would overwrite or remove.
 void RequireSweepNamesFree(const std::string& folder);
 
-// The database in `folder`, which exists; made when there is none. Throws InputError when the
-// folder holds another sweep, another part of it, or one of another version or instruction set, and
-// when it holds something else (unless `force`).
+// Opens or creates the database in `folder`, which exists. Throws InputError when the folder
+// contains another sweep, another part of it, or one of another version or instruction set, and
+// (unless `force`) when it contains something else.
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
                                 const Shard& shard, bool force);
 
-// Before runs are done, and after those that failed are planned again: adds this program's build,
-// and how many runs it does at a time, to those that have worked in it (`build` and `jobs` of the
-// environment, "A, B").
+// Adds this program's build and number of parallel jobs to those of the programs that have worked
+// on the sweep (`build` and `jobs` of the environment, "A, B"). Call it after planning failed runs
+// again and before doing runs.
 void NoteWork(SweepDatabase& database, int jobs);
 
-// Runs of several builds in one table: a line.
+// Warns if the runs are of several builds: one line.
 std::optional<std::string> DoubtOfBuilds(const std::string& folder,
                                          const std::map<std::string, std::string>& environment);
 
-// results.csv beside the database, of what is known so far.
+// Writes results.csv beside the database, with the results so far.
 void WriteResultsCsv(const SweepDatabase& database, const std::string& folder);
 
-// Joins the parts of one sweep into `folder`, which holds no sweep yet. Throws InputError when
-// parts are missing, unfinished or doubled, or of another sweep, version or instruction set.
+// Merges the parts of one sweep into `folder`, which contains no sweep yet. Throws InputError when
+// parts are missing, unfinished or given twice, or are of different sweeps, versions or instruction
+// sets.
 void MergeSweeps(const std::vector<std::string>& parts, const std::string& folder);
 
 }  // namespace depthgrid

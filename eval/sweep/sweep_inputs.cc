@@ -15,7 +15,7 @@ std::string WorldKey(const ExperimentOptions& options) {
                      camera.cy_px, range.min_m, range.max_m, static_cast<int>(options.sensor.isa));
 }
 
-// And everything MakeTruth reads besides.
+// In addition everything that MakeTruth reads.
 std::string TruthKey(const ExperimentOptions& options) {
   const ScanOptions& scan = options.mapper.scan;
   return fmt::format("{}\n{} {} {} {} {}", WorldKey(options), options.mapper.grid.resolution_m,

@@ -1,4 +1,4 @@
-// What is true of many runs at once and slow to make: rooms, and what of them is scored against.
+// Rooms and ground truth, which many runs share and which are slow to make.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ class SweepInputs {
 
  private:
   int threads_;
-  // More than the axes of a sweep that are varied next to each other; a world is some MB.
+  // More than runs that are close to each other in a sweep need; a world takes a few MB.
   Shelf<World> worlds_{8};
   Shelf<TruthRecord> truths_{16};
 };

@@ -9,10 +9,10 @@
 
 namespace depthgrid {
 
-// MetricColumns() of the run's metrics.json. A run gives all.
+// MetricColumns() of the run's metrics.json.
 NamedValues SweepMetrics(const RunScores& scores);
 
-// With everything that a run may lack.
+// Scores with every optional part present.
 RunScores FullScores();
 // The names of its columns.
 std::vector<std::string> SweepMetricNames();

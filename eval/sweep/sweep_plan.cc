@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The top level of a sweep's file, `axes` and `set` apart.
+// The top level of a sweep's file except `axes` and `set`.
 struct SweepFileOptions {
   std::string experiment;
   SweepMode mode = SweepMode::kGrid;
@@ -42,7 +42,7 @@ struct SweepFileOptions {
   }
 };
 
-// A point or a seed: the value texts of some axes, one behind the other.
+// A point or a seed: the value texts of some axes, concatenated.
 using Combination = std::vector<std::string>;
 
 std::vector<Combination> Grid(const std::vector<const SweepAxis*>& axes) {
@@ -108,7 +108,7 @@ std::vector<Combination> Points(const std::vector<const SweepAxis*>& axes,
   return file.mode == SweepMode::kZip ? Zip(axes) : Grid(axes);
 }
 
-// Values by position among `axes` put in the order of all keys.
+// Reorders the values of some `axes` into the order of all keys.
 struct KeyOrder {
   std::vector<std::size_t> position;  // of each key of the axes among all keys
 
@@ -153,7 +153,7 @@ void EnumerateRuns(const SweepFileOptions& file, const std::string& place, Sweep
   plan.size_text = Counted(points.size(), "point") + " x " + Counted(seeds.size(), "seed");
 }
 
-// Before anything is made of the runs: from the sizes of the axes alone.
+// Checked before the runs are made, from the sizes of the axes alone.
 void RequireFewEnough(const SweepFileOptions& file, const std::vector<SweepAxis>& axes,
                       const std::string& place) {
   double points = file.mode == SweepMode::kRandom ? file.samples : 1.0;
@@ -173,7 +173,7 @@ void RequireFewEnough(const SweepFileOptions& file, const std::vector<SweepAxis>
       place, fmt::format("has {:.0f} runs, must have at most {}", points * seeds, kMostSweepRuns));
 }
 
-// Each value alone, so that a slip is found before the first run and named with its line.
+// Checks each value on its own, so that errors are found before the first run, with their line.
 void CheckValues(const SweepPlan& plan) {
   for (const SweepAxis& axis : plan.axes) {
     std::vector<std::vector<std::string>> values = axis.values;
@@ -189,7 +189,7 @@ void CheckValues(const SweepPlan& plan) {
   }
 }
 
-// What would change nothing, without a word.
+// Rejects settings that would silently have no effect.
 void RequireEffect(const Config& config, const SweepFileOptions& file) {
   if (config.Has("stop.width") && file.stop.width <= 0.0) {
     throw InputError(config.PlaceOfKey("stop.width"),
@@ -240,7 +240,7 @@ std::vector<std::string> KeysOfSweep() {
   return keys;
 }
 
-// All that is unknown would be compared with the sweep's own few keys.
+// Keys of the experiment get their own message; other unknown keys get the nearest key of a sweep.
 void RefuseExperimentsKeys(const Config& config) {
   const std::vector<std::string> own = KeysOfSweep();
   const std::vector<std::string> of_experiment =
@@ -259,7 +259,7 @@ void RefuseExperimentsKeys(const Config& config) {
   }
 }
 
-// A required key that is missing may stand there with a slip in it.
+// A missing required key may be present but misspelt.
 void RequireKeys(const Config& config, const std::string& path) {
   const std::vector<std::string> known = KeysOfSweep();
   for (const std::string required : {"axes", "experiment"}) {
@@ -274,13 +274,13 @@ void RequireKeys(const Config& config, const std::string& path) {
   }
 }
 
-// Whether the sweep itself says which room or path, on an axis or for all runs.
+// Whether the sweep itself gives this key, on an axis or for all runs.
 bool IsChosen(const std::string& key, const Config& changes, const SweepPlan& plan) {
   const auto& keys = plan.parameter_keys;
   return changes.Has(key) || std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-// Whether runs that differ in this key alone see the same scans.
+// Whether runs that differ only in this key have the same scans.
 bool IsOfMapperOnly(const std::string& key) {
   return key.starts_with("mapper.") && !key.starts_with("mapper.scan");
 }
@@ -365,7 +365,7 @@ SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>&
   if (const auto doubt = DoubtOfStop(plan, config.PlaceOfKey("stop"))) {
     plan.warnings.push_back(*doubt);
   }
-  file.experiment.clear();  // its content counts, not its name
+  file.experiment.clear();  // its content matters, not its name
   plan.sweep_text = TextOf(file, plan);
   plan.again_text = SweepAgainText(plan, file.mode, file.samples, file.sample_seed);
   return plan;

@@ -1,7 +1,7 @@
-// A sweep's file, read and checked, and the runs it asks for.
+// Reads and checks a sweep's file and lists its runs.
 //
-// Seeds are always crossed with everything else: each grid point is run with each seed, so that
-// for one seed all points see the same depth noise and the same errors of SLAM.
+// Seeds are always crossed with everything else: each grid point is run with each seed, so that for
+// one seed all points see the same depth noise and the same errors of SLAM.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ enum class SweepMode {
   kRandom,  // `samples` points drawn from the axes
 };
 
-// A grid point needs no more seeds once the metric's mean over its first ones is this sure.
+// A grid point gets no more seeds once the metric's mean over the first ones is this accurate.
 struct StopOptions {
   std::string metric;
   double width = 0.0;  // of the bootstrap 95 % interval of the mean
@@ -30,7 +30,7 @@ struct StopOptions {
   void Visit(OptionsVisitor& v);
 };
 
-// One of `count` equal parts of a sweep, for one machine each.
+// One of `count` equal parts of a sweep, each for one machine.
 struct Shard {
   int index = 1;  // from 1
   int count = 1;
@@ -38,39 +38,39 @@ struct Shard {
 
 struct SweepPlan {
   std::string title;
-  std::string sweep_text;       // what decides the runs, axes written out; the same for the same
-  std::string again_text;       // a sweep's file for the same runs (SweepAgainText)
+  std::string sweep_text;  // all that determines the runs, with axes listed; equal for equal sweeps
+  std::string again_text;  // a sweep's file that gives the same runs (SweepAgainText)
   std::string experiment_yaml;  // every effective key of the experiment
-  // Of these the ones that a file or --set gives, a line each with its whole path: they stay when
-  // an axis chooses another preset (slam.profile), which sets all others.
+  // Those of these keys that a file or --set gives, one line each with the full path. They remain
+  // when an axis selects another preset (slam.profile), which sets all others.
   std::string given_text;
   std::vector<SweepAxis> axes;
   std::vector<std::string> parameter_keys;  // of the axes, in the file's order
   StopOptions stop;
-  std::string size_text;  // for people: "50 mapper.fusion.gain x 20 seed"
+  std::string size_text;  // for display: "50 mapper.fusion.gain x 20 seed"
   std::vector<PlannedRun> runs;
   int point_count = 0;
-  std::vector<std::string> warnings;  // what is likely not meant, a line each
+  std::vector<std::string> warnings;  // one line each
 
-  // What one run is; throws InputError for values that contradict each other.
+  // The options of one run. Throws InputError for values that contradict each other.
   ExperimentOptions OptionsOf(const PlannedRun& run) const;
-  // Where a key of the runs was given its value, an axis or a file.
+  // Where a key of the runs got its value: an axis or a file.
   KeyPlaces PlaceOfKey() const;
 
-  Config base;                                // the experiment with what the sweep sets in it
-  std::string base_folder;                    // where its file names start
-  std::map<std::string, std::string> places;  // of the keys that are given, for errors
+  Config base;                                // the experiment with the sweep's changes
+  std::string base_folder;                    // to which its file names are relative
+  std::map<std::string, std::string> places;  // of the given keys, for error messages
 };
 
 // `set`: overrides from the command line. Throws InputError for anything wrong with the file or
 // with any single value of an axis.
 SweepPlan ReadSweepPlan(const std::string& path, const std::vector<std::string>& set);
 
-// Runs of one group may differ in the mapper alone: they see the same scans. Numbers count up in
-// the order in which groups first appear in `runs`.
+// The group of each run. Runs of one group differ only in the mapper and have the same scans.
+// Groups are numbered in the order in which they first appear in `runs`.
 std::vector<int> ScanGroups(const SweepPlan& plan);
 
-// The runs of a shard: whole groups, or whole points where points may stop early.
+// The runs of a shard: whole groups, or whole points if points may stop early.
 std::vector<PlannedRun> RunsOf(const SweepPlan& plan, const Shard& shard);
 
 }  // namespace depthgrid

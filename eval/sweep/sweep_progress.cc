@@ -27,7 +27,7 @@ std::optional<SweepProgress> ReadProgress(const std::string& folder) {
       return std::nullopt;
     }
     return SweepProgress{static_cast<int>(numbers[0]), static_cast<int>(numbers[1])};
-  } catch (const InputError&) {  // gone or damaged meanwhile
+  } catch (const InputError&) {  // removed or damaged meanwhile
     return std::nullopt;
   }
 }

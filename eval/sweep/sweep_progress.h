@@ -1,5 +1,5 @@
-// How far a sweep's folder is, in a small text file beside the database: a database in use is not
-// to be opened from another machine.
+// The progress of a sweep, in a small text file beside the database, because a database in use must
+// not be opened from another machine.
 #pragma once
 
 #include <chrono>
@@ -16,16 +16,17 @@ struct SweepProgress {
   bool Finished() const { return done == total; }
 };
 
-// Nothing when the folder says nothing.
+// Empty when the file is missing or damaged.
 std::optional<SweepProgress> ReadProgress(const std::string& folder);
 
 class ProgressFile {
  public:
   explicit ProgressFile(std::string folder) : folder_(std::move(folder)) {}
 
-  // At most once a second, and never the end: whoever reads that goes to the database.
+  // Writes at most once a second, and never the end, because a reader that sees the end opens the
+  // database.
   void Note(const SweepProgress& progress);
-  // Of the end: when the database is closed.
+  // For the end, after the database is closed.
   void NoteNow(const SweepProgress& progress);
 
  private:

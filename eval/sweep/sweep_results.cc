@@ -14,7 +14,7 @@
 namespace depthgrid {
 namespace {
 
-// RFC 4180: quotes only where a comma, a quote or a line end asks for them.
+// RFC 4180: quoted only if it contains a comma, a quote or a line break.
 std::string CsvCell(const std::string& text) {
   return text.find_first_of(",\"\n\r") == std::string::npos ? text : Quoted(text);
 }
@@ -48,7 +48,7 @@ std::string DidYouMeanColumn(const std::string& name, const std::vector<std::str
     return last < name.size() && last_of(column).starts_with(name.substr(last));
   });
   if (begun != of_block.end()) {
-    // The point makes it the name of no column, which would not be named itself.
+    // The dot makes it different from every column; the column itself would not be suggested.
     return DidYouMeanKey(name.substr(0, last) + "." + last_of(*begun), of_block, false);
   }
   const std::string near = DidYouMean(name, names);

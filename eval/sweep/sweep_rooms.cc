@@ -23,7 +23,7 @@ std::string HashOrNone(const ExperimentOptions& options) {
   }
 }
 
-// Of the first run in each of them.
+// The options of the first run in each room.
 std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
   std::vector<std::size_t> naming;  // positions of the keys that choose room, path and movers
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
@@ -40,7 +40,7 @@ std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
   return rooms;
 }
 
-// What is wrong with the names of a room's runs; empty when nothing is.
+// The error in the names of a room's runs; empty if there is none.
 std::string FailureOf(const SweepPlan& plan, const ExperimentOptions& options) {
   try {
     NamingPlaces(plan.PlaceOfKey(), [&] { RequireNames(options); });

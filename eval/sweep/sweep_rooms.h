@@ -1,4 +1,4 @@
-// The rooms and paths that a sweep's runs are in.
+// The rooms and paths of a sweep's runs.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace depthgrid {
 
-// A line for each of them, with a hash of what its files hold: a sweep that goes on after one was
-// changed would mix two rooms.
+// One line for each, with a hash of its files' content, so that a sweep cannot be resumed with a
+// changed room.
 std::string RoomsText(const SweepPlan& plan);
 
-// Throws InputError for a scene, path or movers with which every run must fail, as the name has a
-// slip in it or the file is not there. A pair that does not go together is a failed run instead.
+// Throws InputError for a scene, path or movers with which every run must fail, because the name is
+// wrong or the file is missing. A combination that does not fit is a failed run instead.
 void RequireRooms(const SweepPlan& plan);
 
-// What is amiss with the paths, a line each: of those in rooms that can be read, for the runs of
-// the others fail and say why.
+// Warnings about the paths, one line each. Rooms that cannot be read are skipped, because their
+// runs fail with the reason.
 std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads);
 
 }  // namespace depthgrid
