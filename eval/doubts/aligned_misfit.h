@@ -1,4 +1,4 @@
-// How far positions are off that were laid over each other: what doubts of a trajectory compare.
+// Misfit of aligned positions, which the checks of trajectories compare.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace depthgrid {
 
-// Root mean square, metres: aligned in SE(3) or, where the path is too narrow for it, in SE(2) and
-// in the plane. Empty where neither can be.
+// Root mean square error, metres: after alignment in SE(3) or, where the path is too narrow for it,
+// in SE(2) and of xy only. Empty where neither is possible.
 std::optional<double> AlignedMisfit(const std::vector<PosePair>& pairs);
 
-// A misfit that falls by less says nothing: it is what poses jitter by.
+// Smaller decreases of the misfit are within the jitter of poses and do not count.
 constexpr double kLeastGainM = 0.005;
 
 }  // namespace depthgrid

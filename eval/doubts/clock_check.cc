@@ -13,7 +13,7 @@ namespace {
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLeastPoses = 10;
 
-// The reference at a time, its position interpolated; empty outside of it and in its gaps.
+// The reference's pose at a time, with interpolated position; empty outside its stamps and in gaps.
 std::optional<StampedPose> At(const Trajectory& reference, double stamp_s) {
   constexpr double kLongestGapS = 1.0;
   const auto after =
@@ -32,7 +32,7 @@ std::optional<StampedPose> At(const Trajectory& reference, double stamp_s) {
   return pose;
 }
 
-// Evenly chosen: as many as tell an offset.
+// Evenly spaced poses, enough to determine an offset.
 Trajectory SomeOf(const Trajectory& trajectory) {
   constexpr std::size_t kMost = 500;
   const std::size_t step = (trajectory.size() + kMost - 1) / kMost;
@@ -54,7 +54,7 @@ class Clocks {
         std::max(kLeastPoses, static_cast<std::size_t>(kLeastShare * static_cast<double>(most)));
   }
 
-  // Of the poses that the reference has at either offset.
+  // Misfit over the poses at which the reference is known with both offsets.
   double Misfit(double offset_s, double other_offset_s) const {
     const std::vector<PosePair> pairs = PairsAt(offset_s, other_offset_s);
     if (pairs.size() < least_) return kNoFit;
@@ -65,10 +65,10 @@ class Clocks {
     double offset_s = 0.0;
     double unsure_s = 0.0;
   };
-  // The roundest that fits as well as the best: no more digits than are known. And how far from it
-  // offsets fit so, in steps of the second.
+  // The offset with the fewest digits that fits as well as the best one, and how far from it
+  // offsets fit equally well.
   Best BestOffset() const {
-    // `map` has the same (mapper/io/pose_check.cc).
+    // The same as in `map` (mapper/io/pose_check.cc).
     constexpr double kAlike = 1.005;
     const double best_s = FinestOffset();
     const double most_m = kAlike * Misfit(best_s, best_s);
@@ -89,7 +89,8 @@ class Clocks {
 
  private:
   static constexpr double kStepsS[] = {0.1, 0.01, 0.001};
-  // Of the poses that most offsets leave: the fewer, the better anything fits.
+  // Share of the usual number of poses that an offset must leave: the fewer poses, the better any
+  // offset fits.
   static constexpr double kLeastShare = 0.8;
 
   std::vector<PosePair> PairsAt(double offset_s, double other_offset_s) const {
@@ -111,7 +112,7 @@ class Clocks {
     }
     return best_s;
   }
-  // The one nearest to `around_s` on ties.
+  // The best offset on a grid around `around_s`; the nearest to it on ties.
   double BestAround(double around_s, double step_s, double reach_s) const {
     double best_s = around_s;
     double least_m = Misfit(around_s, around_s);

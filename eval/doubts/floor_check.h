@@ -1,5 +1,5 @@
-// Whether a run took the floor for walls, since the poses have it higher than where it was looked
-// for.
+// Whether a run mapped the floor as walls because it is higher, in the poses' world, than
+// configured.
 #pragma once
 
 #include "eval/run/mapping_run.h"
@@ -7,9 +7,9 @@
 
 namespace depthgrid {
 
-// The floor lies at `seen_z_m` of the poses' world, and some frames were mapped as if it lay at
-// floor_z_m, so much lower that it is in the obstacle band. A floor that is lower than taken is
-// found within a few frames, and so is one that the first images show near enough (FloorTracker).
+// Whether some frames were mapped with the floor at floor_z_m although it is at `seen_z_m` in the
+// poses' world, so much higher that it is in the obstacle band. FloorTracker finds a lower floor
+// within a few frames, and also one that the first images show close enough.
 bool MapsFloor(const MappingRun& run, double seen_z_m, const ScanOptions& options);
 
 }  // namespace depthgrid

@@ -14,20 +14,21 @@ constexpr double kLeastMountWayM = 2.0;
 constexpr double kLeastMountTurnRad = kPi;
 const double kLeastMountRad = RadFromDeg(10.0);
 constexpr double kLeastMountM = 0.1;
-// Of 16 lasers that were turned, off or both the misfit became 0.02 to 0.44 of what it was. Of 80
-// logs with other faults or none whose scans were not mirrored, what turned by 10 degrees or moved
-// by 0.1 m left 0.55 of it or more.
+// For 16 lasers that were rotated, displaced or both, the misfit fell to 0.02 to 0.44 of its value.
+// For 80 logs with other faults or none, and scans not mirrored, estimates of 10 degrees or 0.1 m
+// left 0.55 or more.
 constexpr double kFitsBetter = 0.5;
-// Ways that differ more are of another scale (ScaleDoubt).
+// Paths that differ more have different scales (ScaleDoubt).
 constexpr double kMostScale = 1.3;
-// Turns that are all alike do not tell a position from an angle: it is near then. How far a laser
-// may be, against how far poses err over a stretch.
+// If all turns are alike, position and angle cannot be separated; the position is then taken to be
+// small. Prior sigma of the laser's position, and the poses' error over a stretch.
 constexpr double kMountNearM = 0.5;
 constexpr double kStretchErrorM = 0.02;
 
 // The hand-eye equation, given_from_next * mount = mount * laser_from_next, of a stretch's
-// positions: (R - 1) p - L (cos, sin) = -t, with R and t SLAM's turn and way, p and (cos, sin) the
-// mount's position and heading, and L (cos, sin) the laser's way turned by the latter.
+// positions: (R - 1) p - L (cos, sin) = -t, with R and t SLAM's rotation and translation, p and
+// (cos, sin) the mount's position and heading, and L (cos, sin) the laser's translation rotated by
+// that heading.
 struct HandEye {
   Eigen::Matrix2d of_position;
   Eigen::Matrix2d of_heading;
@@ -54,10 +55,10 @@ double MountMisfit(const std::vector<HandEye>& equations, const Pose2& mount) {
 
 struct MountFit {
   Pose2 mount;
-  double scale = 1.0;  // SLAM's way over the laser's
+  double scale = 1.0;  // SLAM's path length over the laser's
 };
 
-// Linear least squares with a heading of any length, then the position again with one of length 1.
+// Linear least squares with (cos, sin) of any norm, then again for the position, with norm 1.
 MountFit SolveMount(const std::vector<HandEye>& equations, bool with_position) {
   Eigen::Matrix2d h_position = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d h_both = Eigen::Matrix2d::Zero();
@@ -71,7 +72,8 @@ MountFit SolveMount(const std::vector<HandEye>& equations, bool with_position) {
     g_position += equation.of_position.transpose() * equation.value;
     g_heading += equation.of_heading.transpose() * equation.value;
   }
-  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();  // none: it is known to be 0
+  Eigen::Matrix2d position_covariance =
+      Eigen::Matrix2d::Zero();  // zero: the position is taken to be 0
   if (with_position) {
     constexpr double kNear = kStretchErrorM * kStretchErrorM / (kMountNearM * kMountNearM);
     position_covariance = (h_position + kNear * Eigen::Matrix2d::Identity()).inverse();

@@ -7,10 +7,11 @@
 
 namespace depthgrid {
 
-// Where the laser is in the axes of the poses given for it, as far as the two ways say: turned by
-// 10 degrees or 0.1 m away, and the ways fit so at less than half the misfit. A position is told
-// only of way with half a turn in it. Nothing for short ways, and where the two differ in scale.
-// Mirrored scans (WayDoubt) and scans of wrong angles (TurnScaleDoubt) may look like that.
+// The laser's pose in the axes of the poses given for it, from comparing SLAM's path with that of
+// the scans. Given only if it is rotated by 10 degrees or 0.1 m away, and the misfit of the paths
+// is less than half as large with it. A position is estimated only if the path includes half a
+// turn. Empty for short paths, and where the two differ in scale. Mirrored scans (WayDoubt) and
+// scans with wrong angles (TurnScaleDoubt) may look the same.
 std::optional<Pose2> MountDoubt(const MappingRun& run);
 
 }  // namespace depthgrid

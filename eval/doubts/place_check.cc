@@ -18,16 +18,16 @@ namespace depthgrid {
 namespace {
 
 constexpr int kOneOf = 10;
-// Those that a match counts for: hardly anything is seen by less.
+// Least score of a match that counts; with less, hardly anything on the map was seen.
 constexpr double kLeastExplained = 0.2;
-// So many frames on the map, and as many off it, are no accident.
+// This many frames on the map, and as many off it, are no coincidence.
 constexpr int kStretchFrames = 30;
-// A match is this sure along a line that it has seen the end of, rather than its noise.
+// Largest sigma along a line of a match that has seen an end of the line, rather than noise.
 constexpr double kSeenSigmaM = 0.02;
-// Of directions that a match says nothing about.
+// For directions that a match does not constrain.
 constexpr double kUnseenSigmaM = 100.0;
 
-// The index of the frame with which so many lost ones begin, after as many that were not.
+// Index of the frame at which kStretchFrames lost frames begin, after as many that were not lost.
 std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_lost) {
   int lost_before = 0, in_a_row = 0;
   for (int i = 0; i < static_cast<int>(index_and_lost.size()); ++i) {
@@ -43,7 +43,7 @@ std::optional<int> LeftAt(const std::vector<std::pair<int, bool>>& index_and_los
   return {};
 }
 
-// The first so many of them, but for a tenth.
+// Whether 90 % of the first kStretchFrames are on the map.
 template <typename Iterator>
 bool IsOnMap(Iterator begin, Iterator end) {
   if (end - begin < kStretchFrames) return false;

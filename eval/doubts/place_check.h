@@ -1,4 +1,4 @@
-// Whether a run that was begun in a finished map is where it thinks it is.
+// Whether a run that started in a finished map is located correctly in it.
 #pragma once
 
 #include <optional>
@@ -12,28 +12,29 @@
 namespace depthgrid {
 
 struct LostFrames {
-  bool localised = false;  // else the first frame alone was looked at
-  int lost = 0;            // of so many frames hardly anything that they show lies on the map
+  bool localised = false;  // else only the first frame was checked
+  int lost = 0;            // frames of which hardly any hits lie on the map
   int frames = 0;
-  // Where the sequence left the map (FrameReport::index): 30 frames and more before it were on the
-  // map, but for a tenth, and from it on 30 in a row are not. Empty where that cannot be told.
+  // Where the sequence left the map (FrameReport::index): of at least 30 frames before it, 90 %
+  // were on the map, and from it on 30 in a row are not. Empty if there is no such frame.
   std::optional<int> left_at;
-  // The first 30 frames and the last 30 are on the map, but for a tenth.
+  // Of the first 30 and of the last 30 frames, 90 % are on the map.
   bool comes_back = false;
 };
 
-// Of the frames that were matched against the finished map alone: all where nothing was inserted
+// Checks the frames that were matched only against the finished map: all if nothing was inserted
 // (`localised`), else the first. Empty unless a tenth of them are lost.
 std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised);
 
-// In words, for a warning about the map.
+// The text of a warning about it.
 std::string TextOf(const LostFrames& lost);
 
-// How all that a run added agrees with what the map held before, where much of it (as of a start,
-// kMuchAgainst) contradicts that. `grid`: as the map is drawn. Empty where nothing was added.
+// The agreement of all that a run added with the earlier map, if much of it contradicts that map
+// (by the limit for a start, kMuchAgainst). `grid`: as the map is drawn. Empty if nothing was
+// added.
 std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid);
 
-// Whether any frame's match told its place along this line.
+// Whether any frame's match determined its position along this line.
 bool SeesAlong(const MappingRun& run, const UnsureAlong& line);
 
 }  // namespace depthgrid

@@ -12,7 +12,7 @@ std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& r
   const bool is_file = IsFileName(options.trajectory);
   const bool is_same_path = !anew.trajectory && (is_file || !anew.scene);
   if (!record.Has("scene_hash") || (anew.scene && !is_same_path)) return {};
-  // Of a room that is chosen anew nothing need be known, not even whether it can be read.
+  // A room that is selected again need not be read, and may be unreadable.
   const WorldHashes now =
       anew.scene ? WorldHashes{"", "", HashOfPathFile(options)} : HashesOf(options);
   std::vector<std::string> doubts;

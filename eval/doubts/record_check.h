@@ -1,4 +1,4 @@
-// Whether the room and the path that a run.yaml was written of are still the same.
+// Whether the room and the path that a run.yaml was written for are unchanged.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace depthgrid {
 
-// What is chosen anew, and so may be another one.
+// What the user selects again, and so may be different.
 struct ChosenAnew {
-  bool scene = false;  // with its path, but for one of a file
+  bool scene = false;  // with its path, unless that is a file
   bool trajectory = false;
 };
 
-// A line for each of the two that has changed since. `record`: `provenance` of the experiment at
-// `path`, of which nothing is said where it has none; `options`: it as it is to be done.
+// One line for each of the two that has changed. `record`: `provenance` of the experiment at
+// `path`, empty if it has none; then nothing is reported. `options`: the experiment as it will be
+// run.
 std::vector<std::string> DoubtsOfRecord(const std::string& path, const Config& record,
                                         const ExperimentOptions& options, const ChosenAnew& anew);
 

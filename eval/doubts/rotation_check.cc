@@ -12,14 +12,15 @@
 namespace depthgrid {
 namespace {
 
-// A camera on a mount that was taken for level may be that far off.
+// Possible error of a camera mount that was assumed to be level.
 constexpr double kFitsRad = RadFromDeg(10.0);
-constexpr double kConstantShare = 1.0 / 3.0;  // of the error: what is left when it is taken away
+constexpr double kConstantShare =
+    1.0 / 3.0;  // of the error, left after removing a constant rotation
 
 using Rotations = std::vector<Eigen::Quaterniond>;
 
 bool IsUpsideDown(const Similarity& fit) {
-  constexpr double kLevelCos = 0.95;  // 18 degrees, more than level worlds differ by
+  constexpr double kLevelCos = 0.95;  // 18 degrees, more than level worlds differ
   const Eigen::Vector3d up = fit.reference_from_estimate.rotation * Eigen::Vector3d::UnitZ().eval();
   return up.z() < -kLevelCos;
 }
@@ -37,9 +38,8 @@ Eigen::Vector3d ExtentsOf(const std::vector<PosePair>& pairs) {
   return EigenOf(covariance).values.cwiseMax(0.0).cwiseSqrt();
 }
 
-// What lays the worlds over each other by the positions alone, where those fit and tell how the
-// worlds are turned: in space a path must be wide beside what it errs by, or it could be turned
-// about itself.
+// The alignments from positions alone, where those fit and determine the rotation: in SE(3) a path
+// must be wide compared to its errors, or the rotation about it would be arbitrary.
 std::vector<Similarity> FitsOf(const std::vector<PosePair>& pairs) {
   constexpr double kMostMisfit = 0.1;  // of the extent
   constexpr double kLeastWidth = 5.0;  // of the misfit
@@ -58,7 +58,7 @@ std::vector<Similarity> FitsOf(const std::vector<PosePair>& pairs) {
   return fits;
 }
 
-// From the reference's axes to the estimate's, pose by pose.
+// The reference's axes in the estimate's, pose by pose.
 Rotations TurnsOf(const std::vector<PosePair>& pairs) {
   Rotations turns;
   for (const PosePair& pair : pairs) {
@@ -82,7 +82,7 @@ double MedianAngle(const Rotations& rotations, const Eigen::Quaterniond& from) {
   return UpperMedian(std::move(angles_rad));
 }
 
-// How rotations err over the fits: the least of each.
+// Errors of rotations: the least over all alignments.
 struct Errors {
   double error_rad = kPi;   // as they are
   double spread_rad = kPi;  // about a constant rotation
@@ -108,7 +108,7 @@ bool IsConstant(const Errors& errors, double error_rad) {
   return errors.spread_rad < kFitsRad && errors.spread_rad < kConstantShare * error_rad;
 }
 
-// Each pose with the four numbers of its file, which were read x y z w, read w x y z.
+// Reinterprets quaternions that were read as x y z w as w x y z.
 std::vector<PosePair> ReadWFirst(std::vector<PosePair> pairs) {
   for (PosePair& pair : pairs) {
     Eigen::Quaterniond& q = pair.estimate.world_from_camera.rotation;

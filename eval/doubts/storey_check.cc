@@ -13,10 +13,10 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kLeastStoreyM = 1.5;  // room to stand in, as under a ceiling (sim/mesh/floor.cc)
-constexpr double kLevelM = 0.05;       // heights this near count as one, as of floors
+constexpr double kLeastStoreyM = 1.5;  // headroom, as under a ceiling (sim/mesh/floor.cc)
+constexpr double kLevelM = 0.05;       // heights within this count as one, as for floors
 
-// Of the surface straight below each pose, lowest first; none where nothing is.
+// Heights of the surface straight below each pose, ascending; poses above nothing are left out.
 std::vector<double> HeightsBelow(const Trajectory& trajectory, const RayScene& rays) {
   std::vector<double> heights_m;
   for (const StampedPose& pose : trajectory) {
@@ -28,7 +28,7 @@ std::vector<double> HeightsBelow(const Trajectory& trajectory, const RayScene& r
   return heights_m;
 }
 
-// The longest run of sorted heights within kLevelM.
+// The largest set of sorted heights within kLevelM.
 std::span<const double> MostAlike(const std::vector<double>& heights_m) {
   std::span<const double> most;
   std::size_t end = 0;
@@ -39,7 +39,7 @@ std::span<const double> MostAlike(const std::vector<double>& heights_m) {
   return most;
 }
 
-// Meshes are of single precision: 0.2 - 0.2 is not 0 there.
+// Rounds off errors of the single-precision mesh; + 0.0 makes -0 positive.
 double InMillimetres(double z_m) { return std::round(1000.0 * z_m) / 1000.0 + 0.0; }
 
 }  // namespace

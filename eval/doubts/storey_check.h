@@ -1,4 +1,4 @@
-// Whether a camera path goes over the floor that its scene's map is of.
+// Whether a camera path is on the storey that the scene's floor is set to.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace depthgrid {
 
-// What to say when most of the path is above one level surface which could be the scene's floor
-// itself and lies a storey above the one that it has. Neither furniture nor a platform is so high,
-// stairs and ramps have many heights, and what covers little of the scene cannot be its floor.
+// A warning when most of the path is above one level surface that could be the scene's floor and is
+// a storey above the configured one. Furniture and platforms are not so high, stairs and ramps have
+// many heights, and a surface that covers little of the scene cannot be its floor.
 std::optional<std::string> DoubtOfStorey(const Trajectory& trajectory, const Scene& scene,
                                          const RayScene& rays);
 

@@ -1,4 +1,4 @@
-// The way of a run in stretches, as SLAM and as the map have it.
+// A run's path divided into stretches, with the motion of each by SLAM and in the map.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace depthgrid {
 
-// Poses err by centimetres from frame to frame, which does not add up over such stretches.
+// Poses jitter by centimetres from frame to frame; over such stretches that does not add up.
 constexpr double kStretchM = 0.5;
 // A robot may turn on the spot.
 constexpr double kStretchRad = 0.5;
@@ -20,7 +20,7 @@ constexpr double kStretchRad = 0.5;
 struct Stretch {
   Pose2 slam;
   Pose2 map;
-  double slam_turn_rad = 0.0;  // added up, whole turns too
+  double slam_turn_rad = 0.0;  // summed, including full turns
   double map_turn_rad = 0.0;
 
   double longer_m() const { return std::max(slam.translation().norm(), map.translation().norm()); }
@@ -29,12 +29,12 @@ struct Stretch {
   }
 };
 
-// Stretches that are `done`, one after the other; none across a correction of SLAM, poses that
-// begin anew without a word, or where a pose is missing.
+// Consecutive stretches, each ending when `done`. None spans a correction by SLAM, an unannounced
+// restart of its poses, or a missing pose.
 std::vector<Stretch> StretchesOf(const MappingRun& run,
                                  const std::function<bool(const Stretch&)>& done);
 
-// Those that go or turn so far.
+// Stretches of kStretchM or kStretchRad.
 std::vector<Stretch> WaysAndTurnsOf(const MappingRun& run);
 
 }  // namespace depthgrid

@@ -19,7 +19,7 @@ namespace {
 
 using Doubt = std::optional<std::string>;
 
-constexpr double kLeastPathM = 1.0;  // of less, noise tells what is looked for
+constexpr double kLeastPathM = 1.0;  // with less, noise would decide
 
 bool StandsStill(const std::vector<PosePair>& pairs) {
   constexpr double kLeastMotionM = 1e-4;
@@ -40,8 +40,8 @@ Doubt DoubtOfScale(const std::vector<PosePair>& pairs, const TrajectoryNames& na
       names.estimate, names.reference, fit->scale);
 }
 
-// The last pose at the first one's time, and so on. Positions do not tell: an eight backwards is
-// its mirror image, which fits upside down.
+// Tries the poses in reverse order at the same stamps. Positions alone do not show it: a reversed
+// figure eight is its mirror image, which fits upside down.
 Doubt DoubtOfDirection(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
   std::vector<PosePair> backwards = pairs;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -60,7 +60,8 @@ double AngleOf(const Eigen::Quaterniond& rotation) {
   return rotation.angularDistance(Eigen::Quaterniond::Identity());
 }
 
-// Settings of the program that turns them: a camera need not look level and ahead.
+// Mount settings with which the program corrects this rotation; a camera need not look level or
+// ahead.
 std::string MountText(const Eigen::Quaterniond& base_from_camera) {
   constexpr double kLeastDeg = 1.0;
   const Eigen::Vector3d forward = base_from_camera * Eigen::Vector3d::UnitZ().eval();
@@ -74,7 +75,7 @@ std::string MountText(const Eigen::Quaterniond& base_from_camera) {
 
 std::string ConstantText(const Eigen::Quaterniond& estimate_from_reference,
                          const TrajectoryNames& names) {
-  constexpr double kMountRad = RadFromDeg(40.0);  // more than cameras look down
+  constexpr double kMountRad = RadFromDeg(40.0);  // more than cameras are tilted
   const Eigen::Quaterniond reference_from_estimate = estimate_from_reference.conjugate();
   if (AngleOf(estimate_from_reference * BaseFromCamera().conjugate()) < kMountRad) {
     return fmt::format(
@@ -94,7 +95,7 @@ std::string ConstantText(const Eigen::Quaterniond& estimate_from_reference,
 }
 
 Doubt DoubtOfRotations(const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
-  // Positions of another point of the robot lie turned where they are laid over each other.
+  // Positions of another point of the robot would give a wrong rotation when aligned.
   const auto lever = FindLeverArm(pairs);
   const auto doubt = CheckRotations(lever ? MovedBy(pairs, lever->arm_m) : pairs);
   if (!doubt) return {};
@@ -112,7 +113,7 @@ Doubt DoubtOfRotations(const std::vector<PosePair>& pairs, const TrajectoryNames
 }
 
 std::string LeverText(const LeverArm& lever, const TrajectoryNames& names) {
-  // 0 where nothing but rounding speaks.
+  // Suppresses rounding errors.
   const auto shown = [](double arm_m) { return std::abs(arm_m) < 5e-4 ? 0.0 : arm_m; };
   return fmt::format(
       "{}: its poses seem to be of another point of the robot than {}'s, as a laser's or a "

@@ -1,5 +1,5 @@
-// What of an estimated trajectory makes its errors say something else than they seem to: a line
-// each, for whoever scores it or fits a model to its errors.
+// Warnings about an estimated trajectory whose errors may have another cause than SLAM, one line
+// each.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace depthgrid {
 
-// How the two are named to the user.
+// Names for messages to the user.
 struct TrajectoryNames {
   std::string reference;
   std::string estimate;
 };
 
-// An estimate that stands still, runs backwards, has another scale, or poses with other axes or
-// another order of quaternions than the reference's.
+// Warns of an estimate that stands still, is reversed in time, has another scale, or has other axes
+// or another order of quaternions than the reference.
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
                                        const TrajectoryNames& names);
-// Stamps of another clock, or poses of another point of the robot, whichever fits better; `added_s`
-// were added to the estimate's stamps before.
+// Warns of stamps from another clock or poses of another point of the robot, whichever fits better.
+// `added_s` has already been added to the estimate's stamps.
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
                                        const TrajectoryNames& names, double added_s = 0.0);
 

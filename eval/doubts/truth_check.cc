@@ -25,7 +25,7 @@ bool HasFree(const StateMap& map) {
   return std::find(map.states.begin(), map.states.end(), CellState::kFree) != map.states.end();
 }
 
-// A hand may hold the camera above a table now and then, whose cells are occupied.
+// Only most of the path counts: a hand-held camera may be above a table, whose cells are occupied.
 std::optional<std::string> DoubtOfTruth(const TruthRecord& truth,
                                         const ExperimentOptions& options) {
   const ScanOptions& scan = options.mapper.scan;

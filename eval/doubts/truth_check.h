@@ -1,4 +1,4 @@
-// Whether the true map can be one of the room that is meant.
+// Whether the true map is plausible for the room.
 #pragma once
 
 #include <optional>
@@ -12,14 +12,14 @@ namespace depthgrid {
 
 bool HasFree(const StateMap& map);
 
-// What to say when nothing of the true map is free, or most of the camera's path lies in what is
-// not: the scene's faces or its floor.
+// A warning when the true map has no free cell, or when most of the camera's path is outside the
+// free cells, because of the scene's faces or its floor.
 std::optional<std::string> DoubtOfTruth(const TruthRecord& truth, const ExperimentOptions& options);
 
-// That the true map is of another storey than the path (eval/doubts/storey_check.h).
+// A warning that the true map is of another storey than the path (eval/doubts/storey_check.h).
 std::optional<std::string> DoubtOfStorey(const World& world, const ExperimentOptions& options);
 
-// The latter, or else the former: a floor in another storey explains a path that is not free.
+// The second, or else the first: a floor on another storey explains a path that is not free.
 std::optional<std::string> DoubtOfTruth(const World& world, const TruthRecord& truth,
                                         const ExperimentOptions& options);
 

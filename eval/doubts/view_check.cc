@@ -24,17 +24,18 @@ bool NoneToMatch(const MappingRun& run) {
                      [](const FrameReport& report) { return report.beams == 0; });
 }
 
-// With fewer matched frames the poses are no longer the mapper's. Shipped rooms and cameras have
-// all but the first; where it is three in four, errors have been those of SLAM.
+// With a smaller share of matched frames the poses are mostly SLAM's. In shipped rooms all frames
+// but the first are matched; with 75 % matched, errors were as large as SLAM's.
 constexpr double kFewestMatched = 0.9;
 
-// Where the others' beams see more often than that, the scan is not what keeps them from a match.
+// If the unmatched frames have hits on more than this share of the beams, the scans are not the
+// cause.
 constexpr double kFewBeams = 0.25;
 
 struct MatchedFrames {
   int matched = 0;
-  int frames = 0;      // that had an image, a pose and something mapped before them
-  double beams = 0.0;  // with a hit, of those that were not matched, mean
+  int frames = 0;      // with an image, a pose and an earlier map to match against
+  double beams = 0.0;  // mean number with a hit, in frames that were not matched
 
   bool AreFew() const { return matched < kFewestMatched * frames; }
 };
@@ -43,7 +44,7 @@ MatchedFrames CountMatched(const MappingRun& run) {
   MatchedFrames count;
   bool any_mapped = false;
   for (const FrameReport& report : run.reports) {
-    // A frame without an image has no stand; its recording's reader says what is missing.
+    // A frame without an image has no stand; the recording's reader reports what is missing.
     if (!report.slam_from_camera || (run.camera && !report.stand)) continue;
     if (any_mapped || report.match.found) {
       count.matched += report.match.found ? 1 : 0;
@@ -57,7 +58,7 @@ MatchedFrames CountMatched(const MappingRun& run) {
   return count;
 }
 
-// What the frames that are kept whole show.
+// The range of depths in the sample frames.
 std::string DepthSeen(const MappingRun& run) {
   float least_m = std::numeric_limits<float>::infinity();
   float most_m = 0.0F;
@@ -79,7 +80,7 @@ std::string ImagesOf(const MappingRun& run) {
                      camera.height_px, DegFromRad(width_rad), DepthSeen(run));
 }
 
-// Of frames of which few were matched: what was not seen, or was seen and not taken.
+// Why few frames were matched: too little was visible, or hits were not matched.
 std::string WhyFewMatched(const MatchedFrames& count, const MapperOptions& options) {
   if (count.beams < kFewBeams * options.scan.beams) {
     return fmt::format(
@@ -96,7 +97,7 @@ std::string WhyFewMatched(const MatchedFrames& count, const MapperOptions& optio
 
 }  // namespace
 
-// The slice that is matched may have hits where the band that is drawn has none.
+// Only the drawn band counts; the slice for matching may have hits where it has none.
 bool SawNothing(const MappingRun& run) {
   bool any_kept = false;
   for (const MappedFrame& frame : run.result.mapped) {
@@ -149,7 +150,7 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
 
 std::optional<std::string> DoubtOfView(const MappingRun& run, const ExperimentOptions& options) {
   auto doubt = DoubtOfView(run, options.mapper);
-  // A shipped path's poses are right.
+  // Poses of a shipped path are correct.
   if (doubt && IsFileName(options.trajectory)) {
     *doubt += "; the path's poses must be those of the camera's axes, x right, y down, z forward";
   }

@@ -10,19 +10,19 @@
 
 namespace depthgrid {
 
-// Whether the run drew no wall: none of its own scans has a hit.
+// Whether none of the run's own scans has a hit.
 bool SawNothing(const MappingRun& run);
 
-// What to say when the map is empty or has no free cell, when nothing could be matched since no
-// scan has a hit at the camera's height, or when so few frames could that the poses are mostly
-// those given: the band, the ranges, the images. Nothing of laser logs.
+// A warning when the map is empty or has no free cell, when nothing could be matched because no
+// scan has a hit at the camera's height, or when so few frames were matched that the poses are
+// mostly the given ones. It names the cause: band, ranges or images. Empty for laser logs.
 std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOptions& options);
 
-// The same of an experiment, whose path may be at fault where it is a file's.
+// The same for an experiment; also names its path as a possible cause if it is from a file.
 std::optional<std::string> DoubtOfView(const MappingRun& run, const ExperimentOptions& options);
 
-// Of laser logs: what to say when so few scans could be matched that the poses are mostly those
-// given.
+// For laser logs: a warning when so few scans were matched that the poses are mostly the given
+// ones.
 std::optional<std::string> DoubtOfScans(const MappingRun& run);
 
 }  // namespace depthgrid

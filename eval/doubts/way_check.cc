@@ -10,23 +10,24 @@
 namespace depthgrid {
 namespace {
 
-// Of 36 runs of 450 frames in two shipped rooms, six profiles of SLAM with three seeds, it was 0.87
-// to 1.10, but for one whose map had broken (0.77); depth read at a fifth of its scale gave 0.24.
+// In 36 runs of 450 frames (two shipped rooms, six profiles of SLAM, three seeds) the ratio was
+// 0.87 to 1.10, except 0.77 for one with a broken map; depth read at a fifth of its scale gave
+// 0.24.
 constexpr double kMostRatio = 1.3;
 constexpr double kLeastWayM = 2.0;
 
 constexpr double kLeastTurnRad = 0.5 * kPi;
 constexpr double kLeastScaledTurnRad = kPi;
-// Of some 40 right logs, simulated lasers in a living room and an office with their faults of other
-// kinds, it was 0.94 to 1.00; of scans' angles taken at two thirds to half again of what they are,
-// below 0.77 and above 1.4.
+// In about 40 logs of simulated lasers in a living room and an office, correct or with other
+// faults, the ratio was 0.94 to 1.00; with the scans' angles scaled by 2/3 to 1.5 it was below 0.77
+// or above 1.4.
 constexpr double kMostTurnRatio = 1.15;
-// Cosines between the motions of SLAM and the map: of turns and ways 0.99 and more where all is
-// right; -1.00 and 0.93 of mirrored scans, -1.00 and 0.35 where headings had the other sign, 1.00
-// and 0.10 where x and y were swapped (a laser in a living room).
+// Least cosine between the motions of SLAM and the map. For turns and translations it was 0.99 or
+// more where all was correct; -1.00 and 0.93 for mirrored scans, -1.00 and 0.35 for headings with
+// the wrong sign, 1.00 and 0.10 for swapped x and y (a laser in a living room).
 constexpr double kSame = 0.5;
 
-// The cosine of the angle between two sequences of numbers, 1 where one of them has none.
+// Accumulates the cosine of the angle between two sequences of numbers; 1 where one is zero.
 struct Likeness {
   double product = 0.0;
   double first = 0.0;

@@ -1,4 +1,4 @@
-// Whether SLAM and the scans agree on how far the camera went, and which way.
+// Whether SLAM and the scans agree on the length and direction of motion.
 #pragma once
 
 #include <optional>
@@ -7,34 +7,34 @@
 
 namespace depthgrid {
 
-// How far SLAM's poses and the final estimates go over the same stretches.
+// Path lengths of SLAM's poses and the final estimates over the same stretches.
 struct Ways {
   double slam_m = 0.0;
   double map_m = 0.0;
 };
 
-// Summed over stretches of at least half a metre of either, none across a correction of SLAM, as
-// SlamEpochs tells it, or where a pose is missing.
+// Summed over stretches of at least half a metre in either, none of which spans a correction by
+// SLAM (SlamEpochs) or a missing pose.
 Ways WaysOf(const MappingRun& run);
 
-// The ways, where they differ so much that one of the two scales is wrong: depth images read in
-// other units than they have, a monocular SLAM, wheels of another size. Nothing for short ways.
+// The lengths, if they differ so much that one of the scales must be wrong: depth images in other
+// units, monocular SLAM, or a wrong wheel size. Empty for short paths.
 std::optional<Ways> ScaleDoubt(const MappingRun& run);
 
-// The map's turns over SLAM's on the same stretches, where they differ so much that headings or the
-// scans' angles have another scale: a laser that is wider or narrower than was read. Nothing for
-// less than half a turn.
+// The ratio of the map's turns to SLAM's on the same stretches, if it is so far from 1 that
+// headings or the scans' angles must have a wrong scale, such as a wrong field of view of the
+// laser. Empty for less than half a turn.
 std::optional<double> TurnScaleDoubt(const MappingRun& run);
 
-// What makes the two go different ways.
+// Why SLAM and the scans move in different directions.
 enum class WayFault {
-  kMirroredScans,  // readings from the other side: both go the same way, but for left and right
-  kTurns,          // headings with the other sign
+  kMirroredScans,  // readings in reverse order: the same motion with left and right swapped
+  kTurns,          // headings with the wrong sign
   kDirections,     // x and y swapped, or headings counted from another axis
 };
 
-// Of planar sequences, whose scans say by themselves how the laser moves. Nothing for short ways
-// and, of turns, for less than a quarter turn.
+// For planar sequences, whose scans alone determine the laser's motion. Empty for short paths;
+// turns are judged only from a quarter turn on.
 std::optional<WayFault> WayDoubt(const MappingRun& run);
 
 }  // namespace depthgrid

@@ -13,7 +13,7 @@
 namespace depthgrid {
 namespace {
 
-// frames.csv has a row an input frame; scans.bin names frames by the same index.
+// frames.csv has a row per input frame; scans.bin refers to frames by the same index.
 std::optional<std::size_t> RowOf(const CsvTable& frames, int frame) {
   const std::vector<double>& index = frames.Column("frame");
   const auto found = std::lower_bound(index.begin(), index.end(), frame);
@@ -21,12 +21,12 @@ std::optional<std::size_t> RowOf(const CsvTable& frames, int frame) {
   return static_cast<std::size_t>(found - index.begin());
 }
 
-// `whose`: "map", "match".
+// `whose`: the columns' prefix, "map" or "match".
 std::optional<Pose2> PoseAt(const CsvTable& frames, std::size_t row,
                             const std::string& whose = "map") {
   const Pose2 pose = {frames.Column(whose + "_x_m")[row], frames.Column(whose + "_y_m")[row],
                       frames.Column(whose + "_yaw_rad")[row]};
-  // Nothing, or damage: no run is anywhere else.
+  // Missing or damaged: valid poses are within reach.
   if (!IsWithinReach({pose.x_m, pose.y_m, 0.0}) || !std::isfinite(pose.yaw_rad))
     return std::nullopt;
   return pose;
@@ -44,8 +44,9 @@ Eigen::Vector3d AxesAt(const CsvTable& frames, std::size_t row,
   return {frames.Column(names[0])[row], frames.Column(names[1])[row], frames.Column(names[2])[row]};
 }
 
-// Of runs before the table had the matched pose. Eq. 3 backwards: estimate = prediction * (K
-// innovation); of K it has the diagonal, so that this is right where the modes have no more.
+// The matched pose, for runs of versions that did not store it. Inverts Eq. 3, estimate =
+// prediction * (K innovation). The table has only the diagonal of K, so this is exact where K is
+// diagonal.
 Pose2 MatchFromGain(const CsvTable& frames, std::size_t row, const Pose2& estimate,
                     const Eigen::Vector3d& innovation) {
   const Eigen::Vector3d gain = AxesAt(frames, row, {"gain_forward", "gain_left", "gain_yaw"});
@@ -53,7 +54,7 @@ Pose2 MatchFromGain(const CsvTable& frames, std::size_t row, const Pose2& estima
          Pose2::FromVector(innovation);
 }
 
-// How far from base a scan says anything.
+// Distance from the base that a scan reaches.
 double ReachM(const Scan& scan) {
   float reach_m = 0.0F;
   for (const Beam& beam : scan.beams) {
@@ -62,19 +63,19 @@ double ReachM(const Scan& scan) {
   return reach_m;
 }
 
-// No cell of the one scan is among those that matching or picturing the other reads. Those are
-// around its points: a rectangle, whose corners are up to sqrt(2) as far away, and a margin.
+// Whether `scan` has no cell among those that matching or drawing `shown` reads: the rectangle
+// around its points, whose corners are up to sqrt(2) as far away, and a margin.
 bool AreApart(const Scan& scan, const Pose2& pose, const Scan& shown, const Pose2& shown_pose,
               double resolution_m) {
-  constexpr double kMarginM = 1.0;  // offsets of the match's surface and the picture's margin
+  constexpr double kMarginM = 1.0;  // for the offsets of MatchSurface and the picture's margin
   constexpr double kMarginCells = 8.0;
   const double surroundings_m = std::numbers::sqrt2 * (ReachM(shown) + kMarginM);
   const double distance_m = (pose.translation() - shown_pose.translation()).norm();
   return distance_m > ReachM(scan) + surroundings_m + kMarginCells * resolution_m;
 }
 
-// How the poses of a run's scans were at the time of one of them. Where loops moved the map since
-// the first that matters here, what is known of it is that it moved as a whole.
+// The poses of a run's scans at the time of one of them. Where loops moved the map after the first
+// scan that matters here, the map is assumed to have moved as a whole.
 struct PosesThen {
   const RunFiles& run;
   bool corrected = false;
@@ -82,7 +83,7 @@ struct PosesThen {
 
   Pose2 Of(std::size_t scan_index) const {
     const StoredScan& stored = run.scans[scan_index];
-    // Of a map that the run went on in no row tells, but it stays where it is.
+    // Scans of a prior map have no row, but they do not move.
     if (scan_index < run.prior_scans) return stored.map_from_base;
     const std::optional<std::size_t> row = RowOf(run.frames, stored.frame);
     const std::optional<Pose2> pose = row ? PoseAt(run.frames, *row) : std::nullopt;
@@ -131,7 +132,7 @@ OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const Grid
   for (std::size_t i = first; i < scan_index; ++i) {
     Pose2 pose = poses.Of(i);
     Scan scan = *run.scans[i].scan;
-    // It counts as one of the submap's scans, but poses flung far apart need no grid over them all.
+    // It still counts as one of the submap's scans, but needs no part of the grid.
     if (AreApart(scan, pose, shown, *pose_then, grid.resolution_m)) {
       scan.beams.clear();
       pose = *pose_then;

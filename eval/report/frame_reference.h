@@ -1,4 +1,4 @@
-// What one frame of a finished run was matched against, drawn again from the run's folder.
+// Redraws, from a run's folder, the map that one of its frames was matched against.
 #pragma once
 
 #include <optional>
@@ -9,22 +9,22 @@
 
 namespace depthgrid {
 
-// A row of frames.csv, as it was known at the time.
+// Poses of a row of frames.csv, as known when the frame was mapped.
 struct FrameAtTheTime {
-  std::optional<Pose2> predicted_map_from_base;  // without a match: empty
+  std::optional<Pose2> predicted_map_from_base;  // empty without a match
   std::optional<Pose2> matched_map_from_base;
   Pose2 map_from_base;  // the online estimate
 };
 
-// Nothing for a frame without a pose.
+// Empty for a frame without a pose.
 std::optional<FrameAtTheTime> FrameAtRow(const CsvTable& frames, std::size_t row);
 
-// The older active submap (mapper/grid/submap.h) as it was when run.scans[scan_index] came: of the
-// scans before it at the poses they had then. If SLAM closed a loop in between, the finished map's
-// scans moved so that this one lies where it lay at the time. Scans of a map that the run went on
-// in lie as they lie in the end. Unknown everywhere for the first scan. Only its surroundings:
-// scans too far away to share a cell with them are left out, so that the map stays small however
-// far the poses fly.
+// The older active submap (mapper/grid/submap.h) as it was when run.scans[scan_index] was matched:
+// the scans before it at their poses of that time. If SLAM has closed a loop since then, the final
+// poses are used instead, moved as a whole so that this scan has its pose of that time. Scans of a
+// prior map have their final poses. Unknown everywhere for the first scan. Scans too far from this
+// one to share a cell with its surroundings are left out, so that the map remains small however far
+// apart the poses are.
 OccupancyMap ReferenceOf(const RunFiles& run, std::size_t scan_index, const GridOptions& grid,
                          const SubmapOptions& submap);
 

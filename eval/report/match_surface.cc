@@ -20,7 +20,7 @@ MatchPoints EveryNth(const MatchPoints& points, int most) {
   return thinned;
 }
 
-// Root mean square of 1 - M over points turned already, moved by `offset_m`.
+// Root mean square of 1 - M over points, rotated by the caller and moved by `offset_m`.
 double RmsResidual(const std::vector<Eigen::Vector2d>& turned, const ProbabilityView& view,
                    const Eigen::Vector2d& offset_m) {
   double sum = 0.0;

@@ -1,4 +1,4 @@
-// What the report pages' data is made of.
+// Helpers for the data of report pages.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace depthgrid {
 
 using ReportJson = nlohmann::ordered_json;
 
-// As many digits as a picture can show; NaN is null.
+// Rounded to the digits that a picture can show; null if not finite.
 inline ReportJson Rounded(double value, int decimals) {
   if (!std::isfinite(value)) return nullptr;
   const double scale = std::pow(10.0, decimals);

@@ -1,4 +1,4 @@
-// Where a report page is written: mostly into the folder that it is of.
+// Where a report page is written: usually into the folder that it describes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace depthgrid {
 
 struct ReportPlace {
   std::string into;  // a folder
-  // From the page to the folder that it is of, for links: empty, or ends in '/'.
+  // Relative path from the page to the folder that it describes, for links: empty, or ends in '/'.
   std::string back = {};
 };
 

@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-constexpr double kSameStampS = 1e-6;  // as files write stamps
+constexpr double kSameStampS = 1e-6;  // the resolution of stamps in files
 
 Json MapJson(const RunFiles& run) {
   GridGeometry part = KnownPart(run.map, kMapMarginCells);
@@ -54,7 +54,7 @@ Json MapJson(const RunFiles& run) {
   return json;
 }
 
-// One a row of frames.csv, null where there is none.
+// One per row of frames.csv, null where there is none.
 using PosesOfRows = std::vector<std::optional<Pose3>>;
 
 PosesOfRows PosesAt(const Trajectory& trajectory, const std::vector<double>& stamps_s) {
@@ -68,8 +68,8 @@ PosesOfRows PosesAt(const Trajectory& trajectory, const std::vector<double>& sta
   return poses;
 }
 
-// Trajectories of a source without a camera are planar (docs/formats.md, "Laser logs"): a camera
-// never looks straight up to the last digit.
+// Trajectories of sources without a camera are planar (docs/formats.md, "Laser logs"). A real
+// camera never looks exactly straight up.
 bool IsPlanar(const Pose3& pose) { return pose.rotation.x() == 0.0 && pose.rotation.y() == 0.0; }
 
 Pose2 BaseOfRow(const Pose3& pose) { return IsPlanar(pose) ? PlanarPoseOf(pose) : BaseOf(pose); }
@@ -117,15 +117,15 @@ Json FramesJson(const CsvTable& frames, const std::vector<double>& final_errors_
   return json;
 }
 
-// Of what the run's trajectories are, its scans being the laser's.
+// The laser in the base's axes: the run's trajectories are the base's, its scans the laser's.
 Pose2 BaseFromLaserOf(Config settings) {
   LaserMount mount;
   settings.Take("sequence").Take("laser").Take("mount").Read(mount);
   return mount.base_from_laser();
 }
 
-// Hits of some of the run's own scans in base axes, whole centimetres: an even spread, and the
-// worst frames'.
+// Hits of some of the run's own scans in base axes, in whole centimetres: evenly spread scans, and
+// those of the worst frames.
 Json ScansJson(const RunFiles& run, const Pose2& base_from_laser,
                const std::vector<std::size_t>& worst) {
   constexpr std::size_t kSpreadScans = 150;
@@ -156,7 +156,7 @@ Json ScansJson(const RunFiles& run, const Pose2& base_from_laser,
   return json;
 }
 
-// The frame that a picture of a run is named after, its digits.
+// The number of the frame in a picture's file name.
 std::optional<int> SampleFrameOf(const std::string& stem) {
   int frame = 0;
   const char* end = stem.data() + stem.size();
@@ -173,7 +173,7 @@ Json SamplesJson(const std::string& folder) {
     constexpr std::string_view kDepthEnd = "_depth.png";
     if (!name.ends_with(kDepthEnd)) continue;
     const std::string stem = name.substr(0, name.size() - kDepthEnd.size());
-    // Other pictures may lie there too.
+    // There may be other pictures too.
     if (const std::optional<int> frame = SampleFrameOf(stem)) stems[*frame] = stem;
   }
   Json json = Json::array();
@@ -194,7 +194,7 @@ std::string TitleOf(const Config& settings) {
   for (const char* key : {"scene", "input"}) {
     const std::string value = SettingOf(settings, key);
     if (value.empty()) continue;
-    // Not from any dot on: a folder's name may have some.
+    // Only known endings are removed, because a folder's name may contain dots.
     const fs::path name = fs::path(value).filename();
     constexpr std::array kEndings = {".yaml", ".yml", ".log", ".clf", ".txt"};
     const bool is_file =
@@ -204,7 +204,7 @@ std::string TitleOf(const Config& settings) {
   return "Run";
 }
 
-// All else of run.yaml does not matter to what a frame was matched against.
+// The settings in run.yaml that determine what a frame was matched against.
 std::pair<GridOptions, SubmapOptions> GridSettingsOf(Config settings, bool went_on_in_a_map) {
   GridOptions grid;
   SubmapOptions submap;
@@ -227,8 +227,7 @@ Json PathsJson(const RunFiles& run, const PosesOfRows& est, const PosesOfRows& t
   return json;
 }
 
-// Of each row, for the choice of the worst: its final error, or how badly it was matched where no
-// truth is known.
+// How bad each row is: its final error or, without ground truth, the misfit of its match.
 std::vector<double> BadnessOf(const RunFiles& run, const std::vector<double>& final_errors_m) {
   if (run.truth) return final_errors_m;
   std::vector<double> badness;
@@ -267,7 +266,7 @@ Json RunJson(const RunFiles& run, const Config& settings) {
   return json;
 }
 
-// timing.csv as a script beside the page: times differ from run to run, the page does not.
+// timing.csv as a script beside the page, because times are not reproducible and the page is.
 void WriteTimesScript(const std::string& folder, const std::string& into) {
   if (!fs::exists(folder + "/timing.csv")) return;
   Json json;

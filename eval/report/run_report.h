@@ -1,4 +1,4 @@
-// report.html of a run's folder, made from the files in it.
+// Writes report.html of a run's folder from the files in it.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace depthgrid {
 
-// timing.js is written beside it. Throws InputError when the folder holds no run. Stage times
-// are not in the page: it is the same bytes for the same run.yaml.
+// timing.js is written beside it. Throws InputError when the folder holds no run. The page has no
+// run times itself, so its bytes are the same for the same run.yaml.
 void WriteRunReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

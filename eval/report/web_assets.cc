@@ -24,7 +24,7 @@ std::string InsideHtml(std::string_view text) {
 
 std::string Filling(std::string_view token, std::string_view title, std::string_view json) {
   if (token == "data") {
-    // JSON knows no "\!": the only place for "<!--" is inside a string.
+    // "\!" is not valid in JSON; "<!--" can occur only inside a string.
     return Replaced(Replaced(std::string(json), "</", "<\\/"), "<!--", "<\\u0021--");
   }
   if (token == "title") return InsideHtml(title);

@@ -1,4 +1,4 @@
-// The files of eval/web, compiled into the program so that reports can be written from anywhere.
+// The files of eval/web, compiled into the program.
 #pragma once
 
 #include <cstddef>

@@ -9,7 +9,7 @@
 namespace depthgrid {
 namespace {
 
-// Around the scan in its picture.
+// Margin around the scan in its picture.
 constexpr double kPictureMarginM = 0.3;
 
 ReportJson PoseJson(const std::optional<Pose2>& pose) {
@@ -17,7 +17,7 @@ ReportJson PoseJson(const std::optional<Pose2>& pose) {
   return {Rounded(pose->x_m, 4), Rounded(pose->y_m, 4), Rounded(pose->yaw_rad, 5)};
 }
 
-// The rectangle of all points of the scan and of the base.
+// The rectangle around all points of the scan and the base.
 GridGeometry RectangleAround(const MatchPoints& points, const Pose2& map_from_base,
                              double resolution_m) {
   Eigen::Vector2d low = map_from_base.translation();
@@ -50,7 +50,7 @@ ReportJson SurfaceJson(const MatchSurface& surface) {
           {"yaw_residual", RoundedAll(surface.yaw_residual, kDecimals)}};
 }
 
-// Without one, why.
+// Adds the match, or why there is none.
 void AddMatch(const RunFiles& run, std::size_t scan_index, const Pose2& map_from_base,
               const GridOptions& grid, const SubmapOptions& submap, ReportJson& json) {
   MatchPoints points;
@@ -68,7 +68,7 @@ void AddMatch(const RunFiles& run, std::size_t scan_index, const Pose2& map_from
   json["surface"] = SurfaceJson(MatchSurfaceAround(points, ViewOf(reference), map_from_base, {}));
 }
 
-// Among the run's own scans, which are in the order of their frames.
+// Searches the run's own scans, which are sorted by frame.
 std::optional<std::size_t> ScanOfFrame(const RunFiles& run, int frame) {
   const auto first = run.scans.begin() + static_cast<std::ptrdiff_t>(run.prior_scans);
   const auto found =
